@@ -1,0 +1,67 @@
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "harness/commands.hpp"
+#include "harness/errors.hpp"
+
+namespace {
+
+int fail(int code, const char* message) {
+    std::cout.flush();
+    std::fprintf(stderr, "carom: %s\n", message);
+    return code;
+}
+
+bool is_verb(const CLI::App& program, const std::string& name) {
+    return !program.get_subcommands([&name](const CLI::App* verb) { return verb->get_name() == name; })
+                .empty();
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+    // A file that may not grow further is then told as a full disk is, in one line.
+    std::signal(SIGXFSZ, SIG_IGN);
+    CLI::App program("Carom: a performance study of colliding discs that checks itself", "carom");
+    program.require_subcommand(1);
+    program.set_version_flag("--version", "carom " CAROM_VERSION);
+    program.set_help_all_flag("--help-all", "Print the help of every verb");
+    carom::add_list_command(program);
+    carom::add_run_command(program);
+    carom::add_check_command(program);
+    carom::add_bench_command(program);
+    carom::add_profile_command(program);
+    carom::add_generate_command(program);
+    carom::add_reference_command(program);
+    carom::add_doctor_command(program);
+    carom::add_limits_command(program);
+    if (count > 1 && arguments[1][0] != '-' && !is_verb(program, arguments[1])) {
+        return fail(
+            1, ("found '" + std::string(arguments[1]) + "', expected a verb out of `carom --help`").c_str());
+    }
+    try {
+        program.parse(count, arguments);
+        if (!std::cout.flush()) {
+            return fail(1, "standard output: writing broke off, expected room");
+        }
+        return 0;
+    } catch (const CLI::Success& help) {
+        return program.exit(help);
+    } catch (const CLI::ParseError& error) {
+        return fail(1, error.what());
+    } catch (const carom::InputError& error) {
+        return fail(1, error.what());
+    } catch (const carom::CheckError& error) {
+        return fail(2, error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(1, "out of memory: expected a machine with room for the scene and its boxes");
+    } catch (const std::exception& error) {
+        return fail(1, error.what());
+    }
+}

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+/// How evenly the machine does the same work again and again.
+struct Noise {
+    int spins = 0;
+    double median_seconds = 0;  ///< of one spin
+    double p95_over_median = 0; ///< 95th percentile over median
+    double max_over_median = 0;
+    std::optional<double> steal; ///< share of all CPUs' time that the host gave to others; empty if not told
+};
+
+/// Does a fixed spin of about a millisecond for so many seconds on the calling thread, and looks at the clock
+/// after each.
+Noise measure_noise(double seconds);
+
+/// The spread of these durations, in seconds; there must be one at least. `steal` is left empty.
+Noise spread(std::vector<double> durations);
+
+/// CPU time since the machine started, in clock ticks.
+struct CpuTime {
+    double total = 0;
+    double stolen = 0;
+};
+
+/// From the first line of /proc/stat (man proc_stat); empty if it is no such line.
+std::optional<CpuTime> parse_cpu_time(std::string_view line);
+
+} // namespace carom

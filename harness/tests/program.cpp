@@ -1,0 +1,94 @@
+#include "harness/tests/program.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "harness/tests/temporary_directory.hpp"
+
+namespace carom::tests {
+namespace {
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+    std::vector<char*> pointers;
+    for (std::string& text : texts) {
+        pointers.push_back(text.data());
+    }
+    pointers.push_back(nullptr);
+    return pointers;
+}
+
+std::vector<std::string> environment_with(const std::vector<std::string>& settings) {
+    std::vector<std::string> all = settings;
+    for (char** entry = environ; *entry != nullptr; ++entry) {
+        const std::string name = std::string(*entry).substr(0, std::string(*entry).find('=') + 1);
+        if (std::ranges::none_of(settings,
+                                 [&name](const auto& setting) { return setting.starts_with(name); })) {
+            all.emplace_back(*entry);
+        }
+    }
+    return all;
+}
+
+} // namespace
+
+ProgramResult run_carom(std::vector<std::string> arguments, const std::vector<std::string>& environment,
+                        const std::string& standard_output) {
+    const TemporaryDirectory directory;
+    const std::string output = standard_output.empty() ? directory / "output" : standard_output;
+    const std::string error = directory / "error";
+    arguments.insert(arguments.begin(), CAROM_PROGRAM);
+    std::vector<std::string> settings = environment_with(environment);
+
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                     0600);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, error.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                     0600);
+    pid_t process = 0;
+    const int failure = posix_spawn(&process, CAROM_PROGRAM, &actions, nullptr, pointers_to(arguments).data(),
+                                    pointers_to(settings).data());
+    posix_spawn_file_actions_destroy(&actions);
+    if (failure != 0) {
+        throw std::system_error(failure, std::generic_category(), CAROM_PROGRAM);
+    }
+    int status = 0;
+    while (waitpid(process, &status, 0) < 0) {
+    }
+    ProgramResult result;
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    result.output = standard_output.empty() ? content_of(output) : "";
+    result.error = content_of(error);
+    return result;
+}
+
+testing::AssertionResult refused(const ProgramResult& result, int exit_code,
+                                 const std::vector<std::string>& parts) {
+    const auto failure = [&result] {
+        return testing::AssertionFailure() << "exit code " << result.exit_code << ", standard output '"
+                                           << result.output << "', standard error '" << result.error << "': ";
+    };
+    if (result.exit_code != exit_code) {
+        return failure() << "expected exit code " << exit_code;
+    }
+    if (!result.output.empty()) {
+        return failure() << "expected nothing on standard output";
+    }
+    if (!result.error.ends_with('\n') || std::ranges::count(result.error, '\n') != 1) {
+        return failure() << "expected one line on standard error";
+    }
+    for (const std::string& part : parts) {
+        if (result.error.find(part) == std::string::npos) {
+            return failure() << "expected '" << part << "' on standard error";
+        }
+    }
+    return testing::AssertionSuccess();
+}
+
+} // namespace carom::tests

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "filter.hpp"
+#include "parallel_for.hpp"
+#include "policies.hpp"
+#include "state.hpp"
+
+namespace carom {
+
+/// Puts every disc's number into the list of its box, in the order of the numbers.
+template <Policies policies, class SomeProbe>
+    requires(policies.storage == Storage::numbered)
+void bin(State<policies>& state, const Tuning& /*tuning*/, SomeProbe& /*probe*/) {
+    for (std::vector<int>& box : state.boxes) {
+        box.clear();
+    }
+    for (int i = 0; i < state.count(); ++i) {
+        state.boxes[static_cast<std::size_t>(state.box_of_disc[static_cast<std::size_t>(i)])].push_back(i);
+    }
+}
+
+/// A share of `count` things for each of `parts`: the range of part `part` is [share(part), share(part + 1)).
+inline int share(int part, int parts, int count) {
+    return static_cast<int>(std::int64_t{count} * part / parts);
+}
+
+/// Runs `body(part)` for each of as many parts as there are threads.
+template <class SomeProbe, class Body>
+void for_each_part(const Tuning& tuning, SomeProbe& probe, const Body& body) {
+    parallel_for<Schedule::static_>(tuning.threads, tuning.threads, 1, probe, [&](int part) {
+        body(part);
+        return Tally{};
+    });
+}
+
+/// Of each part's discs, how many each box holds.
+template <Policies policies> void count_part(State<policies>& state, int part, int parts) {
+    std::vector<int>& places = state.places[static_cast<std::size_t>(part)];
+    places.assign(static_cast<std::size_t>(state.grid.box_count()), 0);
+    for (int i = share(part, parts, state.count()); i < share(part + 1, parts, state.count()); ++i) {
+        ++places[static_cast<std::size_t>(state.box_of_disc[static_cast<std::size_t>(i)])];
+    }
+}
+
+/// How many discs the boxes of one part hold.
+template <Policies policies> int total_of_part(const State<policies>& state, int part, int parts) {
+    const int boxes = state.grid.box_count();
+    int total = 0;
+    for (const std::vector<int>& places : state.places) {
+        total = std::accumulate(places.begin() + share(part, parts, boxes),
+                                places.begin() + share(part + 1, parts, boxes), total);
+    }
+    return total;
+}
+
+/// Turns the counts of one part of the boxes into places, the first of them `place`: those of a box's discs
+/// follow one another in the order of the parts of the discs, and boxes follow boxes.
+template <Policies policies> void place_part(State<policies>& state, int part, int parts, int place) {
+    const int boxes = state.grid.box_count();
+    for (auto box = static_cast<std::size_t>(share(part, parts, boxes));
+         box < static_cast<std::size_t>(share(part + 1, parts, boxes)); ++box) {
+        state.first[box] = place;
+        for (std::vector<int>& places : state.places) {
+            place += std::exchange(places[box], place);
+        }
+    }
+}
+
+template <Policies policies> void scatter_part(State<policies>& state, int part, int parts) {
+    std::vector<int>& places = state.places[static_cast<std::size_t>(part)];
+    [[maybe_unused]] const auto per_side = 1 / state.side;
+    for (int i = share(part, parts, state.count()); i < share(part + 1, parts, state.count()); ++i) {
+        const auto from = static_cast<std::size_t>(i);
+        const int box = state.box_of_disc[from];
+        const auto to = static_cast<std::size_t>(places[static_cast<std::size_t>(box)]++);
+        state.spare_discs[to] = state.discs[from];
+        state.spare_numbers[to] = state.numbers[from];
+        state.spare_box_of_disc[to] = box;
+        if constexpr (policies.search == Search::filtered) {
+            state.near_x[to] = filter_position(state.discs[from].x, per_side);
+            state.near_y[to] = filter_position(state.discs[from].y, per_side);
+        }
+    }
+}
+
+/// Sorts the discs by their boxes: a stable counting sort (Knuth, The Art of Computer Programming 3, section
+/// 5.2), so that the order does not depend on the number of parts.
+template <Policies policies, class SomeProbe>
+    requires(policies.storage == Storage::sorted)
+void bin(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
+    const int parts = tuning.threads;
+    state.places.resize(static_cast<std::size_t>(parts));
+    std::vector<int> begin(static_cast<std::size_t>(parts));
+    for_each_part(tuning, probe, [&](int part) { count_part(state, part, parts); });
+    for_each_part(tuning, probe, [&](int part) {
+        begin[static_cast<std::size_t>(part)] = total_of_part(state, part, parts);
+    });
+    std::exclusive_scan(begin.begin(), begin.end(), begin.begin(), 0);
+    for_each_part(tuning, probe,
+                  [&](int part) { place_part(state, part, parts, begin[static_cast<std::size_t>(part)]); });
+    state.first.back() = state.count();
+    for_each_part(tuning, probe, [&](int part) { scatter_part(state, part, parts); });
+    state.discs.swap(state.spare_discs);
+    state.numbers.swap(state.spare_numbers);
+    state.box_of_disc.swap(state.spare_box_of_disc);
+}
+
+} // namespace carom

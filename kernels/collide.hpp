@@ -1,0 +1,142 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+#include "policies.hpp"
+#include "scene.hpp"
+
+namespace carom {
+
+/// Do the two discs overlap or touch? |d|^2 <= (2r)^2 with d = p2 - p1; `reach_squared` is (2r)^2.
+template <class Real = double>
+bool overlap(const BasicDisc<Real>& first, const BasicDisc<Real>& second,
+             std::type_identity_t<Real> reach_squared) {
+    const Real dx = second.x - first.x;
+    const Real dy = second.y - first.y;
+    return dx * dx + dy * dy <= reach_squared;
+}
+
+/// Decides whether an overlapping pair approaches: (v2 - v1).d < -tolerance.
+///
+/// relative: tolerance = c |d| sqrt(|v1|^2 + |v2|^2) with c = 64 machine epsilons. After a resolve the
+/// computed approach differs from zero by the rounding of the velocities themselves, a few epsilons of
+/// |v||d|; an approach below that can be neither seen nor removed. Measuring against |v2 - v1||d| alone would
+/// not bound it: where two fast discs move almost together, their difference is all rounding. Scaling lengths
+/// or times by a power of two changes no decision. published: tolerance = 1e-7 (length^2 per time), whatever
+/// the units.
+template <class Real = double> struct Approach {
+    Real relative;
+    Real absolute;
+
+    explicit Approach(Tolerance tolerance)
+        : relative(tolerance == Tolerance::relative ? 64 * std::numeric_limits<Real>::epsilon() : 0),
+          absolute(tolerance == Tolerance::published ? static_cast<Real>(1e-7) : 0) {}
+
+    /// `approach` is (v2 - v1).d; `distance_squared` is |d|^2, `speed_squared` |v1|^2 + |v2|^2.
+    bool counts(Real approach, Real distance_squared, Real speed_squared) const {
+        return approach < -absolute && approach < -relative * std::sqrt(distance_squared * speed_squared);
+    }
+};
+
+/// Centres closer than this, squared, are coincident: |d|^2 has too few bits left to give a normal.
+template <class Real>
+inline constexpr Real coincident_squared =
+    std::numeric_limits<Real>::min() / std::numeric_limits<Real>::epsilon();
+
+template <class Real> Real speed_squared(const BasicDisc<Real>& first, const BasicDisc<Real>& second) {
+    return first.vx * first.vx + first.vy * first.vy + second.vx * second.vx + second.vy * second.vy;
+}
+
+/// Resolves an overlapping pair if it collides; returns whether it did.
+///
+/// Equal masses, elastic, frictionless: the impulse acts along d and conserves momentum, so v1' = v1 + s d
+/// and v2' = v2 - s d. Energy |v1'|^2 + |v2'|^2 = |v1|^2 + |v2|^2 leaves s = 0 or s = ((v2 - v1).d) / |d|^2:
+/// the normal components are exchanged (Landau and Lifshitz, Mechanics, section 17). Coincident centres have
+/// no normal and are not colliding.
+template <class Real>
+bool resolve_pair(BasicDisc<Real>& first, BasicDisc<Real>& second, const Approach<Real>& approaching) {
+    const Real dx = second.x - first.x;
+    const Real dy = second.y - first.y;
+    const Real approach = (second.vx - first.vx) * dx + (second.vy - first.vy) * dy;
+    if (!(approach < 0)) {
+        return false;
+    }
+    const Real distance_squared = dx * dx + dy * dy;
+    if (distance_squared < coincident_squared<Real> ||
+        !approaching.counts(approach, distance_squared, speed_squared(first, second))) {
+        return false;
+    }
+    const Real impulse = approach / distance_squared;
+    first.vx += impulse * dx;
+    first.vy += impulse * dy;
+    second.vx -= impulse * dx;
+    second.vy -= impulse * dy;
+    return true;
+}
+
+/// Both components of a vector at once, in one register. Also how they are loaded and stored: a processor
+/// waits where it must put together what was stored apart.
+template <class Real> struct Components {
+    typedef Real Register __attribute__((vector_size(2 * sizeof(Real))));
+
+    static Register load(const Real& x) {
+        Register both;
+        std::memcpy(&both, &x, sizeof both);
+        return both;
+    }
+    static void store(Register both, Real& x) { std::memcpy(&x, &both, sizeof both); }
+    static Real sum(Register both) { return both[0] + both[1]; }
+};
+
+/// The same for a pair whose normal n = d / |d| is known, its components one after the other from `normal`
+/// on: then s d = ((v2 - v1).n) n.
+template <class Real>
+[[gnu::always_inline]] inline bool resolve_along(const Real& normal, BasicDisc<Real>& first,
+                                                 BasicDisc<Real>& second, const Approach<Real>& approaching) {
+    using Both = Components<Real>;
+    const auto direction = Both::load(normal);
+    const auto velocity1 = Both::load(first.vx);
+    const auto velocity2 = Both::load(second.vx);
+    const Real approach = Both::sum((velocity2 - velocity1) * direction);
+    if (!(approach < 0)) {
+        return false;
+    }
+    const Real distance =
+        approaching.absolute > 0 ? std::hypot(second.x - first.x, second.y - first.y) : Real{1};
+    const Real speed_squared = Both::sum(velocity1 * velocity1 + velocity2 * velocity2);
+    if (!approaching.counts(approach * distance, distance * distance, speed_squared)) {
+        return false;
+    }
+    Both::store(velocity1 + approach * direction, first.vx);
+    Both::store(velocity2 - approach * direction, second.vx);
+    return true;
+}
+
+/// Does the disc overlap or touch a wall?
+template <class Real = double>
+bool overlaps_wall(const BasicDisc<Real>& disc, std::type_identity_t<Real> side,
+                   std::type_identity_t<Real> radius) {
+    return disc.x - radius <= 0 || disc.x + radius >= side || disc.y - radius <= 0 || disc.y + radius >= side;
+}
+
+/// Turns each velocity component of a disc that overlaps a wall and moves into it; returns how many were
+/// turned.
+template <class Real = double>
+int resolve_walls(BasicDisc<Real>& disc, std::type_identity_t<Real> side, std::type_identity_t<Real> radius) {
+    int turned = 0;
+    const auto turn = [&](Real position, Real& velocity) {
+        if ((position - radius <= 0 && velocity < 0) || (position + radius >= side && velocity > 0)) {
+            velocity = -velocity;
+            ++turned;
+        }
+    };
+    turn(disc.x, disc.vx);
+    turn(disc.y, disc.vy);
+    return turned;
+}
+
+} // namespace carom

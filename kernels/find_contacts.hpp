@@ -1,0 +1,165 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "collide.hpp"
+#include "contacts.hpp"
+#include "filter.hpp"
+#include "find.hpp"
+#include "parallel_for.hpp"
+#include "policies.hpp"
+#include "state.hpp"
+
+namespace carom {
+
+/// What of the state the search for candidates reads, in registers.
+template <Policies policies> struct Candidates {
+    const BasicDisc<RealOf<policies.precision>>* discs;
+    const float* x;
+    const float* y;
+    RealOf<policies.precision> reach_squared;
+    float filter_reach_squared;
+    bool sparse; ///< most discs overlap none: then it pays to ask first
+
+    explicit Candidates(const State<policies>& state)
+        : discs(state.discs.data()), x(state.near_x.data()), y(state.near_y.data()),
+          reach_squared(state.reach_squared()),
+          filter_reach_squared(carom::filter_reach_squared(state.side, state.radius)),
+          sparse(static_cast<float>(state.count()) * (state.radius * state.radius) <
+                 state.side * state.side / 32) {}
+
+    /// Writes disc i with each disc of [begin, end) that may overlap it to `found`, which has room for all of
+    /// them and four more; returns the end. Without a branch on the outcome, or on the range being empty,
+    /// which no processor can predict.
+    [[gnu::always_inline]] OverlappingDiscs* append(int i, int begin, int end,
+                                                    OverlappingDiscs* found) const {
+        if constexpr (policies.search == Search::exact) {
+            for (int j = begin; j < end; ++j) {
+                *found = {i, j};
+                found += overlap(discs[i], discs[j], reach_squared);
+            }
+            return found;
+        }
+        int j = begin;
+        do {
+            const FourInts overlaps = may_overlap(x + j, y + j, x[i], y[i], filter_reach_squared, end - j);
+            if (!sparse || any(overlaps)) {
+                for (int k = 0; k < 4; ++k) {
+                    *found = {i, j + k};
+                    found -= overlaps[k];
+                }
+            }
+            j += 4;
+        } while (j < end);
+        return found;
+    }
+};
+
+/// Turns the candidates that do overlap into contacts; returns the number of pairs. Coincident centres have
+/// no normal: such a pair never collides, and is no contact.
+template <Policies policies>
+Tally add_contacts(const State<policies>& state, Strip<typename State<policies>::Real>& strip,
+                   std::size_t size) {
+    using Real = typename State<policies>::Real;
+    Tally tally;
+    for (std::size_t k = 0; k < size; ++k) {
+        const OverlappingDiscs pair = strip.found[k];
+        if (pair.second == OverlappingDiscs::wall) {
+            strip.contacts.push_back({pair, 0, 0});
+            continue;
+        }
+        const auto& first = state.discs[static_cast<std::size_t>(pair.first)];
+        const auto& second = state.discs[static_cast<std::size_t>(pair.second)];
+        const Real dx = second.x - first.x;
+        const Real dy = second.y - first.y;
+        const Real distance_squared = dx * dx + dy * dy;
+        if (policies.search == Search::filtered && distance_squared > state.reach_squared()) {
+            continue;
+        }
+        ++tally.overlaps;
+        if (distance_squared >= coincident_squared<Real>) {
+            const Real per_distance = 1 / std::sqrt(distance_squared);
+            strip.contacts.push_back({pair, dx * per_distance, dy * per_distance});
+        }
+    }
+    return tally;
+}
+
+/// Room for `more` elements after the first `size`.
+inline OverlappingDiscs* room(std::vector<OverlappingDiscs>& found, std::size_t size, int more) {
+    const std::size_t needed = size + static_cast<std::size_t>(std::max(more, 0));
+    if (found.size() < needed) [[unlikely]] {
+        found.resize(2 * needed);
+    }
+    return found.data() + size;
+}
+
+/// Searches one block of boxes of a row for partners of its discs among the discs after them: in storage
+/// order the boxes of lower rows hold only discs before, and so does a disc's own box up to itself, so that
+/// half the neighbourhood is enough. Disc by disc, since most boxes hold one or none. Returns how many were
+/// found.
+template <Policies policies>
+std::size_t search_block(State<policies>& state, std::vector<OverlappingDiscs>& found, int row,
+                         BoxRange columns) {
+    std::size_t size = 0;
+    const Candidates<policies> candidates(state);
+    const int row_begin = state.grid.box_of(row, 0);
+    const int boxes_per_side = state.grid.boxes_per_side();
+    const int* const first = state.first.data();
+    const int end = first[row_begin + columns.last + 1];
+    for (int i = first[row_begin + columns.first]; i < end; ++i) {
+        const auto disc = static_cast<std::size_t>(i);
+        const int column = state.box_of_disc[disc] - row_begin;
+        state.block_of_disc[disc] = state.active.code(row, columns, column);
+        if (state.grid.at_wall(row, column) && overlaps_wall(state.discs[disc], state.side, state.radius))
+            [[unlikely]] {
+            *room(found, size++, 1) = {i, OverlappingDiscs::wall};
+        }
+        const BoxRange rows = Look<policies.neighbourhood>::along(state.grid, state.discs[disc].y, row);
+        const BoxRange near = Look<policies.neighbourhood>::along(state.grid, state.discs[disc].x, column);
+        for (int box = row_begin; box <= rows.last * boxes_per_side; box += boxes_per_side) {
+            const int from = std::max(i + 1, first[box + near.first]);
+            const int to = first[box + near.last + 1];
+            OverlappingDiscs* const begin = room(found, size, to - from + 4);
+            size += static_cast<std::size_t>(candidates.append(i, from, to, begin) - begin);
+        }
+    }
+    return size;
+}
+
+template <Policies policies> Tally find_in_strip(State<policies>& state, int index) {
+    constexpr int per_block = ActiveBlocks::boxes_per_block;
+    Tally tally;
+    auto& strip = state.strips[static_cast<std::size_t>(index)];
+    strip.contacts.clear();
+    strip.first.clear();
+    const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
+    for (int row = rows.first; row <= rows.last; ++row) {
+        for (int column = 0; column < state.grid.boxes_per_side(); column += per_block) {
+            const int last = std::min(column + per_block, state.grid.boxes_per_side()) - 1;
+            const std::size_t size = search_block(state, strip.found, row, {column, last});
+            strip.first.push_back(static_cast<int>(strip.contacts.size()));
+            tally += add_contacts(state, strip, size);
+        }
+    }
+    strip.first.push_back(static_cast<int>(strip.contacts.size()));
+    std::fill_n(state.active.row(rows.first), strip.first.size() - 1, static_cast<unsigned char>(1));
+    return tally;
+}
+
+/// Finds the contacts of all discs, a strip to an iteration.
+///
+/// Any two strips may run at the same time: of other strips' discs only positions are read, which nobody
+/// writes.
+template <Policies policies, class SomeProbe>
+    requires(policies.overlaps == Overlaps::contacts)
+Tally find(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
+    return parallel_for<policies.find_schedule>(
+        tuning.threads, state.grid.strip_count(strip_height(policies.order)), tuning.find_chunk, probe,
+        [&](int strip) { return find_in_strip(state, strip); });
+}
+
+} // namespace carom

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <type_traits>
+
+namespace carom {
+
+/// Which boxes a disc looks into for overlaps.
+enum class Neighbourhood {
+    nine, ///< its own and all eight around it
+    four, ///< its own and the three that its quadrant of the box touches
+};
+
+/// The order in which collisions are resolved.
+enum class Order {
+    checkered, ///< four colours of boxes, one colour in parallel after another
+    row,       ///< even rows of boxes in parallel, then odd ones
+    track,     ///< one thread; after the first sweep only discs that a partner changed
+    repeat,    ///< one thread; every disc in turn, each again and again while it changes
+    once,      ///< one thread; every disc in turn, one pass each
+    strips,    ///< strips of rows of boxes: even ones in parallel, then odd ones
+};
+
+/// Whether pairs within one box are resolved already while overlaps are found.
+enum class SelfContained { on, off };
+
+/// The way through a disc's list of overlaps.
+enum class Direction {
+    reverse, ///< from the last found to the first
+    forward, ///< from the first found to the last
+};
+
+/// How OpenMP hands out the iterations of a parallel loop. `_chunk`: with the chunk of `Tuning`.
+enum class Schedule { static_, static_chunk, dynamic, dynamic_chunk, guided, guided_chunk };
+
+/// How the discs stand in memory.
+enum class Storage {
+    numbered, ///< in the order of their numbers; a box is a growable list of numbers
+    sorted,   ///< in the order of their boxes, sorted anew each step; a box is a range
+};
+
+/// The side of a box of the grid.
+enum class BoxSide {
+    wide, ///< 4r + 1
+    snug, ///< 2r, or the mean distance between discs where that is more
+};
+
+/// What is kept of an overlapping pair.
+enum class Overlaps {
+    lists,    ///< the other disc's number, in a list of each of the two
+    contacts, ///< one contact, with its normal
+};
+
+/// How contacts are searched for.
+enum class Search {
+    exact,    ///< candidate by candidate, in the precision of the discs
+    filtered, ///< four candidates at once in float, conservatively; then the exact test of those that remain
+};
+
+/// What a sweep looks at.
+enum class Worklist {
+    all,    ///< everything
+    active, ///< contacts of which a disc has changed since they were last looked at
+};
+
+/// The floating-point type of positions and velocities.
+enum class Precision { double_, float_ };
+
+/// One combination of choices, fixed at compile time. The defaults are the published study's best
+/// configuration.
+struct Policies {
+    Neighbourhood neighbourhood = Neighbourhood::four;
+    Order order = Order::checkered;
+    SelfContained self_contained = SelfContained::on;
+    Direction direction = Direction::reverse;
+    Schedule find_schedule = Schedule::guided_chunk;
+    Schedule resolve_schedule = Schedule::guided_chunk; ///< of the parallel orders; the others have none
+    Storage storage = Storage::numbered;
+    BoxSide box_side = BoxSide::wide;
+    Overlaps overlaps = Overlaps::lists;
+    Search search = Search::exact;
+    Worklist worklist = Worklist::all;
+    Precision precision = Precision::double_;
+
+    friend constexpr bool operator==(const Policies&, const Policies&) = default;
+};
+
+constexpr bool is_sequential(Order order) {
+    return order == Order::track || order == Order::repeat || order == Order::once;
+}
+
+constexpr bool has_chunk(Schedule schedule) {
+    return schedule == Schedule::static_chunk || schedule == Schedule::dynamic_chunk ||
+           schedule == Schedule::guided_chunk;
+}
+
+/// Rows of boxes in a strip. Two at least, but for `row`: see resolve_contacts.hpp.
+constexpr int strip_height(Order order) { return order == Order::row ? 1 : 4; }
+
+template <Precision precision>
+using RealOf = std::conditional_t<precision == Precision::double_, double, float>;
+
+/// Visits to one disc stop after this many passes even if it still changes; the next sweep goes on. It keeps
+/// a disc wedged between two walls from holding up the sweep limit.
+inline constexpr int passes_per_visit = 100;
+
+/// When an approaching pair counts as colliding.
+enum class Tolerance {
+    relative,  ///< scale-free, at the level of rounding (see collide.hpp)
+    published, ///< 1e-7 absolute, in units of length^2 per time
+};
+
+/// What may change at run time without recompiling.
+struct Tuning {
+    int threads = 1;
+    int find_chunk = 4;    ///< boxes or strips, where the find schedule has a chunk
+    int resolve_chunk = 5; ///< boxes, rows or strips, where the resolve schedule has a chunk
+    int substeps = 1;      ///< dt = 1 / substeps
+    Tolerance tolerance = Tolerance::relative;
+    int sweep_limit = 100'000; ///< sweeps in one step after which a resolve is given up as endless
+};
+
+} // namespace carom

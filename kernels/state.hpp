@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "collide.hpp"
+#include "contacts.hpp"
+#include "grid.hpp"
+#include "policies.hpp"
+#include "scene.hpp"
+#include "storage.hpp"
+#include "tally.hpp"
+
+namespace carom {
+
+/// What is known of the overlaps, by `Policies::overlaps`.
+template <Overlaps overlaps, class Real> struct OverlapsOf;
+
+template <class Real> struct OverlapsOf<Overlaps::lists, Real> {
+    std::vector<std::vector<int>>
+        overlaps; ///< for each disc those it overlaps; each pair stands in both lists
+
+    OverlapsOf(const Grid& /*grid*/, int count) : overlaps(static_cast<std::size_t>(count)) {}
+};
+
+template <class Real> struct OverlapsOf<Overlaps::contacts, Real> {
+    std::vector<Strip<Real>> strips;
+    std::vector<int> block_of_disc; ///< the code of its box, see ActiveBlocks
+    ActiveBlocks active;
+
+    OverlapsOf(const Grid& grid, int count)
+        : strips(static_cast<std::size_t>(grid.strip_count(strip_height(Order::strips)))),
+          block_of_disc(static_cast<std::size_t>(count)), active(grid.boxes_per_side()) {}
+};
+
+/// What a simulation knows between its phases.
+template <Policies policies = Policies{}>
+struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
+               OverlapsOf<policies.overlaps, RealOf<policies.precision>> {
+    using Real = RealOf<policies.precision>;
+    using Discs = DiscsOf<policies.storage, Real>;
+
+    Real side;
+    Real radius;
+    Grid grid;
+
+    explicit State(const Scene& scene)
+        : State(scene,
+                Grid(scene.side, scene.radius, static_cast<int>(scene.discs.size()), policies.box_side)) {}
+
+    int count() const { return static_cast<int>(this->discs.size()); }
+    Real reach_squared() const { return (2 * radius) * (2 * radius); }
+
+    decltype(auto) discs_in(int row, int column) const {
+        return Discs::discs_in_box(grid.box_of(row, column));
+    }
+
+  private:
+    State(const Scene& scene, const Grid& its_grid)
+        : Discs(scene, its_grid),
+          OverlapsOf<policies.overlaps, Real>(its_grid, static_cast<int>(scene.discs.size())),
+          side(static_cast<Real>(scene.side)), radius(static_cast<Real>(scene.radius)), grid(its_grid) {}
+};
+
+template <Policies policies> using ApproachOf = Approach<RealOf<policies.precision>>;
+
+/// The discs in double, disc i at index i.
+template <Policies policies> std::vector<Disc> discs_by_number(const State<policies>& state) {
+    std::vector<Disc> discs(state.discs.size());
+    for (int i = 0; i < state.count(); ++i) {
+        discs[static_cast<std::size_t>(state.number(i))] =
+            disc_cast<double>(state.discs[static_cast<std::size_t>(i)]);
+    }
+    return discs;
+}
+
+} // namespace carom

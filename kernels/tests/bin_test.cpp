@@ -1,0 +1,74 @@
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "kernels/bin.hpp"
+#include "kernels/move.hpp"
+#include "kernels/probe.hpp"
+#include "kernels/tests/scenes.hpp"
+#include "kernels/tests/simulate.hpp"
+
+namespace carom {
+namespace {
+
+constexpr Policies sorted{.storage = Storage::sorted};
+
+State<sorted> stepped(const Scene& scene, int steps, int threads) {
+    State<sorted> state(scene);
+    NoProbe probe;
+    for (int step = 0; step < steps; ++step) {
+        move(state, {.threads = threads}, probe);
+        bin(state, {.threads = threads}, probe);
+    }
+    return state;
+}
+
+TEST(SortedBin, PutsTheDiscsInTheOrderOfTheirBoxes) {
+    for (const auto& [name, scene] : tests::all_scenes()) {
+        SCOPED_TRACE(name);
+        const auto state = stepped(scene, 2, 3);
+        int next = 0;
+        for (int row = 0; row < state.grid.boxes_per_side(); ++row) {
+            for (int column = 0; column < state.grid.boxes_per_side(); ++column) {
+                for (const int i : state.discs_in(row, column)) {
+                    const Disc& disc = state.discs[static_cast<std::size_t>(i)];
+                    ASSERT_EQ(i, next++);
+                    ASSERT_EQ(state.grid.coordinate(disc.x), column);
+                    ASSERT_EQ(state.grid.coordinate(disc.y), row);
+                }
+            }
+        }
+        ASSERT_EQ(next, state.count());
+    }
+}
+
+TEST(SortedBin, CarriesTheNumbersAlong) {
+    for (const auto& [name, scene] : tests::all_scenes()) {
+        SCOPED_TRACE(name);
+        std::vector<Disc> expected = scene.discs;
+        for (Disc& disc : expected) {
+            disc.x = disc.x + disc.vx + disc.vx;
+            disc.y = disc.y + disc.vy + disc.vy;
+        }
+        EXPECT_TRUE(tests::same_bits(discs_by_number(stepped(scene, 2, 3)), expected));
+    }
+}
+
+TEST(SortedBin, IsStableAndSoTheSameForAnyNumberOfThreads) {
+    const Scene scene = tests::random_scene(500, 60, 1, 1, 3, 52);
+    const auto one = stepped(scene, 1, 1);
+    for (std::size_t i = 1; i < one.numbers.size(); ++i) {
+        const auto box = [&](std::size_t k) {
+            return one.grid.box_of(one.grid.coordinate(one.discs[k].y), one.grid.coordinate(one.discs[k].x));
+        };
+        EXPECT_TRUE(box(i - 1) < box(i) || one.numbers[i - 1] < one.numbers[i]);
+    }
+    for (const int threads : {2, 3, 16, 600}) {
+        EXPECT_EQ(stepped(scene, 1, threads).numbers, one.numbers) << threads << " threads";
+    }
+}
+
+} // namespace
+} // namespace carom

@@ -1,0 +1,282 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "kernels/step.hpp"
+#include "kernels/tests/definition.hpp"
+#include "kernels/tests/scenes.hpp"
+#include "kernels/tests/simulate.hpp"
+
+namespace carom {
+namespace {
+
+using tests::same_bits;
+
+constexpr Policies wide{.order = Order::strips,
+                        .self_contained = SelfContained::off,
+                        .storage = Storage::sorted,
+                        .overlaps = Overlaps::contacts};
+constexpr Policies snug{.neighbourhood = Neighbourhood::nine,
+                        .order = Order::strips,
+                        .self_contained = SelfContained::off,
+                        .storage = Storage::sorted,
+                        .box_side = BoxSide::snug,
+                        .overlaps = Overlaps::contacts};
+constexpr Policies filtered{.neighbourhood = Neighbourhood::nine,
+                            .order = Order::strips,
+                            .self_contained = SelfContained::off,
+                            .storage = Storage::sorted,
+                            .box_side = BoxSide::snug,
+                            .overlaps = Overlaps::contacts,
+                            .search = Search::filtered};
+constexpr Policies active{.neighbourhood = Neighbourhood::nine,
+                          .order = Order::strips,
+                          .self_contained = SelfContained::off,
+                          .storage = Storage::sorted,
+                          .box_side = BoxSide::snug,
+                          .overlaps = Overlaps::contacts,
+                          .search = Search::filtered,
+                          .worklist = Worklist::active};
+
+using Pairs = std::multiset<std::pair<int, int>>;
+
+template <Policies policies> State<policies> found(const Scene& scene, Tally& tally, int threads = 1) {
+    State<policies> state(scene);
+    NoProbe probe;
+    const Tuning tuning{.threads = threads};
+    move(state, tuning, probe);
+    bin(state, tuning, probe);
+    tally = find(state, tuning, probe);
+    return state;
+}
+
+/// Overlapping pairs by number, and those of them whose centres do not coincide.
+std::pair<Pairs, Pairs> brute_force(const std::vector<Disc>& discs, double radius) {
+    Pairs all;
+    Pairs with_normal;
+    for (int i = 0; i < static_cast<int>(discs.size()); ++i) {
+        for (int j = 0; j < i; ++j) {
+            const Disc& one = discs[static_cast<std::size_t>(i)];
+            const Disc& two = discs[static_cast<std::size_t>(j)];
+            const double dx = one.x - two.x;
+            const double dy = one.y - two.y;
+            if (dx * dx + dy * dy <= 2 * radius * (2 * radius)) {
+                all.emplace(j, i);
+                if (dx * dx + dy * dy >= coincident_squared<double>) {
+                    with_normal.emplace(j, i);
+                }
+            }
+        }
+    }
+    return {all, with_normal};
+}
+
+template <Policies policies> void finds_each_pair_once() {
+    for (const auto& [name, scene] : tests::all_scenes()) {
+        SCOPED_TRACE(name);
+        Tally tally;
+        const auto state = found<policies>(scene, tally, 3);
+        Pairs pairs;
+        for (const auto& strip : state.strips) {
+            for (const auto& contact : strip.contacts) {
+                const auto [first, second] = contact.discs;
+                if (second != OverlappingDiscs::wall) {
+                    ASSERT_LT(first, second);
+                    EXPECT_NEAR(std::hypot(contact.normal_x, contact.normal_y), 1, 1e-15);
+                    pairs.insert(std::minmax({state.number(first), state.number(second)}));
+                }
+            }
+        }
+        const auto [all, with_normal] = brute_force(discs_by_number(state), scene.radius);
+        EXPECT_EQ(pairs, with_normal);
+        EXPECT_EQ(tally.overlaps, static_cast<std::int64_t>(all.size()));
+    }
+}
+
+TEST(Contacts, AreEveryOverlappingPairOnceInWideBoxes) { finds_each_pair_once<wide>(); }
+TEST(Contacts, AreEveryOverlappingPairOnceInSnugBoxes) { finds_each_pair_once<snug>(); }
+TEST(Contacts, AreEveryOverlappingPairOnceThroughTheFilter) { finds_each_pair_once<filtered>(); }
+
+/// A contact with the strip and, counted over all rows from the first, the block that it stands in.
+struct Place {
+    int strip;
+    std::ptrdiff_t block;
+    OverlappingDiscs discs;
+};
+
+std::vector<Place> places(State<active>& state) {
+    std::vector<Place> found;
+    for (int s = 0; s < static_cast<int>(state.strips.size()); ++s) {
+        const auto& strip = state.strips[static_cast<std::size_t>(s)];
+        const std::ptrdiff_t first_block =
+            static_cast<std::ptrdiff_t>(s) * strip_height(Order::strips) * state.active.per_row();
+        for (std::size_t b = 0; b + 1 < strip.first.size(); ++b) {
+            for (int c = strip.first[b]; c < strip.first[b + 1]; ++c) {
+                found.push_back({s, first_block + static_cast<std::ptrdiff_t>(b),
+                                 strip.contacts[static_cast<std::size_t>(c)].discs});
+            }
+        }
+    }
+    return found;
+}
+
+std::set<std::ptrdiff_t> marked_by(State<active>& state, int disc) {
+    unsigned char* const marks = state.active.row(0);
+    const std::ptrdiff_t count =
+        static_cast<std::ptrdiff_t>(state.active.per_row()) * state.grid.boxes_per_side();
+    std::fill_n(marks, count, static_cast<unsigned char>(0));
+    state.active.marker().mark(state.block_of_disc[static_cast<std::size_t>(disc)]);
+    std::set<std::ptrdiff_t> blocks;
+    for (std::ptrdiff_t block = 0; block < count; ++block) {
+        if (marks[block] != 0) {
+            blocks.insert(block);
+        }
+    }
+    return blocks;
+}
+
+/// Scenes wide enough for many blocks in a row, and the odd ones.
+std::vector<tests::NamedScene> scenes_with_blocks() {
+    std::vector<tests::NamedScene> scenes = tests::all_scenes();
+    scenes.push_back({"many blocks", tests::random_scene_of_density(4000, 0.9, 2, 71)});
+    return scenes;
+}
+
+TEST(ActiveBlocks, AreAllThatHoldAContactOfTheDiscAndFewMore) {
+    for (const auto& [name, scene] : scenes_with_blocks()) {
+        SCOPED_TRACE(name);
+        Tally tally;
+        auto state = found<active>(scene, tally);
+        std::map<int, std::set<std::ptrdiff_t>> blocks_of;
+        for (const Place& place : places(state)) {
+            blocks_of[place.discs.first].insert(place.block);
+            blocks_of[place.discs.second].insert(place.block);
+        }
+        for (int disc = 0; disc < state.count(); ++disc) {
+            const auto marked = marked_by(state, disc);
+            EXPECT_LE(marked.size(), 4);
+            EXPECT_TRUE(std::ranges::includes(marked, blocks_of[disc])) << "disc " << disc;
+        }
+    }
+}
+
+/// The proof of resolve_contacts.hpp, looked at: strips of one parity share no disc, and mark no block alike.
+TEST(StripsOfContacts, ShareNoDiscAndNoMarkWithinAParity) {
+    for (const auto& [name, scene] : scenes_with_blocks()) {
+        SCOPED_TRACE(name);
+        Tally tally;
+        auto state = found<active>(scene, tally);
+        std::map<std::pair<int, int>, std::set<int>> strips_of_disc; // and of a parity
+        for (const Place& place : places(state)) {
+            for (const int disc : {place.discs.first, place.discs.second}) {
+                if (disc != OverlappingDiscs::wall) {
+                    strips_of_disc[{disc, place.strip % 2}].insert(place.strip);
+                }
+            }
+        }
+        std::map<std::pair<std::ptrdiff_t, int>, std::set<int>> strips_of_mark;
+        for (const auto& [disc_and_parity, strips] : strips_of_disc) {
+            ASSERT_EQ(strips.size(), 1) << "disc " << disc_and_parity.first;
+            for (const std::ptrdiff_t block : marked_by(state, disc_and_parity.first)) {
+                strips_of_mark[{block, disc_and_parity.second}].insert(*strips.begin());
+            }
+        }
+        for (const auto& [mark_and_parity, strips] : strips_of_mark) {
+            ASSERT_EQ(strips.size(), 1) << "block " << mark_and_parity.first;
+        }
+    }
+}
+
+TEST(Filter, DropsNoPairThatOverlaps) {
+    tests::Random random(73);
+    int dropped = 0;
+    for (int trial = 0; trial < 200'000; ++trial) {
+        const double side = random.magnitude(-30, 30);
+        const double radius = side * random.magnitude(-9, 1);
+        const double far = random.below(10) == 0 ? random.magnitude(0, 20) : 1;
+        const Disc one{far * side * random.uniform(-1, 2), far * side * random.uniform(-1, 2), 0, 0};
+        const double angle = random.uniform(0, 6.3);
+        const double distance = 2 * radius * (random.coin() ? 1 : random.uniform(0, 2));
+        const Disc two{one.x + distance * std::cos(angle), one.y + distance * std::sin(angle), 0, 0};
+        const std::vector<float> x{filter_position(two.x, 1 / side), 0, 0, 0};
+        const std::vector<float> y{filter_position(two.y, 1 / side), 0, 0, 0};
+        const FourInts kept =
+            may_overlap(x.data(), y.data(), filter_position(one.x, 1 / side),
+                        filter_position(one.y, 1 / side), filter_reach_squared(side, radius), 1);
+        if (overlap(one, two, 4 * radius * radius)) {
+            ASSERT_EQ(kept[0], -1) << one << " and " << two << ", L = " << side << ", r = " << radius;
+        }
+        ASSERT_EQ(kept[1] | kept[2] | kept[3], 0);
+        dropped += kept[0] == 0;
+    }
+    EXPECT_GT(dropped, 10'000) << "a filter that drops nothing is none";
+}
+
+template <Policies policies> void keeps_to_the_definition() {
+    for (const tests::NamedScene& named : tests::all_scenes()) {
+        SCOPED_TRACE(named.name);
+        State<policies> state(named.scene);
+        NoProbe probe;
+        tests::keeps_to_the_definition(
+            named.scene, [&] { return discs_by_number(state); }, [&] { return step(state, {}, probe); });
+    }
+}
+
+TEST(Contacts, KeepToTheDefinitionOfAStep) {
+    keeps_to_the_definition<wide>();
+    keeps_to_the_definition<snug>();
+    keeps_to_the_definition<filtered>();
+    keeps_to_the_definition<active>();
+}
+
+template <Policies policies> void depends_on_no_thread(const Scene& scene) {
+    const tests::Outcome expected = tests::simulate<policies>(scene, {.threads = 1});
+    for (const int threads : {2, 3, 5, 8, 16}) {
+        const tests::Outcome found =
+            tests::simulate<policies>(scene, {.threads = threads, .resolve_chunk = 1});
+        EXPECT_TRUE(same_bits(found.discs, expected.discs)) << threads << " threads";
+        EXPECT_EQ(found.work, expected.work) << threads << " threads";
+    }
+}
+
+TEST(Contacts, DependOnNoThread) {
+    for (const auto& [name, scene] : tests::all_scenes()) {
+        SCOPED_TRACE(name);
+        depends_on_no_thread<wide>(scene);
+        depends_on_no_thread<snug>(scene);
+        depends_on_no_thread<active>(scene);
+    }
+    // Enough to do for the sweeps to run in parallel.
+    depends_on_no_thread<active>(tests::random_scene_of_density(3000, 1.2, 3, 72));
+}
+
+TEST(Filter, ChangesNothing) {
+    for (const auto& [name, scene] : tests::all_scenes()) {
+        SCOPED_TRACE(name);
+        const tests::Outcome exact = tests::simulate<snug>(scene);
+        const tests::Outcome through_filter = tests::simulate<filtered>(scene);
+        EXPECT_TRUE(same_bits(exact.discs, through_filter.discs));
+        EXPECT_EQ(exact.work, through_filter.work);
+    }
+}
+
+TEST(ActiveWorklist, LooksAtLessAndChangesNothing) {
+    // What is not active has not changed since it was found at rest, so both end in the same bits.
+    for (const auto& [name, scene] : tests::all_scenes()) {
+        SCOPED_TRACE(name);
+        const tests::Outcome all = tests::simulate<filtered>(scene);
+        const tests::Outcome only_active = tests::simulate<active>(scene);
+        EXPECT_TRUE(same_bits(all.discs, only_active.discs));
+        EXPECT_EQ(all.work, only_active.work);
+    }
+}
+
+} // namespace
+} // namespace carom

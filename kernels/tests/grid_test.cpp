@@ -1,0 +1,267 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "kernels/collide.hpp"
+#include "kernels/find.hpp"
+#include "kernels/grid.hpp"
+#include "kernels/tests/scenes.hpp"
+#include "kernels/tests/simulate.hpp"
+
+namespace carom {
+namespace {
+
+using tests::Random;
+
+struct Box {
+    double side;
+    double radius;
+};
+
+/// A box of up to 30 grid boxes along a side, at any scale that a scene may have.
+Box random_box(Random& random) {
+    const double radius = random.coin() ? random.magnitude(-60, 57) : random.magnitude(-2, 2);
+    const double side = std::max(2 * radius, (4 * radius + 1) * random.uniform(0.1, 30));
+    return {side, radius};
+}
+
+double some_ulps_from(double value, Random& random) {
+    const double ulp =
+        std::nextafter(std::abs(value), std::numeric_limits<double>::infinity()) - std::abs(value);
+    return value + random.below(9) * ulp - 4 * ulp;
+}
+
+/// A position anywhere in the box, at the edge of a grid box or in its middle, at a wall, or outside, near
+/// and far.
+double random_position(const Box& box, const Grid& grid, Random& random) {
+    switch (random.below(6)) {
+    case 0:
+        return some_ulps_from(0.5 * random.below(2 * grid.boxes_per_side() + 1) * grid.box_side(), random);
+    case 1:
+        return some_ulps_from(random.coin() ? box.radius : box.side - box.radius, random);
+    case 2:
+        return random.uniform(-3, 3) * box.radius + (random.coin() ? box.side : 0);
+    case 3:
+        return (random.coin() ? 1 : -1) * random.magnitude(-60, 60);
+    default:
+        return random.uniform(0, box.side);
+    }
+}
+
+/// A partner of the disc at most 2r away, often by exactly 2r along an axis.
+Disc random_partner(const Disc& disc, double radius, Random& random) {
+    const double angle =
+        random.below(2) * random.uniform(0, 2 * std::numbers::pi) + random.below(4) * std::numbers::pi / 2;
+    const double distance = random.coin() ? 2 * radius : random.uniform(0, 2 * radius);
+    return {disc.x + distance * std::cos(angle), disc.y + distance * std::sin(angle), 0, 0};
+}
+
+template <Neighbourhood neighbourhood> bool looks_at(const Grid& grid, double position, double other) {
+    const BoxRange range = Look<neighbourhood>::along(grid, position, grid.coordinate(position));
+    const int index = grid.coordinate(other);
+    return range.first <= index && index <= range.last;
+}
+
+template <Neighbourhood neighbourhood> bool sees(const Grid& grid, const Disc& disc, const Disc& other) {
+    return looks_at<neighbourhood>(grid, disc.x, other.x) && looks_at<neighbourhood>(grid, disc.y, other.y);
+}
+
+TEST(Grid, HasThePublishedBoxSide) {
+    const Grid grid(10'000, 16);
+    EXPECT_EQ(grid.boxes_per_side(), 154); // 10000 / 65, rounded up
+    EXPECT_EQ(grid.box_side(), 65);
+    EXPECT_EQ(grid.box_count(), 154 * 154);
+}
+
+TEST(Grid, HasBoxesOfAtLeastFourRadiiThatCoverTheSide) {
+    Random random(21);
+    for (int trial = 0; trial < 2'000; ++trial) {
+        const Box box = random_box(random);
+        const Grid grid(box.side, box.radius);
+        ASSERT_GE(grid.box_side(), 4 * box.radius);
+        ASSERT_GE(grid.boxes_per_side() * grid.box_side(), box.side);
+        ASSERT_GE(grid.boxes_per_side(), 1);
+    }
+}
+
+TEST(Grid, HasAtMost4096BoxesAlongASide) {
+    const Grid grid(1e60, 1e-60);
+    EXPECT_EQ(grid.boxes_per_side(), 4096);
+    EXPECT_EQ(grid.coordinate(1e60), 4095);
+    EXPECT_EQ(grid.coordinate(0.5e60), 2048);
+    EXPECT_TRUE(grid.at_wall(4095, 7));
+}
+
+TEST(GridCoordinate, IsTheNearestBoxForEveryPosition) {
+    const Grid grid(50, 1); // ten boxes of side 5
+    ASSERT_EQ(grid.boxes_per_side(), 10);
+    EXPECT_EQ(grid.coordinate(0), 0);
+    EXPECT_EQ(grid.coordinate(4.999), 0);
+    EXPECT_EQ(grid.coordinate(5), 1);
+    EXPECT_EQ(grid.coordinate(49.9), 9);
+    EXPECT_EQ(grid.coordinate(50), 9);
+    for (const double far : {50.1, 1e9, 1e60, 1e300}) {
+        EXPECT_EQ(grid.coordinate(far), 9);
+        EXPECT_EQ(grid.coordinate(-far), 0);
+    }
+    EXPECT_EQ(grid.coordinate(-0.0), 0);
+    EXPECT_EQ(grid.coordinate(-1e-300), 0);
+}
+
+TEST(GridCoordinate, NeverDecreasesWithThePosition) {
+    Random random(22);
+    for (int trial = 0; trial < 2'000; ++trial) {
+        const Box box = random_box(random);
+        const Grid grid(box.side, box.radius);
+        for (int pair = 0; pair < 20; ++pair) {
+            const double one = random_position(box, grid, random);
+            const double two =
+                random.coin() ? some_ulps_from(one, random) : random_position(box, grid, random);
+            ASSERT_LE(grid.coordinate(std::min(one, two)), grid.coordinate(std::max(one, two)));
+            ASSERT_GE(grid.coordinate(one), 0);
+            ASSERT_LT(grid.coordinate(one), grid.boxes_per_side());
+        }
+    }
+}
+
+TEST(GridReach, IsTowardsTheNearerBox) {
+    const Grid grid(50, 1);
+    EXPECT_EQ(grid.reach(10.1, 2), -1);
+    EXPECT_EQ(grid.reach(12.4, 2), -1);
+    EXPECT_EQ(grid.reach(12.6, 2), 1);
+    EXPECT_EQ(grid.reach(14.9, 2), 1);
+}
+
+TEST(GridNeighbours, OfBothNeighbourhoodsHoldEveryOverlappingPartner) {
+    Random random(23);
+    int across = 0;
+    for (int trial = 0; trial < 3'000; ++trial) {
+        const Box box = random_box(random);
+        const Grid grid(box.side, box.radius);
+        for (int pair = 0; pair < 50; ++pair) {
+            const Disc disc{random_position(box, grid, random), random_position(box, grid, random), 0, 0};
+            const Disc partner = random_partner(disc, box.radius, random);
+            if (!overlap(disc, partner, 4 * box.radius * box.radius)) {
+                continue;
+            }
+            across += grid.coordinate(disc.x) != grid.coordinate(partner.x);
+            const auto where = [&] {
+                return testing::Message()
+                       << disc << " and " << partner << ", L = " << box.side << ", r = " << box.radius;
+            };
+            ASSERT_TRUE(sees<Neighbourhood::nine>(grid, disc, partner)) << where();
+            ASSERT_TRUE(sees<Neighbourhood::nine>(grid, partner, disc)) << where();
+            ASSERT_TRUE(sees<Neighbourhood::four>(grid, disc, partner)) << where();
+            ASSERT_TRUE(sees<Neighbourhood::four>(grid, partner, disc)) << where();
+        }
+    }
+    EXPECT_GT(across, 5'000) << "too few pairs lie in different boxes for this test to mean anything";
+}
+
+/// What the snug grid owes to a disc of a random scene: the box holds no less than its reach, the neighbours
+/// every partner, and `at_wall` every disc at a wall.
+TEST(SnugGrid, HoldsPartnersInNeighboursAndDiscsAtWallsInBoxesAtTheWall) {
+    Random random(25);
+    int across = 0;
+    int at_wall = 0;
+    for (int trial = 0; trial < 3'000; ++trial) {
+        const Box box = random_box(random);
+        const Grid grid(box.side, box.radius, random.below(5'000) + 1, BoxSide::snug);
+        ASSERT_GT(grid.box_side(), 2 * box.radius);
+        for (int pair = 0; pair < 50; ++pair) {
+            const Disc disc{random_position(box, grid, random), random_position(box, grid, random), 0, 0};
+            const Disc partner = random_partner(disc, box.radius, random);
+            if (overlap(disc, partner, 4 * box.radius * box.radius)) {
+                across += grid.coordinate(disc.x) != grid.coordinate(partner.x);
+                ASSERT_TRUE(sees<Neighbourhood::nine>(grid, disc, partner)) << disc << " and " << partner;
+            }
+            if (overlaps_wall(disc, box.side, box.radius)) {
+                ++at_wall;
+                ASSERT_TRUE(grid.at_wall(grid.coordinate(disc.y), grid.coordinate(disc.x))) << disc;
+            }
+        }
+    }
+    EXPECT_GT(across, 5'000);
+    EXPECT_GT(at_wall, 5'000);
+}
+
+TEST(SnugGrid, HasBoxesForItsDiscsAndNotForEmptySpace) {
+    EXPECT_EQ(Grid(10'000, 16, 100'000, BoxSide::snug).boxes_per_side(), 313); // 10000 / 32, rounded up
+    EXPECT_LE(Grid(1e60, 16, 100, BoxSide::snug).boxes_per_side(), 11);
+    EXPECT_EQ(Grid(1e60, 16, 0, BoxSide::snug).boxes_per_side(), 1);
+}
+
+TEST(SnugGrid, HasNoScale) {
+    for (const double scale : {0x1p-20, 0x1p20, 0x1p-300}) {
+        const Grid one(100, 1.5, 700, BoxSide::snug);
+        const Grid scaled(100 * scale, 1.5 * scale, 700, BoxSide::snug);
+        EXPECT_EQ(scaled.box_side(), one.box_side() * scale);
+        EXPECT_EQ(scaled.boxes_per_side(), one.boxes_per_side());
+    }
+}
+
+TEST(GridNeighbours, AreNoMoreThanTheNeighbourhoodAllows) {
+    const Grid grid(50, 1);
+    for (double position = -3; position < 53; position += 0.25) {
+        const int index = grid.coordinate(position);
+        const BoxRange nine = Look<Neighbourhood::nine>::along(grid, position, index);
+        const BoxRange four = Look<Neighbourhood::four>::along(grid, position, index);
+        EXPECT_EQ(nine.first, std::max(index - 1, 0));
+        EXPECT_EQ(nine.last, std::min(index + 1, 9));
+        EXPECT_LE(four.last - four.first, 1);
+        EXPECT_GE(four.first, nine.first);
+        EXPECT_LE(four.last, nine.last);
+    }
+}
+
+TEST(GridAtWall, HoldsForTheBoxOfEveryDiscThatOverlapsAWall) {
+    Random random(24);
+    int at_high_wall = 0;
+    for (int trial = 0; trial < 3'000; ++trial) {
+        const Box box = random_box(random);
+        const Grid grid(box.side, box.radius);
+        for (int one = 0; one < 50; ++one) {
+            const double x = random_position(box, grid, random);
+            const double y = random_position(box, grid, random);
+            const auto touches = [&box](double p) {
+                return p - box.radius <= 0 || p + box.radius >= box.side;
+            };
+            if (touches(x) || touches(y)) {
+                ASSERT_TRUE(grid.at_wall(grid.coordinate(y), grid.coordinate(x)))
+                    << "(" << x << ", " << y << "), L = " << box.side << ", r = " << box.radius;
+                at_high_wall += x + box.radius >= box.side && x < box.side;
+            }
+        }
+    }
+    EXPECT_GT(at_high_wall, 5'000) << "too few discs overlap the high wall for this test to mean anything";
+}
+
+TEST(GridAtWall, DoesNotHoldInTheMiddle) {
+    const Grid grid(50, 1);
+    for (int row = 1; row < 9; ++row) {
+        for (int column = 1; column < 9; ++column) {
+            EXPECT_FALSE(grid.at_wall(row, column)) << row << ", " << column;
+        }
+    }
+    for (int index = 0; index < 10; ++index) {
+        EXPECT_TRUE(grid.at_wall(0, index));
+        EXPECT_TRUE(grid.at_wall(9, index));
+        EXPECT_TRUE(grid.at_wall(index, 0));
+        EXPECT_TRUE(grid.at_wall(index, 9));
+    }
+}
+
+TEST(GridAtWall, HoldsInTheLastButOneRowWhereTheLastIsNarrowerThanARadius) {
+    const Grid grid(50.5,
+                    1); // eleven boxes of side 5, the last with only half a length unit of the scene in it
+    ASSERT_EQ(grid.boxes_per_side(), 11);
+    EXPECT_EQ(grid.coordinate(49.6), 9);
+    EXPECT_TRUE(grid.at_wall(9, 4));
+    EXPECT_FALSE(grid.at_wall(8, 4));
+}
+
+} // namespace
+} // namespace carom

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "kernels/scene.hpp"
+#include "variants/registry.hpp"
+
+namespace carom {
+
+/// The variant that is expected to be the fastest for a scene on so many threads, by the rules in
+/// fastest.cpp.
+const Variant& fastest_variant(const Scene& scene, int threads);
+
+} // namespace carom

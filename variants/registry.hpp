@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "kernels/policies.hpp"
+#include "kernels/probe.hpp"
+#include "kernels/scene.hpp"
+#include "kernels/state.hpp"
+
+namespace carom {
+
+/// A running simulation of one scene by one variant.
+class Simulation {
+  public:
+    virtual ~Simulation() = default;
+
+    /// One time step of dt = 1 / substeps.
+    virtual Tally step() = 0;
+
+    /// The discs as they are now, disc i at index i.
+    virtual const std::vector<Disc>& discs() const = 0;
+};
+
+/// One row of the table, with what it takes to run it.
+struct Variant {
+    std::string_view name;
+    Policies policies;
+
+    /// Starts a simulation; throws std::bad_alloc if there is no memory for it. `tuning` must hold positive
+    /// numbers.
+    std::unique_ptr<Simulation> (*simulate)(const Scene&, const Tuning&);
+
+    /// The same, telling `probe` what it does. `probe` must outlive the simulation.
+    std::unique_ptr<Simulation> (*simulate_observed)(const Scene&, const Tuning&, Probe& probe);
+};
+
+/// Every variant, in the order of the table.
+std::span<const Variant> variants();
+
+/// The variant of that name, or null.
+const Variant* find_variant(std::string_view name);
+
+} // namespace carom

@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <ostream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "kernels/tests/scenes.hpp"
+#include "kernels/tests/simulate.hpp"
+#include "variants/name.hpp"
+#include "variants/registry.hpp"
+#include "variants/table.hpp"
+
+namespace carom {
+
+static void PrintTo(const Variant& variant, std::ostream* stream) { *stream << variant.name; }
+
+namespace {
+
+using tests::same_bits;
+
+TEST(Registry, HasOneVariantForEachRowOfTheTable) {
+    ASSERT_EQ(variants().size(), table.size());
+    for (std::size_t row = 0; row < table.size(); ++row) {
+        EXPECT_EQ(variants()[row].policies, table[row]);
+        EXPECT_EQ(variants()[row].name, name_of(table[row]).view());
+    }
+}
+
+TEST(Registry, HasNoNameTwiceAndPublishedFirst) {
+    EXPECT_EQ(variants()[0].name, "published");
+    std::set<std::string_view> names;
+    for (const Variant& variant : variants()) {
+        EXPECT_TRUE(names.insert(variant.name).second) << variant.name;
+    }
+}
+
+TEST(FindVariant, FindsEachByItsName) {
+    for (const Variant& variant : variants()) {
+        EXPECT_EQ(find_variant(variant.name), &variant) << variant.name;
+    }
+}
+
+TEST(FindVariant, FindsNothingElse) {
+    for (const char* name :
+         {"", "Published", "published ", "checkered", "four", "row-", "row_resolve_dynamic"}) {
+        EXPECT_EQ(find_variant(name), nullptr) << name;
+    }
+}
+
+/// Adds up what it is told.
+class Counter final : public Probe {
+  public:
+    void phase_begin(Phase) override { ++phases; }
+    void phase_end(Phase) override {}
+    void sweep_begin() override { ++sweeps; }
+    void sweep_end() override {}
+    void loop_begin(int) override {}
+    void iteration(int, int) override {}
+    void loop_end(int) override {}
+    void barrier_end(int) override {}
+
+    int phases = 0;
+    int sweeps = 0;
+};
+
+class EveryVariant : public testing::TestWithParam<Variant> {};
+
+struct End {
+    std::vector<Disc> discs;
+    Tally work;
+};
+
+End end_of(Simulation& simulation, int steps) {
+    Tally work;
+    for (int step = 0; step < steps; ++step) {
+        work += simulation.step();
+    }
+    return {simulation.discs(), work};
+}
+
+End run(const Variant& variant, const Scene& scene, const Tuning& tuning) {
+    return end_of(*variant.simulate(scene, tuning), scene.steps);
+}
+
+TEST_P(EveryVariant, EndsInTheSameBitsForAnyThreadsAndChunks) {
+    const Scene scene = tests::random_scene_of_density(600, 0.9, 4, 91);
+    const End expected = run(GetParam(), scene, {.threads = 1});
+    ASSERT_GT(expected.work.pair_resolves, 500);
+    for (const Tuning& tuning :
+         {Tuning{.threads = 1, .find_chunk = 1, .resolve_chunk = 1}, Tuning{.threads = 2},
+          Tuning{.threads = 3, .find_chunk = 7, .resolve_chunk = 2},
+          Tuning{.threads = 8, .find_chunk = 1, .resolve_chunk = 1}}) {
+        SCOPED_TRACE(testing::Message() << tuning.threads << " threads, chunks of " << tuning.find_chunk
+                                        << " and " << tuning.resolve_chunk);
+        const End found = run(GetParam(), scene, tuning);
+        EXPECT_TRUE(same_bits(found.discs, expected.discs));
+        EXPECT_EQ(found.work, expected.work);
+    }
+}
+
+TEST_P(EveryVariant, EndsInTheSameBitsUnderObservation) {
+    const Scene scene = tests::random_scene(200, 60, 1, 10, 3, 92);
+    Counter counter;
+    const auto observed = GetParam().simulate_observed(scene, {}, counter);
+    const End found = end_of(*observed, scene.steps);
+    const End expected = run(GetParam(), scene, {});
+    EXPECT_TRUE(same_bits(found.discs, expected.discs));
+    EXPECT_EQ(found.work, expected.work);
+    EXPECT_EQ(counter.sweeps, expected.work.sweeps);
+    EXPECT_EQ(counter.phases, 4 * scene.steps);
+}
+
+TEST_P(EveryVariant, RunsTheSimulationOfItsOwnPolicies) {
+    // Head-on, the pair settles in one visit: how many sweeps and resolves it takes tells the order and
+    // self-contained.
+    const Scene scene{.side = 50, .radius = 1, .steps = 1, .discs = {{21, 22, 1, 0}, {23.5, 22, 0, 0}}};
+    const Tally work = run(GetParam(), scene, {}).work;
+    const Policies& policies = GetParam().policies;
+    const bool resolved_while_finding = policies.self_contained == SelfContained::on;
+    const int sweeps = resolved_while_finding || policies.order == Order::track ? 1 : 2;
+    EXPECT_EQ(work, (Tally{.overlaps = 1, .pair_resolves = 1, .sweeps = sweeps}));
+}
+
+std::string test_name(const testing::TestParamInfo<Variant>& variant) {
+    std::string name(variant.param.name);
+    std::ranges::replace(name, '-', '_');
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, EveryVariant, testing::ValuesIn(variants().begin(), variants().end()),
+                         test_name);
+
+} // namespace
+
+} // namespace carom

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "variants/name.hpp"
+#include "variants/table.hpp"
+
+namespace carom {
+namespace {
+
+constexpr Schedule schedules[]{Schedule::static_,       Schedule::static_chunk, Schedule::dynamic,
+                               Schedule::dynamic_chunk, Schedule::guided,       Schedule::guided_chunk};
+constexpr Order sequential_orders[]{Order::track, Order::repeat, Order::once};
+
+testing::AssertionResult in_table(const Policies& policies) {
+    if (std::ranges::find(table, policies) != table.end()) {
+        return testing::AssertionSuccess();
+    }
+    return testing::AssertionFailure() << name_of(policies).view() << " is not in the table";
+}
+
+TEST(Table, StartsWithThePublishedBest) {
+    EXPECT_EQ(table[0].neighbourhood, Neighbourhood::four);
+    EXPECT_EQ(table[0].order, Order::checkered);
+    EXPECT_EQ(table[0].self_contained, SelfContained::on);
+    EXPECT_EQ(table[0].direction, Direction::reverse);
+    EXPECT_EQ(table[0].find_schedule, Schedule::guided_chunk);
+    EXPECT_EQ(table[0].resolve_schedule, Schedule::guided_chunk);
+}
+
+TEST(Table, HasEverySingleFlipOfThePublishedBest) {
+    EXPECT_TRUE(in_table({.neighbourhood = Neighbourhood::nine}));
+    EXPECT_TRUE(in_table({.order = Order::row}));
+    EXPECT_TRUE(in_table({.order = Order::track}));
+    EXPECT_TRUE(in_table({.order = Order::repeat}));
+    EXPECT_TRUE(in_table({.order = Order::once}));
+    EXPECT_TRUE(in_table({.self_contained = SelfContained::off}));
+    EXPECT_TRUE(in_table({.direction = Direction::forward}));
+    for (const Schedule schedule : schedules) {
+        EXPECT_TRUE(in_table({.find_schedule = schedule}));
+        EXPECT_TRUE(in_table({.resolve_schedule = schedule}));
+    }
+}
+
+TEST(Table, HasWhatThePublishedGraphsCompare) {
+    for (const Order order : sequential_orders) {
+        EXPECT_TRUE(in_table({.order = order, .self_contained = SelfContained::on}));
+        EXPECT_TRUE(in_table({.order = order, .self_contained = SelfContained::off}));
+    }
+    for (const Schedule schedule : schedules) {
+        EXPECT_TRUE(in_table({.order = Order::row, .resolve_schedule = schedule}));
+    }
+    for (const Order order : {Order::checkered, Order::row, Order::track, Order::repeat, Order::once}) {
+        EXPECT_TRUE(in_table({.order = order, .direction = Direction::forward}));
+    }
+}
+
+TEST(Table, HoldsOnlyPossibleCombinationsEachOnce) {
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        EXPECT_EQ(impossible(table[i]), "") << name_of(table[i]).view();
+        EXPECT_EQ(std::ranges::count(table, table[i]), 1) << name_of(table[i]).view();
+    }
+}
+
+TEST(Impossible, GivesAReasonForAScheduleWithoutALoopToSchedule) {
+    for (const Order order : sequential_orders) {
+        for (const Schedule schedule : schedules) {
+            const std::string_view reason = impossible({.order = order, .resolve_schedule = schedule});
+            if (schedule == Policies{}.resolve_schedule) {
+                EXPECT_EQ(reason, "");
+            } else {
+                EXPECT_EQ(reason, "a sequential resolve order has no resolve schedule to choose");
+            }
+        }
+    }
+}
+
+TEST(Impossible, HasNothingAgainstAnyScheduleOfTheParallelOrders) {
+    for (const Order order : {Order::checkered, Order::row}) {
+        for (const Schedule find : schedules) {
+            for (const Schedule resolve : schedules) {
+                EXPECT_EQ(impossible({.order = order, .find_schedule = find, .resolve_schedule = resolve}),
+                          "");
+            }
+        }
+    }
+}
+
+TEST(Impossible, GivesAReasonForContactsAndSnugBoxesWithoutWhatTheyNeed) {
+    for (const Policies& policies :
+         {Policies{.box_side = BoxSide::snug},
+          Policies{.neighbourhood = Neighbourhood::nine, .box_side = BoxSide::snug},
+          Policies{.neighbourhood = Neighbourhood::nine, .order = Order::row, .box_side = BoxSide::snug},
+          Policies{.order = Order::strips, .overlaps = Overlaps::contacts},
+          Policies{.storage = Storage::sorted, .overlaps = Overlaps::contacts},
+          Policies{.order = Order::strips,
+                   .direction = Direction::forward,
+                   .storage = Storage::sorted,
+                   .overlaps = Overlaps::contacts},
+          Policies{.order = Order::strips, .storage = Storage::sorted, .overlaps = Overlaps::contacts},
+          Policies{.search = Search::filtered}, Policies{.worklist = Worklist::active}}) {
+        EXPECT_NE(impossible(policies), "") << name_of(policies).view();
+    }
+}
+
+/// How many policies differ.
+int differences(const Policies& one, const Policies& two) {
+    const auto differ = [&](auto axis) { return one.*axis != two.*axis ? 1 : 0; };
+    return differ(&Policies::neighbourhood) + differ(&Policies::order) + differ(&Policies::self_contained) +
+           differ(&Policies::direction) + differ(&Policies::find_schedule) +
+           differ(&Policies::resolve_schedule) + differ(&Policies::storage) + differ(&Policies::box_side) +
+           differ(&Policies::overlaps) + differ(&Policies::search) + differ(&Policies::worklist) +
+           differ(&Policies::precision);
+}
+
+TEST(Ladder, ClimbsFromThePublishedBestOnePolicyARung) {
+    Policies below;
+    for (const Policies& rung : ladder) {
+        EXPECT_EQ(differences(below, rung), 1) << name_of(rung).view();
+        EXPECT_TRUE(in_table(rung));
+        below = rung;
+    }
+    EXPECT_EQ(below.precision, Precision::double_) << "accuracy is not for sale";
+}
+
+TEST(Vary, CrossesACombinationWithTheValuesOfAnAxis) {
+    constexpr auto varied =
+        vary({.order = Order::row}, &Policies::direction, Direction::forward, Direction::reverse);
+    static_assert(varied.size() == 2);
+    EXPECT_EQ(varied[0], (Policies{.order = Order::row, .direction = Direction::forward}));
+    EXPECT_EQ(varied[1], (Policies{.order = Order::row, .direction = Direction::reverse}));
+}
+
+} // namespace
+} // namespace carom
