@@ -1,0 +1,118 @@
+# A thin face over cmake, ctest, pytest and the Python packages experiments/ and analysis/ (`make help`).
+# What the user gives (STUDY=... and so on) reaches the shell through its environment, quoted, never as text.
+
+.DEFAULT_GOAL := help
+# Goals and prerequisites run one after another in the order given, also in `make -j2 setup test`.
+.NOTPARALLEL:
+.SILENT:
+.PHONY: help setup environment build build-gcc build-clang test test-all test-slurm fuzz movie experiments status submit \
+        resume collect figures report compare lint lint-python format clean distclean
+
+export COMPILER ?= gcc
+CXX_gcc := g++
+CXX_clang := clang++
+
+python := .venv/bin/python -m
+jobs := --parallel "$${JOBS:-$$(nproc)}"
+generator := CMAKE_GENERATOR="$${CMAKE_GENERATOR:-$$(command -v ninja >/dev/null && echo Ninja || echo Unix Makefiles)}"
+sources := find kernels variants harness -name '*.[ch]pp'
+study := $${STUDY:+--study "$$STUDY"} $${SCALE:+--scale "$$SCALE"} $${SITE:+--site "$$SITE"}
+results := $${RESULTS:+--results "$$RESULTS"}
+dry_run := $${DRY_RUN:+--dry-run}
+
+help: ## list these verbs
+	sed -nE 's/^([a-z-]+):[^#]*## (.*)/  make \1\t\2/p' Makefile | expand -t 20
+
+setup: ## install what is missing and make .venv (PYTHON=another Python, 3.11 or newer)
+	./setup.sh
+
+build: ## build build/$COMPILER/carom (COMPILER=gcc|clang; JOBS=)
+	case "$$COMPILER" in gcc|clang) ;; *) echo "COMPILER=$$COMPILER: expected gcc or clang" >&2; exit 1;; esac
+	$(MAKE) --no-print-directory "build-$$COMPILER"
+
+build-gcc build-clang: build-%:
+	CXX=$(CXX_$*) $(generator) cmake --preset release -B build/$*
+	cmake --build build/$* $(jobs)
+
+test: lint-python build-gcc build-clang ## build with both compilers and run every quick test
+	ctest --test-dir build/gcc --output-on-failure --no-tests=error -LE slow $(jobs)
+	ctest --test-dir build/clang --output-on-failure --no-tests=error -LE slow $(jobs)
+	$(python) pytest
+
+test-all: test ## and the slow ones, and those that need Slurm
+	ctest --test-dir build/gcc --output-on-failure -L slow
+	ctest --test-dir build/clang --output-on-failure -L slow
+	$(python) pytest -m "slow or slurm"
+	$(MAKE) --no-print-directory fuzz
+
+fuzz: environment ## let random input loose on every reader (TIME=60, seconds for each; needs libclang-rt-dev)
+	$(generator) cmake --preset fuzz
+	cmake --build build/fuzz $(jobs)
+	mkdir -p build/fuzz/corpus
+	build/fuzz/harness/tests/fuzz/scene_seeds build/fuzz/seeds
+	build/fuzz/harness/tests/fuzz/scene_reader_fuzz -max_total_time="$${TIME:-60}" -timeout=10 -print_final_stats=1 \
+		-dict=harness/tests/fuzz/scene.dict -artifact_prefix=build/fuzz/ build/fuzz/corpus build/fuzz/seeds
+	CAROM_FUZZ_SECONDS="$${TIME:-60}" $(python) pytest -m fuzz -s
+
+test-slurm: environment ## the tests that need Slurm, which they unpack themselves (Debian's packages, no root)
+	$(python) pytest -m slurm
+
+# A point that failed (2) belongs in the report and still fails the goal.
+experiments: environment build-gcc build-clang ## run the study, then report (STUDY= SCALE=quick|paper SITE= RESULTS=)
+	code=0; $(python) experiments run $(study) $(results) || code=$$?; \
+	case $$code in 0|2) $(python) analysis report $(results) && exit $$code;; *) exit $$code;; esac
+
+status: environment ## what of the study is done, what is missing (STUDY= SCALE= SITE= RESULTS=)
+	$(python) experiments status $(study) $(results)
+
+submit: environment ## hand what is missing to a Slurm cluster (SITE= STUDY= SCALE= RESULTS= DRY_RUN=1)
+	: "$${SITE:?the site of a cluster, a file *.toml}"
+	$(python) experiments submit $(study) $(results) $(dry_run)
+
+resume: environment ## hand it again what is missing of all that was submitted (SITE= RESULTS= DRY_RUN=1)
+	: "$${SITE:?the site of a cluster, a file *.toml}"
+	$(python) experiments resume $(study) $(results) $(dry_run)
+
+collect: environment ## merge a cluster's records, or another folder's, into RESULTS (SITE= or FROM=)
+	: "$${FROM:-$${SITE:?the site of a cluster, or FROM=, a results folder}}"
+	$(python) experiments collect $(study) $(results) $${FROM:+"$$FROM"}
+
+figures: environment ## draw the figures of whatever is there (RESULTS=)
+	$(python) analysis figures $(results)
+
+report: environment ## write the report of whatever is there (RESULTS=)
+	$(python) analysis report $(results)
+
+movie: environment build ## draw a run (SCENE= OUT=*.mp4|*.gif|*.png VARIANT= STEP=)
+	: "$${SCENE:?a scene file}"
+	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
+	"build/$$COMPILER/carom" run "$$SCENE" $${VARIANT:+--variant "$$VARIANT"} --trajectory "$$folder/trajectory" && \
+	$(python) analysis movie "$$SCENE" "$$folder/trajectory" $${OUT:+--output "$$OUT"} $${STEP:+--step "$$STEP"}
+
+compare: environment ## compare two result folders (A= B=)
+	: "$${A:?one result folder}" "$${B:?the other result folder}"
+	$(python) analysis compare "$$A" "$$B"
+
+lint: lint-python build-clang ## every static check of C++ and Python (clang-tidy from the package of that name)
+	$(sources) -exec .venv/bin/clang-format --dry-run --Werror {} +
+	run-clang-tidy -quiet -p build/clang -j "$${JOBS:-$$(nproc)}"
+	$(python) mypy
+
+lint-python: environment
+	$(python) ruff check
+	$(python) ruff format --check
+
+format: environment ## format C++ and Python
+	$(sources) -exec .venv/bin/clang-format -i {} +
+	$(python) ruff check --fix
+	$(python) ruff format
+
+clean: ## remove what was built
+	rm -rf build
+
+distclean: clean ## and .venv and caches; results/ always stays
+	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+environment:
+	test -x .venv/bin/python || { echo "no .venv here: run \`make setup\` first" >&2; exit 1; }

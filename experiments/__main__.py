@@ -1,0 +1,204 @@
+"""`python -m experiments`: plan, run and look after the study."""
+
+import argparse
+import os
+import signal
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+from typing import NoReturn
+
+from experiments import question, site
+from experiments.collect import collect
+from experiments.errors import InputError, Interrupted, cannot
+from experiments.question import load_questions
+from experiments.scale import SCALES
+from experiments.site import load_site
+from experiments.slurm_jobs import folders
+from experiments.slurm_status import show_cluster_status
+from experiments.slurm_submit import resume, submit
+from experiments.slurm_worker import work
+from experiments.status import show_plan, show_status
+from experiments.study import Settings, run
+
+# Slurm sends SIGUSR1 ahead of a task's time limit.
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one verb; returns the exit code. Bad input is one line on standard error and 1."""
+    for number in _SIGNALS:
+        # What is ignored stays ignored: `nohup` relies on it.
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _interrupt)
+    options = _parser().parse_args(arguments)
+    try:
+        return _VERBS[options.verb].run(options)
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 1
+    except BrokenPipeError:
+        # Whoever read the output, say `head`, has seen enough; Python would complain once more at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except OSError as error:
+        # The disk is full, or the results folder cannot be written: nothing that is finished suffers from it.
+        print(f"{cannot(error)}; what is finished is kept, the same command goes on", file=sys.stderr)
+        return 1
+    except Interrupted as stopped:
+        told = "what is finished is kept; the same command goes on with the rest"
+        print(f"\nstopped: {told}", file=sys.stderr)
+        return 128 + stopped.signal_number
+
+
+def _check(options: argparse.Namespace) -> int:
+    """Read every question and site, and say how many there are."""
+    questions = load_questions(options.questions, options.study)
+    sites = [load_site(str(path)) for path in sorted(site.FOLDER.glob("*.toml"))]
+    print(f"{len(questions)} questions and {len(sites)} sites are valid")
+    return 0
+
+
+def _status(options: argparse.Namespace) -> int:
+    settings = _settings(options)
+    is_local = load_site(settings.site).cluster is None
+    return show_status(settings) if is_local else show_cluster_status(settings)
+
+
+def _collect(options: argparse.Namespace) -> int:
+    """From the folders named, or else from the partitions of the site."""
+    settings = _settings(options)
+    sources = options.folders or [folder.path for folder in folders(settings)]
+    return collect(sources, settings.results)
+
+
+def _settings(options: argparse.Namespace) -> Settings:
+    return Settings(
+        study=options.study,
+        scale=options.scale,
+        site=options.site,
+        results=options.results,
+        build=options.build,
+        questions=options.questions,
+        blocks=options.blocks,
+        budget_seconds=None if options.budget is None else options.budget * 60,
+        seed=options.seed,
+        figures=not options.no_figures,
+    )
+
+
+class _Parser(argparse.ArgumentParser):
+    """Wrong usage is one line and exit code 1, as for every other bad input."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong and leave."""
+        print(f"{message} (see `python -m experiments --help`)", file=sys.stderr)
+        raise SystemExit(1)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog="python -m experiments", description=__doc__)
+    verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
+    for name, verb in _VERBS.items():
+        verb.add_options(verbs.add_parser(name, help=verb.told, description=verb.told))
+    return parser
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add("--study", type=names, default=(), metavar="A,B", help="questions, beside the control (default: all)")
+    add("--scale", default="paper", metavar="|".join(SCALES), help="size of scenes (default: %(default)s)")
+    add("--site", default="local", help="a name in experiments/sites, or a file (default: %(default)s)")
+    add("--results", type=Path, default=Path("results"), help="folder of the records (default: %(default)s)")
+    add("--build", type=Path, default=Path("build"), help="folder of the programs (default: %(default)s)")
+    add(
+        "--questions",
+        type=Path,
+        default=question.FOLDER,
+        help="folder of questions (default: this package's)",
+    )
+    add("--blocks", type=positive_number, help="repeat every experiment so many times, whatever the budget")
+    add("--budget", type=minutes, metavar="MINUTES", help="time for the whole study (default: the scale's)")
+    add("--seed", type=int, default=Settings.seed, help="of the order within blocks (default: %(default)s)")
+    add("--no-figures", action="store_true", help="draw nothing")
+
+
+def _add_submit_options(parser: argparse.ArgumentParser) -> None:
+    _add_options(parser)
+    parser.add_argument("--dry-run", action="store_true", help="print the batch scripts, submit nothing")
+
+
+def _add_collect_options(parser: argparse.ArgumentParser) -> None:
+    _add_options(parser)
+    parser.add_argument("folders", type=Path, nargs="*", help="results folders (default: those of --site)")
+
+
+def _add_work_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("job", type=Path, help="the job's list of blocks, a file *.json")
+    parser.add_argument("task", type=int, help="the task's index in the array")
+
+
+@dataclass(frozen=True)
+class _Verb:
+    told: str
+    run: Callable[[argparse.Namespace], int]
+    add_options: Callable[[argparse.ArgumentParser], None] = _add_options
+
+
+_VERBS = {
+    "run": _Verb("measure what is missing, then draw it", lambda options: run(_settings(options))),
+    "plan": _Verb(
+        "say what a run would do and about how long it would take",
+        lambda options: show_plan(_settings(options)),
+    ),
+    "status": _Verb("say what is done, missing and failed", _status),
+    "check": _Verb("read every question and site file", _check),
+    "submit": _Verb(
+        "hand what is missing to a Slurm cluster",
+        lambda options: submit(_settings(options), dry_run=options.dry_run),
+        _add_submit_options,
+    ),
+    "resume": _Verb(
+        "hand to a Slurm cluster what is missing of all that was submitted",
+        lambda options: resume(_settings(options), dry_run=options.dry_run),
+        _add_submit_options,
+    ),
+    "work": _Verb(
+        "measure one task of a job array; batch scripts call it",
+        lambda options: work(options.job, options.task),
+        _add_work_options,
+    ),
+    "collect": _Verb("merge other results folders into this one", _collect, _add_collect_options),
+}
+
+
+def names(text: str) -> tuple[str, ...]:
+    """The names between commas."""
+    return tuple(name.strip() for name in text.split(",") if name.strip())
+
+
+def positive_number(text: str) -> int:
+    """A whole number of at least 1. Raises ValueError, which the parser makes a line of."""
+    number = int(text)
+    if number < 1:
+        raise ValueError
+    return number
+
+
+def minutes(text: str) -> float:
+    """A number above 0. Raises ValueError, which the parser makes a line of."""
+    number = float(text)
+    if not 0 < number < float("inf"):
+        raise ValueError
+    return number
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    del frame
+    raise Interrupted(number)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,119 @@
+"""How long a point takes: from its own records, else from a probe of its variant and its scene's size."""
+
+import statistics
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from experiments import process
+from experiments.files import read_json
+from experiments.point import Point
+from experiments.scenes import AnyScene, HardCase, Scene
+from experiments.site import clean_environment
+
+PROBE = Scene(particles=10000, side=3162, radius=16, steps=10, min_velocity=2, max_velocity=5)
+
+# Rough on purpose: only how long the study takes depends on them, and records correct them as they come in.
+_BOX_PER_DISC = 0.1
+_RUNS_OF_A_PROFILE = 3
+_RUNS_OF_A_CHECK = 2
+_RUNS_FOR_ERRORS = 3
+_SECONDS_PER_DISC_READ = 6e-7
+_SECONDS_PER_HARD_CASE = 0.05
+
+
+@dataclass(frozen=True)
+class Probe:
+    """What one process of a variant took on the probe scene: seconds a step, and seconds beside the steps."""
+
+    step: float
+    process: float
+
+
+class Costs:
+    """Estimates in seconds of wall time."""
+
+    def __init__(self, probes: Mapping[str, Probe], measured: Mapping[str, list[float]]) -> None:
+        self._probes = dict(probes)
+        self._measured = {point: list(seconds) for point, seconds in measured.items()}
+        self._ratios: dict[str, list[float]] = {}
+
+    def point(self, point: Point) -> float:
+        """One process of a point, warm-up included."""
+        if point.program.sha256 is None:
+            return 0.0
+        if seconds := self._measured.get(point.id):
+            return statistics.median(seconds)
+        return self._modelled(point) * self._correction(point.experiment)
+
+    def check(self, point: Point) -> float:
+        """The verification of every step of the point's variant on its scene."""
+        if point.program.sha256 is None:
+            return 0.0
+        return _RUNS_OF_A_CHECK * self._modelled(point) / _runs(point)
+
+    def errors(self, point: Point) -> float:
+        """Measuring the errors of the point, which one of its processes does besides."""
+        if not point.errors or point.program.sha256 is None:
+            return 0.0
+        return _RUNS_FOR_ERRORS * self._modelled(point) / _runs(point)
+
+    def scene(self, scene: AnyScene) -> float:
+        """Generating a scene."""
+        if isinstance(scene, HardCase):
+            return 0.0
+        return 2 * scene.particles * _SECONDS_PER_DISC_READ
+
+    def learn(self, point: Point, seconds: float) -> None:
+        """A process of the point took this long."""
+        self._measured.setdefault(point.id, []).append(seconds)
+        self._ratios.setdefault(point.experiment, []).append(seconds / self._modelled(point))
+
+    def _correction(self, experiment: str) -> float:
+        """Measured over modelled: of this experiment if it has any measurement, else of all of them."""
+        ratios = self._ratios.get(experiment) or [ratio for some in self._ratios.values() for ratio in some]
+        return statistics.median(ratios) if ratios else 1.0
+
+    def _modelled(self, point: Point) -> float:
+        probe = self._probes.get(probe_key(point), Probe(step=0.01, process=0.05))
+        if isinstance(point.scene, HardCase):
+            return probe.process + _SECONDS_PER_HARD_CASE
+        step = probe.step * _work(point.scene) / _work(PROBE)
+        steps = _runs(point) * point.scene.steps * point.substeps
+        return probe.process + point.scene.particles * _SECONDS_PER_DISC_READ + steps * step
+
+
+def probe_key(point: Point) -> str:
+    """What a probe depends on."""
+    return f"{str(point.program.sha256)[:12]} {point.variant} {point.threads}"
+
+
+def probe(point: Point, scene: Path, record: Path, time_limit: float) -> Probe | None:
+    """Time a short run of the point's variant; None if it fails, which the run proper will explain."""
+    words = [str(point.program.path), "bench", str(scene), "--variant", point.variant]
+    words += ["--threads", str(point.threads), "--repetitions", "3", "--record", str(record)]
+    done = process.run(words, clean_environment(dict(point.openmp)), time_limit)
+    content = read_json(record)
+    if done.exit_code != 0 or content is None:
+        return None
+    # The least of them: a probe is short, and whatever else runs can only lengthen it.
+    steps = min(float(repetition["steps_seconds"]) for repetition in content["repetitions"])
+    return Probe(steps / PROBE.steps, max(0.0, float(content["process_seconds"]) - 4 * steps))
+
+
+def to_probe(points: Iterable[Point], known: Mapping[str, object]) -> list[Point]:
+    """One point for each probe that is still to be made."""
+    wanted = {probe_key(point): point for point in points if point.program.sha256 is not None}
+    return [point for key, point in wanted.items() if key not in known]
+
+
+def _runs(point: Point) -> int:
+    return point.warm_up + (_RUNS_OF_A_PROFILE if point.verb == "profile" else point.repetitions)
+
+
+def _work(scene: Scene) -> float:
+    """A step's work in discs: empty boxes are looked at too, and dense discs resolved again and again."""
+    boxes = (scene.side / (4 * scene.radius + 1)) ** 2
+    crowding = 1 + 42 * scene.area_fraction**16
+    speed = 1 + 0.06 * (scene.min_velocity + scene.max_velocity) / 2
+    return scene.particles * crowding * speed + _BOX_PER_DISC * boxes

@@ -1,0 +1,28 @@
+"""The one exception that a user is meant to see, and the hint that goes with a misspelt name."""
+
+import difflib
+from collections.abc import Iterable
+
+
+class InputError(Exception):
+    """Bad input; its text is the one line that the user gets on standard error."""
+
+
+class Interrupted(BaseException):
+    """A signal asked the study to stop. No `Exception`, so that nothing takes it for a failed point."""
+
+    def __init__(self, signal_number: int) -> None:
+        super().__init__(f"stopped by signal {signal_number}")
+        self.signal_number = signal_number
+
+
+def nearest(found: str, names: Iterable[str]) -> str:
+    """`; did you mean "x"?` where one of `names` resembles `found`, else the empty string."""
+    matches = difflib.get_close_matches(found, list(names), n=1)
+    return f'; did you mean "{matches[0]}"?' if matches else ""
+
+
+def cannot(error: OSError) -> str:
+    """What the system refused, in one line: the file, the reason, what was expected."""
+    place = error.filename2 or error.filename or "a file"
+    return f"{place}: {error.strerror or error}, expected a writable place with room"

@@ -1,0 +1,47 @@
+"""The two sizes of the study."""
+
+from dataclasses import dataclass, replace
+
+from experiments.errors import InputError, nearest
+from experiments.question import Place, Question, Series
+from experiments.scenes import AnyScene, HardCase
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How large the scenes are, which of a question's values are taken, and how long it all may last.
+
+    `divisor` divides discs and area, `steps_divisor` the steps; the budget covers the report too.
+    """
+
+    name: str
+    divisor: int
+    steps_divisor: int
+    budget_seconds: float
+
+    def scene(self, scene: AnyScene) -> AnyScene:
+        """A question's scene at this scale; a hard case has one size only."""
+        if isinstance(scene, HardCase):
+            return scene
+        return replace(scene.shrunk(self.divisor), steps=max(1, scene.steps // self.steps_divisor))
+
+    def places(self, question: Question) -> tuple[Place, ...]:
+        """A question's scenes at this scale."""
+        return tuple(place for place in question.scenes if self.divisor == 1 or not place.paper_only)
+
+    def values(self, series: Series) -> tuple[float, ...]:
+        """A series' values at this scale."""
+        return series.values if self.divisor == 1 else series.quick_values
+
+
+SCALES = {
+    "paper": Scale("paper", divisor=1, steps_divisor=1, budget_seconds=37 * 60),
+    "quick": Scale("quick", divisor=10, steps_divisor=2, budget_seconds=3 * 60),
+}
+
+
+def find_scale(name: str) -> Scale:
+    """The scale of that name. Raises InputError with the nearest name."""
+    if name not in SCALES:
+        raise InputError(f'scale: found "{name}", expected one of {", ".join(SCALES)}{nearest(name, SCALES)}')
+    return SCALES[name]

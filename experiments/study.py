@@ -1,0 +1,211 @@
+"""The whole study on this machine: plan, measure, draw; and go on where an earlier run stopped."""
+
+import sys
+import time
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+
+from experiments import process, question, site
+from experiments.costs import PROBE, Costs, Probe, probe, probe_key, to_probe
+from experiments.errors import InputError
+from experiments.plan import SEED, Experiment, Surroundings, plan
+from experiments.point import Point
+from experiments.process import NOT_FOUND
+from experiments.program import Program, find_programs
+from experiments.progress import Report, about, warn
+from experiments.question import load_questions, with_blocks
+from experiments.runner import Outcome, Runner, Task
+from experiments.scale import find_scale
+from experiments.scenes import SceneFolder
+from experiments.schedule import Schedule, split
+from experiments.site import Machine
+from experiments.store import Store, new_session, seconds_by_point
+
+COSTS = "costs.json"
+POINTS_FAILED = 2
+
+REPORT_SECONDS = 30.0
+"""What the report takes, which comes after the study and out of the same budget."""
+
+FIGURE_SECONDS = 3.0
+"""What drawing one experiment's figure takes, until one has been drawn."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the command line says."""
+
+    study: tuple[str, ...] = ()
+    scale: str = "paper"
+    site: str = "local"
+    results: Path = Path("results")
+    build: Path = Path("build")
+    questions: Path = question.FOLDER
+    blocks: int | None = None
+    budget_seconds: float | None = None
+    seed: int = SEED
+    figures: bool = True
+    machine: Machine | None = None
+    """The machine to plan for; this one if none is given."""
+
+
+class Study:
+    """The questions chosen, planned for this machine, and the folder that holds their results."""
+
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        self.site = site.load_site(settings.site)
+        self.scale = find_scale(settings.scale)
+        self.budget_seconds = settings.budget_seconds or self.scale.budget_seconds
+        self.measuring_seconds = self.budget_seconds - (REPORT_SECONDS if settings.figures else 0.0)
+        if self.site.cluster is not None and settings.machine is None:
+            raise InputError(f"site {self.site.name}: is a cluster; use `make submit SITE={settings.site}`")
+        machine = settings.machine or site.this_machine()
+        programs = find_programs(self.site, settings.build)
+        self.generator: Program = programs["gcc"]
+        if self.generator.sha256 is None:
+            raise InputError(self.generator.remedy)
+        around = Surroundings(self.site, machine, programs, self.scale, settings.seed)
+        questions = load_questions(settings.questions, settings.study)
+        self.experiments: tuple[Experiment, ...] = tuple(
+            plan(with_blocks(one, settings.blocks), around) for one in questions
+        )
+        self.store = Store(settings.results, new_session())
+
+    def scenes(self) -> SceneFolder:
+        """The generated scenes; the results folder must be held."""
+        return SceneFolder(self.store.root / "scenes", self.store.temporary, str(self.generator.sha256))
+
+    def runner(self) -> Runner:
+        """What runs one task; the results folder must be held."""
+        return Runner(self.store, self.scenes(), self.generator, self.site.time_limit_seconds)
+
+    def schedule(self, runner: Runner, *, settle: bool) -> Schedule:
+        """What is there and what is to be run; `settle` moves stale records out of the way first."""
+        look = self.store.settle if settle else self.store.find
+        found = {experiment.name: look(experiment) for experiment in self.experiments}
+        costs = Costs(self._probes(runner), seconds_by_point(found.values()))
+        figure_seconds = FIGURE_SECONDS if self.settings.figures else 0.0
+        schedule = Schedule(self.store, self.experiments, found, costs, figure_seconds)
+        schedule.decide(self.measuring_seconds)
+        return schedule
+
+    def _probes(self, runner: Runner) -> dict[str, Probe]:
+        kept = self.store.note(COSTS) or {}
+        probes = {key: Probe(**value) for key, value in kept.items()}
+        points = [point for experiment in self.experiments for point in experiment.points]
+        wanted = to_probe(points, probes)
+        for point in wanted:
+            record = self.store.temporary / "probe.json"
+            record.unlink(missing_ok=True)
+            timed = probe(point, runner.scene(PROBE).path, record, self.site.time_limit_seconds)
+            if timed is not None:
+                probes[probe_key(point)] = timed
+        if wanted:
+            content = {key: {"step": one.step, "process": one.process} for key, one in probes.items()}
+            self.store.keep_note(COSTS, content)
+        return probes
+
+
+def run(settings: Settings) -> int:
+    """Run what is missing of the study. Returns the exit code: 0, or 2 where a point failed."""
+    study = Study(settings)
+    with study.store.opened(), Report() as report:
+        report.now("planning")
+        runner = study.runner()
+        schedule = study.schedule(runner, settle=True)
+        report.line(summary(schedule, study.budget_seconds))
+        return _Session(study, runner, schedule, report).run()
+
+
+def summary(schedule: Schedule, budget_seconds: float) -> str:
+    """What is about to be run, in one line."""
+    status = schedule.status()
+    points = sum(len(experiment.points) for experiment in schedule.experiments)
+    text = f"{len(schedule.experiments)} experiments, {points} points, {status.planned} processes; "
+    if status.done == status.planned:
+        return text + "all of them are done"
+    text += f"{status.planned - status.done} of them to be run: {about(status.seconds_left)}"
+    if status.seconds_left > budget_seconds:
+        text += (
+            f", although the budget is {about(budget_seconds)}: the least number of blocks takes that long"
+            " (less: --study picks questions, --scale quick is the small study)"
+        )
+    return text
+
+
+class _Session:
+    """One invocation: experiments one after the other, the control's blocks in between."""
+
+    def __init__(self, study: Study, runner: Runner, schedule: Schedule, report: Report) -> None:
+        self._study = study
+        self._runner = runner
+        self._schedule = schedule
+        self._report = report
+        self._failures: Counter[str] = Counter()
+        self._others, self._control = split(study.experiments)
+
+    def run(self) -> int:
+        incomplete = [one for one in self._others if not self._schedule.is_complete(one)]
+        for experiment in incomplete:
+            self._schedule.decide(self._study.measuring_seconds)
+            for block in range(self._schedule.begin(experiment)):
+                self._run_control(everything=False)
+                self._block(experiment, block)
+            self._draw(experiment)
+        self._run_control(everything=True)
+        return self._conclude()
+
+    def _run_control(self, *, everything: bool) -> None:
+        """The same thing under two labels, measured all along the study, must come out equal."""
+        control = self._control
+        if control is None or self._schedule.is_complete(control):
+            return
+        blocks = self._schedule.begin(control)
+        for block in range(blocks if everything else self._schedule.control_due(control)):
+            self._block(control, block)
+        if self._schedule.is_complete(control):
+            self._draw(control)
+
+    def _block(self, experiment: Experiment, block: int) -> None:
+        missing = self._schedule.missing(experiment, block)
+        blocks = self._schedule.blocks[experiment.name]
+        what = f"{experiment.name}, block {block + 1} of {blocks}"
+        for position, point in missing:
+            self._report.now(what, self._schedule.status())
+            outcome = self._runner.run(Task(experiment, point, block, position, blocks))
+            self._schedule.finish(experiment, point, block, outcome.seconds)
+            if outcome.seconds is None:
+                self._tell(point, outcome)
+        if missing:
+            self._report.block(what, self._schedule.status())
+
+    def _tell(self, point: Point, failed: Outcome) -> None:
+        where = f"{point.experiment}, {point.series}, {point.x_name} {point.x:g}"
+        self._report.line(f"{where}: failed: {failed.reason}")
+        # A build that is not there is a gap with a remedy, not a wrong result.
+        if failed.exit_code != NOT_FOUND:
+            self._failures[point.experiment] += 1
+
+    def _draw(self, experiment: Experiment) -> None:
+        if not self._study.settings.figures:
+            return
+        self._report.now(f"{experiment.name}, drawing")
+        began = time.monotonic()
+        command = [sys.executable, "-m", "analysis", "figures", "--results", str(self._study.store.root)]
+        done = process.run([*command, "--experiment", experiment.name], time_limit=600)
+        self._schedule.figure_seconds = time.monotonic() - began
+        if done.exit_code == 0:
+            self._report.line(f"{experiment.name}: complete, drawn into {self._study.store.root / 'figures'}")
+        else:
+            warn(f"{experiment.name}: complete, but its figure could not be drawn: {done.reason}")
+
+    def _conclude(self) -> int:
+        root = self._study.store.root
+        if not self._failures:
+            self._report.line(f"the study is complete: {root / 'records'}")
+            return 0
+        points = ", ".join(f"{name} ({number})" for name, number in self._failures.items())
+        warn(f"points failed: {points}; the reasons are in {root / 'failures'} and in the report")
+        return POINTS_FAILED

@@ -1,0 +1,239 @@
+"""A workplace in a temporary folder: a fake program, two small questions, a results folder."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from experiments.point import Point
+from experiments.scenes import Scene
+from experiments.study import Settings
+
+ROOT = Path(__file__).parents[2]
+FAKE = Path(__file__).with_name("fake_carom.py")
+
+SCENE = """
+[scene]
+particles = 100
+side = 1000
+radius = 5
+steps = 10
+min_velocity = 1
+max_velocity = 2
+"""
+
+CHUNKS = f"""
+title = "Chunks"
+figure = "schedule"
+{SCENE}
+[sweep]
+parameter = "find_chunk"
+x_name = "chunk"
+values = [1, 2, 3]
+quick_values = [1, 2]
+
+[[series]]
+name = "guided"
+variant = "published"
+
+[blocks]
+minimum = 2
+wanted = 2
+"""
+
+ERRORS = """
+title = "Errors"
+figure = "speed_against_error"
+errors = true
+
+[[scenes]]
+name = "dilute"
+particles = 100
+side = 1000
+radius = 5
+steps = 10
+min_velocity = 1
+max_velocity = 2
+placement = "lattice"
+isotropic = true
+
+[[scenes]]
+case = "cradle"
+
+[sweep]
+parameter = "substeps"
+values = [1, 2]
+
+[[series]]
+name = "four"
+variant = "published"
+
+[[series]]
+name = "nine"
+variant = "nine"
+
+[blocks]
+minimum = 2
+wanted = 2
+"""
+
+CONTROL = f"""
+title = "Control"
+figure = "control"
+{SCENE}
+[[series]]
+name = "A"
+variant = "published"
+label = "A"
+
+[[series]]
+name = "A-again"
+variant = "published"
+label = "A-again"
+
+[blocks]
+minimum = 3
+wanted = 3
+"""
+
+PAIR = f"""
+title = "Pair"
+figure = "comparison"
+claim = "four_boxes"
+{SCENE}
+[[series]]
+name = "four"
+variant = "published"
+
+[[series]]
+name = "nine"
+variant = "nine"
+
+[blocks]
+minimum = 2
+wanted = 2
+"""
+
+
+@dataclass(frozen=True)
+class Workplace:
+    """Paths of one test, and what a test does with them."""
+
+    root: Path
+    monkeypatch: pytest.MonkeyPatch
+
+    @property
+    def results(self) -> Path:
+        return self.root / "results"
+
+    @property
+    def program(self) -> Path:
+        return self.root / "build" / "gcc" / "carom"
+
+    @property
+    def settings(self) -> Settings:
+        return Settings(
+            results=self.results,
+            build=self.root / "build",
+            questions=self.root / "questions",
+            figures=False,
+        )
+
+    @property
+    def arguments(self) -> list[str]:
+        return ["--results", "results", "--build", "build", "--questions", "questions"]
+
+    def question(self, name: str, text: str) -> Path:
+        path = self.root / "questions" / f"{name}.toml"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def behave(self, **environment: str) -> None:
+        for name, value in environment.items():
+            self.monkeypatch.setenv(name, value)
+
+    def build(self, name: str = "gcc", extra: str = "") -> Path:
+        """Put the fake program in its place; `extra` makes it another program."""
+        path = self.root / "build" / name / "carom"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        text = FAKE.read_text(encoding="utf-8")
+        path.write_text(f"#!{sys.executable} -IS\n{text}{extra}\n", encoding="utf-8")
+        path.chmod(0o755)
+        return path
+
+    def records(self, experiment: str = "*") -> dict[str, dict[str, Any]]:
+        """File name -> record."""
+        paths = self.results.glob(f"records/{experiment}/*.json")
+        return {path.name: json.loads(path.read_text(encoding="utf-8")) for path in paths}
+
+    def failures(self) -> list[dict[str, Any]]:
+        return [json.loads(path.read_text()) for path in self.results.glob("failures/*/*.json")]
+
+    def start(self, verb: str = "run", *more: str) -> "subprocess.Popen[str]":
+        """The command line, as a user starts it."""
+        command = [sys.executable, "-m", "experiments", verb, *self.arguments, *more]
+        return subprocess.Popen(
+            command,
+            cwd=self.root,
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            preexec_fn=hear_every_signal,
+        )
+
+    def calls(self) -> list[dict[str, Any]]:
+        """What the fake program was asked to do, if it logs."""
+        return [json.loads(line) for line in (self.root / "log").read_text().splitlines()]
+
+
+def generated(point: Point) -> Scene:
+    """The point's scene, which is no hard case."""
+    assert isinstance(point.scene, Scene)
+    return point.scene
+
+
+def hear_every_signal() -> None:
+    """Tests may themselves run under `nohup`, or in the background of a shell."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+
+
+def no_child_is_left(workplace: Workplace) -> None:
+    """The kernel ends the children of a process that died; it may take it a moment."""
+    until = time.monotonic() + 5
+    while any(is_running(call["pid"]) for call in workplace.calls()):
+        assert time.monotonic() < until, "a program outlived its runner"
+        time.sleep(0.01)
+
+
+def is_running(number: int) -> bool:
+    """Whether a process is there and no zombie."""
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+@pytest.fixture
+def empty_workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workplace:
+    place = Workplace(tmp_path, monkeypatch)
+    place.build()
+    place.behave(FAKE_LOG=str(tmp_path / "log"))
+    return place
+
+
+@pytest.fixture
+def workplace(empty_workplace: Workplace) -> Workplace:
+    empty_workplace.question("chunks", CHUNKS)
+    empty_workplace.question("pair", PAIR)
+    empty_workplace.question("control", CONTROL)
+    return empty_workplace

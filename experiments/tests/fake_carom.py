@@ -1,0 +1,226 @@
+"""Stands in for the carom program: same command line, same exit codes, same records, no discs.
+
+The environment says what goes wrong: FAKE_SECONDS (each measurement takes that long), FAKE_CHECK_FAILS,
+FAKE_BENCH_CRASHES, FAKE_RESULT_WRONG, FAKE_NO_RECORD, FAKE_HANGS (the variant concerned),
+FAKE_LIMITS_FAIL. FAKE_LOG is a file that gets a line for every call.
+"""
+
+import hashlib
+import json
+import os
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+Options = dict[str, Any]
+
+VARIANTS = ["published", "nine", "row", "track"]
+
+
+def main(words: list[str]) -> int:
+    note(words)
+    verb, rest = words[0], words[1:]
+    if verb == "list":
+        print("\n".join(VARIANTS))
+        return 0
+    options, positional = split(rest)
+    if verb == "generate":
+        words = [*positional, options["seed"]] if positional else ["3", "100", "5", "10", options["case"]]
+        write(options["output"], "".join(f"{word}\n" for word in words))
+    elif verb == "check":
+        if concerns("FAKE_CHECK_FAILS", options):
+            print("step 3: discs 1 and 2 left colliding", file=sys.stderr)
+            return 2
+    elif verb in ("bench", "profile"):
+        return measure(verb, positional[0], options)
+    elif verb == "limits":
+        if "FAKE_LIMITS_FAIL" in os.environ:
+            print("--threads: found 2, but OpenMP grants 1", file=sys.stderr)
+            return 1
+        write(options["record"], json.dumps(make_limits(options)))
+    else:
+        print(f'found "{verb}", expected a verb', file=sys.stderr)
+        return 1
+    return 0
+
+
+def measure(verb: str, scene: str, options: Options) -> int:
+    time.sleep(float(os.environ.get("FAKE_SECONDS", "0")))
+    if concerns("FAKE_HANGS", options):
+        time.sleep(600)
+    if concerns("FAKE_BENCH_CRASHES", options):
+        print("out of memory", file=sys.stderr)
+        os.abort()
+    wrong = concerns("FAKE_RESULT_WRONG", options)
+    if not concerns("FAKE_NO_RECORD", options):
+        record = make_record(verb, scene, options, wrong)
+        scratch = options["record"] + ".part"
+        write(scratch, json.dumps(record))
+        if "timeline" in options:
+            write(options["timeline"], json.dumps({"chunks": options["timeline-chunks"], "traceEvents": []}))
+        Path(scratch).replace(options["record"])
+    return 2 if wrong else 0
+
+
+def split(rest: list[str]) -> tuple[Options, list[str]]:
+    options: Options = {}
+    positional: list[str] = []
+    tags: dict[str, str | int | float] = {}
+    words = iter(rest)
+    for word in words:
+        if word == "--tag":
+            key, _, value = next(words).partition("=")
+            tags[key] = number_or_text(value)
+        elif word in ("--timeline-chunks", "--errors", "--isotropic"):
+            options[word[2:]] = True
+        elif word.startswith("--"):
+            options[word[2:]] = next(words)
+        else:
+            positional.append(word)
+    return {**options, "tags": tags}, positional
+
+
+def number_or_text(value: str) -> str | int | float:
+    try:
+        number = json.loads(value)
+    except ValueError:
+        return value
+    return number if isinstance(number, int | float) and not isinstance(number, bool) else value
+
+
+def concerns(name: str, options: Options) -> bool:
+    return os.environ.get(name) == options.get("variant")
+
+
+def note(words: list[str]) -> None:
+    if "FAKE_LOG" in os.environ:
+        with Path(os.environ["FAKE_LOG"]).open("a", encoding="utf-8") as file:
+            openmp = {key: value for key, value in os.environ.items() if key.startswith("OMP_")}
+            file.write(json.dumps({"pid": os.getpid(), "words": words, "openmp": openmp}) + "\n")
+
+
+def write(path: str, text: str) -> None:
+    Path(path).write_text(text, encoding="utf-8")
+
+
+def sha256(path: str) -> str:
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
+def make_record(verb: str, scene: str, options: Options, wrong: bool) -> dict[str, Any]:
+    seconds = 0.001 + float(os.environ.get("FAKE_SECONDS", "0"))
+    particles, side, radius, steps = map(float, Path(scene).read_text(encoding="utf-8").split()[:4])
+    return {
+        "schema_version": 1,
+        "kind": verb,
+        "tags": options["tags"],
+        "recorded_at": "2024-01-01T00:00:00Z",
+        "axes": axes(options),
+        "scene": {
+            "name": scene,
+            "sha256": sha256(scene),
+            "particles": int(particles),
+            "side": side,
+            "radius": radius,
+            "steps": int(steps),
+            "area_fraction": particles * 3.14159 * radius**2 / side**2,
+        },
+        "warm_ups": int(options.get("warm-up", 0)),
+        "repetitions": [] if wrong else [{"steps_seconds": seconds, "cpu_seconds": seconds}],
+        "parse_seconds": 0.001,
+        "process_seconds": seconds + 0.01,
+        "work": {"steps": int(steps), "overlaps": 5, "pair_resolves": 4, "wall_resolves": 3, "sweeps": 2},
+        "errors": errors("errors" in options),
+        "check": {
+            "verdict": "failed" if wrong else "passed",
+            "scope": "last-step",
+            "reason": "energy changed by 3 %" if wrong else None,
+        },
+        "state_hash": "0123456789abcdef",
+        "provenance": provenance(),
+    }
+
+
+def make_limits(options: Options) -> dict[str, Any]:
+    rate = {"best": 2e9, "median": 1e9, "repetitions": 5}
+    threads = {"threads": int(options["threads"])}
+    copy = {"level": "memory", "working_set_bytes": 1 << 20, **threads, "bytes_per_second": rate}
+    arithmetic = {"lanes": 2, **threads, "operations_per_second": rate}
+    return {
+        "schema_version": 1,
+        "kind": "limits",
+        "tags": options["tags"],
+        "recorded_at": "2024-01-01T00:00:00Z",
+        "limits": {"copy": [copy], "arithmetic": [arithmetic]},
+        "provenance": provenance(),
+    }
+
+
+def axes(options: Options) -> dict[str, Any]:
+    return {
+        "variant": options["variant"],
+        "neighbourhood": "four",
+        "order": "checkered",
+        "self_contained": "on",
+        "direction": "reverse",
+        "find_schedule": "guided_chunk",
+        "resolve_schedule": "guided_chunk",
+        "find_chunk": int(options.get("find-chunk", 4)),
+        "resolve_chunk": int(options.get("resolve-chunk", 5)),
+        "threads": int(options["threads"]),
+        "substeps": int(options.get("substeps", 1)),
+        "tolerance": options.get("tolerance", "relative"),
+    }
+
+
+def errors(asked: bool) -> dict[str, Any]:
+    always = {"energy_drift": 0.0, "discs_outside": 0, "unresolved_pairs": 0}
+    if not asked:
+        return always
+    numbers = (
+        "momentum_drift", "penetration_worst", "penetration_mean", "collision_rate", "pressure",
+        "collision_rate_reference", "pressure_reference", "speed_distance",
+    )  # fmt: skip
+    absent = dict.fromkeys(("pressure_reason", "time_to_tenth_radius", "reference_reason"))
+    trajectory = [{"time": 1, "rms_distance": 0.01}]
+    return {**always, **dict.fromkeys(numbers, 0.0), **absent, "trajectory": trajectory}
+
+
+def provenance() -> dict[str, Any]:
+    openmp = {key: value for key, value in os.environ.items() if key.startswith("OMP_")}
+    slurm = {key: value for key, value in os.environ.items() if key.startswith(("SLURM_", "SLURMD_"))}
+    return {
+        "host": "host",
+        "cpu_model": "none",
+        "cores": 2,
+        "hardware_threads": 2,
+        "affinity": "0-1",
+        "affinity_count": 2,
+        "oversubscribed": False,
+        "memory_bytes": 1 << 30,
+        "virtualised": False,
+        "governor": None,
+        "operating_system": "none",
+        "openmp": {
+            "runtime": "none",
+            "version": 201511,
+            "max_threads": 2,
+            "dynamic": False,
+            "proc_bind": "close",
+            "places": 2,
+            "environment": openmp,
+        },
+        "compiler": "none",
+        "compiler_flags": "",
+        "build_type": "Release",
+        "commit": None,
+        "dirty": None,
+        "diff_sha256": None,
+        "binary_sha256": sha256(sys.argv[0]),
+        "slurm": slurm or None,
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,141 @@
+"""The command line as a user meets it: exit codes, one line for a mistake, the lock, Ctrl-C, figures."""
+
+import os
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from experiments.tests.conftest import Workplace, no_child_is_left
+
+
+def finish(process: "subprocess.Popen[str]") -> tuple[int, str, str]:
+    output, error = process.communicate(timeout=300)
+    return process.returncode, output, error
+
+
+def wait_for(path: Path, pattern: str) -> None:
+    until = time.monotonic() + 20
+    while not list(path.glob(pattern)):
+        assert time.monotonic() < until, f"no {pattern} in {path}"
+        time.sleep(0.01)
+
+
+def test_a_run_tells_how_much_and_how_long(workplace: Workplace) -> None:
+    code, output, error = finish(workplace.start("run", "--no-figures"))
+    assert (code, error) == (0, "")
+    lines = output.splitlines()
+    assert re.fullmatch(r"3 experiments, 7 points, 16 processes; 16 of them to be run: about \d+ s", lines[0])
+    assert re.fullmatch(r"chunks, block 1 of 2: 3 of 16 processes done, about \d+ s left", lines[1])
+    assert lines[-1] == "the study is complete: results/records"
+    assert "\x1b" not in output, "no terminal, no escape sequences"
+
+
+def test_status_and_plan_write_no_record(workplace: Workplace) -> None:
+    code, output, error = finish(workplace.start("status"))
+    assert (code, error) == (0, "")
+    assert not workplace.results.exists()
+    assert re.search(r"^chunks +3 +2 or more +0 +0 +6 +0$", output, re.MULTILINE)
+    code, output, error = finish(workplace.start("plan"))
+    assert (code, error) == (0, "")
+    assert re.search(r"^pair +2 +2 +4 +comparison +four_boxes +Pair", output, re.MULTILINE)
+    assert re.search(r"16 processes; 16 of them to be run: about \d+ (s|min)", output)
+    assert not workplace.records()
+
+
+def test_status_after_a_run(workplace: Workplace) -> None:
+    finish(workplace.start("run", "--no-figures"))
+    _, output, _ = finish(workplace.start("status"))
+    assert re.search(r"^chunks +3 +2 +6 +0 +0 +0$", output, re.MULTILINE)
+    assert re.search(r"^all +7 +16 +0 +0 +0$", output, re.MULTILINE)
+
+
+MISTAKES = {
+    "verb": (["walk"], r"argument VERB: invalid choice: 'walk' .*\(see `python -m experiments --help`\)"),
+    "scale": (["run", "--scale", "pape"], r'scale: found "pape", expected one of .*; did you mean "paper"\?'),
+    "study": (["run", "--study", "pears"], r'study: found "pears", expected names out of .*'),
+    "site": (
+        ["plan", "--site", "moon"],
+        r'site: found "moon", expected one of example-slurm, local or a file \*\.toml',
+    ),
+    "blocks": (["run", "--blocks", "0"], r"argument --blocks: invalid positive_number value: '0' .*"),
+    "budget": (["run", "--budget", "-1"], r"argument --budget: invalid minutes value: '-1' .*"),
+    "questions": (
+        ["check", "--questions", "nowhere"],
+        r"nowhere: has no question in it; expected files \*\.toml",
+    ),
+    "build": (
+        ["status", "--build", "nowhere"],
+        r".*nowhere/gcc/carom: is not built; build it with `make build`",
+    ),
+}
+
+
+@pytest.mark.parametrize(("words", "line"), MISTAKES.values(), ids=MISTAKES.keys())
+def test_wrong_usage_is_one_line_and_exit_code_one(workplace: Workplace, words: list[str], line: str) -> None:
+    code, output, error = finish(workplace.start(*words))
+    assert code == 1
+    assert re.fullmatch(line + "\n", error)
+    assert output == ""
+    assert not workplace.results.exists()
+
+
+def test_check_reads_every_file(workplace: Workplace) -> None:
+    code, output, _ = finish(workplace.start("check"))
+    assert (code, output) == (0, "3 questions and 2 sites are valid\n")
+    workplace.question("pair", "title = 3")
+    code, _, error = finish(workplace.start("check"))
+    assert code == 1
+    assert error.count("\n") == 1
+
+
+def test_two_runners_in_one_folder_are_refused(workplace: Workplace) -> None:
+    workplace.behave(FAKE_SECONDS="0.3")
+    first = workplace.start("run", "--no-figures")
+    wait_for(workplace.results, "records/*/*.json")
+    code, _, error = finish(workplace.start("run", "--no-figures"))
+    assert code == 1
+    assert re.fullmatch(
+        rf"results: is in use by process {first.pid} on \S+; wait for it, or give --results FOLDER\n", error
+    )
+    first.send_signal(signal.SIGTERM)
+    assert finish(first)[0] == 128 + signal.SIGTERM
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_stops_cleanly(workplace: Workplace, number: signal.Signals) -> None:
+    workplace.behave(FAKE_SECONDS="0.3")
+    process = workplace.start("run", "--no-figures")
+    wait_for(workplace.results, "records/*/*.json")
+    process.send_signal(number)
+    code, _, error = finish(process)
+    assert code == 128 + number
+    assert error == "\nstopped: what is finished is kept; the same command goes on with the rest\n"
+    no_child_is_left(workplace)
+    assert not (workplace.results / ".running").exists()
+    assert not workplace.failures()
+
+
+def test_a_figure_is_drawn_as_soon_as_its_experiment_is_complete(workplace: Workplace) -> None:
+    log = workplace.root / "drawn"
+    (workplace.root / "analysis").mkdir()
+    (workplace.root / "analysis" / "__init__.py").touch()
+    (workplace.root / "analysis" / "__main__.py").write_text(
+        "import sys, glob\n"
+        f"with open({os.fspath(log)!r}, 'a') as file:\n"
+        "    print(*sys.argv[1:], len(glob.glob('results/records/*/*.json')), file=file)\n"
+        "sys.exit('no paper' if sys.argv[-1] == 'pair' else 0)\n"
+    )
+    code, output, error = finish(workplace.start())
+    assert code == 0
+    drawn = [line.split() for line in log.read_text().splitlines()]
+    assert [words[:-1] for words in drawn] == [
+        ["figures", "--results", "results", "--experiment", name] for name in ("chunks", "pair", "control")
+    ]
+    records = [int(words[-1]) for words in drawn]
+    assert 6 <= records[0] < records[1] < records[2] == 16
+    assert "chunks: complete, drawn into results/figures" in output
+    assert error == "pair: complete, but its figure could not be drawn: no paper\n"

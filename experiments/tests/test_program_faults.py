@@ -1,0 +1,143 @@
+"""The real program when something goes wrong around it: kills, full disks, locales, names of files."""
+
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from experiments.tests.conftest import ROOT
+from experiments.tests.small_disk import run_on_small_disk
+
+PROGRAM = ROOT / "build" / "gcc" / "carom"
+KILLS = 20
+
+pytestmark = pytest.mark.skipif(
+    not PROGRAM.is_file(), reason="build/gcc/carom is not built (`make build` builds it)"
+)
+
+
+def carom(*words: object, **options: object) -> "subprocess.CompletedProcess[str]":
+    command = [str(PROGRAM), *map(str, words)]
+    return subprocess.run(command, capture_output=True, text=True, check=False, **options)  # type: ignore[call-overload, no-any-return]
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    path = tmp_path / "scene.in"
+    assert carom("generate", 500, 500, 5, 40, -4, 4, "--output", path).returncode == 0
+    return path
+
+
+def test_kills_leave_whole_files_or_none(tmp_path: Path, scene: Path) -> None:
+    trajectory, record = tmp_path / "trajectory", tmp_path / "record.json"
+    carom("run", scene, 1, "--trajectory", trajectory)
+    whole = trajectory.read_bytes()
+    trajectory.unlink()
+    moments = random.Random(20240301)
+    killed = 0
+    for turn in range(KILLS):
+        words = ["run", scene, 1, "--trajectory", trajectory]
+        if turn % 2:
+            words = ["bench", scene, "--threads", 1, "--record", record]
+        process = subprocess.Popen([str(PROGRAM), *map(str, words)], stdout=subprocess.DEVNULL)
+        time.sleep(moments.uniform(0, 0.05))
+        process.kill()
+        killed += process.wait() == -signal.SIGKILL
+        assert not trajectory.exists() or trajectory.read_bytes() == whole
+        assert not record.exists() or json.loads(record.read_text())["kind"] == "bench"
+        trajectory.unlink(missing_ok=True)
+        record.unlink(missing_ok=True)
+    assert killed > 0, "some of the kills came in time"
+
+
+FULL = """
+"$2" run "$3" --trajectory disk/trajectory; echo "code $?"
+"$2" generate 5000 5000 5 40 -4 4 --output disk/scene.in; echo "code $?"
+head -c 1m /dev/zero >disk/ballast 2>/dev/null
+"$2" bench "$3" --record disk/record.json >/dev/null 2>said; code=$?; tail -n 1 said; echo "code $code"
+rm disk/ballast
+ls -A disk
+"""
+
+
+def test_a_full_disk_is_one_line_and_leaves_nothing(tmp_path: Path, scene: Path) -> None:
+    said = run_on_small_disk(tmp_path / "disk", "64k", tmp_path, FULL, str(PROGRAM), str(scene)).splitlines()
+    for file, place in zip(("trajectory", "scene.in", "record.json"), range(0, 6, 2), strict=True):
+        assert said[place] == (
+            f"carom: disk/{file}: writing broke off (No space left on device), "
+            "expected a writable place with room"
+        )
+        assert said[place + 1] == "code 1"
+    assert said[6:] == [], "nothing is left on the disk"
+
+
+def test_a_file_that_may_not_grow_is_one_line_and_leaves_nothing(tmp_path: Path, scene: Path) -> None:
+    target = tmp_path / "out" / "trajectory"
+    target.parent.mkdir()
+    done = carom(
+        "run", scene, "--trajectory", target,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000)),
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert done.stderr.splitlines() == [
+        f"carom: {target}: writing broke off (File too large), expected a writable place with room"
+    ]
+    assert list(target.parent.iterdir()) == []
+
+
+@pytest.fixture(scope="module")
+def comma_locale(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """The environment of a German shell, whether or not the system has the locale ready."""
+    folder = tmp_path_factory.mktemp("locales")
+    if shutil.which("localedef") is None:
+        pytest.skip("no locale can be made: localedef is not here")
+    made = subprocess.run(
+        ["localedef", "-i", "de_DE", "-f", "UTF-8", str(folder / "de_DE.UTF-8")],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if made.returncode != 0:
+        pytest.skip(f"no locale can be made: {made.stderr.strip()} (Debian: the package locales)")
+    return {**os.environ, "LOCPATH": str(folder), "LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"}
+
+
+def test_the_locale_has_a_decimal_comma(comma_locale: dict[str, str]) -> None:
+    code = "import locale; locale.setlocale(locale.LC_ALL, ''); print(locale.localeconv()['decimal_point'])"
+    done = subprocess.run(
+        ["python3", "-c", code], env=comma_locale, capture_output=True, text=True, check=True
+    )
+    assert done.stdout == ",\n"
+
+
+def test_a_locale_with_decimal_commas_changes_nothing(
+    tmp_path: Path, scene: Path, comma_locale: dict[str, str]
+) -> None:
+    numbers = ("generate", 50, "100.5", "1.25", 3, "-0.5", "0.5")
+    assert carom(*numbers, env=comma_locale).stdout == carom(*numbers).stdout
+    states = [
+        json.loads(carom("run", scene, "--json", env=environment).stdout)["state_hash"]
+        for environment in (comma_locale, None)
+    ]
+    assert states[0] == states[1]
+    record = tmp_path / "record.json"
+    carom("bench", scene, "--record", record, "--tag", "x=1.5", env=comma_locale)
+    assert json.loads(record.read_text())["tags"]["x"] == 1.5
+    refused = carom("generate", 50, "100,5", "1,25", 3, 0, 1, env=comma_locale)
+    assert (refused.returncode, len(refused.stderr.splitlines())) == (1, 1)
+
+
+@pytest.mark.parametrize("name", ["with spaces", 'it\'s "quoted"', "$(reboot); `x` & *", "--help", "é 中\n2"])
+def test_any_name_does_for_a_file(tmp_path: Path, scene: Path, name: str) -> None:
+    awkward = tmp_path / f"{name}.in"
+    shutil.copy(scene, awkward)
+    trajectory, record = tmp_path / f"{name}.trajectory", tmp_path / f"{name}.json"
+    assert carom("run", awkward, "--trajectory", trajectory).returncode == 0
+    assert trajectory.stat().st_size > 0
+    assert carom("bench", awkward, "--record", record).returncode == 0
+    assert json.loads(record.read_text())["scene"]["name"] == awkward.name

@@ -1,0 +1,64 @@
+"""Turns: measurements on one host never overlap."""
+
+import itertools
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from experiments.errors import InputError
+from experiments.turn import turn
+
+ANOTHER = """
+import sys, time
+from experiments.turn import turn
+with turn():
+    print(time.monotonic(), flush=True)
+    time.sleep(float(sys.argv[1]))
+    print(time.monotonic(), flush=True)
+"""
+
+
+def another(seconds: float) -> "subprocess.Popen[str]":
+    command = [sys.executable, "-c", ANOTHER, str(seconds)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+
+
+def times(process: "subprocess.Popen[str]") -> list[float]:
+    return [float(line) for line in process.communicate(timeout=60)[0].split()]
+
+
+@pytest.fixture(autouse=True)
+def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+
+
+def test_turns_of_two_processes_do_not_overlap() -> None:
+    spans = sorted(times(process) for process in [another(0.3), another(0.3), another(0.3)])
+    assert all(len(span) == 2 for span in spans)
+    assert all(before[1] <= after[0] for before, after in itertools.pairwise(spans))
+
+
+def test_a_killed_process_gives_up_its_turn() -> None:
+    killed = another(600)
+    assert killed.stdout is not None
+    killed.stdout.readline()
+    killed.kill()
+    killed.wait()
+    before = time.monotonic()
+    with turn():
+        assert time.monotonic() - before < 60
+
+
+def test_a_link_in_the_place_of_the_lock_is_refused(tmp_path: Path) -> None:
+    with turn():
+        pass
+    (lock,) = tmp_path.iterdir()
+    lock.unlink()
+    lock.symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(InputError, match="cannot be opened"), turn():
+        pass
+    assert not (tmp_path / "elsewhere").exists()

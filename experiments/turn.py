@@ -1,0 +1,31 @@
+"""One measurement at a time on one host: two at once would disturb each other."""
+
+import contextlib
+import fcntl
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from experiments.errors import InputError
+
+
+@contextlib.contextmanager
+def turn() -> Iterator[None]:
+    """Wait until no other runner of this user measures on this host, and keep others waiting meanwhile.
+
+    Runners of other results folders count, and so do tasks of a cluster whose nodes are one host. The kernel
+    ends a turn with its process, however that ends. Raises InputError where the lock cannot be made.
+    """
+    path = Path(tempfile.gettempdir()) / f"carom-{os.getuid()}.turn"
+    try:
+        lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
+    except OSError as error:
+        raise InputError(
+            f"{path}: cannot be opened: {error.strerror}; TMPDIR chooses another folder"
+        ) from error
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(lock)

@@ -1,0 +1,50 @@
+"""Every step of a variant checked once, before anything of it is timed."""
+
+import hashlib
+
+from experiments import process
+from experiments.plan import Experiment
+from experiments.point import Point
+from experiments.process import TIMED_OUT, Completed
+from experiments.program import CHECK_FAILED, check_command
+from experiments.scenes import SceneFile
+from experiments.site import clean_environment
+from experiments.store import Store
+
+
+def representative(experiment: Experiment, point: Point) -> Point:
+    """The point whose scene the variant is checked on: the first with that variant and name of a scene.
+
+    Checking every step costs as much as several runs, so not every scene of a sweep is checked; the program
+    checks the last step of each timed run besides.
+    """
+    same = (point.program, point.variant, point.scene_name)
+    return next(
+        other for other in experiment.points if (other.program, other.variant, other.scene_name) == same
+    )
+
+
+class Verifier:
+    """Runs `carom check`, once for each content of program, variant and scene; verdicts are kept."""
+
+    def __init__(self, store: Store, time_limit: float) -> None:
+        self._store = store
+        self._time_limit = time_limit
+
+    def check(self, point: Point, scene: SceneFile) -> Completed:
+        """The verdict on the point's variant on that scene: exit code 0 if every step passed."""
+        kept = self._store.note(_name(point, scene))
+        if kept is not None:
+            return Completed(tuple(kept["command"]), kept["exit_code"], "", kept["reason"])
+        command = check_command(point.program, scene.path, point.variant, point.threads)
+        done = process.run(command, clean_environment(dict(point.openmp)), self._time_limit)
+        reason = "" if done.exit_code == 0 else f"check of every step: {done.reason}"
+        if done.exit_code in (0, CHECK_FAILED):
+            verdict = {"command": list(command), "exit_code": done.exit_code, "reason": reason}
+            self._store.keep_note(_name(point, scene), verdict)
+        return Completed(command, done.exit_code, "", reason if done.exit_code != TIMED_OUT else done.error)
+
+
+def _name(point: Point, scene: SceneFile) -> str:
+    content = f"{point.program.sha256} {point.variant} {scene.sha256}"
+    return f"checks/{hashlib.sha256(content.encode()).hexdigest()[:16]}.json"
