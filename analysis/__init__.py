@@ -1,0 +1,1 @@
+"""What the records mean: tables, statistics, figures, claims and the report."""

@@ -1,0 +1,218 @@
+"""Error measures beside the time that they cost: from the tables of a study to one row a point.
+
+A point is a series at a number of substeps on one scene. Its time is over all of its processes; its errors
+come from the one that measured them, since every run of a point ends in the same bits.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from analysis.statistics.bootstrap import summarise
+from analysis.statistics.convergence import order
+from analysis.statistics.intervals import Interval
+from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pareto import front
+from analysis.statistics.verdicts import judge_one
+from analysis.studies import Study
+
+POINT = ["scene_name", "series", "x"]
+SMALL = 0.1
+"""Errors below this follow their leading term in dt: a tenth of a radius, or of the reference's value."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """An error measure: its name, the axis it is drawn on, what it means; `converges` if it falls with dt."""
+
+    key: str
+    title: str
+    label: str
+    meaning: str
+    value: Callable[[pd.DataFrame], pd.Series]
+    converges: bool
+
+
+def _column(name: str) -> Callable[[pd.DataFrame], pd.Series]:
+    return lambda runs: runs[name].abs()
+
+
+def _against_reference(name: str) -> Callable[[pd.DataFrame], pd.Series]:
+    return lambda runs: (runs[name] / runs[f"{name}_reference"] - 1).abs()
+
+
+def _parting(runs: pd.DataFrame) -> pd.Series:
+    """1 / time; 0 where the paths never part, NaN where there was no reference to part from."""
+    never = runs["path"].notna() & runs["time_to_tenth_radius"].isna()
+    return (1 / runs["time_to_tenth_radius"]).mask(never, 0.0)
+
+
+MEASURES = [
+    Measure(
+        "path", "distance of the paths from the exact ones",
+        "RMS distance from the exact paths at time 1, radii",
+        "the root mean square over all discs of the distance to the event-driven reference at time 1",
+        _column("path"), converges=True,
+    ),
+    Measure(
+        "parting", "when the paths part from the exact ones",
+        "1 / time until the paths are 0.1 radii off",
+        "one over the first time at which that distance passes a tenth of a radius; 0 if it never does",
+        _parting, converges=False,
+    ),
+    Measure(
+        "penetration_worst", "worst penetration", "worst penetration, radii",
+        "the deepest overlap of any pair that was apart at the start",
+        _column("penetration_worst"), converges=True,
+    ),
+    Measure(
+        "penetration_mean", "mean penetration", "mean penetration, radii",
+        "the mean depth over all overlaps of pairs that were apart at the start",
+        _column("penetration_mean"), converges=True,
+    ),
+    Measure(
+        "collision_rate", "collision rate", "relative error of the collision rate",
+        "collisions of pairs per disc and unit of time against those of the reference",
+        _against_reference("collision_rate"), converges=True,
+    ),
+    Measure(
+        "pressure", "pressure", "relative error of the pressure",
+        "the impulse on the walls per length and time against that of the reference",
+        _against_reference("pressure"), converges=True,
+    ),
+    Measure(
+        "speeds", "distribution of speeds", "greatest distance of the speeds' distributions",
+        "the Kolmogorov-Smirnov distance between the distributions of speeds of run and reference at the end",
+        _column("speed_distance"), converges=False,
+    ),
+    Measure(
+        "energy", "drift of energy", "relative drift of energy",
+        "the change of kinetic energy from start to end; collisions conserve it, so that this is rounding",
+        _column("energy_drift"), converges=False,
+    ),
+    Measure(
+        "momentum", "unexplained momentum", "momentum that no wall explains, relative",
+        "the change of momentum that the walls' impulses do not account for, over the sum of all speeds",
+        _column("momentum_drift"), converges=False,
+    ),
+    Measure(
+        "unresolved", "unresolved collisions", "collisions left unresolved",
+        "pairs and walls left colliding at the ends of units of time",
+        _column("unresolved_pairs"), converges=False,
+    ),
+]  # fmt: skip
+
+
+def errors(study: Study, experiment: str) -> pd.DataFrame:
+    """Return the records of an experiment that measured errors, a column a measure; NaN where it has none."""
+    runs = study.runs_of(experiment)
+    runs = runs[runs["has_errors"].astype(bool)]
+    at_one = study.trajectory[study.trajectory["time"] == 1].set_index("file")["rms_distance"]
+    runs = runs.assign(path=runs["file"].map(at_one), scene_name=runs["scene_name"].fillna(""))
+    return runs.assign(**{measure.key: measure.value(runs) for measure in MEASURES})
+
+
+def times(study: Study, experiment: str) -> pd.DataFrame:
+    """Return the timed repetitions with `seconds`, the time of one unit of simulated time."""
+    table = study.times_of(experiment)
+    return table.assign(
+        seconds=table["steps_seconds"] / table["steps"], scene_name=table["scene_name"].fillna("")
+    )
+
+
+def points(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
+    """Return a row a point with both a time and an error: `median`, `low`, `high` of the seconds for a unit
+    of simulated time, and `error`, `error_low`, `error_high`.
+
+    The error has an interval, its range, where several processes measured different ones. `on_front` tells
+    which points of each scene are on its Pareto front.
+    """
+    measured = errors(study, experiment).dropna(subset=[measure.key])
+    timed = times(study, experiment)
+    if measured.empty or timed.empty:
+        return pd.DataFrame()
+    grouped = measured.groupby(POINT, sort=True)
+    error = grouped[measure.key].agg(error="median", error_low="min", error_high="max")
+    first = grouped[["variant", "precision", "area_fraction", "particles", "substeps"]].first()
+    table = summarise(timed, POINT, "seconds").merge(first.join(error).reset_index(), on=POINT)
+    parts = [
+        part.assign(on_front=front(part["error"], part["median"])) for _, part in table.groupby("scene_name")
+    ]
+    return pd.concat(parts).sort_values(["area_fraction", "series", "x"], ignore_index=True)
+
+
+def orders(table: pd.DataFrame) -> pd.DataFrame:
+    """Return per scene and series of `points` the fitted `order` of the error in dt, an Interval."""
+    keys = ["scene_name", "series"]
+    rows = [
+        {**dict(zip(keys, key, strict=True)), "order": order(1 / part["substeps"], part["error"], SMALL)}
+        for key, part in table.groupby(keys, sort=False)
+    ]
+    return pd.DataFrame(rows, columns=[*keys, "order"])
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The cheapest point below a bound, its seconds for a unit of time, and those that may be as cheap."""
+
+    series: str
+    substeps: float
+    seconds: Interval
+    others: list[tuple[str, float]]
+
+
+def advice(table: pd.DataFrame, timed: pd.DataFrame) -> list[tuple[float, dict[str, Choice | None]]]:
+    """Return, for bounds in powers of ten from the loosest, the cheapest choice in each scene of `points`.
+
+    Of bounds with the same choices only the tightest is kept: whoever needs less gets it for the same price.
+    """
+    found: list[tuple[float, dict[str, Choice | None]]] = []
+    for bound in _bounds(table["error"]):
+        choices = {
+            str(scene): cheapest(part[part["error"] <= bound], timed[timed["scene_name"] == scene])
+            for scene, part in table.groupby("scene_name", sort=False)
+        }
+        if found and found[-1][1] == choices:
+            found.pop()
+        found.append((bound, choices))
+    return found
+
+
+def cheapest(candidates: pd.DataFrame, timed: pd.DataFrame) -> Choice | None:
+    """Return the candidate with the least median time, None if there is no candidate.
+
+    `others` are the candidates that were not found slower than it, from ratios within blocks.
+    """
+    if candidates.empty:
+        return None
+    best, *rest = candidates.sort_values("median", kind="stable").to_dict("records")
+    processes = process_medians(timed, "seconds")
+    reference = _of(processes, best["series"], best["x"])
+    others = [
+        (str(row["series"]), float(row["x"]))
+        for row in rest
+        if not _is_slower(reference, _of(processes, row["series"], row["x"]))
+    ]
+    seconds = Interval(best["median"], best["low"], best["high"])
+    return Choice(str(best["series"]), float(best["x"]), seconds, others)
+
+
+def _is_slower(reference: pd.DataFrame, candidate: pd.DataFrame) -> bool:
+    ratios = log_ratios(reference, candidate, value="seconds")["log_ratio"]
+    return bool(judge_one(ratios)["verdict"] == "slower")
+
+
+def _of(processes: pd.DataFrame, series: str, x: float) -> pd.DataFrame:
+    return processes[(processes["series"] == series) & (processes["x"] == x)]
+
+
+def _bounds(values: Sequence[float] | pd.Series) -> list[float]:
+    """Return the powers of ten that some but not all of the positive values exceed, and one above all."""
+    found = np.asarray(values, dtype=float)
+    found = found[found > 0]
+    if len(found) == 0:
+        return []
+    low, high = np.floor(np.log10(found.min())) + 1, np.ceil(np.log10(found.max()))
+    return [float(f"1e{power:.0f}") for power in np.arange(max(low, high), low - 1, -1)]

@@ -1,0 +1,145 @@
+"""The command line: `python -m analysis figures | report | compare | claims | performance | movie`."""
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from analysis.records import InputError
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command; return its exit code: 0 done, 1 bad input, and those of `compare`."""
+    options = _parser().parse_args(arguments)
+    try:
+        return int(options.run(options))
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 1
+    except BrokenPipeError:
+        # Whoever read the output, say `head`, has seen enough; Python would complain once more at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except OSError as error:
+        reason = error.strerror or error
+        print(f"{error.filename or 'a file'}: {reason}, expected a writable place with room", file=sys.stderr)
+        return 1
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line and ends with exit code 1, as the rest of the project does."""
+
+    def error(self, message: str) -> None:  # type: ignore[override]
+        self.exit(1, f"{self.prog}: {message} (see --help)\n")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog="python -m analysis", description=__doc__)
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    for name, run, text in (
+        ("figures", _figures, "draw the figures of whatever records are there"),
+        ("report", _report, "write report.html and report.pdf"),
+        ("claims", _claims, "print each published claim with its verdict"),
+        ("performance", _performance, "print the ladder and the limits as Markdown tables"),
+    ):
+        command = commands.add_parser(name, help=text, description=text)
+        command.add_argument(
+            "--results", type=Path, default=Path("results"), metavar="DIR", help="default: results"
+        )
+        if name == "figures":
+            command.add_argument("--experiment", metavar="NAME", help="only the figures of this experiment")
+        command.set_defaults(run=run)
+    compare = commands.add_parser(
+        "compare",
+        help="compare two results folders",
+        description="Compare results B with A. Exit code 3: something is slower; 4: something is undecided.",
+    )
+    compare.add_argument("first", type=Path, metavar="A")
+    compare.add_argument("second", type=Path, metavar="B")
+    compare.add_argument("--experiment", metavar="NAME", help="only this experiment")
+    compare.set_defaults(run=_compare)
+    text = "draw a run as an animation, or one step of it as a picture"
+    movie = commands.add_parser("movie", help=text, description=text)
+    movie.add_argument("scene", type=Path, metavar="SCENE", help="the scene file that was run")
+    movie.add_argument("trajectory", type=Path, metavar="TRAJECTORY", help="from `carom run --trajectory`")
+    movie.add_argument("--output", type=Path, metavar="FILE", help="*.mp4 (needs ffmpeg), *.gif or *.png")
+    movie.add_argument("--step", type=int, metavar="S", help="of a picture (default: the last)")
+    movie.set_defaults(run=_movie)
+    return parser
+
+
+# The imports below are inside the functions: drawing and printing libraries take seconds to load.
+
+
+def _figures(options: argparse.Namespace) -> int:
+    from analysis.study_figures import draw_all
+
+    drawn = draw_all(options.results, options.experiment)
+    for figure in drawn:
+        print(figure.files[0])
+    if not drawn:
+        print(f"{options.results}: no records to draw yet", file=sys.stderr)
+    return 0
+
+
+def _report(options: argparse.Namespace) -> int:
+    from analysis.report import write
+
+    for path in write(options.results):
+        print(path)
+    return 0
+
+
+def _claims(options: argparse.Namespace) -> int:
+    from analysis import claims, published
+    from analysis.records import load
+    from analysis.studies import split
+
+    studies = split(load(options.results))
+    if not studies:
+        raise InputError(f"{options.results}: no records yet (they are made by `make experiments`)")
+    for study in studies:
+        print(study.name)
+        for row in claims.evaluate(study, studies, published.load()).itertuples():
+            detail = "; ".join(part for part in (row.measured, row.why) if part)
+            print(f"  {row.id:27}{row.verdict:25}{detail}")
+    return 0
+
+
+def _performance(options: argparse.Namespace) -> int:
+    from analysis.performance import markdown
+    from analysis.records import load
+    from analysis.studies import split
+
+    texts = [(study.name, markdown(study)) for study in split(load(options.results))]
+    if not any(text for _, text in texts):
+        raise InputError(f"{options.results}: no records of the ladder or the limits yet")
+    print("\n\n".join(f"{name}:\n\n{text}" for name, text in texts if text))
+    return 0
+
+
+def _compare(options: argparse.Namespace) -> int:
+    from analysis import comparison
+    from analysis.wording import change
+
+    table = comparison.compare(options.first, options.second, options.experiment)
+    shown = table.assign(
+        x=table["x"].map("{:g}".format),
+        change=[change(row) for row in table.to_dict("records")],
+        processes=table["blocks"],
+    )
+    columns = ["experiment", "series", "x", "label", "scene_name", "change", "processes", "verdict"]
+    print(shown[columns].to_string(index=False))
+    counts = table["verdict"].value_counts()
+    said = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
+    print(f"\n{options.second} against {options.first}: {said} (margin 2 %, Holm-corrected per experiment).")
+    print("The folders were not interleaved: a change of the machine between them shows as a change of time.")
+    return comparison.exit_code(table)
+
+
+def _movie(options: argparse.Namespace) -> int:
+    from analysis import movie
+
+    print(movie.draw(options.scene, options.trajectory, options.output, options.step))
+    return 0

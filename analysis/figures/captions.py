@@ -1,0 +1,75 @@
+"""Sentences of captions, generated from the data."""
+
+import pandas as pd
+
+from analysis.statistics.intervals import Interval
+from analysis.statistics.pairs import process_medians
+from analysis.statistics.trends import growth, linearity, turn
+from analysis.wording import change, count, exact, interval, number
+
+MEDIANS = "Dots are medians, bars their 95 % bootstrap intervals"
+PROCESSES = "A dot is the median of one process"
+
+
+def opening(times: pd.DataFrame, subject: str, dots: str = MEDIANS) -> str:
+    """Say what is drawn, on which scene and threads, from how many processes, blocks and sessions."""
+    fixed = [
+        f"{name} = {exact(times[column].iloc[0])}"
+        for name, column in (("N", "particles"), ("L", "side"), ("r", "radius"), ("steps", "steps"))
+        if times[column].nunique() == 1
+    ]
+    threads = f"{count(int(times['threads'].iloc[0]), 'thread')}" if times["threads"].nunique() == 1 else ""
+    setting = ", ".join([*fixed, threads] if threads else fixed)
+    sessions = times["session"].nunique()
+    processes = count(times["file"].nunique(), "process")
+    return (
+        f"{subject[0].upper()}{subject[1:]} ({setting}). {dots}: {processes} in "
+        f"{count(times['block'].nunique(), 'block')} and {count(sessions, 'session')}, "
+        f"{count(len(times), 'timed run')}, none left out."
+    )
+
+
+def growth_sentence(times: pd.DataFrame) -> str:
+    """Say how the time changes over the whole range, with the fitted exponent."""
+    processes = process_medians(times)
+    if processes["x"].nunique() < 2:
+        return ""
+    trend = growth(processes)
+    verdict = {"grows": "The time grows", "falls": "The time falls", "flat": "The time stays"}
+    said = verdict.get(trend.verdict, "No trend is settled: the time changes")
+    return (
+        f" {said} by {change(trend.change)} from {exact(trend.first)} to {exact(trend.last)}"
+        f"{_with('; fitted exponent', trend.exponent)}."
+    )
+
+
+def linear_sentence(times: pd.DataFrame) -> str:
+    """Say whether the time is a straight line, with the exponent over a fixed cost."""
+    line = linearity(process_medians(times))
+    if pd.isna(line.exponent.estimate):
+        return growth_sentence(times)
+    said = {"linear": "The time is linear", "not linear": "The time is not linear"}
+    verdict = said.get(line.verdict, "Whether the time is linear is not settled")
+    return f" {verdict}: exponent {interval(line.exponent)} over a fixed cost."
+
+
+def turn_sentence(times: pd.DataFrame) -> str:
+    """Say where the time is least, and how far it falls before and rises after."""
+    processes = process_medians(times)
+    if processes["x"].nunique() < 3:
+        return growth_sentence(times)
+    turning = turn(processes)
+    where = f"{exact(turning.lowest)}{_with('; break point', turning.break_point)}"
+    return (
+        f" The time is least at {where}; against it {change(turning.fall)} at the smallest and "
+        f"{change(turning.rise)} at the largest ({turning.verdict})."
+    )
+
+
+def _with(words: str, value: Interval) -> str:
+    return "" if pd.isna(value.estimate) else f"{words} {interval(value)}"
+
+
+def seconds(value: float) -> str:
+    """Return a time with its unit."""
+    return f"{number(value)} s"

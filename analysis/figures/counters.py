@@ -1,0 +1,77 @@
+"""Quantities derived from counters, a figure a source, since sources are never mixed in one."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from analysis.counters import derived
+from analysis.figures.style import BLUE, WIDTH, Data, Drawing
+from analysis.wording import count, number
+
+COLUMNS = 3
+
+
+def counters_hardware(data: Data) -> Drawing | None:
+    """Draw what the processor's own counters say."""
+    return _panels(data, "papi-hardware", "Hardware counters (PAPI)")
+
+
+def counters_software(data: Data) -> Drawing | None:
+    """Draw what the operating system's counters say."""
+    return _panels(data, "papi-software", "Software counters (PAPI)")
+
+
+def counters_usage(data: Data) -> Drawing | None:
+    """Draw what the operating system says of each thread's use of resources."""
+    return _panels(data, "rusage", "Resource usage (getrusage)")
+
+
+def counters_simulated(data: Data) -> Drawing | None:
+    """Draw what cachegrind counted on a simulated processor, on one thread."""
+    return _panels(data, "cachegrind", "Simulated counters (cachegrind, one thread)")
+
+
+def _panels(data: Data, source: str, subject: str) -> Drawing | None:
+    counters = data.study.counters
+    rows = derived(counters[(counters["experiment"] == "phases") & (counters["source"] == source)])
+    if rows.empty:
+        return None
+    quantities = list(dict.fromkeys(rows["quantity"]))
+    series = list(dict.fromkeys(counters.loc[counters["experiment"] == "phases", "series"]))[::-1]
+    lines = -(-len(quantities) // COLUMNS)
+    figure = Figure(figsize=(WIDTH, lines * (0.6 + 0.2 * len(series))))
+    grid = figure.subplots(lines, COLUMNS, squeeze=False, sharey=True).ravel()
+    for axes, quantity in zip(grid, quantities, strict=False):
+        _bars(axes, rows[rows["quantity"] == quantity].set_index("series").reindex(series), quantity)
+    for axes in grid[len(quantities) :]:
+        axes.set_visible(False)
+    runs = count(int(rows["runs"].max()), "run")
+    caption = (
+        f"{subject} of profiled runs, {runs} a series, summed over threads: medians, with lines from the "
+        "least to the greatest."
+    )
+    return Drawing(figure, caption)
+
+
+def _bars(axes: Axes, rows: pd.DataFrame, quantity: str) -> None:
+    heights = np.arange(len(rows))
+    axes.barh(heights, rows["value"], color=BLUE, height=0.6)
+    axes.hlines(heights, rows["least"], rows["greatest"], color="black", linewidth=0.8)
+    top = float(rows["greatest"].max())
+    axes.set_xlim(0, top * 1.45 if top > 0 else 1)
+    for height, row in zip(heights, rows.to_dict("records"), strict=True):
+        known = not pd.isna(row["value"])
+        axes.annotate(
+            number(row["value"]) if known else "not counted",
+            (row["greatest"] if known else 0, height),
+            xytext=(3, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=6.5,
+        )
+    axes.set_yticks(heights, list(rows.index))
+    axes.tick_params(axis="y", length=0)
+    axes.set_title(quantity, fontsize=7)
+    axes.xaxis.set_visible(False)
+    axes.spines["bottom"].set_visible(False)

@@ -1,0 +1,104 @@
+"""The hard cases: how far each variant stays from the bound of each case, and the table of all verdicts."""
+
+from collections.abc import Iterable
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter
+
+from analysis import hard_cases as cases
+from analysis.figures.speed_against_error import power_of_ten
+from analysis.figures.style import BLUE, FAINT, INK, VERMILLION, Cell, Data, Drawing, Table, key, new_figure
+from analysis.hard_cases import FAILS, HOLDS, LIMIT, UNMEASURED
+from analysis.wording import count
+
+COLOURS = {"double": BLUE, "float": VERMILLION}
+MARKS = {HOLDS: "holds", FAILS: "fails", LIMIT: "open", UNMEASURED: "open"}
+SIGNS = {HOLDS: "✓", FAILS: "✗", LIMIT: "!", UNMEASURED: "–"}
+WIDEST = 6
+"""Variants side by side in one table, so that it fits a printed page."""
+
+
+def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
+    """Draw the measure of every case and variant against its bound, with the table of verdicts; None without
+    records.
+    """
+    table = cases.evaluate(data.study, experiment)
+    if table.empty or (table["verdict"] == UNMEASURED).all():
+        return None
+    expected = {one.name: one for one in cases.load()}
+    drawn = [
+        name
+        for name in dict.fromkeys(table["case"])
+        if table.loc[table["case"] == name, "value"].notna().any()
+    ]
+    figure, (axes,) = new_figure(0.9 + 0.22 * max(1, len(drawn)))
+    _dots(axes, table, drawn)
+    present = [precision for precision in COLOURS if (table["precision"] == precision).any()]
+    key(axes, [*((f"● {one}", COLOURS[one]) for one in present), ("| bound", INK)])
+    labels = {name: expected[name].label if name in expected else "" for name in table["case"]}
+    caption = (
+        f"{subject}: {count(table['case'].nunique(), 'case')} and "
+        f"{count(table['series'].nunique(), 'variant')}, a process for each. A dot is a variant on a case, "
+        "at the measure that the case is about; a bar is the most that it may be in the dot's precision. "
+        f"Hollow: a limit of the method, and the bar the least that it must be. {cases.summary(table)}"
+    )
+    return Drawing(figure, caption, tables=list(_tables(table, labels)))
+
+
+def _dots(axes: Axes, table: pd.DataFrame, names: list[str]) -> None:
+    shown = table[table["case"].isin(names) & table["value"].notna()]
+    positive = pd.concat([shown["value"], shown["bound"].dropna()])
+    positive = positive[positive > 0]
+    zero = 10.0 ** (np.floor(np.log10(positive.min())) - 1) if len(positive) else 1e-16
+    heights = {name: -number for number, name in enumerate(names)}
+    for row in shown.to_dict("records"):
+        colour = COLOURS.get(row["precision"], INK)
+        height = heights[row["case"]] - (0.14 if row["precision"] == "float" else -0.14)
+        value = max(row["value"], zero)
+        inside = "white" if row["verdict"] == LIMIT else colour
+        axes.plot(value, height, "o", color=colour, markerfacecolor=inside, markersize=3.5, zorder=3)
+        if pd.notna(row["bound"]):
+            axes.plot([max(row["bound"], zero)] * 2, [height - 0.14, height + 0.14], color=INK, linewidth=1.1)
+    axes.set_xscale("log")
+    axes.set_yticks(list(heights.values()), [name.replace("_", " ") for name in heights])
+    axes.tick_params(axis="y", length=0)
+    axes.set_xlabel("the measure of the case, which the table names: relative, or in radii")
+    powers = range(round(np.log10(zero)) + 1, int(np.floor(np.log10(axes.get_xlim()[1]))) + 1)
+    axes.set_xticks([zero, *(10.0**power for power in powers if power % 2 == 0)])
+    axes.xaxis.set_major_formatter(
+        FuncFormatter(lambda value, _: "0" if value <= zero else power_of_ten(value))
+    )
+    axes.minorticks_off()
+    for height in heights.values():
+        axes.axhline(height - 0.5, color=FAINT, linewidth=0.3, zorder=1)
+
+
+def _tables(table: pd.DataFrame, labels: dict[str, str]) -> Iterable[Table]:
+    """Yield a table for at most `WIDEST` variants of one precision: a row a case, a cell a verdict and a
+    number.
+    """
+    expects = {one.name: one.expects for one in cases.load()}
+    for precision, of_precision in table.fillna({"precision": ""}).groupby("precision"):
+        title = f"In {precision} precision:" if precision else "Without any record:"
+        series = list(dict.fromkeys(of_precision["series"]))
+        for first in range(0, len(series), WIDEST):
+            chosen = series[first : first + WIDEST]
+            part = of_precision[of_precision["series"].isin(chosen)]
+            rows = [
+                [
+                    Cell(f"{name.replace('_', ' ')}: {expects.get(name, '')}"),
+                    Cell(labels.get(name, "")),
+                    *map(_verdict, group.to_dict("records")),
+                ]
+                for name, group in part.groupby("case", sort=False)
+            ]
+            yield Table(title, ["Case, and what is expected", "Number", *chosen], rows)
+
+
+def _verdict(row: dict[str, object]) -> Cell:
+    verdict, value, reason = str(row["verdict"]), row["value"], row["reason"]
+    number = "" if pd.isna(value) else f" {value:.1e}" if value else " 0"
+    said = f": {reason}" if verdict in (FAILS, LIMIT) and reason else ""
+    return Cell(f"{SIGNS[verdict]}{number}{said}", MARKS[verdict])

@@ -1,0 +1,177 @@
+"""A ladder as a waterfall: each rung from the time of the rung before to its own, a panel a scene."""
+
+import math
+from collections.abc import Hashable, Mapping
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from analysis.figures.style import (
+    FAINT,
+    GREEN,
+    INK,
+    VERMILLION,
+    WIDTH,
+    Data,
+    Drawing,
+    lighten,
+    logarithmic_ticks,
+)
+from analysis.ladder import claims, factors, named, rungs, scene_title, speed_up, totals
+from analysis.statistics.verdicts import MARGIN
+from analysis.wording import count, number, share
+
+Row = Mapping[Hashable, Any]
+
+COLUMNS = 2
+ROW_HEIGHT = 0.2
+COLOURS = {"faster": GREEN, "slower": VERMILLION}
+
+
+def ladder(data: Data) -> Drawing | None:
+    """Draw the way from the published best to the fastest variant."""
+    return waterfall(data, "ladder", "From the published best to the fastest variant")
+
+
+def waterfall(data: Data, experiment: str, subject: str) -> Drawing | None:
+    """Draw an experiment's series in the order of its question, each against the one before, on every
+    scene.
+    """
+    runs, times = (
+        named(table[table["experiment"] == experiment]) for table in (data.study.runs, data.study.times)
+    )
+    if times.empty or times["series_number"].isna().any():
+        return None
+    table = rungs(runs, times, data.study.counters)
+    steps, whole = factors(times), totals(times).set_index("scene_name")
+    scenes = list(dict.fromkeys(table.sort_values(["particles", "radius", "scene_name"])["scene_name"]))
+    names = table.drop_duplicates("series_number").set_index("series_number")["change"].sort_index()
+    figure, panels = _panels(len(scenes), len(names) + 1)
+    for scene, (axes, margin) in zip(scenes, panels, strict=True):
+        rows = _rows(table, steps, scene)
+        total = whole.loc[scene] if scene in whole.index else None
+        _bars(axes, rows, names)
+        _figures(margin, rows, names, total)
+        axes.set_title(scene_title(runs, scene), pad=13)
+    return Drawing(figure, _caption(subject, runs, times, table), _verdicts(steps, table, runs))
+
+
+def _rows(table: pd.DataFrame, steps: pd.DataFrame, scene: str) -> list[Row]:
+    """Return the scene's rungs in order, with the `before` of each and its `verdict` against the rung
+    before.
+    """
+    judged = steps[["scene_name", "series_number", "ratio", "low", "high", "verdict"]]
+    judged = judged.rename(columns={"low": "ratio_low", "high": "ratio_high"})
+    rows = table[table["scene_name"] == scene].merge(judged, on=["scene_name", "series_number"], how="left")
+    rows = rows.sort_values("series_number")
+    return list(rows.assign(before=rows["nanoseconds"].shift()).to_dict("records"))
+
+
+def _panels(scenes: int, rows: int) -> tuple[Figure, list[tuple[Axes, Axes]]]:
+    """Return a pair of axes a scene: one for the bars, one for the figures beside them."""
+    columns = min(scenes, COLUMNS)
+    lines = math.ceil(scenes / columns)
+    figure = Figure(figsize=(WIDTH, lines * (0.85 + ROW_HEIGHT * rows)))
+    ratios = [1.0, 1.05] * columns
+    grid = figure.subplots(lines, 2 * columns, squeeze=False, gridspec_kw={"width_ratios": ratios}).ravel()
+    for axes in grid[2 * scenes :]:
+        axes.set_visible(False)
+    pairs = list(zip(grid[::2], grid[1::2], strict=True))[:scenes]
+    return figure, pairs
+
+
+def _bars(axes: Axes, rows: list[Row], names: pd.Series) -> None:
+    heights = {rung: -float(place) for place, rung in enumerate(names.index)}
+    axes.set_xscale("log")
+    for row in rows:
+        height = heights[row["series_number"]]
+        colour = COLOURS.get(row["verdict"], FAINT) if pd.notna(row["before"]) else INK
+        if pd.notna(row["before"]):
+            axes.plot([row["before"]] * 2, [height + 1, height], color=FAINT, linewidth=0.6, zorder=1)
+            left, right = sorted((row["before"], row["nanoseconds"]))
+            axes.barh(height, right - left, left=left, color=colour, height=0.55, zorder=2)
+        axes.plot([row["low"], row["high"]], [height, height], color=INK, linewidth=1.4, zorder=3)
+        axes.plot(row["nanoseconds"], height, "o", color=INK, markersize=3, zorder=4)
+    if len(rows) > 1:
+        first, last = rows[0]["nanoseconds"], rows[-1]["nanoseconds"]
+        left, width = min(first, last), abs(first - last)
+        axes.barh(-len(names), width, left=left, color=lighten(FAINT), height=0.3, zorder=2)
+    axes.set_ylim(-len(names) - 0.6, 0.6)
+    place = axes.get_subplotspec()
+    labelled = place is None or place.is_first_col()
+    ticks = [*heights.values(), -len(names)]
+    axes.set_yticks(ticks, [*names, "in all"] if labelled else [""] * len(ticks))
+    axes.tick_params(axis="y", length=0)
+    axes.set_xlabel("time per disc and step, ns")
+    logarithmic_ticks(axes.xaxis)
+
+
+def _figures(axes: Axes, rows: list[Row], names: pd.Series, total: pd.Series | None) -> None:
+    """Write what each rung gains and does beside its bar."""
+    heights = {rung: -float(place) for place, rung in enumerate(names.index)}
+    columns = {"ns": 0.11, "factor": 0.39, "resolves": 0.67, "sweeps": 0.91, "✓": 1.0}
+    for heading, end in columns.items():
+        _write(axes, end, 0.75, heading, FAINT, "bottom")
+    for row in rows:
+        cells = [_time(row), _factor(row), number(row["resolves"]), number(row["sweeps"]), _check(row)]
+        wrong = row["passed"] < row["records"] or pd.isna(row["nanoseconds"])
+        for end, text in zip(columns.values(), cells, strict=True):
+            _write(axes, end, heights[row["series_number"]], text, VERMILLION if wrong else INK, "center")
+    if total is not None:
+        _write(axes, columns["sweeps"], -len(names), speed_up(total), INK, "center", "bold")
+    axes.set(xlim=(0, 1), ylim=(-len(names) - 0.6, 0.6))
+    axes.axis("off")
+
+
+def _write(
+    axes: Axes, end: float, height: float, text: str, colour: str, vertical: str, weight: str = "normal"
+) -> None:
+    axes.text(end, height, text, fontsize=6, color=colour, weight=weight, ha="right", va=vertical)
+
+
+def _time(row: Row) -> str:
+    return number(row["nanoseconds"]) if pd.notna(row["nanoseconds"]) else "none"
+
+
+def _factor(row: Row) -> str:
+    return f"× {number(1 / row['ratio'])}" if pd.notna(row["ratio"]) else ""
+
+
+def _check(row: Row) -> str:
+    return "✓" if row["passed"] == row["records"] else "✗"
+
+
+def _verdicts(steps: pd.DataFrame, table: pd.DataFrame, runs: pd.DataFrame) -> pd.DataFrame:
+    changes = table.set_index(["scene_name", "series_number"])["change"]
+    names = [
+        f"{scene_title(runs, row['scene_name'])}: {changes[row['scene_name'], row['series_number']]}"
+        for row in steps.to_dict("records")
+    ]
+    return steps.assign(name=names)
+
+
+def _caption(subject: str, runs: pd.DataFrame, times: pd.DataFrame, table: pd.DataFrame) -> str:
+    processes = count(times["file"].nunique(), "process")
+    threads = count(int(times["threads"].iloc[0]), "thread")
+    failed = int(table["records"].sum() - table["passed"].sum())
+    checks = f"all {count(len(runs), 'result')} passed" if not failed else f"{failed} of {len(runs)} failed"
+    scopes = " and ".join(sorted(runs["check_scope"].unique()))
+    return (
+        f"{subject[0].upper()}{subject[1:]} ({threads}). {'; '.join(claims(runs, times))}. Each rung "
+        f"changes one choice of the rung above it; its bar runs from that rung's time to its own (dot: "
+        f"median, line: 95 % bootstrap interval), green if faster and red if slower by more than "
+        f"{share(MARGIN)}, Holm-corrected, pale if neither is settled. Factors are of paired times within "
+        f"{count(times['block'].nunique(), 'block')}, from {processes}, none left out. Resolves and sweeps "
+        f"are per step. Checks ({scopes}): {checks}. {_instructions(table)}"
+    )
+
+
+def _instructions(table: pd.DataFrame) -> str:
+    """Say how many instructions the rungs take, where they were counted."""
+    counted = table[table["instructions"].notna()]
+    if counted.empty:
+        return "Instructions were not counted: no profiled run of these variants and scenes has them."
+    said = "; ".join(f"{row['change']} {number(row['instructions'])}" for row in counted.to_dict("records"))
+    return f"Instructions per disc and step ({', '.join(sorted(set(counted['source'])))}): {said}."

@@ -1,0 +1,143 @@
+"""Each phase against the machine: the least that its unavoidable work could take, and what it took."""
+
+from collections.abc import Hashable, Mapping
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from analysis.figures.style import BLUE, FAINT, INK, ORANGE, WIDTH, Data, Drawing, key, lighten, plain_ticks
+from analysis.ladder import named, scene_title
+from analysis.limits import ARITHMETIC, COPY, against_limits
+from analysis.unavoidable import PHASES
+from analysis.wording import count, number, share
+
+LIMITS = {COPY: (BLUE, "<"), ARITHMETIC: (ORANGE, "d")}
+KEY = [
+    ("◂ least by copying", BLUE),
+    ("◆ least by arithmetic", ORANGE),
+    ("● measured, and the least in % of it", INK),
+    ("% of it waiting", FAINT),
+]
+
+
+def limits(data: Data) -> Drawing | None:
+    """Draw how close the phases come to what this machine can do."""
+    return phases_against_limits(data, "limits", "Phases of a step against the limits of this machine")
+
+
+def phases_against_limits(data: Data, experiment: str, subject: str) -> Drawing | None:
+    """Draw a row a series and phase, a panel a scene; None without profiled runs or without measured
+    limits.
+    """
+    study = data.study
+    runs, phases, threads = (
+        named(table[table["experiment"] == experiment]) for table in (study.runs, study.phases, study.threads)
+    )
+    if phases.empty or study.limits.empty:
+        return None
+    table = against_limits(runs, phases, threads, study.limits)
+    if table.empty:
+        return None
+    scenes = list(dict.fromkeys(table.sort_values(["particles", "scene_name"])["scene_name"]))
+    series = list(dict.fromkeys(runs.sort_values("series_number")["series"]))
+    rows = [(name, phase) for name in series for phase in PHASES if _has(table, name, phase)]
+    figure = Figure(figsize=(WIDTH, 1.0 + 0.21 * len(rows) + 0.1 * len(series)))
+    grid = figure.subplots(1, len(scenes), squeeze=False, sharey=True)[0]
+    for axes, scene in zip(grid, scenes, strict=True):
+        _panel(axes, table[table["scene_name"] == scene], rows)
+        axes.set_title(" ", pad=16)
+        axes.tick_params(axis="y", length=0)
+        above: Any = {"xycoords": "axes fraction", "textcoords": "offset points"}
+        axes.annotate(scene_title(runs, scene), (0, 1), xytext=(0, 4), **above)
+    _names(grid[0], rows)
+    key(grid[0], KEY, raised=16)
+    return Drawing(figure, _caption(subject, table, runs))
+
+
+def _has(table: pd.DataFrame, series: str, phase: str) -> bool:
+    return bool(((table["series"] == series) & (table["phase"] == phase)).any())
+
+
+def _heights(rows: list[tuple[str, str]]) -> dict[tuple[str, str], float]:
+    """Return the height of each row, from above, with a gap between the series."""
+    series = list(dict.fromkeys(name for name, _ in rows))
+    return {row: -(place + 0.6 * series.index(row[0])) for place, row in enumerate(rows)}
+
+
+def _panel(axes: Axes, table: pd.DataFrame, rows: list[tuple[str, str]]) -> None:
+    heights = _heights(rows)
+    axes.set_xscale("log")
+    for row in table.to_dict("records"):
+        height = heights[row["series"], row["phase"]]
+        axes.plot(
+            [row["least"], row["wall"]], [height, height], color=lighten(FAINT), linewidth=2.5, zorder=1
+        )
+        for limit, (colour, marker) in LIMITS.items():
+            if row[limit] > 0:
+                axes.plot(row[limit], height, marker, color=colour, markersize=4, zorder=3)
+        axes.plot(row["wall"], height, "o", color=INK, markersize=4, zorder=4)
+        beside: Any = {"xycoords": "data", "textcoords": "offset points", "va": "center", "fontsize": 6.5}
+        axes.annotate(_percent(row["reached"]), (row["wall"], height), xytext=(5, 0), **beside)
+        waiting = 1 - row["busy"] / row["wall"]
+        axes.annotate(_percent(waiting), (row["wall"], height), xytext=(33, 0), color=FAINT, **beside)
+    axes.set_xlim(axes.get_xlim()[0], axes.get_xlim()[1] * 6)
+    axes.set_xlabel("time per disc and step, ns")
+    plain_ticks(axes.xaxis)
+
+
+def _percent(fraction: float) -> str:
+    return f"{number(100 * fraction, 2)} %" if fraction < 0.1 else share(fraction)
+
+
+def _names(axes: Axes, rows: list[tuple[str, str]]) -> None:
+    heights = _heights(rows)
+    axes.set_yticks(list(heights.values()), [phase for _, phase in rows])
+    axes.set_ylim(min(heights.values()) - 0.6, 0.6)
+    for name in dict.fromkeys(name for name, _ in rows):
+        middle = [height for (series, _), height in heights.items() if series == name]
+        axes.annotate(
+            name, (0, sum(middle) / len(middle)), xycoords=("axes fraction", "data"), xytext=(-48, 0),
+            textcoords="offset points", rotation=90, ha="center", va="center", fontsize=7,
+        )  # fmt: skip
+
+
+def _caption(subject: str, table: pd.DataFrame, runs: pd.DataFrame) -> str:
+    threads = count(int(table["threads"].iloc[0]), "thread")
+    profiled = count(runs["file"].nunique(), "profiled run")
+    copies = "; ".join(
+        _copy(row, runs) for row in table.drop_duplicates(["scene_name", "size"]).to_dict("records")
+    )
+    peak = number(1e-9 * table["arithmetic_rate"].max())
+    ordered = table.merge(runs[["series", "series_number"]].drop_duplicates(), on="series")
+    groups = ordered.groupby(["series_number", "particles", "scene_name"], dropna=False)
+    said = "; ".join(_sentence(rows, runs) for _, rows in groups)
+    return (
+        f"{subject[0].upper()}{subject[1:]} ({threads}, medians of {profiled}). The least time is the "
+        f"greater of two: the bytes that a phase must read and write at the copy bandwidth measured "
+        f"({copies}), and the operations that it must do at the peak measured ({peak} Gflop/s); percentages "
+        f"say how much of the time that is. {said}."
+    )
+
+
+def _copy(row: Mapping[Hashable, Any], runs: pd.DataFrame) -> str:
+    within = f"within {number(row['size'] / 2**20)} MiB ({row['level']})"
+    return f"{number(1e-9 * row['copy_rate'])} GB/s {within} for {scene_title(runs, row['scene_name'])}"
+
+
+def _sentence(rows: pd.DataFrame, runs: pd.DataFrame) -> str:
+    """Say how much of a whole step is unavoidable, and what fills the rest in its longest phase."""
+    first = rows.iloc[0]
+    longest: Any = rows.loc[rows["wall"].idxmax()]
+    one = runs[(runs["scene_name"] == first["scene_name"]) & (runs["series"] == first["series"])]
+    steps = one["steps"] * one["substeps"]
+    waiting = 1 - longest["busy"] / longest["wall"]
+    return (
+        f"{first['series']}, {scene_title(runs, first['scene_name'])}: {number(rows['wall'].sum())} ns per "
+        f"disc and step, {share(rows['least'].sum() / rows['wall'].sum())} of it unavoidable; longest is "
+        f"{longest['phase']} ({share(longest['reached'])} by {longest['bound']}, {share(waiting)} waiting), "
+        f"with {number((one['overlaps'] / steps).median())} overlaps, "
+        f"{number((one['pair_resolves'] / steps).median())} resolves and "
+        f"{number((one['sweeps'] / steps).median())} sweeps a step"
+    )

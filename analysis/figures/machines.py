@@ -1,0 +1,67 @@
+"""One scene on every machine whose records are present, with the published machines."""
+
+import pandas as pd
+
+from analysis.figures.dots import dots
+from analysis.figures.style import BLUE, Data, Drawing, lighten, new_figure
+from analysis.statistics.bootstrap import summarise
+from analysis.statistics.pairs import process_medians
+from analysis.statistics.unpaired import judge_unpaired
+from analysis.statistics.verdicts import corrected
+from analysis.wording import change, count, exact
+
+
+def machine(data: Data) -> Drawing | None:
+    """Draw the time on each machine, with the published machines."""
+    return machines(data, "machine", "One scene on every machine")
+
+
+def machines(data: Data, experiment: str, subject: str) -> Drawing | None:
+    """Draw the time on each machine, a row a series: every study at this scale that measured the
+    experiment, never merged.
+    """
+    present = [study for study in data.studies if study.scale == data.study.scale]
+    times = pd.concat([study.times_of(experiment).assign(machine=study.machine) for study in present])
+    if times.empty:
+        return None
+    several = [key for key in ("revision", "series") if times.groupby("machine")[key].nunique().max() > 1]
+    times = times.assign(told=times[["machine", *several]].agg(", ".join, axis=1))
+    times["name"] = times["told"].str.replace(": ", "\n", n=1).str.replace(", ", "\n", n=1)
+    summary = summarise(times, ["name"]).sort_values("median", ascending=False)
+    published = data.published.experiment(experiment).groupby("series")["seconds"].median().sort_values()
+    caption = _caption(times, subject)
+    if published.empty:
+        figure, (axes,) = new_figure(0.7 + 0.42 * len(summary))
+        dots(axes, summary, "name")
+        axes.set_xlabel("time of the steps, s")
+        return Drawing(figure, caption)
+    theirs = published[::-1].rename("median").reset_index()
+    gigahertz = data.published.machines.set_index("machine")["maximum_gigahertz"]
+    theirs["name"] = [f"{name}\n{gigahertz[name]} GHz" for name in theirs["series"]]
+    figure, (left, right) = new_figure(0.7 + 0.42 * max(len(summary), len(theirs)), columns=2)
+    dots(left, summary, "name")
+    left.set(xlabel="time of the steps, s", title="measured")
+    dots(right, theirs, "name", lighten(BLUE, 0.4))
+    right.set(xlabel="time of the process, s", title="published, 16 threads")
+    return Drawing(figure, caption)
+
+
+def _caption(times: pd.DataFrame, subject: str) -> str:
+    threads = sorted(times["threads"].unique())
+    on = " or ".join(count(int(number), "thread") for number in threads)
+    caption = (
+        f"{subject} (N = {exact(times['particles'].iloc[0])}, {on}): medians with 95 % "
+        f"bootstrap intervals, {count(times['file'].nunique(), 'process')}."
+    )
+    processes = process_medians(times)
+    groups = {name: group["steps_seconds"] for name, group in processes.groupby("told")}
+    if times["machine"].nunique() < 2:
+        return f"{caption} Only one machine is present; more appear when their results are collected."
+    first = min(groups, key=lambda name: groups[name].median())
+    others = [name for name in groups if name != first]
+    table = corrected(pd.DataFrame([judge_unpaired(groups[first], groups[name]) for name in others]))
+    said = "; ".join(
+        f"{name} {change(row)} ({row['verdict']})"
+        for name, row in zip(others, table.to_dict("records"), strict=True)
+    )
+    return f"{caption} Against {first}, the fastest (not interleaved, so unpaired): {said}."

@@ -1,0 +1,106 @@
+"""Resolve orders against each other: row against checkered over scene size, and the sequential orders."""
+
+import pandas as pd
+
+from analysis.figures.captions import opening
+from analysis.figures.comparisons import differences, differences_sentence
+from analysis.figures.curves import curve
+from analysis.figures.dots import dots, faint_dots
+from analysis.figures.labels import label_ends
+from analysis.figures.style import (
+    BAND,
+    BLUE,
+    FAINT,
+    INK,
+    VERMILLION,
+    Data,
+    Drawing,
+    from_zero,
+    new_figure,
+    plain_ticks,
+)
+from analysis.statistics.bootstrap import summarise
+from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.verdicts import MARGIN, judge
+from analysis.wording import change, exact
+
+COLOURS = {"checkered": BLUE, "row": VERMILLION}
+
+
+def row(data: Data) -> Drawing | None:
+    """Draw alternate rows against the checkered pattern over scene size: time per disc, and the paired
+    ratio.
+    """
+    times = data.study.times_of("row")
+    if times.empty:
+        return None
+    figure, (left, right) = new_figure(2.6, columns=2)
+    summary = summarise(times, ["series", "x"])
+    per_disc = 1e9 / (summary["x"] * times["steps"].iloc[0])
+    scaled = summary.assign(**{end: summary[end] * per_disc for end in ("median", "low", "high")})
+    for series, part in scaled.groupby("series"):
+        curve(left, part, COLOURS.get(str(series), INK))
+    left.set(xscale="log", xlabel="discs", ylabel="time per disc and step, ns")
+    from_zero(left)
+    table = _row_ratio(times)
+    percent = table.assign(**{end: 100 * (table[end] - 1) for end in ("ratio", "low", "high")})
+    right.axhspan(-100 * MARGIN, 100 * MARGIN, color=BAND, zorder=0, linewidth=0)
+    right.axhline(0, color=FAINT, linewidth=0.7)
+    curve(right, percent, INK, "ratio")
+    right.set(xscale="log", xlabel="discs", ylabel="time of row against checkered, %")
+    for axes in (left, right):
+        plain_ticks(axes.xaxis)
+    ends = scaled.loc[scaled.groupby("series")["x"].idxmax()]
+    label_ends(
+        left,
+        [(one["series"], one["median"], COLOURS.get(one["series"], INK)) for one in ends.to_dict("records")],
+    )
+    said = "; ".join(
+        f"{exact(one['x'])} discs {change(one)} ({one['verdict']})" for one in table.to_dict("records")
+    )
+    caption = (
+        opening(times, "Alternate rows against the checkered pattern, over scene size at one density")
+        + f" Time of row against checkered: {said} (Holm-corrected, margin shaded). The published study "
+        "states that row wins on large scenes, without a number."
+    )
+    return Drawing(figure, caption)
+
+
+def _row_ratio(times: pd.DataFrame) -> pd.DataFrame:
+    processes = process_medians(times)
+    checkered, alternate = (processes[processes["order"] == order] for order in ("checkered", "row"))
+    return judge(log_ratios(checkered, alternate, match=("x",)), ["x"])
+
+
+def sequential_orders(data: Data) -> Drawing | None:
+    """Draw the sequential resolve orders against each other, the published ones beside them."""
+    times = data.study.times_of("sequential_orders")
+    if times.empty:
+        return None
+    summary = summarise(times, ["series"]).sort_values("median", ascending=False)
+    figure, (axes,) = new_figure(0.8 + 0.45 * len(summary))
+    dots(axes, summary, "series")
+    medians = summary.set_index("series")["median"]
+    published = {
+        name: data.published.experiment(f"self_contained_{name}").query("series == 'on'")["seconds"].median()
+        for name in ("track", "repeat")
+    }
+    if "track" in medians:
+        scale = medians["track"] / published["track"]
+        faint_dots(
+            axes,
+            [
+                (list(medians.index).index(name), seconds * scale)
+                for name, seconds in published.items()
+                if name in medians
+            ],
+        )
+    axes.set_xlabel("time of the steps, s")
+    fastest = medians.index[-1]
+    said = differences_sentence(differences(times, fastest), f"{fastest}, the fastest")
+    caption = opening(times, "The sequential resolve orders") + said
+    return Drawing(
+        figure,
+        caption
+        + " Lighter: the published medians with self-contained resolves, scaled so that track is level.",
+    )

@@ -1,0 +1,217 @@
+"""Two variants against each other: every block of the measurement, the published runs, and the ratio."""
+
+from dataclasses import dataclass
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
+
+from analysis.figures.captions import PROCESSES, opening
+from analysis.figures.labels import label_ends
+from analysis.figures.style import (
+    BAND,
+    BLUE,
+    FAINT,
+    INK,
+    VERMILLION,
+    Data,
+    Drawing,
+    lighten,
+    new_figure,
+    plain_ticks,
+)
+from analysis.statistics.intervals import RANKS_FROM
+from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.verdicts import MARGIN, judge_one
+from analysis.wording import blocks, change, exact
+
+
+@dataclass(frozen=True)
+class Sides:
+    """The two series compared: their names in the records (`candidate` / `reference`) and for the reader."""
+
+    experiment: str
+    candidate: str
+    reference: str
+    names: tuple[str, str]
+    subject: str
+
+
+def neighbourhood(data: Data) -> Drawing | None:
+    """Draw four boxes against nine."""
+    return pair_drawing(
+        data, Sides("neighbourhood", "four", "nine", ("four boxes", "nine boxes"), "Four boxes against nine")
+    )
+
+
+def self_contained_checkered(data: Data) -> Drawing | None:
+    """Draw self-contained resolves on against off, under the checkered order."""
+    return _self_contained(data, "self_contained_checkered", "checkered order")
+
+
+def self_contained_track(data: Data) -> Drawing | None:
+    """Draw self-contained resolves on against off, under the sequential order `track`."""
+    return _self_contained(data, "self_contained_track", "sequential order (track)")
+
+
+def self_contained_repeat(data: Data) -> Drawing | None:
+    """Draw self-contained resolves on against off, under the sequential order `repeat`."""
+    return _self_contained(data, "self_contained_repeat", "sequential order (repeat)")
+
+
+def compiler(data: Data) -> Drawing | None:
+    """Draw clang++ against g++."""
+    return pair_drawing(
+        data, Sides("compiler", "clang++", "g++", ("clang++", "g++"), "The same source by two compilers")
+    )
+
+
+def control(data: Data) -> Drawing | None:
+    """Draw the control: the same variant under two labels, which must come out equivalent."""
+    return pair_drawing(
+        data, Sides("control", "A-again", "A", ("A again", "A"), "The same variant under two labels")
+    )
+
+
+def reverse(data: Data) -> Drawing | None:
+    """Draw a disc's overlaps traversed in reverse against forward: time, and the pair resolves that it
+    takes.
+    """
+    sides = Sides(
+        "reverse",
+        "reverse",
+        "forward",
+        ("reverse", "forward"),
+        "A disc's overlaps in reverse against forward",
+    )
+    return pair_drawing(data, sides, resolves=True)
+
+
+def _self_contained(data: Data, experiment: str, order: str) -> Drawing | None:
+    subject = f"Resolving self-contained pairs early, on against off, under the {order}"
+    return pair_drawing(data, Sides(experiment, "on", "off", ("on", "off"), subject))
+
+
+def pair_drawing(data: Data, sides: Sides, resolves: bool = False) -> Drawing | None:
+    """Draw the times of both sides block by block, the published ones, and the ratio with its verdict."""
+    times = data.study.times_of(sides.experiment)
+    processes = process_medians(times)
+    candidate, reference = (
+        processes[processes["series"] == name] for name in (sides.candidate, sides.reference)
+    )
+    if candidate.empty or reference.empty:
+        return None
+    published = data.published.experiment(sides.experiment)
+    extra = bool(resolves) or not published.empty
+    figure, axes = new_figure(2.4, columns=2 + extra, widths=[1.2, *([1.0] * extra), 1.1])
+    _by_block(axes[0], {sides.names[0]: candidate, sides.names[1]: reference})
+    row = judge_one(log_ratios(reference, candidate)["log_ratio"])
+    theirs = _published_panel(axes[1], published, sides) if not published.empty else None
+    if resolves:
+        _resolves(axes[1], data, sides)
+    ratio_panel(axes[-1], row, theirs, sides.names)
+    return Drawing(figure, opening(times, sides.subject, PROCESSES) + _sentences(row, theirs, sides))
+
+
+def _by_block(axes: Axes, curves: dict[str, pd.DataFrame]) -> None:
+    axes.set(xlabel="block", ylabel="time of the steps, s", title="measured")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    labels = []
+    for (name, processes), colour in zip(curves.items(), (BLUE, VERMILLION), strict=True):
+        ordered = processes.sort_values(["session", "block"])
+        axes.plot(
+            range(1, len(ordered) + 1), ordered["steps_seconds"], color=colour, marker="o", linewidth=0.8
+        )
+        labels.append((name, ordered["steps_seconds"].iloc[-1], colour))
+    axes.margins(y=0.15)
+    label_ends(axes, labels)
+
+
+def _published_panel(axes: Axes, published: pd.DataFrame, sides: Sides) -> dict[str, float]:
+    """Draw the published runs and return their ratio as a row of `judge_one`; its runs are paired by
+    number.
+    """
+    axes.set(xlabel="repetition", ylabel="time of the process, s", title="published")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    labels, runs = [], {}
+    for series, name, colour in zip(
+        (sides.candidate, sides.reference), sides.names, (BLUE, VERMILLION), strict=True
+    ):
+        run = published[published["series"] == series]
+        axes.plot(run["x"], run["seconds"], color=lighten(colour), marker="o", linewidth=0.8)
+        labels.append((name, run["seconds"].iloc[-1], lighten(colour, 0.35)))
+        runs[series] = run.assign(node="", block=run["x"], session="")
+    axes.margins(y=0.15)
+    label_ends(axes, labels)
+    pairs = log_ratios(runs[sides.reference], runs[sides.candidate], value="seconds")
+    return judge_one(pairs["log_ratio"])
+
+
+def ratio_panel(
+    axes: Axes, ours: dict[str, float], theirs: dict[str, float] | None, names: tuple[str, str]
+) -> None:
+    """Draw the ratio as a dot with its 95 % interval (thin) and the 90 % interval the verdict rests on
+    (thick).
+    """
+    axes.axvspan(-100 * MARGIN, 100 * MARGIN, color=BAND, zorder=0, linewidth=0)
+    axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
+    entries = [("measured", ours, INK)] + ([("published", theirs, lighten(INK))] if theirs else [])
+    for height, (name, row, colour) in zip((1.0, 0.0), entries, strict=False):
+        estimate, low, high, inner_low, inner_high = (
+            100 * (row[end] - 1) for end in ("ratio", "low", "high", "decision_low", "decision_high")
+        )
+        axes.plot([low, high], [height, height], color=colour, linewidth=0.9, zorder=2)
+        axes.plot([inner_low, inner_high], [height, height], color=colour, linewidth=2.6, zorder=2)
+        axes.plot(estimate, height, "o", color=colour, markersize=5, markeredgecolor="white", zorder=3)
+        axes.annotate(
+            f"{name}: {row['verdict']}",
+            (0, height),
+            xycoords=("axes fraction", "data"),
+            xytext=(0, 9),
+            textcoords="offset points",
+            color=colour,
+            fontsize=7,
+        )
+    axes.set(ylim=(-0.6, 1.7), yticks=[], title="difference")
+    axes.set_xlabel(f"time of {names[0]}\nagainst {names[1]}, %")
+    axes.xaxis.set_major_locator(MaxNLocator(5))
+    axes.spines["left"].set_visible(False)
+    bounded(axes)
+
+
+def bounded(axes: Axes) -> None:
+    """Keep the margin in view, and an unbounded interval from stretching the axis."""
+    low, high = axes.get_xlim()
+    axes.set_xlim(max(min(low, -250 * MARGIN), -100), min(max(high, 250 * MARGIN), 300))
+
+
+def _resolves(axes: Axes, data: Data, sides: Sides) -> None:
+    runs = data.study.runs_of(sides.experiment)
+    per_step = (runs["pair_resolves"] / runs["steps"]).groupby(runs["series"]).median()
+    for height, (series, name, colour) in enumerate(
+        zip((sides.reference, sides.candidate), sides.names[::-1], (VERMILLION, BLUE), strict=True)
+    ):
+        axes.barh(height, per_step[series], color=colour, height=0.5)
+        axes.annotate(
+            f"{name}: {exact(round(per_step[series]))}",
+            (0, height),
+            xytext=(4, 0),
+            textcoords="offset points",
+            va="center",
+            color="white",
+            fontsize=7,
+        )
+    axes.set(yticks=[], xlabel="pair resolves per step", title="work", ylim=(-0.6, 1.6))
+    axes.xaxis.set_major_locator(MaxNLocator(3))
+    plain_ticks(axes.xaxis)
+    axes.spines["left"].set_visible(False)
+
+
+def _sentences(row: dict[str, float], theirs: dict[str, float] | None, sides: Sides) -> str:
+    method = "signed ranks" if row["blocks"] >= RANKS_FROM else "Student's t"
+    published = f" Published: {change(theirs)} ({theirs['verdict']})." if theirs else ""
+    return (
+        f" The time of {sides.names[0]} is {change(row)} against {sides.names[1]}, from {blocks(row)} "
+        f"({method} on paired log ratios): {row['verdict']} with a margin of {100 * MARGIN:g} % (shaded; "
+        f"thick bars are the 90 % intervals that decide, thin ones 95 %).{published}"
+    )

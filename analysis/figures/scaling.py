@@ -1,0 +1,226 @@
+"""Time, speed-up and efficiency over threads, with the machine's limits and the universal scalability law."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from analysis.figures.captions import opening
+from analysis.figures.curves import colours, curve, published_curve
+from analysis.figures.style import (
+    BLUE,
+    FAINT,
+    VERMILLION,
+    Data,
+    Drawing,
+    from_zero,
+    key,
+    lighten,
+    new_figure,
+    plain_ticks,
+)
+from analysis.statistics import scalability
+from analysis.statistics.bootstrap import summarise
+from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.scalability import ScalabilityLaw
+from analysis.statistics.verdicts import judge
+from analysis.studies import Study
+from analysis.wording import change, count, exact, interval, number
+
+
+def threads(data: Data) -> Drawing | None:
+    """Draw the published question: time, speed-up and efficiency over threads."""
+    return scaling(data, "threads", "Time, speed-up and efficiency over threads")
+
+
+def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
+    """Draw time, speed-up against ideal, and efficiency over threads, a curve a series; the law is fitted to
+    a single one. None without records whose x is the number of threads.
+    """
+    times = data.study.times_of(experiment)
+    times = times[times["x_name"] == "threads"]
+    if times.empty:
+        return None
+    published = data.published.experiment(experiment)
+    figure, panels = new_figure(2.6, columns=3)
+    shades = colours(times)
+    parts = {str(series): part for series, part in times.groupby("series")}
+    measured = {series: _series(panels, part, shades[series]) for series, part in parts.items()}
+    laws = {
+        series: scalability.fit(process_medians(part), data.study.hardware_threads)
+        for series, part in parts.items()
+        if len(parts) == 1
+    }
+    _published(panels, published)
+    _ideal(panels, pd.concat(measured.values()), published)
+    for law in filter(None, laws.values()):
+        _law(panels, law, times["x"].max())
+    for axes in panels:
+        _thread_axis(axes, [*times["x"], *published["x"]])
+        from_zero(axes)
+        limits(axes, data.study, named=axes is panels[0])
+    first = count(int(times["x"].min()), "thread")
+    for axes, label in zip(
+        panels, (f"time relative to {first}", f"speed-up over {first}", "efficiency"), strict=True
+    ):
+        axes.set_ylabel(label)
+    key(panels[0], _entries(parts, shades, not published.empty, any(laws.values())))
+    said = "".join(_greatest(series, table, len(parts) > 1) for series, table in measured.items())
+    return Drawing(figure, opening(times, subject) + said + _sentences(laws, data.study, not published.empty))
+
+
+def _series(panels: Sequence[Axes], times: pd.DataFrame, colour: str) -> pd.DataFrame:
+    """Draw one series and return its speed-ups."""
+    speed_ups, first = speed_up(process_medians(times)), float(times["x"].min())
+    summary = summarise(times, ["x"])
+    scale = summary.loc[summary["x"] == first, "median"].iloc[0]
+    relative = summary.assign(**{end: summary[end] / scale for end in ("median", "low", "high")})
+    efficiency = speed_ups.assign(
+        **{end: speed_ups[end] * first / speed_ups["x"] for end in ("speed_up", "low", "high")}
+    )
+    curve(panels[0], relative, colour)
+    curve(panels[1], speed_ups, colour, "speed_up")
+    curve(panels[2], efficiency, colour, "speed_up")
+    return speed_ups
+
+
+def _entries(
+    parts: Mapping[str, pd.DataFrame], shades: Mapping[str, str], published: bool, law: bool
+) -> list[tuple[str, str]]:
+    entries = []
+    for series, times in parts.items():
+        first = times["x"].min()
+        seconds = process_medians(times).query("x == @first")["steps_seconds"].median()
+        name = series if len(parts) > 1 else "measured"
+        entries.append((f"● {name}, {number(seconds)} s on {count(int(first), 'thread')}", shades[series]))
+    if published:
+        entries.append(("● published", lighten(BLUE, 0.4)))
+    entries.append(("- - ideal", FAINT))
+    return [*entries, ("— universal scalability law", VERMILLION)] if law else entries
+
+
+def oversubscription(data: Data) -> Drawing | None:
+    """Draw time over threads in multiples of the machine's hardware threads, relative to as many as it
+    has.
+    """
+    times = data.study.times_of("oversubscription")
+    if times.empty:
+        return None
+    hardware = data.study.hardware_threads
+    figure, (axes,) = new_figure(2.6)
+    curve(axes, summarise(times, ["x"]), BLUE)
+    _thread_axis(axes, sorted(times["x"].unique()), times["x"].unique())
+    axes.set_ylabel("time of the steps, s")
+    from_zero(axes)
+    limits(axes, data.study, named=True)
+    processes = process_medians(times)
+    reference = processes[processes["x"] == processes.loc[processes["x"] <= hardware, "x"].max()]
+    table = judge(log_ratios_by_x(reference, processes[processes["x"] > hardware]), ["x"])
+    said = "; ".join(
+        f"{row['x'] / hardware:g} times as many: {change(row)} ({row['verdict']})"
+        for row in table.to_dict("records")
+    )
+    caption = opening(times, "Time with more threads than the machine has hardware threads")
+    against = f" Against {count(hardware, 'thread')}, as many as there are: {said}." if said else ""
+    return Drawing(figure, caption + against)
+
+
+def speed_up(processes: pd.DataFrame) -> pd.DataFrame:
+    """Return `x`, `speed_up`, `low`, `high` over the smallest thread count, from ratios within blocks."""
+    reference = processes[processes["x"] == processes["x"].min()]
+    table = judge(log_ratios_by_x(reference, processes), ["x"])
+    # Below, a time ratio becomes a speed-up: its ends change places. Its own reference has no interval.
+    return pd.DataFrame(
+        {"x": table["x"], "speed_up": 1 / table["ratio"], "low": 1 / table["high"], "high": 1 / table["low"]}
+    ).replace([0, np.inf], np.nan)
+
+
+def log_ratios_by_x(reference: pd.DataFrame, processes: pd.DataFrame) -> pd.DataFrame:
+    """Return the paired log ratios of every x against the reference, with the column `x`."""
+    tables = [log_ratios(reference, group).assign(x=x) for x, group in processes.groupby("x")]
+    return pd.concat(tables) if tables else pd.DataFrame(columns=["x", "log_ratio"])
+
+
+def limits(axes: Axes, study: Study, named: bool) -> None:
+    """Draw the machine's cores and hardware threads as lines, named if asked."""
+    cores, hardware = study.cores, study.hardware_threads
+    marks = {hardware: "hardware\nthreads"}
+    if cores is not None:
+        marks = {hardware: "cores and\nhardware threads"} if cores == hardware else {cores: "cores", **marks}
+    for position, name in marks.items():
+        if not axes.get_xlim()[0] <= position <= axes.get_xlim()[1]:
+            continue
+        axes.axvline(position, color=FAINT, linewidth=0.7, linestyle=":", zorder=1)
+        if named:
+            axes.annotate(
+                f"{position} {name}",
+                (position, 0.98),
+                xycoords=("data", "axes fraction"),
+                xytext=(2, 0),
+                textcoords="offset points",
+                rotation=90,
+                fontsize=6,
+                color=FAINT,
+                va="top",
+            )
+
+
+def _thread_axis(axes: Axes, values: list[float], ticks: "np.ndarray | None" = None) -> None:
+    axes.set_xscale("log", base=2)
+    axes.set_xlabel("threads")
+    chosen = ticks if ticks is not None else [1, 2, 4, 8, 16, 32, 64, 128, 256]
+    plain_ticks(axes.xaxis, [tick for tick in chosen if min(values) <= tick <= max(values)])
+    axes.minorticks_off()
+
+
+def _published(panels: Sequence[Axes], published: pd.DataFrame) -> None:
+    if published.empty:
+        return
+    x, seconds = published["x"].to_numpy(), published["seconds"].to_numpy()
+    speed = seconds[0] / seconds
+    for axes, y in zip(panels, (seconds / seconds[0], speed, speed * x[0] / x), strict=True):
+        published_curve(axes, x, y, BLUE)
+
+
+def _ideal(panels: Sequence[Axes], speed_ups: pd.DataFrame, published: pd.DataFrame) -> None:
+    greatest = [speed_ups["speed_up"].max()]
+    if not published.empty:
+        greatest.append(published["seconds"].iloc[0] / published["seconds"].min())
+    ideal = np.geomspace(speed_ups["x"].min(), 1.1 * max(greatest) * speed_ups["x"].min(), 50)
+    panels[1].plot(ideal, ideal / ideal[0], color=FAINT, linestyle="--", linewidth=0.9, zorder=1)
+    panels[2].axhline(1, color=FAINT, linestyle="--", linewidth=0.9, zorder=1)
+
+
+def _law(panels: Sequence[Axes], law: ScalabilityLaw, most: float) -> None:
+    n = np.geomspace(1, most, 100)
+    panels[1].plot(n, law.speed_up(n), color=VERMILLION, linewidth=0.9, zorder=2.5)
+    panels[2].plot(n, law.speed_up(n) / n, color=VERMILLION, linewidth=0.9, zorder=2.5)
+
+
+def _greatest(series: str, speed_ups: pd.DataFrame, named: bool) -> str:
+    best = speed_ups.loc[speed_ups["speed_up"].idxmax()]
+    return (
+        f" Greatest speed-up{f' of {series}' if named else ''} {number(best['speed_up'])} "
+        f"[{number(best['low'])}, {number(best['high'])}] with {exact(best['x'])} threads."
+    )
+
+
+def _sentences(laws: Mapping[str, ScalabilityLaw | None], study: Study, published: bool) -> str:
+    said = (
+        f" The machine has {study.cores or 'an unknown number of'} cores and {study.hardware_threads} "
+        "hardware threads (dotted)."
+    )
+    if published:
+        said += (
+            " Lighter: the published series, relative to its own single thread (10 cores, 20 hardware "
+            "threads)."
+        )
+    for law in laws.values():
+        said += " The universal scalability law is " + (
+            f"fitted up to the hardware threads ({law.points} points): contention "
+            f"{interval(law.contention)}, coherency {interval(law.coherency)}."
+            if law
+            else "not fitted: it needs four thread counts up to the hardware threads."
+        )
+    return said

@@ -1,0 +1,225 @@
+"""Time against error: a figure an error measure, a panel a scene, all from the same records."""
+
+import re
+from itertools import groupby
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter, NullFormatter
+
+from analysis import accuracy
+from analysis.accuracy import SMALL, Choice, Measure
+from analysis.figures.captions import opening
+from analysis.figures.style import (
+    FAINT,
+    INK,
+    PALETTE,
+    Cell,
+    Data,
+    Drawing,
+    Table,
+    key,
+    lighten,
+    new_figure,
+)
+from analysis.statistics.intervals import Interval
+from analysis.wording import NO_BREAK, exact, interval, number
+
+MILLI = 1e3
+OTHERS = 2
+"""How many of the choices that may be as cheap a table names."""
+
+
+def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing | None:
+    """Draw the time of a unit of simulated time over one error measure, a line a series, a panel a scene.
+
+    None without records, and where the measure is 0 everywhere.
+    """
+    table = accuracy.points(data.study, experiment, measure)
+    if table.empty or not (table["error"] > 0).any():
+        return None
+    scenes = dict(list(table.groupby("scene_name", sort=False)))
+    figure, panels = new_figure(3.0, columns=len(scenes))
+    looks = _looks(table)
+    zero = 10 ** np.floor(np.log10(table.loc[table["error"] > 0, "error"].min()) - 1)
+    for axes, (scene, part) in zip(panels, scenes.items(), strict=True):
+        _front(axes, part, zero)
+        for series, line in part.groupby("series"):
+            _line(axes, line, zero, *looks[str(series)])
+        axes.set(xscale="log", yscale="log")
+        axes.annotate(
+            _panel_name(str(scene), part), (1, 1), xycoords="axes fraction", ha="right", va="top",
+            fontsize=7, color=INK,
+        )  # fmt: skip
+    _share_limits(panels, (table["error"] <= 0).any(), zero)
+    panels[0].set_ylabel("time per unit of simulated time, ms")
+    figure.supxlabel(measure.label, fontsize=8, color=INK)
+    entries = [(f"{mark} {series}", colour) for series, (colour, mark) in looks.items()]
+    key(panels[0], [*entries, ("▬ Pareto front, with its substeps", FAINT)])
+    timed = accuracy.times(data.study, experiment)
+    tables = [_advice(table, timed, measure)]
+    if measure.converges:
+        tables.append(_orders(table))
+    return Drawing(figure, _caption(table, data, experiment, subject, measure), tables=tables)
+
+
+def _looks(table: pd.DataFrame) -> dict[str, tuple[str, str]]:
+    """Return colour and mark of each series: one colour for the precisions of a variant, filled marks for
+    double.
+    """
+    families: dict[str, str] = {}
+    looks = {}
+    for row in table.drop_duplicates("series").to_dict("records"):
+        family = re.sub(r"(^|-)float(?=-|$)", "", row["variant"]).strip("-") or "published"
+        colour = families.setdefault(family, PALETTE[len(families) % len(PALETTE)])
+        looks[str(row["series"])] = (colour, "●" if row["precision"] == "double" else "○")
+    return looks
+
+
+def _line(axes: Axes, part: pd.DataFrame, zero: float, colour: str, mark: str) -> None:
+    rows = part.sort_values("x")
+    error = rows["error"].clip(lower=zero)
+    double = mark == "●"
+    axes.errorbar(
+        error, MILLI * rows["median"],
+        xerr=[error - rows["error_low"].clip(lower=zero), rows["error_high"].clip(lower=zero) - error],
+        yerr=[MILLI * (rows["median"] - rows["low"]).clip(lower=0), MILLI * (rows["high"] - rows["median"])],
+        color=colour, linestyle="-" if double else "--", marker="o", linewidth=0.9, elinewidth=0.9, zorder=3,
+        markerfacecolor=colour if double else "white",
+    )  # fmt: skip
+
+
+def _front(axes: Axes, part: pd.DataFrame, zero: float) -> None:
+    """Draw the Pareto front as a broad line behind the curves, each point with its substeps."""
+    rows = part[part["on_front"]].sort_values("error")
+    x, y = rows["error"].clip(lower=zero), MILLI * rows["median"]
+    axes.plot(x, y, color=lighten(FAINT, 0.6), linewidth=5, solid_capstyle="round", zorder=1)
+    for one, other, substeps in zip(x, y, rows["substeps"], strict=True):
+        axes.annotate(
+            f"{substeps:g}", (one, other), xytext=(-4, -4), textcoords="offset points", ha="right", va="top",
+            fontsize=6, color=INK, zorder=4,
+        )  # fmt: skip
+
+
+def _panel_name(scene: str, part: pd.DataFrame) -> str:
+    fraction = f"area fraction {part['area_fraction'].iloc[0]:.2f}"
+    return f"{scene}, {fraction}" if scene else fraction
+
+
+def _share_limits(panels: list[Axes], has_zero: bool, zero: float) -> None:
+    """Give all panels the same axes, with errors of exactly 0 at the left edge, so named."""
+    limits = [
+        (min(low for low, _ in ends), max(high for _, high in ends))
+        for ends in ([one.get_xlim() for one in panels], [one.get_ylim() for one in panels])
+    ]
+    powers = range(int(np.ceil(np.log10(limits[0][0]))), int(np.floor(np.log10(limits[0][1]))) + 1)
+    every = max(1, len(powers) // 5)
+    ticks = [10.0**power for power in powers if power % every == 0 and not (has_zero and 10.0**power <= zero)]
+    for axes in panels:
+        axes.set(xlim=(limits[0][0] * 0.7, limits[0][1] * 1.2), ylim=(limits[1][0], limits[1][1] * 1.6))
+        axes.tick_params(labelleft=axes is panels[0])
+        axes.set_xticks([zero, *ticks] if has_zero else ticks)
+        axes.xaxis.set_major_formatter(
+            FuncFormatter(lambda value, _: "0" if has_zero and value <= zero else power_of_ten(value))
+        )
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: exact(value)))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.yaxis.set_minor_formatter(NullFormatter())
+
+
+def power_of_ten(value: float) -> str:
+    """Return a power of ten as 0.01 or 10⁻⁶, whichever is shorter to read."""
+    power = round(np.log10(value))
+    if -3 <= power <= 3:
+        return exact(value)
+    return f"10{str(power).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"
+
+
+def _advice(table: pd.DataFrame, timed: pd.DataFrame, measure: Measure) -> Table:
+    scenes = dict(list(table.groupby("scene_name", sort=False)))
+    rows = [
+        [Cell(power_of_ten(bound)), *(_choice(choices[str(scene)]) for scene in scenes)]
+        for bound, choices in accuracy.advice(table, timed)
+    ]
+    columns = ["For an error below", *(_panel_name(str(scene), part) for scene, part in scenes.items())]
+    title = (
+        f"The cheapest choice by {measure.title} (bounds: {measure.label}), and what a unit of simulated "
+        "time costs with it:"
+    )
+    return Table(title, columns, rows)
+
+
+def _choice(choice: Choice | None) -> Cell:
+    if choice is None:
+        return Cell("none of those measured", "open")
+    named = [place(series, x) for series, x in choice.others[:OTHERS]]
+    if len(choice.others) > OTHERS:
+        named.append(f"{len(choice.others) - OTHERS} more")
+    said = f"; not found slower: {', '.join(named)}" if named else ""
+    milliseconds = [
+        MILLI * value for value in (choice.seconds.estimate, choice.seconds.low, choice.seconds.high)
+    ]
+    estimate, low, high = (number(value) for value in milliseconds)
+    return Cell(f"{place(choice.series, choice.substeps)}: {estimate}{NO_BREAK}ms [{low}, {high}]{said}")
+
+
+def place(series: str, substeps: float) -> str:
+    """Return a series with its step, e.g. `row, dt = 1/8`."""
+    return f"{series}, dt{NO_BREAK}={NO_BREAK}{'1' if substeps == 1 else f'1/{substeps:g}'}"
+
+
+def _orders(table: pd.DataFrame) -> Table:
+    found = accuracy.orders(table)
+    scenes = list(dict.fromkeys(found["scene_name"]))
+    rows = []
+    for series, part in found.groupby("series", sort=False):
+        fitted = part.set_index("scene_name")["order"]
+        cells = [_order(fitted.get(scene)) for scene in scenes]
+        rows.append([Cell(str(series)), *cells])
+    title = (
+        f"Order of convergence: p in error = c dt^p, over the errors below {SMALL:g}, with its 95 % interval "
+        "from the scatter about the line (an error at the level of rounding does not fall and pulls p down):"
+    )
+    return Table(title, ["Series", *(scene or "order" for scene in scenes)], rows)
+
+
+def _order(fitted: object) -> Cell:
+    if not isinstance(fitted, Interval) or np.isnan(fitted.estimate):
+        return Cell(f"fewer than three errors below {SMALL:g}", "open")
+    return Cell(interval(fitted))
+
+
+def _caption(table: pd.DataFrame, data: Data, experiment: str, subject: str, measure: Measure) -> str:
+    opened = opening(data.study.times_of(experiment), f"{subject}: {measure.title}")
+    varying = (table["error_low"] != table["error_high"]).any()
+    certain = (
+        "Bars across are the range of the errors."
+        if varying
+        else "A point's error is the same in every run, to the last bit, and has no interval; its time has."
+    )
+    zeros = " Errors of exactly 0 stand at the left edge." if (table["error"] <= 0).any() else ""
+    fronts = "; ".join(
+        f"{_panel_name(str(scene), part)}: {front_in_words(part)}"
+        for scene, part in table.groupby("scene_name", sort=False)
+    )
+    return (
+        f"{opened} The error is {measure.meaning}; down and to the left is better. {certain}{zeros} No other "
+        f"choice has at most the error and at most the time of one on the Pareto front (grey): {fronts}."
+    )
+
+
+def front_in_words(part: pd.DataFrame) -> str:
+    """Say who is on the front, from the cheapest: `row with 1, 2 and 4 substeps, then track with 8`."""
+    rows = part[part["on_front"]].sort_values("median")
+    runs = [
+        (series, [f"{row['substeps']:g}" for row in group])
+        for series, group in groupby(rows.to_dict("records"), key=lambda row: str(row["series"]))
+    ]
+    return ", then ".join(f"{series} with {_listed(steps)}" for series, steps in runs)
+
+
+def _listed(steps: list[str]) -> str:
+    noun = "substep" if steps == ["1"] else "substeps"
+    listed = steps[0] if len(steps) == 1 else f"{', '.join(steps[:-1])} and {steps[-1]}"
+    return f"{listed} {noun}"

@@ -1,0 +1,210 @@
+"""The look that all figures share, and what a figure function returns."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.figure import Figure
+from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.transforms import ScaledTranslation
+
+from analysis.published import Published
+from analysis.studies import Study
+from analysis.wording import exact
+
+BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#E69F00",
+    "#56B4E9",
+)
+PALETTE = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY]
+"""The colour-blind safe palette of Okabe and Ito (2008) without its yellow, too pale for lines."""
+
+INK, FAINT, BAND = "#222222", "#8a8a8a", "#ececec"
+FORMATS = ("svg", "png", "pdf")
+WIDTH = 7.0
+SETTINGS: Any = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 8,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": FAINT,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": False,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "lines.linewidth": 1.3,
+    "lines.markersize": 3.5,
+    "errorbar.capsize": 0,
+    "figure.constrained_layout.use": True,
+    "figure.constrained_layout.h_pad": 0.06,
+    "figure.constrained_layout.w_pad": 0.06,
+    "pdf.fonttype": 42,
+    "svg.fonttype": "path",
+}
+
+
+@dataclass(frozen=True)
+class Data:
+    """What a figure may draw from: the study shown, all studies, the published one, and the results
+    folder.
+    """
+
+    study: Study
+    studies: Sequence[Study]
+    published: Published
+    folder: Path
+
+
+@dataclass(frozen=True)
+class Cell:
+    """What stands in one place of a table; `mark` is its class in the style sheet: holds, fails, open."""
+
+    text: str
+    mark: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of the report: what it says, its columns, and a row of cells each."""
+
+    title: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[Cell]]
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure and its caption, generated from the same data; `verdicts` has a row a comparison, with the
+    columns of `verdicts.judge` and what the report is to call it as `name`; `tables` follow the figure.
+    """
+
+    figure: Figure
+    caption: str
+    verdicts: pd.DataFrame | None = None
+    tables: Sequence[Table] = ()
+
+
+@contextmanager
+def styled(name: str) -> Iterator[None]:
+    """Draw in the common style; `name` keeps the identifiers inside an SVG the same from run to run."""
+    with mpl.rc_context({**SETTINGS, "svg.hashsalt": name}):
+        yield
+
+
+def lighten(colour: str, amount: float = 0.55) -> str:
+    """Return the colour mixed with white, for the published series."""
+    red, green, blue = (part * (1 - amount) + amount for part in to_rgb(colour))
+    return to_hex((red, green, blue))
+
+
+def new_figure(
+    height: float, columns: int = 1, widths: Sequence[float] | None = None
+) -> tuple[Figure, list[Axes]]:
+    """Return a figure of the common width with a row of axes."""
+    figure = Figure(figsize=(WIDTH, height))
+    axes = figure.subplots(1, columns, squeeze=False, gridspec_kw={"width_ratios": widths or [1] * columns})
+    return figure, list(axes[0])
+
+
+def key(axes: Axes, entries: Sequence[tuple[str, str]], raised: float = 4) -> None:
+    """Name the curves above the axes, each in its own colour; `entries` are text and colour, `raised` is in
+    points.
+    """
+    texts: list[Artist] = [
+        TextArea(text, textprops={"color": colour, "fontsize": 7}) for text, colour in entries
+    ]
+    figure = axes.figure.get_figure(root=True)
+    anchored = AnchoredOffsetbox(
+        "lower left",
+        child=HPacker(children=texts, pad=0, sep=9, align="baseline"),
+        pad=0,
+        borderpad=0,
+        frameon=False,
+        bbox_to_anchor=(0, 1),
+        bbox_transform=axes.transAxes + ScaledTranslation(0, raised / 72, figure.dpi_scale_trans),
+    )
+    # Wide keys run on over the neighbouring axes: only their height may count in the layout.
+    anchored.set_in_layout(False)
+    axes.set_title(" ", pad=raised)
+    axes.add_artist(anchored)
+
+
+def plain_ticks(axis: mpl.axis.Axis, values: Sequence[float] | None = None) -> None:
+    """Write the ticks as plain numbers, thousands grouped, also on a logarithmic axis."""
+    if values is not None:
+        axis.set_ticks(list(values))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: exact(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def logarithmic_ticks(axis: mpl.axis.Axis) -> None:
+    """Put plain numbers at the powers of ten of a logarithmic axis and, over less than a decade and a half,
+    at 2 and 5 times them. Call it when the limits of the axis are settled.
+    """
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 30 * low else (1.0,)))
+    plain_ticks(axis)
+
+
+def from_zero(axes: Axes) -> None:
+    """Let the vertical axis begin at zero, with room above the highest point."""
+    axes.set_ylim(0, axes.get_ylim()[1] * 1.02)
+
+
+def partial(study: Study, experiment: str) -> str | None:
+    """Return `partial: n of m runs` if the study lacks some of the experiment's planned records, else
+    None.
+    """
+    runs = study.runs[study.runs["experiment"] == experiment]
+    planned = (runs["points_planned"] * runs["blocks_planned"]).max()
+    if runs.empty or np.isnan(planned) or len(runs) >= planned:
+        return None
+    return f"partial: {len(runs)} of {int(planned)} runs"
+
+
+def mark_partial(figure: Figure, text: str | None) -> None:
+    """Say in the figure itself that data are missing."""
+    if text:
+        figure.text(0.995, 0.995, text, ha="right", va="top", fontsize=7, color=VERMILLION, weight="bold")
+
+
+def save(drawing: Drawing, folder: Path, name: str) -> list[Path]:
+    """Write the figure in every format, each through a temporary name; return the files."""
+    folder.mkdir(parents=True, exist_ok=True)
+    files = []
+    with styled(name):
+        # The layout is settled once, not once a format.
+        drawing.figure.draw_without_rendering()
+        drawing.figure.set_layout_engine("none")
+        for suffix in FORMATS:
+            target = folder / f"{name}.{suffix}"
+            scratch = target.with_suffix(f".{suffix}.part")
+            metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[suffix]
+            try:
+                drawing.figure.savefig(scratch, format=suffix, dpi=200, metadata=metadata)
+                scratch.replace(target)
+            finally:
+                scratch.unlink(missing_ok=True)
+            files.append(target)
+    return files

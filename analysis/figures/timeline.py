@@ -1,0 +1,77 @@
+"""One step of profiled runs as a Gantt picture: who works on what, and who waits."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from analysis import traces
+from analysis.figures.phases import PHASES
+from analysis.figures.style import FAINT, INK, WIDTH, Data, Drawing, key, lighten
+from analysis.wording import count, number, share
+
+MOST = 6
+MANY = 400
+EDGED_FROM = 1 / 150
+"""The narrowest chunk that gets a white edge, as a part of the axis; a narrower one would vanish in it."""
+
+
+def timeline(data: Data) -> Drawing | None:
+    """Draw the step of median length of every timeline in the results folder, at most six, on a common time
+    axis.
+    """
+    found = traces.load(data.folder)[:MOST] if data.study is data.studies[0] else []
+    if not found:
+        return None
+    steps = [traces.one_step(one.spans) for one in found]
+    longest = 1e3 * max(step["end"].max() for step in steps)
+    rows = [int(step["thread"].nunique()) for step in steps]
+    figure = Figure(figsize=(WIDTH, 0.6 + sum(0.45 + 0.22 * count for count in rows)))
+    grid = figure.subplots(len(found), 1, squeeze=False, sharex=True, gridspec_kw={"height_ratios": rows})[
+        :, 0
+    ]
+    for axes, one, step in zip(grid, found, steps, strict=True):
+        _gantt(axes, step, longest)
+        axes.set_title(" ", pad=3)
+        axes.annotate(one.title, (0, 1), xycoords="axes fraction", xytext=(0, 3), textcoords="offset points")
+    entries = [(f"■ {phase}", colour) for phase, colour in PHASES.items()]
+    key(grid[0], [*entries, ("■ waiting", FAINT), ("pale: serial part of the phase", INK)], raised=16)
+    grid[-1].set_xlabel("time since the step began, ms")
+    said = "; ".join(f"{one.title}: {_sentence(step)}" for one, step in zip(found, steps, strict=True))
+    return Drawing(
+        figure, f"The step of median length of {count(len(found), 'profiled run')}, thread by thread. {said}."
+    )
+
+
+def _gantt(axes: Axes, step: pd.DataFrame, longest: float) -> None:
+    threads = sorted(step["thread"].unique())
+    working = "chunk" if (step["kind"] == "chunk").any() else "loop"
+    for (kind, phase, thread), spans in step.groupby(["kind", "phase", "thread"]):
+        bars = list(zip(1e3 * spans["begin"], 1e3 * (spans["end"] - spans["begin"]), strict=True))
+        row = len(threads) - 1 - threads.index(thread)
+        # Thousands of chunks would make the vector formats huge: those alone become pixels.
+        style: dict[str, Any] = {"linewidth": 0, "rasterized": len(bars) > MANY}
+        colour = PHASES.get(phase, FAINT)
+        if kind == "phase":
+            axes.broken_barh(bars, (-0.5, len(threads)), color=lighten(colour, 0.75), zorder=1, **style)
+        elif kind == "wait":
+            axes.broken_barh(bars, (row - 0.1, 0.2), color=FAINT, zorder=3, **style)
+        elif kind == working:
+            edged = np.median([width for _, width in bars]) > EDGED_FROM * longest
+            style |= {"facecolor": colour, "edgecolor": "white", "linewidth": 0.3 if edged else 0}
+            axes.broken_barh(bars, (row - 0.35, 0.7), zorder=2, **style)
+    axes.set_yticks(range(len(threads)), [f"thread {thread}" for thread in threads[::-1]])
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(-0.5, len(threads) - 0.5)
+    axes.spines["left"].set_visible(False)
+
+
+def _sentence(step: pd.DataFrame) -> str:
+    seconds = (step["end"] - step["begin"]).groupby(step["kind"]).sum()
+    phases = seconds.get("phase", 0.0)
+    chunks = int((step["kind"] == "chunk").sum())
+    waiting = seconds.get("wait", 0.0) / max(phases * step["thread"].nunique(), 1e-12)
+    taken = f", {count(chunks, 'chunk')}" if chunks else ""
+    return f"{number(1e3 * phases)} ms{taken}, {share(waiting)} of the threads' time waiting"

@@ -1,0 +1,64 @@
+"""The report: one self-contained HTML page, and the same as PDF."""
+
+import sys
+from contextlib import redirect_stdout
+from io import StringIO
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+
+from analysis.records import load
+from analysis.report.content import content
+
+TEMPLATE = "report.html.jinja"
+REMEDY = "apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
+
+
+def write(results: Path) -> list[Path]:
+    """Write `report.html` and `report.pdf` into the results folder from whatever records are there; return
+    what was written.
+
+    Draws the figures on the way. Without the libraries that the PDF needs, one line on standard error says so
+    and an earlier, now outdated PDF is removed. Raises InputError if there is no such folder.
+    """
+    page = render(results)
+    html, pdf = results / "report.html", results / "report.pdf"
+    _replace(html, page.encode())
+    try:
+        document = _pdf(page)
+    except (ImportError, OSError) as error:
+        why = " ".join(str(error).split())
+        print(f"{pdf}: not written, only the HTML: {why} (WeasyPrint needs Pango; {REMEDY})", file=sys.stderr)
+        pdf.unlink(missing_ok=True)
+        return [html]
+    _replace(pdf, document)
+    return [html, pdf]
+
+
+def _pdf(page: str) -> bytes:
+    # Imported late, and in silence: without Pango the import fails, and prints a banner first.
+    with redirect_stdout(StringIO()):
+        from weasyprint import HTML
+    data: bytes = HTML(string=page).write_pdf()
+    return data
+
+
+def _replace(path: Path, data: bytes) -> None:
+    scratch = path.with_suffix(f"{path.suffix}.part")
+    try:
+        scratch.write_bytes(data)
+        scratch.replace(path)
+    finally:
+        scratch.unlink(missing_ok=True)
+
+
+def render(results: Path) -> str:
+    """Return the report as one HTML page that needs nothing but itself."""
+    environment = Environment(
+        loader=PackageLoader("analysis.report", "."),
+        autoescape=select_autoescape(default=True),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template(TEMPLATE).render(content(load(results), results))

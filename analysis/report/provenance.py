@@ -1,0 +1,107 @@
+"""Where the records come from, as tables for the report: machine, checks, missing counters, commands."""
+
+import shlex
+from typing import Any
+
+import pandas as pd
+
+from analysis.studies import Study
+from analysis.wording import count, exact, number
+
+UNTOLD = "not told by the system"
+
+
+def machine(study: Study) -> list[tuple[str, str]]:
+    """Return what is known of the machine and the programs, as names and values; several values are all
+    named.
+    """
+    runs = study.runs
+    memory = runs["memory_bytes"].iloc[0] / 2**30
+    virtual = {True: "yes (shares its hardware with others)", False: "no"}[bool(runs["virtualised"].iloc[0])]
+    return [
+        ("Hosts", _values(runs["node"])),
+        ("CPU", _values(runs["cpu_model"])),
+        ("Cores", f"{_values(runs['cores'])} cores, {_values(runs['hardware_threads'])} hardware threads"),
+        ("CPUs usable", _values(runs["affinity"])),
+        ("Virtual machine", virtual),
+        ("Clock governor", _values(runs["governor"])),
+        ("Memory", f"{number(memory)} GiB"),
+        ("Operating system", _values(runs["operating_system"])),
+        ("OpenMP", _values(runs["openmp"])),
+        ("OpenMP settings", _values(runs["environment"])),
+        ("Compilers", _values(runs["compiler"])),
+        ("Compiler flags", _values(runs["compiler_flags"])),
+        ("Build", _values(runs["build_type"])),
+        ("Source revision", study.revision),
+        ("Programs (SHA-256)", _values(runs["binary_sha256"].str[:16])),
+        ("Measured", f"{runs['recorded_at'].min()} to {runs['recorded_at'].max()} (UTC)"),
+        ("Sessions", exact(runs["session"].nunique())),
+        ("Records", f"{exact(len(runs))} processes, {exact(len(study.times))} timed runs"),
+    ]
+
+
+def _values(column: pd.Series) -> str:
+    values = sorted(
+        {exact(value) if isinstance(value, float) else str(value) for value in column.dropna()} - {""}
+    )
+    return "; ".join(values) if values else UNTOLD
+
+
+def checks(study: Study) -> str:
+    """Say how many results were checked, how, and the greatest error measures found."""
+    runs = study.runs
+    failed = int((runs["check_verdict"] == "failed").sum())
+    drift = runs["energy_drift"].abs().max()
+    passed = count(len(runs) - failed, "result")
+    said = f"{passed} passed and {count(failed, 'result')} failed the program's own check"
+    scopes = " and ".join(sorted(runs["check_scope"].unique()))
+    energy = "" if pd.isna(drift) else f"; greatest relative drift of energy {drift:.1e}"
+    outside = f"; at most {count(int(runs['discs_outside'].max()), 'disc')} outside the box at the end"
+    return f"{said} ({scopes}){energy}{outside}."
+
+
+def missing_counters(counters: pd.DataFrame) -> list[dict[str, str]]:
+    """Return each reason why counters have no value, with the counters and the remedy."""
+    missing = counters[counters["value"].isna()].fillna({"reason": UNTOLD, "remedy": "none known"})
+    keys = ["source", "reason", "remedy"]
+    return [
+        {**dict(zip(keys, key, strict=True)), "names": ", ".join(sorted(group["name"].unique()))}
+        for key, group in missing.groupby(keys)
+    ]
+
+
+def verbs(runs: pd.DataFrame) -> list[str]:
+    """Return the project's own commands that repeat the whole study, in order."""
+    families = set(runs["compiler_family"])
+    builds = [f"make build COMPILER={name}" for name in ("gcc", "clang") if name in families]
+    scales = [f"make experiments SCALE={name}" for name in sorted(set(runs["scale"]) - {"unstated"})]
+    return ["make setup", *(builds or ["make build"]), *(scales or ["make experiments"]), "make report"]
+
+
+def commands(runs: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return per experiment the commands behind its points, each once, rebuilt from the records' own
+    fields.
+    """
+    rows: dict[str, dict[str, None]] = {}
+    ordered = runs.sort_values(["experiment", "series", "x"], kind="stable")
+    for row in ordered.to_dict("records"):
+        rows.setdefault(row["experiment"], {}).setdefault(_command(row))
+    return [{"experiment": name, "commands": list(found)} for name, found in sorted(rows.items())]
+
+
+def _command(row: dict[str, Any]) -> str:
+    words = [f"build/{row['compiler_family']}/carom", row["kind"], row["scene"], "--variant", row["variant"]]
+    words += [
+        "--threads",
+        str(row["threads"]),
+        "--substeps",
+        str(row["substeps"]),
+        "--tolerance",
+        row["tolerance"],
+    ]
+    for option in ("find_chunk", "resolve_chunk"):
+        if not pd.isna(row[option]):
+            words += [f"--{option.replace('_', '-')}", f"{row[option]:g}"]
+    if row["kind"] == "bench":
+        words += ["--repetitions", str(row["repetitions"]), "--warm-up", str(row["warm_ups"])]
+    return f"{row['environment']} {shlex.join(words)}".strip()

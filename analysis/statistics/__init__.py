@@ -1,0 +1,3 @@
+"""Estimates with intervals, verdicts against a margin, trends, scalability and noise; tables in, tables
+out.
+"""

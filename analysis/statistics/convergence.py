@@ -1,0 +1,26 @@
+"""The order in which an error falls with the time step."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import stats
+
+from analysis.statistics.intervals import Interval
+
+FEWEST = 3
+"""Points that a fitted order needs: two always lie on a line and tell nothing of its error."""
+
+
+def order(step: ArrayLike, error: ArrayLike, ceiling: float) -> Interval:
+    """Return p of error = c step^p, the slope of ln(error) on ln(step), with its 95 % interval.
+
+    Only errors above 0 and below `ceiling` count, a rule fixed beforehand: above it the error is no longer
+    small and cannot follow its leading term. The interval is Student's t from the scatter about the line. NaN
+    with unbounded ends below `FEWEST` points.
+    """
+    dt, value = np.asarray(step, dtype=float), np.asarray(error, dtype=float)
+    fitted = (value > 0) & (value < ceiling)
+    if fitted.sum() < FEWEST or len(np.unique(dt[fitted])) < FEWEST:
+        return Interval(np.nan, -np.inf, np.inf)
+    line = stats.linregress(np.log(dt[fitted]), np.log(value[fitted]))
+    half = float(stats.t.ppf(0.975, fitted.sum() - 2) * line.stderr)
+    return Interval(float(line.slope), float(line.slope) - half, float(line.slope) + half)

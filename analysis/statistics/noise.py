@@ -1,0 +1,125 @@
+"""How noisy the machine was, what that allows to decide, and what to do about it."""
+
+from bisect import bisect_left
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy import stats
+
+from analysis.statistics.intervals import RANKS_FROM
+from analysis.statistics.pairs import PAIR, process_medians
+from analysis.statistics.verdicts import ERROR, MARGIN
+from analysis.wording import count, share
+
+Floats = NDArray[np.float64]
+
+BURST = 4.0
+LARGE_EFFECTS = ("trend", "scaling", "machine", "phases", "speed_against_error", "hard_cases")
+ADVICE = (
+    "close other programs, keep the machine on mains power and a fixed clock, run on bare metal or a whole "
+    "node rather than a shared virtual machine, and raise the number of blocks"
+)
+
+
+def process_noise(times: pd.DataFrame) -> pd.DataFrame:
+    """Return one row an experiment: `noise`, `bursts`, `blocks`, `needed`, `enough`, `small`.
+
+    `noise` is the typical standard deviation of ln(time) from process to process, as a fraction: 0.01 is 1
+    %. `bursts` counts the processes that took far longer than that explains. `needed` blocks would let two
+    equal configurations be found equivalent 95 times in 100: with bursts, at least as many as the signed
+    ranks start from, which a burst cannot move far. `small` tells the experiments that are about small
+    differences, not trends. Those with a single block or configuration have no estimate and are left out.
+    """
+    rows = []
+    for experiment, group in process_medians(times).groupby("experiment"):
+        keys = ["series", "x", *(key for key in ("label", "scene_name") if group[key].notna().any())]
+        table = group.pivot_table(index=PAIR, columns=keys, values="steps_seconds", aggfunc="median").dropna()
+        if min(table.shape) < 2:
+            continue
+        logs = np.log(table.to_numpy())
+        noise = typical_deviation(logs)
+        bursts = count_bursts(logs, noise)
+        needed = max(blocks_needed(noise), RANKS_FROM if bursts else 0)
+        rows.append(
+            {
+                "experiment": experiment,
+                "noise": noise,
+                "bursts": bursts,
+                "blocks": len(table),
+                "needed": needed,
+                "enough": len(table) >= needed,
+                "small": str(group["figure"].iloc[0]) not in LARGE_EFFECTS,
+            }
+        )
+    return pd.DataFrame(
+        rows, columns=["experiment", "noise", "bursts", "blocks", "needed", "enough", "small"]
+    )
+
+
+def typical_deviation(logs: Floats) -> float:
+    """Return the standard deviation of a cell of a blocks x configurations table, without the effects of its
+    block and its configuration.
+
+    Both cancel in the difference of two blocks' differences of two configurations, whose standard deviation
+    is twice that of a cell; it is estimated from the median of their absolute values over all such
+    quadruples, so that bursts hardly count (after Rousseeuw and Croux, J. Am. Stat. Assoc. 88, 1993).
+    """
+    first, second = np.triu_indices(logs.shape[1], k=1)
+    ratios = logs[:, first] - logs[:, second]
+    one, other = np.triu_indices(len(ratios), k=1)
+    return float(np.median(np.abs(ratios[one] - ratios[other])) / stats.norm.ppf(0.75) / 2)
+
+
+def count_bursts(logs: Floats, noise: float) -> int:
+    """Return how many cells lie more than `BURST` deviations above what their block and configuration
+    explain.
+    """
+    centred = logs - np.median(logs, axis=0)
+    excess = [
+        centred[:, column] - np.median(np.delete(centred, column, axis=1), axis=1)
+        for column in range(centred.shape[1])
+    ]
+    return int((np.array(excess) > BURST * np.sqrt(2) * noise).sum())
+
+
+def blocks_needed(noise: float, margin: float = MARGIN, rate: float = 0.95, most: int = 1000) -> int:
+    """Return the blocks with which two equal configurations come out equivalent at the given rate, at most
+    `most`. `noise` is per process.
+    """
+    counts = range(3, most + 1)
+    place = bisect_left(counts, rate, key=lambda blocks: equivalence_rate(noise, blocks, margin))
+    return counts[min(place, len(counts) - 1)]
+
+
+def equivalence_rate(noise: float, blocks: int, margin: float = MARGIN) -> float:
+    """Return how often two one-sided t tests find two equal configurations equivalent.
+
+    The mean of the log ratios is normal and their deviation, independent of it, a scaled chi; the rate is the
+    chance that the 90 % interval lies within the margin, averaged over quantiles of the deviation.
+    """
+    true_error = noise * np.sqrt(2 / blocks)
+    quantiles = stats.chi2.ppf((np.arange(200) + 0.5) / 200, blocks - 1)
+    half_width = stats.t.ppf(1 - ERROR, blocks - 1) * true_error * np.sqrt(quantiles / (blocks - 1))
+    room = np.maximum(np.log1p(margin) - half_width, 0)
+    return float((2 * stats.norm.cdf(room / max(true_error, 1e-12)) - 1).mean())
+
+
+def warning(noise: pd.DataFrame) -> str | None:
+    """Return the warning to show, with what to do, when an experiment about small differences was too noisy
+    for the margin; None if none was.
+    """
+    asked = noise[noise["small"].astype(bool)]
+    short = asked[~asked["enough"].astype(bool)]
+    if short.empty:
+        return None
+    worst = short.loc[short["needed"].idxmax()]
+    place = (
+        f"The worst is {worst['experiment']!r}: the time of a process varies by {share(worst['noise'], 1)}"
+    )
+    return (
+        f"The machine was too noisy to settle differences of {share(MARGIN)} in {len(short)} of {len(asked)} "
+        f"experiments about small ones. {place}, with {count(worst['bursts'], 'burst')}, which needs about "
+        f"{worst['needed']} blocks; {worst['blocks']} were run. Expect verdicts of 'inconclusive'. To do "
+        f"better: {ADVICE}."
+    )

@@ -1,0 +1,51 @@
+"""Paired ratios: two configurations measured in the same block of the interleaving, on the same node."""
+
+import numpy as np
+import pandas as pd
+
+PAIR = ["node", "block"]
+
+
+def process_medians(times: pd.DataFrame, value: str = "steps_seconds") -> pd.DataFrame:
+    """Return one row a process (a record): its columns of context and the median of its repetitions as
+    `value`.
+
+    A process is one sample of whatever changes from start to start (placement in memory, the machine's mood);
+    its repetitions are not independent of each other.
+    """
+    medians = times.groupby("file", sort=False)[value].median()
+    first = times.drop_duplicates("file").set_index("file")
+    return first.assign(**{value: medians}).reset_index()
+
+
+def log_ratios(
+    reference: pd.DataFrame,
+    candidate: pd.DataFrame,
+    match: tuple[str, ...] = (),
+    value: str = "steps_seconds",
+) -> pd.DataFrame:
+    """Return a row a pair: the columns of `match`, node, block and `log_ratio` = ln(candidate / reference).
+
+    Takes one row a process on either side. Drift from block to block cancels in the ratio, which is why
+    blocks and not samples are the unit of every interval. A block that was interrupted and finished by a
+    later session still is a pair, marked `split`; a process without its partner has no ratio.
+    """
+    keys = [*match, *PAIR]
+    joined = _per_block(reference, keys, value).merge(
+        _per_block(candidate, keys, value),
+        left_index=True,
+        right_index=True,
+        suffixes=("_reference", "_candidate"),
+    )
+    ratios = pd.DataFrame(
+        {
+            "log_ratio": np.log(joined[f"{value}_candidate"]) - np.log(joined[f"{value}_reference"]),
+            "split": joined["session_reference"] != joined["session_candidate"],
+        },
+        index=joined.index,
+    )
+    return ratios.reset_index()
+
+
+def _per_block(processes: pd.DataFrame, keys: list[str], value: str) -> pd.DataFrame:
+    return processes.groupby(keys).agg({value: "median", "session": "first"})

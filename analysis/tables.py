@@ -1,0 +1,222 @@
+"""From validated records to flat tables; every table carries the same columns of context (see `context`)."""
+
+from typing import Any
+
+import pandas as pd
+
+Named = list[tuple[str, dict[str, Any]]]
+
+TAGS = [
+    "experiment", "series", "x_name", "x", "block", "position", "session", "scale", "site", "point",
+    "label", "scene_name", "series_number", "figure", "title", "points_planned", "blocks_planned",
+]  # fmt: skip
+AXES = [
+    "variant", "neighbourhood", "order", "self_contained", "direction", "find_schedule",
+    "resolve_schedule", "find_chunk", "resolve_chunk", "threads", "substeps", "tolerance",
+]  # fmt: skip
+SCENE = ["particles", "side", "radius", "steps", "area_fraction"]
+PROVENANCE = [
+    "host", "cpu_model", "cores", "hardware_threads", "affinity", "affinity_count", "oversubscribed",
+    "memory_bytes", "virtualised", "governor", "operating_system", "compiler", "compiler_flags",
+    "build_type", "commit", "dirty", "diff_sha256", "binary_sha256",
+]  # fmt: skip
+LATER_AXES = {
+    "storage": "numbered", "box_side": "wide", "overlaps": "lists", "search": "exact", "worklist": "all",
+    "precision": "double",
+}  # fmt: skip
+"""Policies that not all records name, each with its value in those that do not."""
+COLUMN_OF = {"overlaps": "overlaps_kept"}
+"""The columns of axes whose name in the record is that of a count, too."""
+LATER_COLUMNS = [COLUMN_OF.get(name, name) for name in LATER_AXES]
+WORK = ["overlaps", "pair_resolves", "wall_resolves", "sweeps"]
+ERRORS = [
+    "energy_drift", "discs_outside", "unresolved_pairs", "momentum_drift", "penetration_worst",
+    "penetration_mean", "time_to_tenth_radius", "collision_rate", "collision_rate_reference", "pressure",
+    "pressure_reference", "speed_distance",
+]  # fmt: skip
+LIMITS = [
+    "file", "machine", "compiler", "limit", "threads", "level", "working_set_bytes", "lanes", "best",
+    "median", "repetitions",
+]  # fmt: skip
+IDENTITY = ["compiler_family", "node", "machine", "revision"]
+CONTEXT = [
+    "file", "kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene", "scene_sha256", *SCENE,
+    *PROVENANCE, "openmp", "environment", "warm_ups", *IDENTITY,
+]  # fmt: skip
+
+
+def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
+    """Return where a record stands: its tags, axes, scene and origin, one column each.
+
+    `machine` is what may be compared as one machine: the host with its CPU model or, under Slurm, the
+    partition with its CPU model (`node` then tells its nodes apart). `revision` is the commit with the hash
+    of what was changed on top of it.
+    """
+    tags, scene, origin = record["tags"], record["scene"], record["provenance"]
+    slurm = origin["slurm"] or {}
+    changes = f" with changes {str(origin['diff_sha256'])[:8]}" if origin["dirty"] else ""
+    return {
+        "file": name,
+        "kind": record["kind"],
+        "recorded_at": record["recorded_at"],
+        **{column: tags.get(column) for column in TAGS},
+        "series": str(tags["series"]),
+        "session": str(tags.get("session", "")),
+        "scale": str(tags.get("scale", "unstated")),
+        **{column: record["axes"][column] for column in AXES},
+        **{COLUMN_OF.get(name, name): record["axes"].get(name, old) for name, old in LATER_AXES.items()},
+        "scene": scene["name"],
+        "scene_sha256": scene["sha256"],
+        **{column: scene[column] for column in SCENE},
+        **{column: origin[column] for column in PROVENANCE},
+        "openmp": f"{origin['openmp']['runtime']} {origin['openmp']['version']}",
+        "environment": " ".join(f"{k}={v}" for k, v in sorted(origin["openmp"]["environment"].items())),
+        "warm_ups": record["warm_ups"],
+        "compiler_family": _compiler_family(origin["compiler"]),
+        "node": slurm.get("SLURMD_NODENAME", origin["host"]),
+        "machine": _machine(origin),
+        "revision": f"{origin['commit'][:10]}{changes}" if origin["commit"] else "no commit known",
+    }
+
+
+def _machine(origin: dict[str, Any]) -> str:
+    partition = (origin["slurm"] or {}).get("SLURM_JOB_PARTITION")
+    return f"{partition or origin['host']}: {origin['cpu_model']}"
+
+
+def _compiler_family(compiler: str) -> str:
+    """Return `clang` or `gcc` for what they call themselves, else the compiler's first word."""
+    name = compiler.lower()
+    if "clang" in name:
+        return "clang"
+    if any(alias in name for alias in ("gcc", "g++", "gnu")):
+        return "gcc"
+    return next(iter(compiler.split()), "unknown")
+
+
+def runs(records: Named) -> pd.DataFrame:
+    """One row a record: context, work totals over the S steps, the check's verdict, and the error measures,
+    NaN for those that were not asked for or not possible; `has_errors` tells who was asked.
+    """
+    rows = [
+        {
+            **context(name, record),
+            **{column: record["work"][column] for column in WORK},
+            **{column: (record["errors"] or {}).get(column) for column in ERRORS},
+            "has_errors": _has_errors(record),
+            "check_verdict": record["check"]["verdict"],
+            "check_scope": record["check"]["scope"],
+            "check_reason": record["check"]["reason"],
+            "repetitions": len(record["repetitions"]),
+            "parse_seconds": record["parse_seconds"],
+            "process_seconds": record["process_seconds"],
+            "profile_cost": record.get("profile", {}).get("cost"),
+        }
+        for name, record in records
+    ]
+    extra = [
+        "has_errors", "check_verdict", "check_scope", "check_reason", "repetitions", "parse_seconds",
+        "process_seconds", "profile_cost",
+    ]  # fmt: skip
+    return _table(rows, [*WORK, *ERRORS, *extra]).astype(dict.fromkeys(ERRORS, float))
+
+
+def trajectory(records: Named) -> pd.DataFrame:
+    """One row a time at which a run was compared with the exact reference: context, `time`, `rms_distance`
+    (in units of the radius).
+    """
+    rows = [
+        {**context(name, record), **row}
+        for name, record in records
+        if _has_errors(record)
+        for row in record["errors"]["trajectory"] or []
+    ]
+    return _table(rows, ["time", "rms_distance"]).astype({"rms_distance": float})
+
+
+def _has_errors(record: dict[str, Any]) -> bool:
+    return "trajectory" in (record["errors"] or {})
+
+
+def times(records: Named) -> pd.DataFrame:
+    """One row a repetition of every timed run: context, `repetition`, `steps_seconds`, `cpu_seconds`."""
+    rows = [
+        {**context(name, record), "repetition": number, **repetition}
+        for name, record in records
+        if record["kind"] == "bench"
+        for number, repetition in enumerate(record["repetitions"])
+    ]
+    return _table(rows, ["repetition", "steps_seconds", "cpu_seconds"])
+
+
+def phases(records: Named) -> pd.DataFrame:
+    """One row a phase of every profiled run: context, `phase`, `wall_seconds`, `serial_seconds`."""
+    return _table(_profile_rows(records, "phases"), ["phase", "wall_seconds", "serial_seconds"])
+
+
+def threads(records: Named) -> pd.DataFrame:
+    """One row a phase and thread of every profiled run: context, seconds busy and waiting, iterations,
+    chunks.
+    """
+    columns = ["phase", "thread", "busy_seconds", "waiting_seconds", "iterations", "chunks", "loops"]
+    return _table(_profile_rows(records, "threads"), columns)
+
+
+def counters(records: Named) -> pd.DataFrame:
+    """One row a counter and thread of every profiled run: context, `name`, `value`, `source`, `reason`,
+    `remedy`.
+    """
+    return _table(
+        _profile_rows(records, "counters"), ["name", "thread", "value", "source", "reason", "remedy"]
+    )
+
+
+def limits(records: Named) -> pd.DataFrame:
+    """One row a rate that a machine reached at most: `file`, `machine`, `compiler`, `limit` (copy or
+    arithmetic), `threads`, `level` and `working_set_bytes` of a copy, `lanes` of arithmetic, `best` and
+    `median` per second, `repetitions`.
+    """
+    rates = {"copy": "bytes_per_second", "arithmetic": "operations_per_second"}
+    rows = [
+        {
+            "file": name,
+            "machine": _machine(record["provenance"]),
+            "compiler": record["provenance"]["compiler"],
+            "limit": limit,
+            **row,
+            **row[rate],
+        }
+        for name, record in records
+        for limit, rate in rates.items()
+        for row in record["limits"][limit]
+    ]
+    return pd.DataFrame(rows, columns=LIMITS)
+
+
+def failures(records: Named) -> pd.DataFrame:
+    """One row a failed point: its tags, `command` (one line), `exit_code`, `reason`, `recorded_at`."""
+    rows = [
+        {
+            "file": name,
+            **{column: record["tags"].get(column) for column in TAGS},
+            "command": " ".join(record["command"]),
+            "exit_code": record["exit_code"],
+            "reason": record["reason"],
+            "recorded_at": record["recorded_at"],
+        }
+        for name, record in records
+    ]
+    return pd.DataFrame(rows, columns=["file", *TAGS, "command", "exit_code", "reason", "recorded_at"])
+
+
+def _profile_rows(records: Named, part: str) -> list[dict[str, Any]]:
+    return [
+        {**context(name, record), **row}
+        for name, record in records
+        if record["kind"] == "profile" and "profile" in record
+        for row in record["profile"][part]
+    ]
+
+
+def _table(rows: list[dict[str, Any]], columns: list[str]) -> pd.DataFrame:
+    return pd.DataFrame(rows, columns=[*CONTEXT, *columns])

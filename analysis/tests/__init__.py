@@ -1,0 +1,1 @@
+"""Tests of the analysis, on synthetic records with known effects."""

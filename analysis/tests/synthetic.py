@@ -1,0 +1,331 @@
+"""Makes results folders of schema-valid records with known effects, and tables of times for simulations."""
+
+import hashlib
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Relative noise of a shared two-CPU virtual machine: from process to process, from repetition to
+    repetition, bursts of other tenants' work on single repetitions, and slow drift over the blocks.
+    """
+
+    process: float = 0.007
+    repetition: float = 0.01
+    burst_rate: float = 0.03
+    burst_size: float = 0.3
+    drift: float = 0.05
+
+    def seconds(self, generator: np.random.Generator, truth: Floats, blocks: int, repetitions: int) -> Floats:
+        """Return samples around the true times, as configurations x blocks x repetitions."""
+        shape = (len(truth), blocks, repetitions)
+        steps = generator.normal(0, self.drift / np.sqrt(blocks), blocks)
+        drift = np.cumsum(steps) + self.drift * np.sin(np.arange(blocks) / 3)
+        process = generator.normal(0, self.process, shape[:2])
+        repetition = generator.normal(0, self.repetition, shape)
+        burst = generator.uniform(0, np.log1p(self.burst_size), shape) * (
+            generator.random(shape) < self.burst_rate
+        )
+        logs: Floats = drift[:, None] + process[..., None] + repetition + burst
+        result: Floats = truth[:, None, None] * np.exp(logs)
+        return result
+
+
+QUIET = Noise(process=0.002, repetition=0.002, burst_rate=0, drift=0.01)
+
+
+def times_table(
+    truth: dict[str, float], blocks: int, repetitions: int, noise: Noise, seed: int
+) -> pd.DataFrame:
+    """Return the columns of `tables.times` that the statistics use, one series a key of `truth`."""
+    generator = np.random.default_rng(seed)
+    samples = noise.seconds(generator, np.array(list(truth.values())), blocks, repetitions)
+    series, block, repetition = (axis.ravel() for axis in np.indices(samples.shape))
+    names = np.array(list(truth))[series]
+    return pd.DataFrame(
+        {
+            "file": [f"{name}-{number}" for name, number in zip(names, block, strict=True)],
+            "experiment": "synthetic",
+            "series": names,
+            "x": 0.0,
+            "label": None,
+            "scene_name": None,
+            "node": "node",
+            "session": "session",
+            "block": block,
+            "repetition": repetition,
+            "steps_seconds": samples.ravel(),
+        }
+    )
+
+
+@dataclass(frozen=True)
+class Machine:
+    """What a record says of where it was measured."""
+
+    host: str = "bench-1"
+    cpu_model: str = "Example CPU @ 2.50GHz"
+    cores: int = 2
+    hardware_threads: int = 4
+    partition: str | None = None
+    commit: str = "0123456789abcdef0123456789abcdef01234567"
+
+    def provenance(self, compiler: str, threads: int) -> dict[str, Any]:
+        """Return the record's origin as the schema wants it."""
+        slurm = (
+            {"SLURM_JOB_PARTITION": self.partition, "SLURMD_NODENAME": self.host} if self.partition else None
+        )
+        return {
+            "host": self.host,
+            "cpu_model": self.cpu_model,
+            "cores": self.cores,
+            "hardware_threads": self.hardware_threads,
+            "affinity": f"0-{self.hardware_threads - 1}",
+            "affinity_count": self.hardware_threads,
+            "oversubscribed": threads > self.hardware_threads,
+            "memory_bytes": 8 << 30,
+            "virtualised": True,
+            "governor": None,
+            "operating_system": "Linux 6.1",
+            "openmp": {
+                "runtime": "libgomp",
+                "version": 201511,
+                "max_threads": threads,
+                "dynamic": False,
+                "proc_bind": "close",
+                "places": self.hardware_threads,
+                "environment": {"OMP_PROC_BIND": "close"},
+            },
+            "compiler": compiler,
+            "compiler_flags": "-O3 -march=native",
+            "build_type": "Release",
+            "commit": self.commit,
+            "dirty": False,
+            "diff_sha256": None,
+            "binary_sha256": digest(self.host, compiler),
+            "slurm": slurm,
+        }
+
+
+@dataclass(frozen=True)
+class Point:
+    """One configuration of an experiment, with its true time and work."""
+
+    series: str
+    x: float
+    seconds: float
+    x_name: str = "none"
+    label: str | None = None
+    compiler: str = "g++ 12.2.0"
+    axes: dict[str, Any] = field(default_factory=dict)
+    scene: dict[str, Any] = field(default_factory=dict)
+    pair_resolves: int = 12_000_000
+    scene_name: str | None = None
+    errors: dict[str, Any] | None = None
+    tags: dict[str, str | float] = field(default_factory=dict)
+
+
+AXES: dict[str, Any] = {
+    "variant": "published",
+    "neighbourhood": "four",
+    "order": "checkered",
+    "self_contained": "on",
+    "direction": "reverse",
+    "find_schedule": "guided_chunk",
+    "resolve_schedule": "guided_chunk",
+    "find_chunk": 4,
+    "resolve_chunk": 5,
+    "threads": 2,
+    "substeps": 1,
+    "tolerance": "relative",
+}
+SCENE: dict[str, Any] = {
+    "name": "scene.in",
+    "particles": 100_000,
+    "side": 10_000.0,
+    "radius": 16.0,
+    "steps": 100,
+}
+
+
+def digest(*parts: object) -> str:
+    """Return a stand-in for a SHA-256 of what the parts name."""
+    return hashlib.sha256(repr(parts).encode()).hexdigest()
+
+
+def bench(
+    experiment: str, point: Point, block: int, seconds: Iterable[float], machine: Machine, **tags: str | float
+) -> dict[str, Any]:
+    """Return one record of a timed run."""
+    axes, scene = AXES | point.axes, SCENE | point.scene
+    area = scene["particles"] * np.pi * scene["radius"] ** 2 / scene["side"] ** 2
+    repetitions = [{"steps_seconds": float(value), "cpu_seconds": float(value) * 1.9} for value in seconds]
+    return {
+        "schema_version": 1,
+        "kind": "bench",
+        "recorded_at": f"2024-05-01T10:{block:02}:00Z",
+        "axes": axes,
+        "tags": place(experiment, point, block, machine) | tags,
+        "scene": {**scene, "sha256": digest(scene), "area_fraction": float(area)},
+        "warm_ups": 1,
+        "repetitions": repetitions,
+        "parse_seconds": 0.01,
+        "process_seconds": float(sum(value["steps_seconds"] for value in repetitions)) + 0.02,
+        "work": {
+            "steps": scene["steps"],
+            "overlaps": 10_000_000,
+            "pair_resolves": point.pair_resolves,
+            "wall_resolves": 90_000,
+            "sweeps": 400,
+        },
+        "errors": {"energy_drift": 1e-13, "discs_outside": 3, "unresolved_pairs": 0}
+        | (point.errors if point.errors and block == 0 else {}),
+        "check": {"verdict": "passed", "scope": "last-step", "reason": None},
+        "state_hash": "0" * 16,
+        "provenance": machine.provenance(point.compiler, axes["threads"]),
+    }
+
+
+def place(experiment: str, point: Point, block: int, machine: Machine) -> dict[str, str | float]:
+    """Return the tags that say where a record stands in the study."""
+    named = (point.label, point.scene_name, *point.tags.values())
+    identity = (machine.host, experiment, point.series, point.x, *named)
+    tags: dict[str, str | float] = {
+        "experiment": experiment,
+        "series": point.series,
+        "x_name": point.x_name,
+        "x": point.x,
+        "block": block,
+        "position": 0,
+        "session": "session-1",
+        "scale": "paper",
+        "site": "local",
+        "point": f"p{digest(*identity)[:16]}",
+    }
+    optional = {"label": point.label, "scene_name": point.scene_name}
+    return tags | point.tags | {key: value for key, value in optional.items() if value is not None}
+
+
+def profile(
+    record: dict[str, Any], shares: dict[str, float], counters: list[dict[str, Any]]
+) -> dict[str, Any]:
+    """Turn a timed record into a profiled one: its first time split into phases by `shares`, over its
+    threads.
+    """
+    wall = record["repetitions"][0]["steps_seconds"]
+    count = record["axes"]["threads"]
+    rows = [
+        {
+            "phase": phase,
+            "thread": thread,
+            "busy_seconds": wall * share * (0.9 - 0.1 * thread / count),
+            "waiting_seconds": wall * share * (0.1 + 0.1 * thread / count),
+            "iterations": 1000,
+            "chunks": 50,
+            "loops": 4,
+        }
+        for phase, share in shares.items()
+        for thread in range(count)
+    ]
+    phases = [
+        {"phase": phase, "wall_seconds": wall * share, "serial_seconds": wall * share * 0.05}
+        for phase, share in shares.items()
+    ]
+    measured = {"phases": phases, "threads": rows, "counters": counters, "wall_seconds": wall, "cost": 1.02}
+    return record | {"kind": "profile", "profile": measured}
+
+
+def measured_errors(path: float, horizon: int | None, times: Iterable[int], **more: float) -> dict[str, Any]:
+    """Return the error measures of a run whose distance from the exact paths is `path` at time 1 and grows
+    tenfold from each of the times to the next; all that `more` does not say is as in an exact run.
+    """
+    return {
+        "energy_drift": 2e-14,
+        "unresolved_pairs": 0,
+        "momentum_drift": 1e-15,
+        "penetration_worst": 0.0,
+        "penetration_mean": 0.0,
+        "trajectory": [
+            {"time": time, "rms_distance": min(path * 10**number, 50.0)} for number, time in enumerate(times)
+        ],
+        "time_to_tenth_radius": horizon,
+        "collision_rate": 0.4,
+        "collision_rate_reference": 0.4,
+        "pressure": 0.02,
+        "pressure_reference": 0.02,
+        "speed_distance": 0.001,
+        "pressure_reason": None,
+        "reference_reason": None,
+    } | more
+
+
+def limits(machine: Machine, copy: dict[str, tuple[int, float]], arithmetic: float) -> dict[str, Any]:
+    """Return the record of a machine's limits on one thread and, twice that, on two: `copy` is working set
+    and bytes per second of each level, `arithmetic` operations per second of one double at a time, twice
+    that of two.
+    """
+
+    def rate(best: float) -> dict[str, float]:
+        return {"best": best, "median": 0.9 * best, "repetitions": 9}
+
+    return {
+        "schema_version": 1,
+        "kind": "limits",
+        "recorded_at": "2024-05-01T09:00:00Z",
+        "tags": {"experiment": "limits-of-machines", "point": "limits", "block": 0},
+        "limits": {
+            "copy": [
+                {"level": level, "working_set_bytes": size, "threads": n, "bytes_per_second": rate(n * best)}
+                for n in (1, 2)
+                for level, (size, best) in copy.items()
+            ],
+            "arithmetic": [
+                {"lanes": lanes, "threads": n, "operations_per_second": rate(n * lanes * arithmetic)}
+                for n in (1, 2)
+                for lanes in (1, 2)
+            ],
+        },
+        "provenance": machine.provenance("g++ 12.2.0", 2),
+    }
+
+
+def failure(experiment: str, series: str, reason: str, **tags: str) -> dict[str, Any]:
+    """Return the record of a point that failed."""
+    return {
+        "schema_version": 1,
+        "kind": "failure",
+        "exit_code": 2,
+        "reason": reason,
+        "tags": {
+            "experiment": experiment,
+            "series": series,
+            "x_name": "none",
+            "x": 0,
+            "block": 0,
+            "scale": "paper",
+            "site": "local",
+            **tags,
+        },
+        "command": ["build/gcc/carom", "bench", "scene.in"],
+        "recorded_at": "2024-05-01T10:00:00Z",
+    }
+
+
+def write(folder: Path, records: Iterable[dict[str, Any]]) -> None:
+    """Write records where a results folder keeps them."""
+    for record in records:
+        kind = "failures" if record["kind"] == "failure" else "records"
+        tags = record["tags"]
+        path = folder / kind / tags["experiment"] / f"{tags.get('point', 'p0')}-b{tags['block']}.json"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(record), encoding="utf-8")

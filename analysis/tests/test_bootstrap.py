@@ -1,0 +1,56 @@
+import numpy as np
+import pandas as pd
+import pytest
+
+from analysis.statistics.bootstrap import summarise
+from analysis.tests.synthetic import Noise, times_table
+
+
+def summary_of(table: pd.DataFrame) -> pd.Series:
+    return summarise(table, ["series"]).iloc[0]
+
+
+def test_the_median_is_that_of_the_processes_and_nothing_is_dropped() -> None:
+    table = times_table({"a": 1.0}, 5, 3, Noise(), seed=4)
+    row = summary_of(table)
+    assert row["median"] == pytest.approx(table.groupby("file")["steps_seconds"].median().median())
+    assert (row["sessions"], row["processes"], row["samples"]) == (1, 5, 15)
+    assert row["low"] <= row["median"] <= row["high"]
+
+
+def test_repetitions_of_one_process_do_not_count_as_processes() -> None:
+    noise = Noise(process=0.05, repetition=0.001, burst_rate=0, drift=0)
+    narrow = Noise(process=0.001, repetition=0.05, burst_rate=0, drift=0)
+    clustered, spread = (summary_of(times_table({"a": 1.0}, 6, 50, one, seed=2)) for one in (noise, narrow))
+    assert clustered["high"] - clustered["low"] > 2 * (spread["high"] - spread["low"])
+
+
+def test_sessions_that_differ_widen_the_interval() -> None:
+    table = times_table({"a": 1.0}, 8, 3, Noise(burst_rate=0, drift=0), seed=3)
+    later = table["block"] >= 4
+    slower = table.assign(steps_seconds=table["steps_seconds"] * np.where(later, 1.3, 1.0))
+    one = summary_of(slower)
+    two = summary_of(slower.assign(session=np.where(later, "second", "first")))
+    assert two["high"] - two["low"] >= one["high"] - one["low"]
+    assert two["low"] < 1.05
+    assert two["high"] > 1.25
+
+
+def test_the_interval_covers_the_median_at_about_its_rate() -> None:
+    noise = Noise(process=0.02, repetition=0.005, burst_rate=0, drift=0)
+    tables = [times_table({"a": 1.0}, 10, 2, noise, seed) for seed in range(100)]
+    covered = sum(row["low"] <= 1.0 <= row["high"] for row in map(summary_of, tables))
+    assert 88 <= covered <= 100
+
+
+def test_the_same_data_give_the_same_interval() -> None:
+    table = times_table({"a": 1.0}, 5, 3, Noise(), seed=9)
+    pd.testing.assert_series_equal(summary_of(table), summary_of(table))
+
+
+def test_unequal_repetitions_and_a_single_process() -> None:
+    table = times_table({"a": 1.0}, 3, 4, Noise(), seed=5)
+    ragged = table[~((table["block"] == 1) & (table["repetition"] > 0))]
+    assert summary_of(ragged)["samples"] == 9
+    single = summary_of(table[(table["block"] == 0) & (table["repetition"] == 0)])
+    assert single["low"] == single["median"] == single["high"]

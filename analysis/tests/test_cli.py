@@ -1,0 +1,127 @@
+from pathlib import Path
+
+import pytest
+
+from analysis.cli import main
+from analysis.tests.synthetic import QUIET, Machine, Noise, write
+from analysis.tests.synthetic_study import study
+
+COMPARED = ["neighbourhood", "steps"]
+
+
+def folder(path: Path, speed: float = 1.0, noise: Noise = QUIET, seed: int = 1, blocks: int = 10) -> str:
+    write(path, study(COMPARED, blocks=blocks, noise=noise, speed=speed, seed=seed))
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ("speed", "noise", "code", "said"),
+    [
+        (1.0, QUIET, 0, "12 equivalent"),
+        (1.1, QUIET, 0, "12 faster"),
+        (0.9, QUIET, 3, "12 slower"),
+        (1.0, Noise(process=0.05), 4, "12 inconclusive"),
+    ],
+)
+def test_compare_tells_by_its_exit_code(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], speed: float, noise: Noise, code: int, said: str
+) -> None:
+    first, second = folder(tmp_path / "a", noise=noise), folder(tmp_path / "b", speed, noise, seed=2)
+    assert main(["compare", first, second]) == code
+    output = capsys.readouterr().out
+    assert said in output
+    assert "neighbourhood" in output
+
+
+def test_one_slower_point_among_faster_ones_is_code_3(tmp_path: Path) -> None:
+    first, second = folder(tmp_path / "a"), folder(tmp_path / "b", 1.1)
+    for path in (tmp_path / "b" / "records" / "neighbourhood").glob("*.json"):
+        if '"nine"' in (text := path.read_text()):
+            path.write_text(text.replace('"steps_seconds": 1.', '"steps_seconds": 2.'))
+    assert main(["compare", first, second]) == 3
+    assert main(["compare", first, second, "--experiment", "steps"]) == 0
+
+
+def test_a_single_block_is_undecided(tmp_path: Path) -> None:
+    assert main(["compare", folder(tmp_path / "a", blocks=1), folder(tmp_path / "b", blocks=1)]) == 4
+
+
+def test_compare_refuses_what_cannot_be_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    first = folder(tmp_path / "a")
+    write(tmp_path / "other", study(["radius"], blocks=2))
+    (tmp_path / "empty").mkdir()
+    write(tmp_path / "mixed", study(["steps"], blocks=2))
+    write(tmp_path / "mixed", study(["steps"], blocks=2, machine=Machine(host="bench-2")))
+    for second, said in (
+        ("other", "no point in common"),
+        ("empty", "no records"),
+        ("mixed", "found 2 studies"),
+        ("absent", "no such folder"),
+    ):
+        assert main(["compare", first, str(tmp_path / second)]) == 1
+        lines = capsys.readouterr().err.splitlines()
+        assert len(lines) == 1
+        assert said in lines[0]
+
+
+def test_figures_of_one_experiment(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder(tmp_path, blocks=2)
+    assert main(["figures", "--results", str(tmp_path), "--experiment", "steps"]) == 0
+    assert capsys.readouterr().out.splitlines() == [str(tmp_path / "figures" / "steps.svg")]
+    assert main(["figures", "--results", str(tmp_path), "--experiment", "radius"]) == 0
+    assert "no records" in capsys.readouterr().err
+
+
+def test_an_experiment_that_nothing_knows_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder(tmp_path, blocks=1)
+    assert main(["figures", "--results", str(tmp_path), "--experiment", "raduis"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "found 'raduis', expected one of" in line
+    assert not (tmp_path / "figures").exists()
+
+
+@pytest.mark.parametrize("kind", ["trend", "scaling", "phases", "doughnut"])
+def test_a_figure_that_the_records_do_not_allow_is_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str
+) -> None:
+    known = "phases" if kind == "trend" else "radius"
+    write(tmp_path, [record | {"tags": record["tags"] | {"experiment": "mine", "figure": kind}}
+                     for record in study([known], blocks=1)])  # fmt: skip
+    assert main(["figures", "--results", str(tmp_path)]) == 0
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0].startswith(f"mine: not drawn: found figure '{kind}'")
+
+
+def test_claims_are_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder(tmp_path)
+    assert main(["claims", "--results", str(tmp_path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 1 + 17
+    assert any("four_boxes" in line and "holds" in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["figures", "--results", "absent"], "absent: no such folder"),
+        (["report", "--results", "absent"], "absent: no such folder"),
+        (["claims", "--results", "absent"], "absent: no such folder"),
+    ],
+)
+def test_bad_input_is_one_line_and_code_1(
+    arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 1
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1
+    assert said in lines[0]
+
+
+@pytest.mark.parametrize("arguments", [[], ["draw"], ["compare", "one"], ["figures", "--speed"]])
+def test_wrong_usage_is_one_line_and_code_1(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(arguments)
+    assert stopped.value.code == 1
+    assert len(capsys.readouterr().err.splitlines()) == 1

@@ -1,0 +1,58 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from analysis.statistics.convergence import order
+from analysis.statistics.pareto import front
+
+DT = 1 / 2.0 ** np.arange(7)
+POINTS = st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)), max_size=12)
+
+
+@pytest.mark.parametrize("known", [0.5, 1.0, 2.0])
+def test_a_known_order_is_found_without_doubt(known: float) -> None:
+    fitted = order(DT, 0.05 * DT**known, ceiling=0.1)
+    assert fitted.estimate == pytest.approx(known)
+    assert fitted.high - fitted.low < 1e-6
+
+
+def test_the_interval_covers_the_known_order_as_often_as_it_says() -> None:
+    generator = np.random.default_rng(1)
+    covered = 0
+    for _ in range(400):
+        fitted = order(DT, 0.05 * DT * np.exp(generator.normal(0, 0.2, len(DT))), ceiling=1.0)
+        covered += fitted.low <= 1 <= fitted.high
+    assert 0.92 < covered / 400 < 0.98
+
+
+def test_errors_that_are_not_small_do_not_count() -> None:
+    saturated = np.where(DT > 0.2, 5.0, 0.05 * DT**2)
+    assert order(DT, saturated, ceiling=0.1).estimate == pytest.approx(2)
+    assert order(DT, saturated, ceiling=10).estimate != pytest.approx(2, abs=0.1)
+
+
+@pytest.mark.parametrize("errors", [[0.01, 0.02], [0.01, 0.02, 0.5], [0, 0, 0], [np.nan] * 3])
+def test_fewer_than_three_errors_give_no_order(errors: list[float]) -> None:
+    fitted = order(DT[: len(errors)], errors, ceiling=0.1)
+    assert np.isnan(fitted.estimate)
+    assert (fitted.low, fitted.high) == (-np.inf, np.inf)
+
+
+def test_one_step_gives_no_order() -> None:
+    assert np.isnan(order([0.5] * 4, [0.01, 0.02, 0.03, 0.04], ceiling=0.1).estimate)
+
+
+def beaten(point: tuple[int, int], others: list[tuple[int, int]]) -> bool:
+    return any(one != point and one[0] <= point[0] and one[1] <= point[1] for one in others)
+
+
+@given(POINTS)
+def test_the_front_is_what_nothing_else_beats(points: list[tuple[int, int]]) -> None:
+    on_front = front([error for error, _ in points], [time for _, time in points])
+    kept = [point for point, on in zip(points, on_front, strict=True) if on]
+    assert sorted(kept) == sorted({point for point in points if not beaten(point, points)})
+
+
+def test_what_was_not_measured_is_on_no_front() -> None:
+    assert list(front([0.1, np.nan, 0.01], [1.0, 0.5, np.nan])) == [True, False, False]

@@ -1,0 +1,163 @@
+"""Who may know whom: the rule of README.md's table of folders, checked over the whole tree.
+
+Each rule is also shown to fail: on a tree of a few files in which it is broken.
+"""
+
+import ast
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+MAY_INCLUDE = {
+    "kernels": {"kernels"},
+    "variants": {"kernels", "variants"},
+    "harness": {"kernels", "variants", "harness"},
+}
+MUST_NOT_IMPORT = {"experiments": "analysis", "analysis": "experiments"}
+GENERATED = {"harness/build_info.hpp"}
+PRAGMAS = "kernels/parallel_for.hpp"
+
+NO_HEADER_OF_A_KERNEL = {
+    "chrono", "cstdio", "cstdlib", "ctime", "filesystem", "fstream", "iostream", "mutex", "print",
+    "sstream", "stdio.h", "stdlib.h", "sys/time.h", "syncstream", "thread", "time.h", "unistd.h",
+}  # fmt: skip
+"""Input and output, clocks, ends of the process, threads beside OpenMP's."""
+
+NO_WORD_OF_A_KERNEL = re.compile(
+    r"\bstd::c(?:out|err|log|in)\b|::time\s*\(|\b(?:steady|system|high_resolution)_clock\b|"
+    r"\b(?:f?printf|puts|fopen|exit|_Exit|quick_exit|abort|terminate|getenv|system|omp_get_wtime|"
+    r"clock_gettime|gettimeofday|__rdtsc)\s*\("
+)
+
+
+def test_includes_point_one_way() -> None:
+    assert list(wrong_includes(ROOT)) == []
+
+
+def test_experiments_and_analysis_never_import_each_other() -> None:
+    assert list(wrong_imports(ROOT)) == []
+
+
+def test_every_openmp_pragma_stands_in_one_file() -> None:
+    assert list(stray_pragmas(ROOT)) == []
+    assert len(re.findall(r"#pragma omp", (ROOT / PRAGMAS).read_text(encoding="utf-8"))) > 5
+
+
+def test_kernels_neither_print_nor_exit_nor_read_a_clock() -> None:
+    assert list(unclean_kernels(ROOT)) == []
+
+
+Rule = Callable[[Path], Iterator[str]]
+
+
+def wrong_includes(root: Path) -> Iterator[str]:
+    """Quoted includes that point to a folder that may not be known, or to no file."""
+    for name, text in cpp_files(root):
+        folder = name.split("/")[0]
+        for included in re.findall(r'^\s*#\s*include\s*"([^"]+)"', text, re.MULTILINE):
+            beside = (root / name).parent / included
+            target = f"{Path(name).parent.as_posix()}/{included}" if beside.is_file() else included
+            if target.split("/")[0] not in MAY_INCLUDE[folder] or ".." in target:
+                yield f"{name}: includes {included}"
+            elif not (root / target).is_file() and target not in GENERATED:
+                yield f"{name}: includes {included}, which there is not"
+
+
+def wrong_imports(root: Path) -> Iterator[str]:
+    """Imports of the one Python package in the other, wherever in a file they stand."""
+    for folder, other in MUST_NOT_IMPORT.items():
+        for path in sorted((root / folder).rglob("*.py")):
+            for imported in imports(ast.parse(path.read_text(encoding="utf-8"))):
+                if imported.split(".")[0] == other:
+                    yield f"{path.relative_to(root).as_posix()}: imports {imported}"
+
+
+def imports(tree: ast.AST) -> Iterator[str]:
+    """The modules that a file names: in statements, and in calls of importlib's and pytest's functions."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield node.module or ""
+        elif isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
+            called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            if called in ("import_module", "importorskip", "__import__"):
+                yield str(node.args[0].value)
+
+
+def stray_pragmas(root: Path) -> Iterator[str]:
+    """OpenMP pragmas outside the one file that may have them."""
+    for name, text in cpp_files(root):
+        if name != PRAGMAS and re.search(r'#\s*pragma\s+omp|_Pragma\s*\(\s*"\s*omp', text):
+            yield f"{name}: has an OpenMP pragma"
+
+
+def unclean_kernels(root: Path) -> Iterator[str]:
+    """Kernels' headers that print, read, exit, start threads or look at a clock."""
+    for name, text in cpp_files(root):
+        if not name.startswith("kernels/") or name.startswith("kernels/tests/"):
+            continue
+        headers = re.findall(r"^\s*#\s*include\s*<([^>]+)>", text, re.MULTILINE)
+        yield from (f"{name}: includes <{one}>" for one in headers if one in NO_HEADER_OF_A_KERNEL)
+        yield from (f"{name}: says {found.group()}" for found in NO_WORD_OF_A_KERNEL.finditer(text))
+
+
+def cpp_files(root: Path) -> Iterator[tuple[str, str]]:
+    """Name and text of every C++ file, comments taken out."""
+    for folder in MAY_INCLUDE:
+        for path in sorted((root / folder).rglob("*.[ch]pp")):
+            yield path.relative_to(root).as_posix(), without_comments(path.read_text(encoding="utf-8"))
+
+
+def without_comments(text: str) -> str:
+    """The text without comments; a string that holds what looks like one is left as it is."""
+    pattern = r'("(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\')|//[^\n]*|/\*.*?\*/'
+    return re.sub(pattern, lambda found: found.group(1) or " ", text, flags=re.DOTALL)
+
+
+BROKEN: list[tuple[Rule, str, str, str]] = [
+    (wrong_includes, "kernels/a.hpp", '#include "harness/text.hpp"', "kernels/a.hpp: includes harness/text"),
+    (wrong_includes, "kernels/a.hpp", '#include "../harness/text.hpp"', "kernels/a.hpp: includes ../harness"),
+    (wrong_includes, "kernels/tests/a.cpp", '#include "variants/name.hpp"', "kernels/tests/a.cpp: includes"),
+    (wrong_includes, "variants/a.hpp", ' # include "harness/text.hpp"', "variants/a.hpp: includes harness"),
+    (wrong_includes, "harness/a.hpp", '#include "analysis/a.hpp"', "harness/a.hpp: includes analysis/a.hpp"),
+    (wrong_includes, "harness/a.cpp", '#include "harness/gone.hpp"', "harness/a.cpp: includes harness/gone"),
+    (wrong_imports, "analysis/a.py", "import experiments.plan as plan", "analysis/a.py: imports experiments"),
+    (
+        wrong_imports,
+        "analysis/tests/a.py",
+        "def f():\n    from experiments import plan",
+        "analysis/tests/a.py",
+    ),
+    (wrong_imports, "experiments/a.py", "from analysis.records import load", "experiments/a.py: imports"),
+    (wrong_imports, "experiments/a.py", "importlib.import_module('analysis')", "experiments/a.py: imports"),
+    (stray_pragmas, "kernels/move.hpp", "#pragma omp parallel", "kernels/move.hpp: has an OpenMP pragma"),
+    (stray_pragmas, "harness/a.cpp", '_Pragma("omp simd")', "harness/a.cpp: has an OpenMP pragma"),
+    (unclean_kernels, "kernels/a.hpp", "#include <iostream>", "kernels/a.hpp: includes <iostream>"),
+    (unclean_kernels, "kernels/a.hpp", "void f() { std::cout << 1; }", "kernels/a.hpp: says std::cout"),
+    (unclean_kernels, "kernels/a.hpp", "void f() { std::exit(1); }", "kernels/a.hpp: says exit("),
+    (unclean_kernels, "kernels/a.hpp", "auto f() { return std::time(nullptr); }", "says ::time("),
+    (unclean_kernels, "kernels/a.hpp", "double f() { return omp_get_wtime(); }", "says omp_get_wtime("),
+    (unclean_kernels, "kernels/a.hpp", "auto f = std::chrono::steady_clock::now();", "says steady_clock"),
+]
+
+
+@pytest.mark.parametrize(("rule", "name", "text", "said"), BROKEN)
+def test_a_broken_rule_is_found(tmp_path: Path, rule: Rule, name: str, text: str, said: str) -> None:
+    path = tmp_path / name
+    path.parent.mkdir(parents=True)
+    path.write_text(text + "\n", encoding="utf-8")
+    (found,) = rule(tmp_path)
+    assert said in found
+
+
+@pytest.mark.parametrize("rule", [wrong_includes, wrong_imports, stray_pragmas, unclean_kernels])
+def test_what_a_comment_says_breaks_no_rule(tmp_path: Path, rule: Rule) -> None:
+    (tmp_path / "kernels").mkdir()
+    text = '// #include "harness/text.hpp"\n/* #pragma omp parallel\n std::exit(1) */\n'
+    (tmp_path / "kernels" / "a.hpp").write_text(text, encoding="utf-8")
+    assert list(rule(tmp_path)) == []

@@ -1,0 +1,69 @@
+import numpy as np
+import pandas as pd
+import pytest
+
+from analysis.statistics.intervals import RANKS_FROM
+from analysis.statistics.noise import blocks_needed, process_noise, warning
+from analysis.statistics.verdicts import judge_one
+from analysis.tests.synthetic import Noise, times_table
+
+
+def noise_of(noise: Noise, blocks: int = 40, figure: str = "comparison") -> pd.Series:
+    table = times_table({"a": 1.0, "b": 1.3, "c": 2.0}, blocks, 1, noise, seed=1)
+    return process_noise(table.assign(figure=figure)).iloc[0]
+
+
+@pytest.mark.parametrize("deviation", [0.005, 0.02])
+@pytest.mark.parametrize("drift", [0.0, 0.3])
+def test_the_noise_is_found_under_drift_and_bursts(deviation: float, drift: float) -> None:
+    row = noise_of(Noise(process=deviation, repetition=0, burst_rate=0.03, burst_size=1, drift=drift))
+    assert row["noise"] == pytest.approx(deviation, rel=0.3)
+    assert row["bursts"] > 0
+
+
+def test_the_blocks_needed_grow_with_the_noise() -> None:
+    needed = [blocks_needed(deviation) for deviation in (0.001, 0.005, 0.01, 0.02)]
+    assert needed == sorted(needed)
+    assert needed[0] == 3
+
+
+@pytest.mark.parametrize("deviation", [0.004, 0.01, 0.015])
+def test_with_the_blocks_needed_equal_variants_come_out_equivalent(deviation: float) -> None:
+    blocks = blocks_needed(deviation)
+    generator = np.random.default_rng(7)
+    ratios = generator.normal(0, deviation * np.sqrt(2), (300, blocks))
+    verdicts = [judge_one(row)["verdict"] for row in ratios]
+    assert verdicts.count("equivalent") >= 0.91 * 300
+
+
+def test_bursts_ask_for_the_blocks_that_ranks_need() -> None:
+    assert noise_of(Noise(process=0.002, repetition=0, burst_rate=0.05, burst_size=2))["needed"] == RANKS_FROM
+
+
+def test_the_warning_names_the_worst_and_what_to_do() -> None:
+    loud, quiet = (Noise(process=level, repetition=0, burst_rate=0) for level in (0.03, 0.001))
+    table = process_noise(
+        pd.concat(
+            times_table({f"{name}-a": 1.0, f"{name}-b": 1.0}, 6, 1, noise, seed=2).assign(
+                experiment=name, figure="comparison"
+            )
+            for name, noise in (("loud", loud), ("quiet", quiet))
+        )
+    )
+    text = warning(table)
+    assert text is not None
+    assert "1 of 2" in text
+    assert "'loud'" in text
+    assert "blocks" in text
+    assert warning(table[table["experiment"] == "quiet"]) is None
+
+
+def test_trends_are_not_warned_about() -> None:
+    row = noise_of(Noise(process=0.05, repetition=0), blocks=5, figure="trend")
+    assert not row["enough"]
+    assert warning(pd.DataFrame([row])) is None
+
+
+def test_one_block_has_no_noise() -> None:
+    table = times_table({"a": 1.0, "b": 1.0}, 1, 3, Noise(), seed=1).assign(figure="control")
+    assert process_noise(table).empty

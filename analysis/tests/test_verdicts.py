@@ -1,0 +1,98 @@
+"""The verdicts' error rates, simulated with fixed seeds on noise like that of a shared two-CPU machine."""
+
+from collections import Counter
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.verdicts import holm, judge, judge_one, not_faster
+from analysis.tests.synthetic import Noise, times_table
+
+STUDIES = 100
+VM = Noise()
+NOISY = Noise(process=0.02, repetition=0.03, burst_rate=0.1)
+
+
+def verdicts(effect: float, blocks: int, noise: Noise, repetitions: int = 5) -> Counter[str]:
+    """Return how often each verdict was given on `candidate` taking (1 + effect) times as long."""
+    truth = {"reference": 1.0, "candidate": 1.0 + effect}
+    tables = [times_table(truth, blocks, repetitions, noise, seed).assign(x=seed) for seed in range(STUDIES)]
+    times = pd.concat(tables)
+    processes = process_medians(times.assign(file=times["file"] + times["x"].map("-study-{}".format)))
+    reference, candidate = (processes[processes["series"] == name] for name in truth)
+    pairs = log_ratios(reference, candidate, match=("x",))
+    return Counter(judge_one(study["log_ratio"])["verdict"] for _, study in pairs.groupby("x"))
+
+
+@pytest.mark.parametrize(("blocks", "repetitions"), [(12, 3), (20, 1)])
+def test_control_is_equivalent_in_95_of_100_studies(blocks: int, repetitions: int) -> None:
+    assert verdicts(0.0, blocks, VM, repetitions)["equivalent"] >= 95
+
+
+@pytest.mark.parametrize("blocks", [7, 12])
+def test_five_percent_is_found(blocks: int) -> None:
+    assert verdicts(0.05, blocks, VM)["slower"] >= 95
+    assert verdicts(-0.05, blocks, VM)["faster"] >= 95
+
+
+@pytest.mark.parametrize("blocks", [5, 7, 12])
+def test_one_percent_is_never_called_a_difference(blocks: int) -> None:
+    counts = verdicts(0.01, blocks, VM)
+    assert counts["slower"] + counts["faster"] <= 1
+
+
+def test_one_percent_is_called_equivalent_with_enough_blocks() -> None:
+    assert verdicts(0.01, blocks=40, noise=VM)["equivalent"] >= 90
+
+
+@pytest.mark.parametrize("blocks", [5, 12])
+def test_noise_leads_to_undecided_and_not_to_wrong(blocks: int) -> None:
+    equal, far = verdicts(0.0, blocks, NOISY), verdicts(0.05, blocks, NOISY)
+    assert equal["slower"] + equal["faster"] <= 5
+    assert far["equivalent"] + far["faster"] <= 5
+    assert equal["inconclusive"] > 50
+
+
+@pytest.mark.parametrize("blocks", [5, 12])
+def test_on_the_margin_itself_at_most_one_verdict_in_twenty_per_side(blocks: int) -> None:
+    counts = verdicts(0.02, blocks, Noise(burst_rate=0))
+    assert counts["faster"] == 0
+    assert counts["equivalent"] <= 10
+    assert counts["slower"] <= 10
+
+
+def test_drift_over_the_blocks_cancels() -> None:
+    drifting = Noise(burst_rate=0, drift=0.5)
+    assert verdicts(0.0, blocks=12, noise=drifting) == verdicts(0.0, 12, Noise(burst_rate=0, drift=0.0))
+
+
+def test_holm_as_worked_by_hand() -> None:
+    assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert holm([0.9, 0.8]) == [1.0, 1.0]
+    assert holm([]) == []
+
+
+def test_the_table_is_corrected_over_its_rows() -> None:
+    ratios = np.log(1.02) + np.array([0.01, 0.012, 0.03, 0.002, 0.02])
+    alone = judge_one(ratios)
+    rows = pd.concat(pd.DataFrame({"row": row, "log_ratio": ratios}) for row in range(20))
+    assert alone["verdict"] == "slower"
+    assert set(judge(rows, ["row"])["verdict"]) == {"inconclusive"}
+
+
+def test_not_faster_needs_evidence() -> None:
+    assert not_faster([0.0, 0.001, -0.001, 0.002, 0.001])
+    assert not not_faster([0.0, 0.2, -0.2, 0.1, -0.1])
+    assert not not_faster([-0.05, -0.051, -0.049, -0.05, -0.052])
+
+
+def test_a_process_without_partner_and_a_block_over_two_sessions() -> None:
+    table = process_medians(times_table({"a": 1.0, "b": 1.1}, 3, 2, Noise(), seed=1))
+    table.loc[table["file"] == "b-2", "session"] = "resumed"
+    pairs = log_ratios(table[table["series"] == "a"].iloc[1:], table[table["series"] == "b"])
+    assert list(pairs["block"]) == [1, 2]
+    assert list(pairs["split"]) == [False, True]
+    other = table.assign(node="elsewhere")
+    assert log_ratios(table[table["series"] == "a"], other[other["series"] == "b"]).empty
