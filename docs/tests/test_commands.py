@@ -1,0 +1,139 @@
+"""The commands of the documents are run in the order in which a reader would type them.
+
+Where a block is marked `verbs`, only the names of its verbs are checked.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from documents import DOCUMENTS, KINDS, ROOT, Block, blocks, document, shell, write_file
+
+LOOKS_LIKE_A_COMMAND = re.compile(
+    r"^\s*(make|cmake|ctest|python|\.venv/bin/python|build/\w+/carom|carom|git|apt-get) ", re.MULTILINE
+)
+BUILT = (ROOT / "build" / "gcc" / "carom").is_file()
+MAKEFILE_VERBS = set(
+    re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
+)
+
+
+def having(*kinds: str) -> list[str]:
+    return [name for name in DOCUMENTS if any(shell(name, kind) for kind in kinds)]
+
+
+def copy_of_the_project(folder: Path) -> Path:
+    """What a clone would hold if everything here were committed, with the environment that is here."""
+    listed = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    try:
+        files = subprocess.run(listed, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    except (OSError, subprocess.CalledProcessError) as error:
+        pytest.skip(f"which files belong to the project is not known: {error}")
+    for name in filter(None, files.split("\0")):
+        if (ROOT / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, folder / name)
+    (folder / ".venv").unlink(missing_ok=True)
+    (folder / ".venv").symlink_to((ROOT / ".venv").resolve())
+    return folder
+
+
+def follow(document_blocks: list[Block], folder: Path, kinds: tuple[str, ...]) -> None:
+    """Write the files and run the commands of a document, as far as they are of these kinds."""
+    for block in document_blocks:
+        if block.language == "sh" and block.word in kinds:
+            run(block, folder)
+        elif block.language != "sh" and block.word:
+            write_file(block, folder)
+
+
+def run(block: Block, folder: Path) -> None:
+    left_out = ("MAKE", "OMP_", "PYTEST")
+    settings = {key: value for key, value in os.environ.items() if not key.startswith(left_out)}
+    # More threads than idle processors must not spin for each other.
+    settings["OMP_WAIT_POLICY"] = "passive"
+    done = subprocess.run(
+        ["bash", "-euo", "pipefail", "-c", block.text],
+        cwd=folder, env=settings, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        text=True, errors="replace", check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, (
+        f"line {block.line}: exit code {done.returncode}\n{block.text}\n{done.stdout[-4000:]}"
+    )
+
+
+@pytest.mark.skipif(not BUILT, reason="build/gcc/carom is not built (`make build` builds it)")
+@pytest.mark.parametrize("name", having(""))
+def test_quick_commands(tmp_path: Path, name: str) -> None:
+    folder = copy_of_the_project(tmp_path)
+    (folder / "build").symlink_to(ROOT / "build")
+    follow(document(name), folder, ("",))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", having("slow"))
+def test_all_commands_from_an_empty_build(tmp_path: Path, name: str) -> None:
+    follow(document(name), copy_of_the_project(tmp_path), ("", "slow") if BUILT else ("slow",))
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_no_command_escapes(name: str) -> None:
+    for block in document(name):
+        if block.language == "sh":
+            assert block.word in KINDS, f"{name}:{block.line}: found '{block.word}' behind sh"
+        elif block.language in ("", "bash", "shell", "console"):
+            assert not LOOKS_LIKE_A_COMMAND.search(block.text), (
+                f"{name}:{block.line}: has commands, is not marked sh"
+            )
+
+
+@pytest.mark.parametrize("name", having("verbs", "fresh"))
+def test_commands_that_are_only_looked_at_exist(name: str) -> None:
+    for block in (*shell(name, "verbs"), *shell(name, "fresh")):
+        for line in block.text.splitlines():
+            words = line.split("#")[0].split()
+            if words[:1] == ["make"]:
+                verbs = [word for word in words[1:] if "=" not in word]
+                assert verbs, f"{name}:{block.line}: {line}"
+                assert set(verbs) <= MAKEFILE_VERBS, f"{name}:{block.line}: {line}"
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_links_lead_somewhere(name: str) -> None:
+    text = re.sub(
+        r"^```.*?^```$", "", (ROOT / name).read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL
+    )
+    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+        if not target.startswith(("http://", "https://")):
+            file, _, anchor = target.partition("#")
+            path = (ROOT / name).parent / file if file else ROOT / name
+            assert path.exists(), f"{name}: links to {target}"
+            assert not anchor or anchor in anchors(path), f"{name}: links to {target}"
+
+
+def anchors(path: Path) -> set[str]:
+    """What GitHub makes of a document's headings."""
+    headings = re.findall(r"^#+ (.*)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def test_blocks_are_found_with_their_kind_and_line() -> None:
+    found = list(blocks("a\n\n```sh slow\nx\ny\n```\n\n```\nz\n```\n"))
+    assert found == [Block("sh", "slow", "x\ny\n", 3), Block("", "", "z\n", 8)]
+
+
+def test_a_command_that_fails_fails(tmp_path: Path) -> None:
+    for text in ("false\ntrue\n", "false | true\n", "echo $UNSET_VARIABLE\n"):
+        with pytest.raises(AssertionError, match="line 7: exit code 1"):
+            run(Block("sh", "", text, 7), tmp_path)
+
+
+def test_a_change_whose_old_lines_are_not_there_fails(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("one\ntwo\n")
+    write_file(Block("diff", "file", "-one\n+1\n two\n", 1), tmp_path)
+    assert (tmp_path / "file").read_text() == "1\ntwo\n"
+    with pytest.raises(ValueError, match="holds 0 times"):
+        write_file(Block("diff", "file", "-one\n+1\n", 1), tmp_path)

@@ -1,0 +1,137 @@
+"""On a Debian that has nothing yet, in a clean clone: the two commands of README.md, and tutorial.md's first.
+
+The machine is made by debootstrap from the mirror that this one's own apt uses, in a folder of its own; what
+is mounted into it is mounted in a namespace that ends with each command.
+"""
+
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from documents import ROOT, shell
+
+pytestmark = pytest.mark.slow
+
+PASSED_ON = ("http_proxy", "https_proxy", "no_proxy", "HTTP_PROXY", "HTTPS_PROXY", "NO_PROXY")
+CONFIGURATION = (
+    "etc/apt",
+    "etc/pip.conf",
+    "etc/ssl/certs",
+    "usr/local/share/ca-certificates",
+    "etc/resolv.conf",
+)
+"""How this machine reaches its mirrors, which the new one has to reach as well."""
+
+INSIDE = """
+set -e
+mount -t proc proc "$1/proc"
+mount --rbind /sys "$1/sys"
+mount -t tmpfs -o mode=1777 none "$1/dev/shm"
+exec chroot --userspec="$2:$2" --groups="$2" "$1" bash -euo pipefail -c "$3"
+"""
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A Debian below a folder."""
+
+    root: Path
+
+    def run(self, user: str, script: str) -> "subprocess.CompletedProcess[str]":
+        """Run a script in the user's home, without a terminal; what it prints comes as one text."""
+        home = "/root" if user == "root" else f"/home/{user}"
+        settings = {"HOME": home, "USER": user, "LANG": "C.UTF-8", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}
+        settings |= {
+            key: value for key, value in os.environ.items() if key in PASSED_ON or key.startswith("PIP_")
+        }
+        return subprocess.run(
+            ["unshare", "--mount", "sh", "-c", INSIDE, "sh", str(self.root), user, f"cd ~; {script}"],
+            env=settings, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            text=True, errors="replace", check=False,
+        )  # fmt: skip
+
+    def succeed(self, user: str, script: str) -> str:
+        """The same, for what must end well."""
+        done = self.run(user, script)
+        assert done.returncode == 0, f"{script}: exit code {done.returncode}\n{done.stdout[-6000:]}"
+        return done.stdout
+
+
+def mirror() -> tuple[str, str]:
+    """The mirror and the release that apt here installs from."""
+    if shutil.which("apt-get") is None:
+        pytest.skip("no fresh machine: apt-get is not here, so that no mirror is known")
+    wanted = ["apt-get", "indextargets", "--format", "$(SITE) $(RELEASE) $(ORIGIN)", "Created-By: Packages"]
+    lines = subprocess.run(wanted, capture_output=True, text=True, check=True).stdout.splitlines()
+    for site, release, *origin in map(str.split, lines):
+        if origin in (["Debian"], ["Ubuntu"]) and "-" not in release:
+            return site, release
+    pytest.skip("no fresh machine: apt here has no mirror of Debian or Ubuntu")
+
+
+@pytest.fixture(scope="module")
+def machine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
+    if os.geteuid() != 0:
+        pytest.skip("no fresh machine: debootstrap needs root")
+    if shutil.which("debootstrap") is None:
+        pytest.skip("no fresh machine: debootstrap is not here (apt-get install debootstrap)")
+    site, release = mirror()
+    root = tmp_path_factory.mktemp("machine") / "root"
+    include = "--include=ca-certificates,git,make,sudo"
+    made = subprocess.run(
+        ["debootstrap", "--variant=minbase", include, release, str(root), site],
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
+    )  # fmt: skip
+    if made.returncode != 0:
+        pytest.skip(f"no fresh machine: debootstrap: {made.stdout.strip().splitlines()[-1:]}")
+    (root / "etc" / "apt" / "sources.list").unlink(missing_ok=True)
+    for name in CONFIGURATION:
+        source, target = Path("/", name), root / name
+        if source.is_dir():
+            shutil.copytree(source, target, dirs_exist_ok=True, symlinks=True, ignore_dangling_symlinks=True)
+        elif source.is_file():
+            shutil.copy(source, target)
+    new = Machine(root)
+    for user in ("sudoer", "plain"):
+        new.succeed("root", f"useradd --create-home --shell /bin/bash {user}")
+    (root / "etc" / "sudoers.d" / "sudoer").write_text("sudoer ALL=(ALL) NOPASSWD: ALL\n")
+    subprocess.run(
+        ["git", "clone", "--quiet", "--bare", str(ROOT), str(root / "srv" / "carom.git")], check=True
+    )
+    yield new
+    shutil.rmtree(root.parent, ignore_errors=True)
+
+
+def clone(machine: Machine, user: str) -> None:
+    machine.succeed(user, "git config --global safe.directory '*'; git clone --quiet /srv/carom.git carom")
+
+
+def test_without_root_there_are_instructions_and_nothing_else(machine: Machine) -> None:
+    clone(machine, "plain")
+    done = machine.run("plain", "cd carom && make setup")
+    assert done.returncode != 0
+    assert "apt-get install" in done.stdout
+    assert "CMAKE_PREFIX_PATH" in done.stdout
+    assert "Traceback" not in done.stdout
+    assert machine.succeed("plain", "cd carom && git status --porcelain --ignored") == ""
+
+
+def test_the_two_commands_as_a_user_with_sudo(machine: Machine) -> None:
+    clone(machine, "sudoer")
+    (commands,) = shell("README.md", "fresh")
+    experiments, test = commands.text.splitlines()
+    assert "missing packages" in machine.succeed(
+        "sudoer", f"cd carom && {experiments.split('#')[0]} SCALE=quick"
+    )
+    report = machine.root / "home" / "sudoer" / "carom" / "results" / "report.html"
+    assert report.stat().st_size > 100_000
+    machine.succeed("sudoer", f"cd carom && {test}")
+    for block in shell("docs/tutorial.md", "fresh"):
+        machine.succeed("sudoer", f"cd carom && {block.text}")
+    assert machine.succeed("sudoer", "cd carom && git status --porcelain") == ""
+    machine.succeed("sudoer", "cd carom && make distclean")
+    assert machine.succeed("sudoer", "cd carom && git status --porcelain --ignored") in ("", "!! results/\n")
