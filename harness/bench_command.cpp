@@ -13,6 +13,7 @@
 #include "harness/measurement_options.hpp"
 #include "harness/options.hpp"
 #include "harness/provenance.hpp"
+#include "harness/threads.hpp"
 
 namespace carom {
 namespace {
@@ -112,6 +113,7 @@ void bench(BenchOptions options, const std::vector<std::string>& flags) {
     if (options.threads.empty()) {
         options.threads.push_back(default_threads());
     }
+    std::ranges::for_each(options.threads, require_threads);
     if (!options.measurement.record.empty()) {
         require_one_case(options);
         options.repetitions = std::max(options.repetitions, 1);

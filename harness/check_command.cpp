@@ -7,11 +7,13 @@
 #include "harness/measure.hpp"
 #include "harness/options.hpp"
 #include "harness/scene_file.hpp"
+#include "harness/threads.hpp"
 
 namespace carom {
 namespace {
 
 void check(const SimulationOptions& options) {
+    require_threads(options.tuning.threads);
     const Scene scene = read_scene(options.scene);
     const Variant& variant = require_variant(options.variant, scene, options.tuning.threads);
     const auto simulation = variant.simulate(scene, options.tuning);

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -99,7 +100,7 @@ std::vector<CLI::Option*> add_arguments(CLI::App& command, GeneratorArguments& a
         command.add_option("L", arguments.side, "Side of the box"),
         command.add_option("R", arguments.radius, "Radius of the discs"),
         command.add_option("STEPS", arguments.steps, "Units of time to simulate")
-            ->check(CLI::NonNegativeNumber),
+            ->check(CLI::Range(0, std::numeric_limits<int>::max())),
         command.add_option("VMIN", arguments.least_velocity, "Least velocity component")->check(speeds),
         command.add_option("VMAX", arguments.largest_velocity, "Largest velocity component")->check(speeds)};
 }

@@ -11,6 +11,7 @@
 #include <benchmark/benchmark.h>
 
 #include "harness/errors.hpp"
+#include "harness/threads.hpp"
 #include "kernels/parallel_for.hpp"
 
 namespace carom {
@@ -112,16 +113,6 @@ struct Part {
 };
 
 } // namespace
-
-void require_threads(int threads) {
-    std::vector<char> present(static_cast<std::size_t>(threads), 0);
-    on_each_thread(threads, [&present](int thread) { present[static_cast<std::size_t>(thread)] = 1; });
-    const auto granted = std::ranges::count(present, 1);
-    if (granted < threads) {
-        throw InputError("--threads: found " + std::to_string(threads) + ", but OpenMP grants " +
-                         std::to_string(granted) + "; expected OMP_THREAD_LIMIT and OMP_DYNAMIC to allow it");
-    }
-}
 
 std::vector<WorkingSet> working_sets(const Topology& topology, std::int64_t most_bytes, int threads) {
     constexpr std::int64_t smallest = std::int64_t{32} << 10;

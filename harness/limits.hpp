@@ -18,9 +18,6 @@ struct Rate {
     int repetitions = 0;
 };
 
-/// Throws InputError if OpenMP grants fewer threads: nothing may be reported of threads that never ran.
-void require_threads(int threads);
-
 /// How much memory a copy works in, both arrays together over all threads, and the level that can hold it.
 struct WorkingSet {
     std::string level; ///< L1d, L2, ... or memory

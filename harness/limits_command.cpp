@@ -12,6 +12,7 @@
 #include "harness/policies_json.hpp"
 #include "harness/provenance.hpp"
 #include "harness/record.hpp"
+#include "harness/threads.hpp"
 
 namespace carom {
 namespace {

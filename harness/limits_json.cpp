@@ -1,5 +1,6 @@
 #include "harness/format.hpp"
 #include "harness/limits.hpp"
+#include "harness/threads.hpp"
 
 namespace carom {
 namespace {

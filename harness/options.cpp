@@ -6,10 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include <omp.h>
-
 #include "harness/errors.hpp"
 #include "harness/rounding.hpp"
+#include "harness/threads.hpp"
 #include "variants/fastest.hpp"
 
 namespace carom {
@@ -33,8 +32,6 @@ std::size_t edit_distance(std::string_view one, std::string_view two) {
 }
 
 } // namespace
-
-int default_threads() { return std::clamp(omp_get_max_threads(), 1, most_threads); }
 
 void add_simulation_options(CLI::App& command, SimulationOptions& options) {
     options.tuning.threads = default_threads();

@@ -10,11 +10,6 @@
 
 namespace carom {
 
-inline constexpr int most_threads = 1024;
-
-/// As many threads as OpenMP would use by itself.
-int default_threads();
-
 /// What the verbs that simulate have in common.
 struct SimulationOptions {
     std::string scene;

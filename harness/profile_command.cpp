@@ -15,6 +15,7 @@
 #include "harness/profiler.hpp"
 #include "harness/record.hpp"
 #include "harness/simulated_counters.hpp"
+#include "harness/threads.hpp"
 #include "harness/timeline.hpp"
 
 namespace carom {
@@ -71,6 +72,7 @@ std::vector<CounterValue> all_counters(const ProfileOptions& options, const Meas
 
 void profile(const ProfileOptions& options) {
     tags_json(options.measurement.tags);
+    require_threads(options.simulation.tuning.threads);
     const LoadedScene loaded = load_scene(options.simulation.scene);
     const Variant& variant =
         require_variant(options.simulation.variant, loaded.scene, options.simulation.tuning.threads);

@@ -19,6 +19,7 @@
 #include "harness/progress_bar.hpp"
 #include "harness/scene_file.hpp"
 #include "harness/text.hpp"
+#include "harness/threads.hpp"
 
 namespace carom {
 namespace {
@@ -162,6 +163,7 @@ Run simulate(const RunOptions& options, const Scene& scene, const Variant& varia
 }
 
 void run(const RunOptions& options) {
+    require_threads(options.simulation.tuning.threads);
     const Scene scene = read_scene(options.simulation.scene);
     const Variant& variant =
         require_variant(options.simulation.variant, scene, options.simulation.tuning.threads);

@@ -96,6 +96,10 @@ template <Policies policies, class SomeProbe>
     requires(policies.storage == Storage::sorted)
 void bin(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const int parts = tuning.threads;
+    if constexpr (policies.search == Search::filtered) {
+        state.near_x.resize(state.discs.size() + 4);
+        state.near_y.resize(state.discs.size() + 4);
+    }
     state.places.resize(static_cast<std::size_t>(parts));
     std::vector<int> begin(static_cast<std::size_t>(parts));
     for_each_part(tuning, probe, [&](int part) { count_part(state, part, parts); });

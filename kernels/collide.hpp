@@ -1,7 +1,8 @@
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -78,41 +79,58 @@ bool resolve_pair(BasicDisc<Real>& first, BasicDisc<Real>& second, const Approac
     return true;
 }
 
-/// Both components of a vector at once, in one register. Also how they are loaded and stored: a processor
-/// waits where it must put together what was stored apart.
-template <class Real> struct Components {
+/// Both components of a vector in one register. Loaded and stored together: a processor waits where it must
+/// put together what was stored apart.
+template <class Real> struct BothComponents {
     typedef Real Register __attribute__((vector_size(2 * sizeof(Real))));
+    static constexpr std::size_t velocity_offset = offsetof(BasicDisc<Real>, vx);
+    static_assert(offsetof(BasicDisc<Real>, vy) == velocity_offset + sizeof(Real));
 
-    static Register load(const Real& x) {
+    static Register load(const std::array<Real, 2>& vector) {
         Register both;
-        std::memcpy(&both, &x, sizeof both);
+        std::memcpy(&both, vector.data(), sizeof both);
         return both;
     }
-    static void store(Register both, Real& x) { std::memcpy(&x, &both, sizeof both); }
+    static Register load_velocity(const BasicDisc<Real>& disc) {
+        Register both;
+        std::memcpy(&both, reinterpret_cast<const unsigned char*>(&disc) + velocity_offset, sizeof both);
+        return both;
+    }
+    static void store_velocity(Register both, BasicDisc<Real>& disc) {
+        std::memcpy(reinterpret_cast<unsigned char*>(&disc) + velocity_offset, &both, sizeof both);
+    }
     static Real sum(Register both) { return both[0] + both[1]; }
 };
 
-/// The same for a pair whose normal n = d / |d| is known, its components one after the other from `normal`
-/// on: then s d = ((v2 - v1).n) n.
+/// (v2 - v1).n
 template <class Real>
-[[gnu::always_inline]] inline bool resolve_along(const Real& normal, BasicDisc<Real>& first,
+[[gnu::always_inline]] inline Real approach_along(const std::array<Real, 2>& normal,
+                                                  const BasicDisc<Real>& first,
+                                                  const BasicDisc<Real>& second) {
+    using Both = BothComponents<Real>;
+    return Both::sum((Both::load_velocity(second) - Both::load_velocity(first)) * Both::load(normal));
+}
+
+/// As resolve_pair, for a pair whose unit normal n = d / |d| is known: then s d = ((v2 - v1).n) n.
+template <class Real>
+[[gnu::always_inline]] inline bool resolve_along(const std::array<Real, 2>& normal, BasicDisc<Real>& first,
                                                  BasicDisc<Real>& second, const Approach<Real>& approaching) {
-    using Both = Components<Real>;
-    const auto direction = Both::load(normal);
-    const auto velocity1 = Both::load(first.vx);
-    const auto velocity2 = Both::load(second.vx);
-    const Real approach = Both::sum((velocity2 - velocity1) * direction);
+    using Both = BothComponents<Real>;
+    const Real approach = approach_along(normal, first, second);
     if (!(approach < 0)) {
         return false;
     }
+    const auto velocity1 = Both::load_velocity(first);
+    const auto velocity2 = Both::load_velocity(second);
     const Real distance =
         approaching.absolute > 0 ? std::hypot(second.x - first.x, second.y - first.y) : Real{1};
     const Real speed_squared = Both::sum(velocity1 * velocity1 + velocity2 * velocity2);
     if (!approaching.counts(approach * distance, distance * distance, speed_squared)) {
         return false;
     }
-    Both::store(velocity1 + approach * direction, first.vx);
-    Both::store(velocity2 - approach * direction, second.vx);
+    const auto impulse = approach * Both::load(normal);
+    Both::store_velocity(velocity1 + impulse, first);
+    Both::store_velocity(velocity2 - impulse, second);
     return true;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -19,8 +20,7 @@ struct OverlappingDiscs {
 /// The same with the unit normal from the first disc to the second, of no meaning at a wall.
 template <class Real> struct Contact {
     OverlappingDiscs discs;
-    Real normal_x;
-    Real normal_y; ///< right after normal_x
+    std::array<Real, 2> normal;
 };
 
 /// The contacts whose first disc lies in one strip of rows of boxes, in the order of the boxes. The second

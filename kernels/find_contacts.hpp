@@ -17,10 +17,12 @@ namespace carom {
 
 /// What of the state the search for candidates reads, in registers.
 template <Policies policies> struct Candidates {
-    const BasicDisc<RealOf<policies.precision>>* discs;
+    using Real = RealOf<policies.precision>;
+
+    const BasicDisc<Real>* discs;
     const float* x;
     const float* y;
-    RealOf<policies.precision> reach_squared;
+    Real reach_squared;
     float filter_reach_squared;
     bool sparse; ///< most discs overlap none: then it pays to ask first
 
@@ -28,7 +30,7 @@ template <Policies policies> struct Candidates {
         : discs(state.discs.data()), x(state.near_x.data()), y(state.near_y.data()),
           reach_squared(state.reach_squared()),
           filter_reach_squared(carom::filter_reach_squared(state.side, state.radius)),
-          sparse(static_cast<float>(state.count()) * (state.radius * state.radius) <
+          sparse(static_cast<Real>(state.count()) * (state.radius * state.radius) <
                  state.side * state.side / 32) {}
 
     /// Writes disc i with each disc of [begin, end) that may overlap it to `found`, which has room for all of
@@ -68,7 +70,7 @@ Tally add_contacts(const State<policies>& state, Strip<typename State<policies>:
     for (std::size_t k = 0; k < size; ++k) {
         const OverlappingDiscs pair = strip.found[k];
         if (pair.second == OverlappingDiscs::wall) {
-            strip.contacts.push_back({pair, 0, 0});
+            strip.contacts.push_back({pair, {}});
             continue;
         }
         const auto& first = state.discs[static_cast<std::size_t>(pair.first)];
@@ -82,7 +84,7 @@ Tally add_contacts(const State<policies>& state, Strip<typename State<policies>:
         ++tally.overlaps;
         if (distance_squared >= coincident_squared<Real>) {
             const Real per_distance = 1 / std::sqrt(distance_squared);
-            strip.contacts.push_back({pair, dx * per_distance, dy * per_distance});
+            strip.contacts.push_back({pair, {dx * per_distance, dy * per_distance}});
         }
     }
     return tally;
@@ -102,10 +104,9 @@ inline OverlappingDiscs* room(std::vector<OverlappingDiscs>& found, std::size_t 
 /// half the neighbourhood is enough. Disc by disc, since most boxes hold one or none. Returns how many were
 /// found.
 template <Policies policies>
-std::size_t search_block(State<policies>& state, std::vector<OverlappingDiscs>& found, int row,
-                         BoxRange columns) {
+std::size_t search_block(State<policies>& state, const Candidates<policies>& candidates,
+                         std::vector<OverlappingDiscs>& found, int row, BoxRange columns) {
     std::size_t size = 0;
-    const Candidates<policies> candidates(state);
     const int row_begin = state.grid.box_of(row, 0);
     const int boxes_per_side = state.grid.boxes_per_side();
     const int* const first = state.first.data();
@@ -113,7 +114,9 @@ std::size_t search_block(State<policies>& state, std::vector<OverlappingDiscs>& 
     for (int i = first[row_begin + columns.first]; i < end; ++i) {
         const auto disc = static_cast<std::size_t>(i);
         const int column = state.box_of_disc[disc] - row_begin;
-        state.block_of_disc[disc] = state.active.code(row, columns, column);
+        if constexpr (policies.worklist == Worklist::active) {
+            state.block_of_disc[disc] = state.active.code(row, columns, column);
+        }
         if (state.grid.at_wall(row, column) && overlaps_wall(state.discs[disc], state.side, state.radius))
             [[unlikely]] {
             *room(found, size++, 1) = {i, OverlappingDiscs::wall};
@@ -133,6 +136,7 @@ std::size_t search_block(State<policies>& state, std::vector<OverlappingDiscs>& 
 template <Policies policies> Tally find_in_strip(State<policies>& state, int index) {
     constexpr int per_block = ActiveBlocks::boxes_per_block;
     Tally tally;
+    const Candidates<policies> candidates(state);
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     strip.contacts.clear();
     strip.first.clear();
@@ -140,13 +144,15 @@ template <Policies policies> Tally find_in_strip(State<policies>& state, int ind
     for (int row = rows.first; row <= rows.last; ++row) {
         for (int column = 0; column < state.grid.boxes_per_side(); column += per_block) {
             const int last = std::min(column + per_block, state.grid.boxes_per_side()) - 1;
-            const std::size_t size = search_block(state, strip.found, row, {column, last});
+            const std::size_t size = search_block(state, candidates, strip.found, row, {column, last});
             strip.first.push_back(static_cast<int>(strip.contacts.size()));
             tally += add_contacts(state, strip, size);
         }
     }
     strip.first.push_back(static_cast<int>(strip.contacts.size()));
-    std::fill_n(state.active.row(rows.first), strip.first.size() - 1, static_cast<unsigned char>(1));
+    if constexpr (policies.worklist == Worklist::active) {
+        std::fill_n(state.active.row(rows.first), strip.first.size() - 1, static_cast<unsigned char>(1));
+    }
     return tally;
 }
 

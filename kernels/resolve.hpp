@@ -9,7 +9,7 @@ namespace carom {
 
 /// A parallel loop costs about as much as this many resolves. A sweep after one that changed less runs on one
 /// thread.
-inline constexpr int few_changes = 1000;
+inline constexpr int few_changes = 300;
 
 /// Changes velocities until no pair and no wall is colliding, or the sweep limit is reached.
 template <Policies policies, class SomeProbe>

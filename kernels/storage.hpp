@@ -62,7 +62,7 @@ template <class Real> struct DiscsOf<Storage::sorted, Real> {
     std::vector<int> box_of_disc; ///< written by the move, and then sorted with the discs
     std::vector<int> first;       ///< index of the first disc of each box; one more, the count, at the end
 
-    std::vector<float> near_x; ///< positions in float, for Search::filtered, and four more that mean nothing
+    std::vector<float> near_x; ///< Search::filtered: positions in float, and four more that mean nothing
     std::vector<float> near_y; ///< ditto
 
     std::vector<BasicDisc<Real>> spare_discs; ///< what the sort writes into, then swapped
@@ -73,9 +73,8 @@ template <class Real> struct DiscsOf<Storage::sorted, Real> {
 
     DiscsOf(const Scene& scene, const Grid& grid)
         : discs(discs_of<Real>(scene)), numbers(discs.size()), box_of_disc(discs.size()),
-          first(static_cast<std::size_t>(grid.box_count()) + 1), near_x(discs.size() + 4),
-          near_y(discs.size() + 4), spare_discs(discs.size()), spare_numbers(discs.size()),
-          spare_box_of_disc(discs.size()) {
+          first(static_cast<std::size_t>(grid.box_count()) + 1), spare_discs(discs.size()),
+          spare_numbers(discs.size()), spare_box_of_disc(discs.size()) {
         std::iota(numbers.begin(), numbers.end(), 0);
     }
 

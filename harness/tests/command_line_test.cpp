@@ -76,6 +76,14 @@ TEST_F(CommandLine, RefusesThreadsThatCannotBe) {
     }
 }
 
+TEST_F(CommandLine, RefusesThreadsThatItDoesNotGet) {
+    for (const char* verb : {"run", "check", "bench", "profile"}) {
+        EXPECT_TRUE(refused(run_carom({verb, scene, "--threads", "2"}, {"OMP_THREAD_LIMIT=1"}), 1,
+                            {"--threads", "found 2", "OpenMP grants 1"}))
+            << verb;
+    }
+}
+
 TEST_F(CommandLine, RefusesTuningsThatCannotBe) {
     for (const char* option : {"--find-chunk", "--resolve-chunk", "--substeps", "--sweep-limit"}) {
         for (const char* value : {"0", "-5", "many", "99999999999"}) {

@@ -1,0 +1,13 @@
+#pragma once
+
+namespace carom {
+
+inline constexpr int most_threads = 1024;
+
+/// As many threads as OpenMP would use by itself.
+int default_threads();
+
+/// Throws InputError if OpenMP grants fewer threads: nothing may be reported of threads that never ran.
+void require_threads(int threads);
+
+} // namespace carom
