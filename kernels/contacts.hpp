@@ -29,6 +29,7 @@ template <class Real> struct Strip {
     std::vector<Contact<Real>> contacts;
     std::vector<int> first; ///< of each block of boxes, its first contact; at the end, their number
     std::vector<OverlappingDiscs> found; ///< of one block, while it is searched
+    std::vector<int> colliding; ///< which contacts may collide, while they are resolved; room for one more
 };
 
 /// Which blocks of boxes have contacts to look at again, for Worklist::active. A block is a run of boxes of

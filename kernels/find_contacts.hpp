@@ -150,6 +150,7 @@ template <Policies policies> Tally find_in_strip(State<policies>& state, int ind
         }
     }
     strip.first.push_back(static_cast<int>(strip.contacts.size()));
+    strip.colliding.resize(strip.contacts.size() + 1);
     if constexpr (policies.worklist == Worklist::active) {
         std::fill_n(state.active.row(rows.first), strip.first.size() - 1, static_cast<unsigned char>(1));
     }
