@@ -56,7 +56,8 @@ def _machines(
     study: Study, studies: Sequence[Study], published: Published, experiment: str
 ) -> list[Measured]:
     machines: dict[str, Measured] = {}
-    for other in studies:
+    # This study first: another one of its machine, of another revision, must not speak for it.
+    for other in (study, *studies):
         processes = process_medians(other.times_of(experiment))
         if other.scale == study.scale and not processes.empty:
             speed = gigahertz(str(processes["cpu_model"].iloc[0]), published)

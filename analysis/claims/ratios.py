@@ -27,14 +27,16 @@ def _one_pair(
     times = study.times_of(experiment)
     if times.empty:
         return no_records(experiment)
-    chosen, against = _largest(times, axis, candidate, reference)
-    missing = [name for name, side in ((candidate, chosen), (reference, against)) if side.empty]
+    sides = [times[times[axis] == value] for value in (candidate, reference)]
+    missing = [name for name, side in zip((candidate, reference), sides, strict=True) if side.empty]
     if missing:
         return no_records(experiment, " and ".join(f"{axis} = {name}" for name in missing))
+    x_name, shared = times["x_name"].iloc[0], set(sides[0]["x"]) & set(sides[1]["x"])
+    if not shared:
+        return no_records(experiment, f"{candidate} and {reference} at the same {x_name}")
+    chosen, against = (side[side["x"] == max(shared)] for side in sides)
     row = judge_one(log_ratios(process_medians(against), process_medians(chosen))["log_ratio"])
-    where = (
-        f" at {chosen['x_name'].iloc[0]} = {exact(chosen['x'].iloc[0])}" if times["x"].nunique() > 1 else ""
-    )
+    where = f" at {x_name} = {exact(max(shared))}" if times["x"].nunique() > 1 else ""
     measured = (
         f"{candidate} against {reference}{where}: {change(row)} of time, {blocks(row)} ({row['verdict']})"
     )
@@ -45,17 +47,6 @@ def _judged(verdict: str, expected: str, measured: str) -> Outcome:
     if verdict == "inconclusive":
         return Outcome(OPEN, measured, TOO_FEW)
     return Outcome(HOLDS if verdict == expected else FAILS, measured)
-
-
-def _largest(
-    times: pd.DataFrame, axis: str, candidate: str, reference: str
-) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Return the rows of either side at the largest x that both were measured at."""
-    sides = [times[times[axis] == value] for value in (candidate, reference)]
-    shared = set(sides[0]["x"]) & set(sides[1]["x"])
-    largest = max(shared) if shared else None
-    first, second = (side[side["x"] == largest] if shared else side for side in sides)
-    return first, second
 
 
 def fewer_resolves(study: Study, experiment: str, axis: str, candidate: str, reference: str) -> Outcome:

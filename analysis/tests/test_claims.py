@@ -124,6 +124,35 @@ def test_the_machine_claim_orders_machines_by_clock(tmp_path: Path, speed: float
     assert "5.1 GHz" in row["measured"]
 
 
+def test_a_machine_speaks_with_the_records_of_the_revision_that_is_judged(tmp_path: Path) -> None:
+    slow, fast = "Intel Xeon Silver 4114 CPU @ 2.20GHz", "13th Gen Intel(R) Core(TM) i7-13700"
+    for machine, speed in (
+        (Machine(host="a", cpu_model=slow, commit="0" * 40), 4.0),
+        (Machine(host="a", cpu_model=slow, commit="1" * 40), 1.0),
+        (Machine(host="b", cpu_model=fast), 2.0),
+    ):
+        folder = tmp_path / "records" / f"{machine.host}{machine.commit[0]}"
+        write(folder, study(["machine"], machine=machine, noise=QUIET, speed=speed))
+    studies = split(load(tmp_path))
+    verdicts = {}
+    for one in studies:
+        table = claims.evaluate(one, studies, published.load()).set_index("id")
+        verdicts[one.machine[0], one.revision[0]] = table.loc["machine", "verdict"]
+    assert (verdicts["a", "0"], verdicts["a", "1"]) == (FAILS, HOLDS)
+
+
+def test_a_ratio_claim_needs_both_sides_at_the_same_x(tmp_path: Path) -> None:
+    records = [
+        record
+        for record in study(["row"], blocks=8, noise=QUIET)
+        if (record["tags"]["x"] > 50_000) == (record["tags"]["series"] == "row")
+    ]
+    write(tmp_path, records)
+    row = verdicts_of(tmp_path).loc["row"]
+    assert row["verdict"] == OPEN
+    assert "of row and checkered at the same particles" in row["why"]
+
+
 def test_resolves_are_counted_and_not_timed(tmp_path: Path) -> None:
     points = [
         Point("reverse", 0, 1.2, axes={"direction": "reverse"}, pair_resolves=1000),
