@@ -3,7 +3,7 @@
 import pandas as pd
 
 from analysis.figures.captions import opening
-from analysis.figures.comparisons import differences, differences_sentence
+from analysis.figures.comparisons import differences, differences_sentence, reference
 from analysis.figures.curves import curve
 from analysis.figures.dots import dots, faint_dots
 from analysis.figures.labels import label_ends
@@ -19,6 +19,7 @@ from analysis.figures.style import (
     new_figure,
     plain_ticks,
 )
+from analysis.ladder import per_disc_step
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge
@@ -35,9 +36,7 @@ def row(data: Data) -> Drawing | None:
     if times.empty:
         return None
     figure, (left, right) = new_figure(2.6, columns=2)
-    summary = summarise(times, ["series", "x"])
-    per_disc = 1e9 / (summary["x"] * times["steps"].iloc[0])
-    scaled = summary.assign(**{end: summary[end] * per_disc for end in ("median", "low", "high")})
+    scaled = summarise(per_disc_step(times), ["series", "x"], value="nanoseconds")
     for series, part in scaled.groupby("series"):
         curve(left, part, COLOURS.get(str(series), INK))
     left.set(xscale="log", xlabel="discs", ylabel="time per disc and step, ns")
@@ -96,8 +95,8 @@ def sequential_orders(data: Data) -> Drawing | None:
             ],
         )
     axes.set_xlabel("time of the steps, s")
-    fastest = medians.index[-1]
-    said = differences_sentence(differences(times, fastest), f"{fastest}, the fastest")
+    against = reference(times)
+    said = differences_sentence(differences(times, against), against)
     caption = opening(times, "The sequential resolve orders") + said
     return Drawing(
         figure,
