@@ -17,8 +17,8 @@ from experiments.tests.small_disk import run_on_small_disk
 from experiments.tests.test_command_line import finish
 from experiments.tests.test_run import rows
 
-# With its source named, the second mount does not repeat the first one's options, among them an owner whom the
-# namespace of an ordinary user does not know.
+# With its source named, the second mount does not repeat the first one's options, among them an owner whom
+# the namespace of an ordinary user does not know.
 FULL = """
 run() {
     PYTHONPATH="$3" "$2" -m experiments run --results results --build build --questions questions --no-figures
