@@ -6,17 +6,22 @@ from experiments.errors import InputError, nearest
 from experiments.question import Place, Question, Series
 from experiments.scenes import AnyScene, HardCase
 
+FEWEST_BLOCKS = 2
+"""An interval needs two."""
+
 
 @dataclass(frozen=True)
 class Scale:
     """How large the scenes are, which of a question's values are taken, and how long it all may last.
 
-    `divisor` divides discs and area, `steps_divisor` the steps; the budget covers the report too.
+    `divisor` divides discs and area, `steps_divisor` the steps, `blocks_divisor` the least number of blocks;
+    the budget covers the report too.
     """
 
     name: str
     divisor: int
     steps_divisor: int
+    blocks_divisor: int
     budget_seconds: float
 
     def scene(self, scene: AnyScene) -> AnyScene:
@@ -24,6 +29,12 @@ class Scale:
         if isinstance(scene, HardCase):
             return scene
         return replace(scene.shrunk(self.divisor), steps=max(1, scene.steps // self.steps_divisor))
+
+    def question(self, question: Question) -> Question:
+        """A question at this scale: a smaller least number of blocks leaves more to the budget."""
+        asked = question.blocks
+        least = min(asked.minimum, max(FEWEST_BLOCKS, asked.minimum // self.blocks_divisor))
+        return replace(question, blocks=replace(asked, minimum=least))
 
     def places(self, question: Question) -> tuple[Place, ...]:
         """A question's scenes at this scale."""
@@ -35,8 +46,8 @@ class Scale:
 
 
 SCALES = {
-    "paper": Scale("paper", divisor=1, steps_divisor=1, budget_seconds=37 * 60),
-    "quick": Scale("quick", divisor=10, steps_divisor=2, budget_seconds=3 * 60),
+    "paper": Scale("paper", divisor=1, steps_divisor=1, blocks_divisor=1, budget_seconds=37 * 60),
+    "quick": Scale("quick", divisor=10, steps_divisor=2, blocks_divisor=2, budget_seconds=3 * 60),
 }
 
 

@@ -69,7 +69,7 @@ class Study:
         around = Surroundings(self.site, machine, programs, self.scale, settings.seed)
         questions = load_questions(settings.questions, settings.study)
         self.experiments: tuple[Experiment, ...] = tuple(
-            plan(with_blocks(one, settings.blocks), around) for one in questions
+            plan(with_blocks(self.scale.question(one), settings.blocks), around) for one in questions
         )
         self.store = Store(settings.results, new_session())
 

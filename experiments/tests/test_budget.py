@@ -1,5 +1,6 @@
 """Blocks for a budget: minima always, more while they fit, and to whom they are owed."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from experiments.plan import Surroundings, plan
 from experiments.point import Point
 from experiments.program import Program
 from experiments.progress import about
-from experiments.question import FOLDER, load_question
+from experiments.question import FOLDER, Blocks, load_question
 from experiments.scale import SCALES
 from experiments.site import Machine, load_site
 from experiments.tests.conftest import generated
@@ -91,6 +92,21 @@ def test_a_point_without_records_is_estimated_from_its_probe() -> None:
     runs, steps = 2, 100
     size = generated(point).particles / PROBE.particles
     assert costs.point(point) == pytest.approx(runs * steps * size * 0.003, rel=0.1)
+
+
+def test_the_start_of_a_process_counts_once() -> None:
+    point = points("hard_cases")[0]
+    idle = Costs({probe_key(point): Probe(step=0.0, process=1.0)}, {})
+    assert idle.point(point) == pytest.approx(1.0, rel=0.05)
+    assert idle.check(point) == pytest.approx(1.0, rel=0.05)
+    assert idle.errors(point) < 0.05, "measured within the process of the point"
+
+
+@pytest.mark.parametrize(("minimum", "least"), [(1, 1), (2, 2), (3, 2), (6, 3), (24, 12)])
+def test_at_quick_scale_the_budget_decides_from_fewer_blocks_on(minimum: int, least: int) -> None:
+    asked = replace(load_question(FOLDER / "compiler.toml"), blocks=Blocks(minimum, 30))
+    assert SCALES["quick"].question(asked).blocks == Blocks(least, 30)
+    assert SCALES["paper"].question(asked) == asked
 
 
 def test_larger_scenes_cost_more() -> None:
