@@ -20,7 +20,7 @@ constexpr auto any = std::numeric_limits<std::size_t>::max();
 constexpr Rule rules[] = {
     {.most_discs = any,
      .least_threads = 1,
-     .variant = "nine-strips-self_contained_off-sorted-snug-contacts-filtered-active"},
+     .variant = "nine-strips-self_contained_off-resolve_dynamic-sorted-snug-contacts-filtered-active"},
 };
 
 } // namespace

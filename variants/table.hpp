@@ -51,7 +51,8 @@ inline constexpr auto ladder = climb(
     flip(&Policies::neighbourhood, Neighbourhood::nine),
     flip(&Policies::box_side, BoxSide::snug),
     flip(&Policies::search, Search::filtered),
-    flip(&Policies::worklist, Worklist::active));
+    flip(&Policies::worklist, Worklist::active),
+    flip(&Policies::resolve_schedule, Schedule::dynamic));
 // clang-format on
 
 /// The whole design space, the published best first. A row names what differs from it; one more line is one
