@@ -1,7 +1,8 @@
 """Two results folders against each other: two commits, two compilers, two machines."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -18,28 +19,41 @@ POINT = [
 SHOWN = ["experiment", "series", "x", "label", "scene_name"]
 SLOWER, UNDECIDED = 3, 4
 
+Point = tuple[Any, ...]
+"""The values of the columns `POINT`."""
+
 
 def compare(first: Path, second: Path, experiment: str | None = None) -> pd.DataFrame:
-    """Return a row a point that both folders measured: its place, and `second` / `first` as `verdicts.judge`.
+    """Return a row a point: its place, and `second` / `first` as `verdicts.judge`.
 
     Points match by figure, scene, threads and tunings. The folders were not interleaved, so processes are
-    compared unpaired; the p-values are Holm-corrected within each experiment. Raises InputError if a folder
-    mixes several machines, revisions or scales, or if nothing matches.
+    compared unpaired; the p-values are Holm-corrected within each experiment. A point that only one of the
+    folders measured, as where it fails in the other, is inconclusive; of an experiment that only one of them
+    has, nothing is said. Raises InputError if a folder mixes several machines, revisions or scales, or if
+    nothing matches.
     """
     sides = [_processes(folder, experiment) for folder in (first, second)]
-    groups = [dict(list(side.groupby(POINT))) for side in sides]
+    groups = [dict(list(side.groupby(POINT)["steps_seconds"])) for side in sides]
     shared = [point for point in groups[0] if point in groups[1]]
     if not shared:
         raise InputError(f"{first} and {second}: no point in common to compare")
+    names = set(sides[0]["experiment"]) & set(sides[1]["experiment"])
+    place = POINT.index("experiment")
+    lone = [point for point in groups[0].keys() ^ groups[1].keys() if point[place] in names]
+    table = _judged(groups, shared)
+    parts = [corrected(part) for _, part in table.groupby("experiment")]
+    return pd.concat([*parts, *([_judged(groups, sorted(lone))] if lone else [])])[[*SHOWN, *COLUMNS]]
+
+
+def _judged(groups: Sequence[Mapping[Point, pd.Series]], points: Sequence[Point]) -> pd.DataFrame:
     rows = [
         {
             **dict(zip(POINT, point, strict=True)),
-            **judge_unpaired(*(group[point]["steps_seconds"] for group in groups)),
+            **judge_unpaired(*(group.get(point, ()) for group in groups)),
         }
-        for point in shared
+        for point in points
     ]
-    table = pd.DataFrame(rows)
-    return pd.concat([corrected(part) for _, part in table.groupby("experiment")])[[*SHOWN, *COLUMNS]]
+    return pd.DataFrame(rows)
 
 
 def _processes(folder: Path, experiment: str | None) -> pd.DataFrame:

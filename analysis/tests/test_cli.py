@@ -42,6 +42,18 @@ def test_one_slower_point_among_faster_ones_is_code_3(tmp_path: Path) -> None:
     assert main(["compare", first, second, "--experiment", "steps"]) == 0
 
 
+def test_a_point_that_only_one_folder_measured_is_undecided(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, second = folder(tmp_path / "a"), folder(tmp_path / "b", seed=2)
+    for path in (tmp_path / "b" / "records" / "neighbourhood").glob("*.json"):
+        if '"series": "nine"' in path.read_text():
+            path.unlink()
+    assert main(["compare", first, second]) == 4
+    assert "11 equivalent, 1 inconclusive" in capsys.readouterr().out
+    assert main(["compare", second, first, "--experiment", "steps"]) == 0
+
+
 def test_a_single_block_is_undecided(tmp_path: Path) -> None:
     assert main(["compare", folder(tmp_path / "a", blocks=1), folder(tmp_path / "b", blocks=1)]) == 4
 
