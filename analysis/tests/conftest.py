@@ -9,7 +9,8 @@ from analysis import published
 from analysis.figures.style import Data
 from analysis.records import load
 from analysis.studies import split
-from analysis.tests.synthetic import Noise, write
+from analysis.tests.synthetic import write
+from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_study import failures, study, trace
 
 

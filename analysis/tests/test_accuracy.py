@@ -15,8 +15,10 @@ from analysis.records import load
 from analysis.report.horizons import horizons
 from analysis.studies import Study, split
 from analysis.study_figures import draw_all
-from analysis.tests.synthetic import QUIET, write
-from analysis.tests.synthetic_study import SUBSTEPS, study
+from analysis.tests.synthetic import write
+from analysis.tests.synthetic_noise import QUIET
+from analysis.tests.synthetic_points import SUBSTEPS
+from analysis.tests.synthetic_study import study
 from analysis.tests.test_report import Page, text_of
 
 NAME = "speed_against_error"

@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 
 from analysis.statistics.bootstrap import summarise
-from analysis.tests.synthetic import Noise, times_table
+from analysis.tests.synthetic_noise import Noise, times_table
 
 
 def summary_of(table: pd.DataFrame) -> pd.Series:

@@ -8,8 +8,10 @@ from analysis.claims.outcome import FAILS, HOLDS, OPEN
 from analysis.figures.style import Data
 from analysis.records import load
 from analysis.studies import split
-from analysis.tests.synthetic import QUIET, Machine, Noise, Point, bench, write
-from analysis.tests.synthetic_study import EXPERIMENTS, study
+from analysis.tests.synthetic import Machine, Point, bench, write
+from analysis.tests.synthetic_noise import QUIET, Noise
+from analysis.tests.synthetic_points import EXPERIMENTS
+from analysis.tests.synthetic_study import study
 
 IDS = [
     "threads", "particles", "grid_length", "radius", "steps", "velocity", "machine", "four_boxes",

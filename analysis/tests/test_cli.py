@@ -3,7 +3,8 @@ from pathlib import Path
 import pytest
 
 from analysis.cli import main
-from analysis.tests.synthetic import QUIET, Machine, Noise, write
+from analysis.tests.synthetic import Machine, write
+from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_study import study
 
 COMPARED = ["neighbourhood", "steps"]

@@ -13,8 +13,10 @@ from analysis.figures.style import Data, styled
 from analysis.records import load
 from analysis.studies import split
 from analysis.study_figures import draw_all
-from analysis.tests.synthetic import Machine, Noise, write
-from analysis.tests.synthetic_study import EXPERIMENTS, study
+from analysis.tests.synthetic import Machine, write
+from analysis.tests.synthetic_noise import Noise
+from analysis.tests.synthetic_points import EXPERIMENTS
+from analysis.tests.synthetic_study import study
 
 UNCOUNTED = ["counters_hardware", "counters_simulated", "speed_against_error-unresolved"]
 DRAWN = [entry for entry in FIGURES if entry.name not in UNCOUNTED]

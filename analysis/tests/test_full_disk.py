@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from analysis.tests.synthetic import QUIET, write
+from analysis.tests.synthetic import write
+from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_study import study
 
 ROOT = Path(__file__).parents[2]

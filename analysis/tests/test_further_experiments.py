@@ -12,7 +12,8 @@ from analysis.figures import KINDS, Drawn
 from analysis.figures.comparisons import differences, reference
 from analysis.records import load
 from analysis.study_figures import draw_all
-from analysis.tests.synthetic import QUIET, write
+from analysis.tests.synthetic import write
+from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_study import study
 from analysis.tests.test_report import Page, text_of
 

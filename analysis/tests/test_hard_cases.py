@@ -11,7 +11,8 @@ from analysis.hard_cases import FAILS, HOLDS, LABELS, LIMIT, UNMEASURED, Expecta
 from analysis.records import load
 from analysis.studies import split
 from analysis.study_figures import draw_all
-from analysis.tests.synthetic import QUIET, failure, write
+from analysis.tests.synthetic import failure, write
+from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_study import study
 from analysis.tests.test_report import text_of
 

@@ -12,8 +12,10 @@ from analysis.figures.style import Data, Drawing, styled
 from analysis.ladder import claims, factors, headlines, named, rungs, totals
 from analysis.records import load
 from analysis.studies import Study, split
-from analysis.tests.synthetic import QUIET, Machine, Noise, profile, write
-from analysis.tests.synthetic_study import LADDER, SHARES, study
+from analysis.tests.synthetic import Machine, profile, write
+from analysis.tests.synthetic_noise import QUIET, Noise
+from analysis.tests.synthetic_points import LADDER
+from analysis.tests.synthetic_study import SHARES, study
 
 FACTORS = [factor for factor, _ in LADDER.values()]
 

@@ -15,7 +15,8 @@ from analysis.ladder import named
 from analysis.limits import against_limits
 from analysis.records import load
 from analysis.studies import Study, split
-from analysis.tests.synthetic import QUIET, write
+from analysis.tests.synthetic import write
+from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_study import ARITHMETIC, COPY, SHARES, study
 from analysis.unavoidable import PHASES, unavoidable
 

@@ -5,7 +5,7 @@ import pytest
 from analysis.statistics.intervals import RANKS_FROM
 from analysis.statistics.noise import blocks_needed, process_noise, warning
 from analysis.statistics.verdicts import judge_one
-from analysis.tests.synthetic import Noise, times_table
+from analysis.tests.synthetic_noise import Noise, times_table
 
 
 def noise_of(noise: Noise, blocks: int = 40, figure: str = "comparison") -> pd.Series:

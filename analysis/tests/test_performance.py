@@ -5,8 +5,10 @@ from pathlib import Path
 import pytest
 
 from analysis.cli import main
-from analysis.tests.synthetic import QUIET, write
-from analysis.tests.synthetic_study import LADDER, study
+from analysis.tests.synthetic import write
+from analysis.tests.synthetic_noise import QUIET
+from analysis.tests.synthetic_points import LADDER
+from analysis.tests.synthetic_study import study
 from analysis.unavoidable import PHASES
 
 

@@ -9,7 +9,8 @@ import pytest
 from analysis import claims, report
 from analysis.cli import main
 from analysis.records import InputError
-from analysis.tests.synthetic import QUIET, Machine, write
+from analysis.tests.synthetic import Machine, write
+from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_study import study
 from analysis.tests.test_figures import DRAWN
 

@@ -6,7 +6,7 @@ from analysis import published
 from analysis.statistics import scalability
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.trends import growth, linearity, turn
-from analysis.tests.synthetic import Noise, times_table
+from analysis.tests.synthetic_noise import Noise, times_table
 
 VM = Noise(burst_rate=0.01)
 

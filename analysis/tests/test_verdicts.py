@@ -8,7 +8,7 @@ import pytest
 
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import holm, judge, judge_one, not_faster
-from analysis.tests.synthetic import Noise, times_table
+from analysis.tests.synthetic_noise import Noise, times_table
 
 STUDIES = 100
 VM = Noise()
