@@ -48,7 +48,20 @@ minimum = 2
 wanted = 2
 """
 
-ERRORS = """
+FOUR_AND_NINE = """[[series]]
+name = "four"
+variant = "published"
+
+[[series]]
+name = "nine"
+variant = "nine"
+
+[blocks]
+minimum = 2
+wanted = 2
+"""
+
+ERRORS = f"""
 title = "Errors"
 figure = "speed_against_error"
 errors = true
@@ -71,18 +84,7 @@ case = "cradle"
 parameter = "substeps"
 values = [1, 2]
 
-[[series]]
-name = "four"
-variant = "published"
-
-[[series]]
-name = "nine"
-variant = "nine"
-
-[blocks]
-minimum = 2
-wanted = 2
-"""
+{FOUR_AND_NINE}"""
 
 CONTROL = f"""
 title = "Control"
@@ -108,18 +110,22 @@ title = "Pair"
 figure = "comparison"
 claim = "four_boxes"
 {SCENE}
-[[series]]
-name = "four"
-variant = "published"
+{FOUR_AND_NINE}"""
 
-[[series]]
-name = "nine"
-variant = "nine"
+SLURM_SITE = """
+kind = "slurm"
 
-[blocks]
-minimum = 2
-wanted = 2
+[programs]
+gcc = "gcc/carom"
+
+[openmp]
+places = "cores"
+proc_bind = "close"
+proc_bind_oversubscribed = "false"
+
+[slurm]
 """
+"""Up to what a cluster says of itself."""
 
 
 @dataclass(frozen=True)

@@ -14,21 +14,12 @@ from experiments.slurm_script import render
 from experiments.slurm_site import Partition
 from experiments.slurm_submit import pack
 from experiments.study import Study
-from experiments.tests.conftest import Workplace
+from experiments.tests.conftest import SLURM_SITE, Workplace
 
 OWNED = "x; touch owned"
 PARTITION = Partition(name="xs", cpus=2, hardware_threads=4)
 PROGRAMS = {"gcc": "gcc/carom", "clang": "clang/carom"}
-SITE = """
-kind = "slurm"
-[programs]
-gcc = "gcc/carom"
-[openmp]
-places = "cores"
-proc_bind = "close"
-proc_bind_oversubscribed = "false"
-[slurm]
-# common
+SITE = f"""{SLURM_SITE}# common
 [[slurm.partitions]]
 name = "xs"
 cpus = 2

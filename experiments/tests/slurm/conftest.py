@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from experiments.tests.conftest import SCENE, Workplace
+from experiments.tests.conftest import SCENE, SLURM_SITE, Workplace
 from experiments.tests.slurm.cluster import PARTITIONS, Cluster
 from experiments.tests.slurm.packages import UnavailableError
 
@@ -26,20 +26,7 @@ minimum = 5
 wanted = 5
 """
 
-SITE = """
-kind = "slurm"
-
-[programs]
-gcc = "gcc/carom"
-
-[openmp]
-places = "cores"
-proc_bind = "close"
-proc_bind_oversubscribed = "false"
-
-[slurm]
-minutes = 5
-"""
+SITE = SLURM_SITE + "minutes = 5\n"
 
 
 @dataclass(frozen=True)
