@@ -18,6 +18,7 @@ _BOX_PER_DISC = 0.1
 _RUNS_OF_A_PROFILE = 3
 _RUNS_OF_A_CHECK = 2
 _RUNS_FOR_ERRORS = 3
+_SLOWED_BY_CACHEGRIND = 60
 _SECONDS_PER_DISC_READ = 6e-7
 # The longest, which only the paper scale has, takes a hundred times as much; the reserve is for that, too.
 _SECONDS_PER_HARD_CASE = 0.01
@@ -54,11 +55,17 @@ class Costs:
         probe = self._probe(point)
         return probe.process + _reading(point.scene) + _RUNS_OF_A_CHECK * _run(point, probe)
 
-    def errors(self, point: Point) -> float:
-        """Measuring the errors of the point, which one of its processes does besides."""
-        if not point.errors or point.program.sha256 is None:
+    def besides(self, point: Point) -> float:
+        """What one of the point's processes does besides: measuring errors, counting under cachegrind."""
+        if point.program.sha256 is None:
             return 0.0
-        return _RUNS_FOR_ERRORS * _run(point, self._probe(point))
+        probe = self._probe(point)
+        seconds = _RUNS_FOR_ERRORS * _run(point, probe) if point.errors else 0.0
+        if point.simulated:
+            scene = point.scene
+            share = 1.0 if isinstance(scene, HardCase) else min(point.simulated / scene.steps, 1.0)
+            seconds += _SLOWED_BY_CACHEGRIND * (_run(point, probe) * share + 2 * _reading(point.scene))
+        return seconds
 
     def scene(self, scene: AnyScene) -> float:
         """Generating a scene."""

@@ -144,6 +144,7 @@ def _point(
         warm_up=question.warm_up,
         repetitions=question.repetitions,
         errors=question.errors,
+        simulated=question.simulated,
         openmp=tuple(sorted(around.site.binding.environment(threads, around.machine).items())),
         **chunks,
     )

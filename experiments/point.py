@@ -3,6 +3,7 @@
 import hashlib
 import json
 import re
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
@@ -42,6 +43,7 @@ class Point:
     warm_up: int
     repetitions: int
     errors: bool
+    simulated: int
     openmp: tuple[tuple[str, str], ...]
 
     @cached_property
@@ -62,6 +64,7 @@ class Point:
             "warm_up": self.warm_up,
             "repetitions": self.repetitions,
             "errors": self.errors,
+            "simulated": self.simulated,
         }
         # The letter keeps the id a text: the program takes a tag that reads as a number for one.
         return "p" + hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
@@ -109,11 +112,20 @@ class Point:
         """
         return self.errors and block == 0
 
+    def besides(self, block: int) -> tuple[str, ...]:
+        """The options for what the process of that block does besides: what comes out the same in every one
+        is done in the first alone.
+        """
+        words = ["--errors"] if self.measures_errors(block) else []
+        if self.simulated and block == 0:
+            words += ["--simulated", "--simulated-steps", str(self.simulated)]
+        return tuple(words)
+
     def command(
-        self, scene: Path, record: Path, tags: Tags, timeline: Path | None = None, *, errors: bool = False
+        self, scene: Path, record: Path, tags: Tags, timeline: Path | None = None, besides: Sequence[str] = ()
     ) -> tuple[str, ...]:
-        """The command that measures the point once and writes its record, and the timeline of a profile;
-        `errors` asks for the error measures, from an untimed run of their own.
+        """The command that measures the point once, does what else it is told to, and writes its record, and
+        the timeline of a profile.
         """
         words = [str(self.program.path), self.verb, str(scene)]
         words += ["--variant", self.variant, "--threads", str(self.threads)]
@@ -124,8 +136,7 @@ class Point:
         words += ["--warm-up", str(self.warm_up)]
         if self.verb == "bench":
             words += ["--repetitions", str(self.repetitions)]
-        if errors:
-            words.append("--errors")
+        words += besides
         if timeline is not None:
             words += ["--timeline", str(timeline), "--timeline-chunks"]
         return (*words, "--record", str(record), *tag_arguments(tags))

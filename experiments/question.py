@@ -81,6 +81,7 @@ class Question:
     warm_up: int = 1
     repetitions: int = 1
     errors: bool = False
+    simulated: int = 0
     blocks: Blocks = Blocks()
 
 
@@ -193,6 +194,8 @@ def _check_errors(question: Question) -> None:
     file, figure = question.file, question.figure
     if question.errors and question.verb != "bench":
         raise InputError(f"{file}: errors: found for verb {question.verb}, expected for bench only")
+    if question.simulated and question.verb != "profile":
+        raise InputError(f"{file}: simulated: found for verb {question.verb}, expected for profile only")
     if figure in _OF_ERRORS and not question.errors:
         raise InputError(f"{file}: errors: missing; expected true for figure {figure}")
     if figure == "speed_against_error" and question.sweep.parameter != "substeps":

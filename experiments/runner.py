@@ -94,8 +94,7 @@ class Runner:
         scratch.unlink(missing_ok=True)
         tags = task.tags(self._store.session)
         timeline = self._store.temporary / "timeline.json" if _is_drawn(task) else None
-        errors = point.measures_errors(task.block)
-        command = point.command(scene.path, scratch, tags, timeline, errors=errors)
+        command = point.command(scene.path, scratch, tags, timeline, point.besides(task.block))
         with turn():
             done = process.run(command, clean_environment(dict(point.openmp)), self._time_limit)
         record = read_json(scratch)

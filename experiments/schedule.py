@@ -112,7 +112,7 @@ class Schedule:
         for point in experiment.points:
             first = representative(experiment, point)
             for key, cost in (
-                ((experiment.name, point.id), self._costs.errors(point)),
+                ((experiment.name, point.id), self._costs.besides(point)),
                 (point.scene, self._costs.scene(point.scene)),
                 ((point.program.sha256, point.variant, first.scene), self._costs.check(first)),
             ):

@@ -30,7 +30,7 @@ def profile(data: Data, experiment: str, subject: str) -> Drawing | None:
     if table.empty:
         return None
     threads = data.study.threads[data.study.threads["experiment"] == experiment]
-    series = list(dict.fromkeys(table["series"]))[::-1]
+    series = list(dict.fromkeys(table.sort_values("series_number", kind="stable")["series"]))[::-1]
     figure, (left, right) = new_figure(0.8 + 0.42 * len(series), columns=2, widths=[1.15, 1])
     shares = phase_shares(table)
     _stacked(left, shares, series)

@@ -72,7 +72,7 @@ def split(rest: list[str]) -> tuple[Options, list[str]]:
         if word == "--tag":
             key, _, value = next(words).partition("=")
             tags[key] = number_or_text(value)
-        elif word in ("--timeline-chunks", "--errors", "--isotropic"):
+        elif word in ("--timeline-chunks", "--errors", "--simulated", "--isotropic"):
             options[word[2:]] = True
         elif word.startswith("--"):
             options[word[2:]] = next(words)

@@ -99,7 +99,7 @@ def test_the_start_of_a_process_counts_once() -> None:
     idle = Costs({probe_key(point): Probe(step=0.0, process=1.0)}, {})
     assert idle.point(point) == pytest.approx(1.0, rel=0.05)
     assert idle.check(point) == pytest.approx(1.0, rel=0.05)
-    assert idle.errors(point) < 0.05, "measured within the process of the point"
+    assert idle.besides(point) < 0.05, "measured within the process of the point"
 
 
 @pytest.mark.parametrize(("minimum", "least"), [(1, 1), (2, 2), (3, 2), (6, 3), (24, 12)])

@@ -48,6 +48,7 @@ CONTENT: dict[str, st.SearchStrategy[Any]] = {
     "warm_up": st.integers(0, 2),
     "repetitions": st.integers(1, 3),
     "errors": st.booleans(),
+    "simulated": st.integers(0, 2),
     "openmp": st.sampled_from([(), (("OMP_PLACES", "cores"),)]),
 }
 PLACE: dict[str, st.SearchStrategy[Any]] = {

@@ -93,6 +93,21 @@ def test_errors_are_measured_once_a_point(workplace: Workplace) -> None:
     assert not any("scene_name" in record["tags"] for record in workplace.records("pair").values())
 
 
+def test_cachegrind_counts_once_a_point(workplace: Workplace) -> None:
+    text = PAIR.replace("[scene]", 'verb = "profile"\nsimulated = 3\n\n[scene]', 1)
+    workplace.question("pair", text)
+    assert run(workplace.settings) == 0
+    counted = [call["words"] for call in workplace.calls() if "--simulated" in call["words"]]
+    assert len(counted) == len({point["tags"]["point"] for point in workplace.records("pair").values()})
+    assert all(words[words.index("--simulated-steps") + 1] == "3" for words in counted)
+
+
+def test_only_a_profile_can_be_counted_under_cachegrind(workplace: Workplace) -> None:
+    workplace.question("pair", PAIR.replace("[scene]", "simulated = 3\n\n[scene]", 1))
+    with pytest.raises(InputError, match="simulated: found for verb bench, expected for profile only"):
+        run(workplace.settings)
+
+
 def test_a_record_without_the_errors_asked_for_is_measured_again(workplace: Workplace) -> None:
     workplace.question("errors", ERRORS)
     run(workplace.settings)
