@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "event_cells.hpp"
 #include "event_queue.hpp"
 #include "scene.hpp"
 
@@ -44,22 +45,16 @@ struct EventLimits {
 template <class Real> class EventDriven {
   public:
     explicit EventDriven(const Scene& scene)
-        : side_(static_cast<Real>(scene.side)), radius_(static_cast<Real>(scene.radius)),
+        : side_(static_cast<Real>(scene.side)), radius_(static_cast<Real>(scene.radius)), cells_(scene),
           queue_(static_cast<int>(scene.discs.size())) {
-        const auto count = static_cast<double>(scene.discs.size());
-        const double spacing = std::max(2.0 * scene.radius * (1 + 1e-9), scene.side / std::sqrt(count + 1));
-        cells_per_side_ = static_cast<int>(std::clamp(std::floor(scene.side / spacing), 1.0, 10'000.0));
-        cell_side_ = side_ / static_cast<Real>(cells_per_side_);
-        first_in_cell_.assign(static_cast<std::size_t>(cells_per_side_ * cells_per_side_), none);
         bodies_.reserve(scene.discs.size());
         for (const Disc& disc : scene.discs) {
             bodies_.push_back({.x = static_cast<Real>(disc.x),
                                .y = static_cast<Real>(disc.y),
                                .vx = static_cast<Real>(disc.vx),
                                .vy = static_cast<Real>(disc.vy)});
-            bodies_.back().row = cell_along(bodies_.back().y);
-            bodies_.back().column = cell_along(bodies_.back().x);
-            insert(static_cast<int>(bodies_.size()) - 1);
+            const Body& one = bodies_.back();
+            cells_.insert(static_cast<int>(bodies_.size()) - 1, cells_.along(one.y), cells_.along(one.x));
         }
         for (int i = 0; i < static_cast<int>(bodies_.size()); ++i) {
             look_ahead(i);
@@ -119,7 +114,7 @@ template <class Real> class EventDriven {
     Real wall_impulse() const { return wall_impulse_; }
 
   private:
-    static constexpr int none = -1;
+    static constexpr int none = EventCells<Real>::none;
     static constexpr int wall_x = -2;
     static constexpr int wall_y = -3;
     static constexpr Real never = std::numeric_limits<Real>::infinity();
@@ -137,45 +132,10 @@ template <class Real> class EventDriven {
         int partner = none;            ///< of the next collision: a disc or a wall
         std::uint32_t partner_age = 0; ///< the partner's age when it was foreseen
         std::uint32_t age = 0;         ///< collisions so far
-        int row = 0;
-        int column = 0;
-        int next = none; ///< in the same cell
-        int previous = none;
         bool crosses_row = false;
     };
 
     Body& body(int i) { return bodies_[static_cast<std::size_t>(i)]; }
-    int& first_in(int row, int column) {
-        return first_in_cell_[static_cast<std::size_t>(row * cells_per_side_ + column)];
-    }
-
-    int cell_along(Real position) const {
-        const Real scaled = position / cell_side_;
-        return scaled > 0 ? static_cast<int>(std::min(scaled, static_cast<Real>(cells_per_side_ - 1))) : 0;
-    }
-
-    void insert(int i) {
-        Body& one = body(i);
-        int& first = first_in(one.row, one.column);
-        one.previous = none;
-        one.next = first;
-        if (first != none) {
-            body(first).previous = i;
-        }
-        first = i;
-    }
-
-    void remove(int i) {
-        const Body& one = body(i);
-        if (one.previous == none) {
-            first_in(one.row, one.column) = one.next;
-        } else {
-            body(one.previous).next = one.next;
-        }
-        if (one.next != none) {
-            body(one.next).previous = one.previous;
-        }
-    }
 
     void move_to_now(Body& one) const {
         const Real elapsed = now_ - one.time;
@@ -233,19 +193,20 @@ template <class Real> class EventDriven {
     void cross(int i) {
         Body& one = body(i);
         move_to_now(one);
-        remove(i);
-        int& along = one.crosses_row ? one.row : one.column;
+        const int row = cells_.place(i).row;
+        const int column = cells_.place(i).column;
         const int step = (one.crosses_row ? one.vy : one.vx) > 0 ? 1 : -1;
-        along += step;
-        insert(i);
+        const int along = (one.crosses_row ? row : column) + step;
+        cells_.remove(i);
+        cells_.insert(i, one.crosses_row ? along : row, one.crosses_row ? column : along);
         const int ahead = along + step;
-        if (ahead >= 0 && ahead < cells_per_side_) {
-            const int across = one.crosses_row ? one.column : one.row;
-            for (int k = std::max(across - 1, 0); k <= std::min(across + 1, cells_per_side_ - 1); ++k) {
+        if (ahead >= 0 && ahead < cells_.per_side()) {
+            const int across = one.crosses_row ? column : row;
+            for (int k = std::max(across - 1, 0); k <= std::min(across + 1, cells_.per_side() - 1); ++k) {
                 foresee_cell(i, one.crosses_row ? ahead : k, one.crosses_row ? k : ahead);
             }
         }
-        foresee_crossing(one);
+        foresee_crossing(i);
         queue_.set(i, std::min(one.collision_time, one.crossing_time));
     }
 
@@ -256,13 +217,15 @@ template <class Real> class EventDriven {
         one.partner = none;
         foresee_wall(one, one.x, one.vx, wall_x);
         foresee_wall(one, one.y, one.vy, wall_y);
-        for (int row = std::max(one.row - 1, 0); row <= std::min(one.row + 1, cells_per_side_ - 1); ++row) {
-            for (int column = std::max(one.column - 1, 0);
-                 column <= std::min(one.column + 1, cells_per_side_ - 1); ++column) {
+        const auto& place = cells_.place(i);
+        const int last = cells_.per_side() - 1;
+        for (int row = std::max(place.row - 1, 0); row <= std::min(place.row + 1, last); ++row) {
+            for (int column = std::max(place.column - 1, 0); column <= std::min(place.column + 1, last);
+                 ++column) {
                 foresee_cell(i, row, column);
             }
         }
-        foresee_crossing(one);
+        foresee_crossing(i);
         queue_.set(i, std::min(one.collision_time, one.crossing_time));
     }
 
@@ -280,7 +243,7 @@ template <class Real> class EventDriven {
 
     void foresee_cell(int i, int row, int column) {
         Body& one = body(i);
-        for (int j = first_in(row, column); j != none; j = body(j).next) {
+        for (int j = cells_.first_in(row, column); j != none; j = cells_.place(j).next) {
             if (j == i) {
                 continue;
             }
@@ -317,29 +280,19 @@ template <class Real> class EventDriven {
         return discriminant < 0 ? never : c / (std::sqrt(discriminant) - b);
     }
 
-    /// The edge cells reach out to infinity: nothing crosses into a cell outside the scene.
-    void foresee_crossing(Body& one) const {
-        const Real in_x = crossing_along(one.x, one.vx, one.column);
-        const Real in_y = crossing_along(one.y, one.vy, one.row);
+    void foresee_crossing(int i) {
+        Body& one = body(i);
+        const Real in_x = cells_.time_to_crossing(one.x, one.vx, cells_.place(i).column);
+        const Real in_y = cells_.time_to_crossing(one.y, one.vy, cells_.place(i).row);
         one.crosses_row = in_y < in_x;
         one.crossing_time = now_ + std::min(in_x, in_y);
     }
 
-    Real crossing_along(Real position, Real velocity, int index) const {
-        const int edge = velocity > 0 ? index + 1 : index;
-        if (velocity == 0 || edge == 0 || edge == cells_per_side_) {
-            return never;
-        }
-        return std::max((static_cast<Real>(edge) * cell_side_ - position) / velocity, Real(0));
-    }
-
     Real side_;
     Real radius_;
-    Real cell_side_;
-    int cells_per_side_;
     Real now_ = 0;
     std::vector<Body> bodies_;
-    std::vector<int> first_in_cell_;
+    EventCells<Real> cells_;
     EventQueue<Real> queue_;
     std::int64_t events_ = 0;
     std::int64_t pair_collisions_ = 0;
