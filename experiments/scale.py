@@ -31,8 +31,13 @@ class Scale:
         return replace(scene.shrunk(self.divisor), steps=max(1, scene.steps // self.steps_divisor))
 
     def question(self, question: Question) -> Question:
-        """A question at this scale: a smaller least number of blocks leaves more to the budget."""
+        """A question at this scale: a smaller least number of blocks leaves more to the budget.
+
+        One that leaves no choice to the budget, such as the control, stays as it is.
+        """
         asked = question.blocks
+        if asked.minimum == asked.wanted:
+            return question
         least = min(asked.minimum, max(FEWEST_BLOCKS, asked.minimum // self.blocks_divisor))
         return replace(question, blocks=replace(asked, minimum=least))
 

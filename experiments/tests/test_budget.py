@@ -109,6 +109,11 @@ def test_at_quick_scale_the_budget_decides_from_fewer_blocks_on(minimum: int, le
     assert SCALES["paper"].question(asked) == asked
 
 
+def test_what_leaves_the_budget_no_choice_is_the_same_at_quick_scale() -> None:
+    control = load_question(FOLDER / "control.toml")
+    assert SCALES["quick"].question(control) == control
+
+
 def test_larger_scenes_cost_more() -> None:
     costs = Costs({}, {})
     for name in ("particles", "steps", "min_velocity", "max_velocity"):
