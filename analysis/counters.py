@@ -79,8 +79,11 @@ def derived(counters: pd.DataFrame) -> pd.DataFrame:
     totals = measured.groupby([*keys, "name"])["value"].agg(lambda values: values.sum(skipna=False))
     wide = totals.unstack("name").reset_index()
     tables = [_quantity(wide[wide["source"] == one.source], one) for one in QUANTITIES]
-    rows = pd.concat(tables) if tables else pd.DataFrame()
-    groups = rows.dropna(subset="value").groupby(["experiment", "series", "source", "quantity"], sort=False)
+    groups = (
+        pd.concat(tables)
+        .dropna(subset="value")
+        .groupby(["experiment", "series", "source", "quantity"], sort=False)
+    )
     return groups["value"].agg(value="median", least="min", greatest="max", runs="count").reset_index()
 
 

@@ -35,10 +35,10 @@ def growth_sentence(times: pd.DataFrame) -> str:
     if processes["x"].nunique() < 2:
         return ""
     trend = growth(processes)
-    verdict = {"grows": "The time grows", "falls": "The time falls", "flat": "The time stays"}
-    said = verdict.get(trend.verdict, "No trend is settled: the time changes")
+    verdict = {"grows": "The time grows", "falls": "The time falls", "flat": "The time stays the same"}
+    said = verdict.get(trend.verdict, "No trend is settled")
     return (
-        f" {said} by {change(trend.change)} from {exact(trend.first)} to {exact(trend.last)}"
+        f" {said}: {change(trend.change)} from {exact(trend.first)} to {exact(trend.last)}"
         f"{_with('; fitted exponent', trend.exponent)}."
     )
 

@@ -80,10 +80,11 @@ def verbs(runs: pd.DataFrame) -> list[str]:
 
 def commands(runs: pd.DataFrame) -> list[dict[str, Any]]:
     """Return per experiment the commands behind its points, each once, rebuilt from the records' own
-    fields.
+    fields. One process of a point measures its errors, too: the command says so.
     """
     rows: dict[str, dict[str, None]] = {}
-    ordered = runs.sort_values(["experiment", "series", "x"], kind="stable")
+    with_errors = runs.groupby(["experiment", "series", "x", "scene"])["has_errors"].transform("any")
+    ordered = runs.assign(has_errors=with_errors).sort_values(["experiment", "series", "x"], kind="stable")
     for row in ordered.to_dict("records"):
         rows.setdefault(row["experiment"], {}).setdefault(_command(row))
     return [{"experiment": name, "commands": list(found)} for name, found in sorted(rows.items())]
@@ -102,6 +103,9 @@ def _command(row: dict[str, Any]) -> str:
     for option in ("find_chunk", "resolve_chunk"):
         if not pd.isna(row[option]):
             words += [f"--{option.replace('_', '-')}", f"{row[option]:g}"]
+    words += ["--warm-up", str(row["warm_ups"])]
     if row["kind"] == "bench":
-        words += ["--repetitions", str(row["repetitions"]), "--warm-up", str(row["warm_ups"])]
+        words += ["--repetitions", str(row["repetitions"])]
+    if row["has_errors"]:
+        words += ["--errors", "--record", "record.json"]
     return f"{row['environment']} {shlex.join(words)}".strip()

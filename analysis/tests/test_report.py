@@ -8,7 +8,8 @@ import pytest
 
 from analysis import claims, report
 from analysis.cli import main
-from analysis.records import InputError
+from analysis.records import InputError, load
+from analysis.report.provenance import commands
 from analysis.tests.synthetic import Machine, write
 from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_study import study
@@ -46,6 +47,13 @@ def page(results: Path) -> str:
 def text_of(page: str) -> str:
     without_figures = re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL)
     return " ".join(re.sub(r"<[^>]+>", " ", without_figures).replace("&#39;", "'").split())
+
+
+def test_the_commands_measure_what_the_records_hold(tmp_path: Path) -> None:
+    write(tmp_path, study(["speed_against_error", "phases"], blocks=2))
+    found = {row["experiment"]: row["commands"] for row in commands(load(tmp_path).runs)}
+    assert all(" --errors --record " in command for command in found["speed_against_error"])
+    assert all(command.endswith("--warm-up 1") for command in found["phases"])
 
 
 def test_it_holds_every_claim_every_figure_and_its_caption(page: str) -> None:
