@@ -36,6 +36,11 @@ void turn(Disc& disc, double angle) {
     disc.vy = std::sin(angle) * vx + std::cos(angle) * disc.vy;
 }
 
+void turn_pair(std::vector<Disc>& discs, double angle) {
+    turn(discs[pair_first], angle);
+    turn(discs[pair_second], angle);
+}
+
 void speed_up(Disc& disc, double factor) {
     disc.vx *= factor;
     disc.vy *= factor;
@@ -90,17 +95,9 @@ const std::vector<Mutant> mutants{
          speed_up(discs[receding_second], std::sqrt((had + given) / had));
      },
      "disc 3 overlaps no other, yet its velocity changed from (-1, 0.5) to (0.99"},
-    {"PairThatTurned",
-     [](auto& discs) {
-         turn(discs[pair_first], 0.01);
-         turn(discs[pair_second], 0.01);
-     },
+    {"PairThatTurned", [](auto& discs) { turn_pair(discs, 0.01); },
      "the group of 2 overlapping discs around disc 0, away from walls, changed its momentum by "},
-    {"PairThatTurnedALittle",
-     [](auto& discs) {
-         turn(discs[pair_first], 1e-9);
-         turn(discs[pair_second], 1e-9);
-     },
+    {"PairThatTurnedALittle", [](auto& discs) { turn_pair(discs, 1e-9); },
      "the group of 2 overlapping discs around disc 0, away from walls, changed its momentum by "},
     {"PairThatExchangedWholeVelocities",
      [](auto& discs) {
