@@ -51,7 +51,7 @@ def _caption(times: pd.DataFrame, subject: str) -> str:
     on = " or ".join(count(int(number), "thread") for number in threads)
     caption = (
         f"{subject} (N = {exact(times['particles'].iloc[0])}, {on}): medians with 95 % "
-        f"bootstrap intervals, {count(times['file'].nunique(), 'process')}."
+        f"bootstrap intervals, {count(times['file'].nunique(), 'process')}.{_hosts(times)}"
     )
     processes = process_medians(times)
     groups = {name: group["steps_seconds"] for name, group in processes.groupby("told")}
@@ -65,3 +65,14 @@ def _caption(times: pd.DataFrame, subject: str) -> str:
         for name, row in zip(others, table.to_dict("records"), strict=True)
     )
     return f"{caption} Against {first}, the fastest (not interleaved, so unpaired): {said}."
+
+
+def _hosts(times: pd.DataFrame) -> str:
+    """Say which nodes of a partition were used; what is no partition has its host in its name."""
+    nodes = times.groupby("machine")["node"].unique()
+    used = [
+        f"{machine} on {', '.join(sorted(names))}"
+        for machine, names in nodes.items()
+        if not str(machine).startswith(f"{names[0]}: ")
+    ]
+    return f" Nodes: {'; '.join(used)}." if used else ""
