@@ -1,5 +1,7 @@
 """A cluster for all tests that need one, and a workplace whose site it is."""
 
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from experiments.tests.conftest import SCENE, SLURM_SITE, Workplace
+from experiments.tests.conftest import ROOT, SCENE, SLURM_SITE, Workplace
 from experiments.tests.slurm.cluster import PARTITIONS, Cluster
 from experiments.tests.slurm.packages import UnavailableError
 
@@ -59,6 +61,12 @@ class Place:
     def measured(self) -> list[dict[str, Any]]:
         """Every process that measured a point."""
         return [call for call in self.workplace.calls() if "--tag" in call["words"]]
+
+    def report(self) -> str:
+        """The report of what was collected."""
+        command = [sys.executable, "-m", "analysis", "report", "--results", str(self.workplace.results)]
+        subprocess.run(command, cwd=ROOT, check=True, capture_output=True, timeout=300)
+        return (self.workplace.results / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="session")

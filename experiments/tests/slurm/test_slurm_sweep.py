@@ -1,8 +1,6 @@
 """From a plan to job arrays, and from their records to one figure."""
 
 import json
-import subprocess
-import sys
 
 from experiments.tests.conftest import ROOT
 from experiments.tests.slurm.cluster import PARTITIONS, node_of
@@ -29,7 +27,7 @@ def test_three_partitions_give_one_figure_with_three_machines(place: Place) -> N
     assert "15 of 15 files are new" in place.say("collect")
     assert "0 of 15 files are new" in place.say("collect")
     assert len(list(place.workplace.results.glob("records/collected/*/machine/*.json"))) == 15
-    report = report_of(place)
+    report = place.report()
     for partition in PARTITIONS:
         assert f"{partition}: none" in report
     assert report.count("(equivalent)") >= 2
@@ -46,9 +44,3 @@ def test_odd_folders_and_hostile_names_run_nothing(place: Place) -> None:
     assert 'slurm.partitions[1].name: found "x; touch owned"' in place.say("submit", code=1)
     assert not list(place.workplace.root.rglob("owned"))
     assert not (ROOT / "owned").exists()
-
-
-def report_of(place: Place) -> str:
-    command = [sys.executable, "-m", "analysis", "report", "--results", str(place.workplace.results)]
-    subprocess.run(command, cwd=ROOT, check=True, capture_output=True, timeout=300)
-    return (place.workplace.results / "report.html").read_text(encoding="utf-8")
