@@ -130,7 +130,8 @@ std::vector<WorkingSet> working_sets(const Topology& topology, std::int64_t most
         }
         return "memory";
     };
-    const std::int64_t largest = std::min(2 * 4 * last_level, most_bytes);
+    // A copy has two arrays.
+    const std::int64_t largest = std::min(2 * (4 * last_level), most_bytes);
     std::vector<WorkingSet> sets;
     for (std::int64_t bytes = smallest; bytes <= largest / 2; bytes *= 4) {
         sets.push_back({level_of(bytes), bytes});

@@ -82,7 +82,7 @@ bool resolve_pair(BasicDisc<Real>& first, BasicDisc<Real>& second, const Approac
 /// Both components of a vector in one register. Loaded and stored together: a processor waits where it must
 /// put together what was stored apart.
 template <class Real> struct BothComponents {
-    typedef Real Register __attribute__((vector_size(2 * sizeof(Real))));
+    using Register [[gnu::vector_size(2 * sizeof(Real))]] = Real;
     static constexpr std::size_t velocity_offset = offsetof(BasicDisc<Real>, vx);
     static_assert(offsetof(BasicDisc<Real>, vy) == velocity_offset + sizeof(Real));
 

@@ -25,8 +25,8 @@ inline float filter_reach_squared(double side, double radius) {
     return static_cast<float>(reach * reach * (1 + 0x1p-20));
 }
 
-typedef float FourFloats __attribute__((vector_size(16)));
-typedef int FourInts __attribute__((vector_size(16)));
+using FourFloats [[gnu::vector_size(16)]] = float;
+using FourInts [[gnu::vector_size(16)]] = int;
 
 /// For each of the first `count` discs of the four from `x` and `y` on: -1 if it may overlap the disc at (x0,
 /// y0), else 0; 0 for the rest.

@@ -173,7 +173,7 @@ std::optional<std::string> first_wrong(const Scene& scene, const Variant& varian
 
 /// The same, giving every resolve the time that it needs.
 std::optional<std::string> first_wrong_in_the_end(const Scene& scene, const Variant& variant, Tuning tuning) {
-    const auto wrong = first_wrong(scene, variant, tuning);
+    auto wrong = first_wrong(scene, variant, tuning);
     if (!wrong || !wrong->ends_with(endless)) {
         return wrong;
     }
