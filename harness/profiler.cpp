@@ -46,7 +46,7 @@ std::size_t Profiler::spans_left_out() const {
     return total;
 }
 
-void Profiler::keep(Track& track, const Span& span) {
+void Profiler::keep(Track& track, const Span& span) const {
     if (!timeline_.spans) {
         return;
     }

@@ -90,7 +90,7 @@ class Profiler final : public Probe {
     double now() const;
     Track& track(int thread) { return tracks_[static_cast<std::size_t>(thread)]; }
     ThreadWork& current(Track& track) { return track.work[static_cast<std::size_t>(phase_)]; }
-    void keep(Track& track, const Span& span);
+    void keep(Track& track, const Span& span) const;
     void keep_chunk(Track& track, double end);
     void note_gap(int thread, double until);
 

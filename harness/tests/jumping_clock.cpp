@@ -18,28 +18,28 @@ std::time_t jump() {
 
 extern "C" {
 
-int clock_gettime(clockid_t clock, timespec* time) noexcept {
+int clock_gettime(clockid_t clock_id, timespec* tp) noexcept {
     static const auto real =
         reinterpret_cast<int (*)(clockid_t, timespec*)>(dlsym(RTLD_NEXT, "clock_gettime"));
-    const int result = real(clock, time);
-    if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE) {
-        time->tv_sec += jump();
+    const int result = real(clock_id, tp);
+    if (clock_id == CLOCK_REALTIME || clock_id == CLOCK_REALTIME_COARSE) {
+        tp->tv_sec += jump();
     }
     return result;
 }
 
-int gettimeofday(timeval* time, void* zone) noexcept {
+int gettimeofday(timeval* tv, void* tz) noexcept {
     static const auto real = reinterpret_cast<int (*)(timeval*, void*)>(dlsym(RTLD_NEXT, "gettimeofday"));
-    const int result = real(time, zone);
-    time->tv_sec += jump();
+    const int result = real(tv, tz);
+    tv->tv_sec += jump();
     return result;
 }
 
-std::time_t time(std::time_t* where) noexcept {
+std::time_t time(std::time_t* timer) noexcept {
     timespec now{};
     clock_gettime(CLOCK_REALTIME, &now);
-    if (where != nullptr) {
-        *where = now.tv_sec;
+    if (timer != nullptr) {
+        *timer = now.tv_sec;
     }
     return now.tv_sec;
 }
