@@ -75,8 +75,8 @@ const Variant& require_variant(const std::string& name) {
                      std::string(nearest->name) + "'");
 }
 
-const Variant& require_variant(const std::string& name, const Scene& scene, int threads) {
-    const Variant& variant = name == automatic ? fastest_variant(scene, threads) : require_variant(name);
+const Variant& require_variant(const std::string& name, const Scene& scene) {
+    const Variant& variant = name == automatic ? fastest_variant(scene) : require_variant(name);
     if (!holds(variant.policies, scene)) {
         throw InputError("--variant " + name +
                          ": computes in float, and the scene has numbers beyond 1e15 or a radius "

@@ -29,7 +29,7 @@ void add_tuning_options(CLI::App& command, Tuning& tuning);
 /// The variant of that name; throws InputError with the nearest names if there is none.
 const Variant& require_variant(const std::string& name);
 
-/// The same, or, for `automatic`, the fastest for the scene and the threads.
-const Variant& require_variant(const std::string& name, const Scene& scene, int threads);
+/// The same, or, for `automatic`, the fastest for the scene.
+const Variant& require_variant(const std::string& name, const Scene& scene);
 
 } // namespace carom

@@ -74,8 +74,7 @@ void profile(const ProfileOptions& options) {
     tags_json(options.measurement.tags);
     require_threads(options.simulation.tuning.threads);
     const LoadedScene loaded = load_scene(options.simulation.scene);
-    const Variant& variant =
-        require_variant(options.simulation.variant, loaded.scene, options.simulation.tuning.threads);
+    const Variant& variant = require_variant(options.simulation.variant, loaded.scene);
     Measurement measurement = measurement_of(loaded, variant, options.simulation.tuning, options.measurement);
 
     for (int k = 0; k < options.measurement.warm_ups; ++k) {

@@ -7,31 +7,32 @@
 namespace carom {
 namespace {
 
-/// For scenes of at most so many discs on at least so many threads.
+/// For scenes of at most so many discs.
 struct Rule {
     std::size_t most_discs;
-    int least_threads;
     std::string_view variant;
 };
 
-constexpr auto any = std::numeric_limits<std::size_t>::max();
-
 /// The first rule that fits decides.
+///
+/// Fitted to the records of the question small_scenes on 2 cores: with 2 threads the time of `once` over that
+/// of the last rung of the ladder is 0.24, 0.42, 0.74, 1.24, 2.4 and 4.0 for 10, 30, 100, 300, 1000 and 3000
+/// discs. They cross at about 200; with one thread, measured alike, at about 150. In larger scenes the last
+/// rung is ahead at every area fraction from nearly 0 to 0.91 (the questions grid_length and ladder).
 constexpr Rule rules[] = {
-    {.most_discs = any,
-     .least_threads = 1,
+    {.most_discs = 150, .variant = "once"},
+    {.most_discs = std::numeric_limits<std::size_t>::max(),
      .variant = "nine-strips-self_contained_off-resolve_dynamic-sorted-snug-contacts-filtered-active"},
 };
 
 } // namespace
 
-const Variant& fastest_variant(const Scene& scene, int threads) {
-    for (const Rule& rule : rules) {
-        if (scene.discs.size() <= rule.most_discs && threads >= rule.least_threads) {
-            return *find_variant(rule.variant);
-        }
+const Variant& fastest_variant(const Scene& scene) {
+    const Rule* rule = rules;
+    while (scene.discs.size() > rule->most_discs) {
+        ++rule;
     }
-    return variants().front();
+    return *find_variant(rule->variant);
 }
 
 } // namespace carom

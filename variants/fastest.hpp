@@ -5,8 +5,7 @@
 
 namespace carom {
 
-/// The variant that is expected to be the fastest for a scene on so many threads, by the rules in
-/// fastest.cpp.
-const Variant& fastest_variant(const Scene& scene, int threads);
+/// The variant that is expected to be the fastest for a scene, by the rules in fastest.cpp.
+const Variant& fastest_variant(const Scene& scene);
 
 } // namespace carom

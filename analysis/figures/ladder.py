@@ -74,7 +74,7 @@ def _panels(scenes: int, rows: int) -> tuple[Figure, list[tuple[Axes, Axes]]]:
     columns = min(scenes, COLUMNS)
     lines = math.ceil(scenes / columns)
     figure = Figure(figsize=(WIDTH, lines * (0.85 + ROW_HEIGHT * rows)))
-    ratios = [1.0, 1.05] * columns
+    ratios = [1.0, 1.3] * columns
     grid = figure.subplots(lines, 2 * columns, squeeze=False, gridspec_kw={"width_ratios": ratios}).ravel()
     for axes in grid[2 * scenes :]:
         axes.set_visible(False)
@@ -111,7 +111,7 @@ def _bars(axes: Axes, rows: list[Row], names: pd.Series) -> None:
 def _figures(axes: Axes, rows: list[Row], names: pd.Series, total: pd.Series | None) -> None:
     """Write what each rung gains and does beside its bar."""
     heights = {rung: -float(place) for place, rung in enumerate(names.index)}
-    columns = {"ns": 0.11, "factor": 0.39, "resolves": 0.67, "sweeps": 0.91, "✓": 1.0}
+    columns = {"ns": 0.1, "factor": 0.37, "resolves": 0.65, "sweeps": 0.91, "✓": 1.0}
     for heading, end in columns.items():
         _write(axes, end, 0.75, heading, FAINT, "bottom")
     for row in rows:

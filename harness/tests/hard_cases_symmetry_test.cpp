@@ -118,6 +118,18 @@ TEST_P(ChangedScene, CrowdedAndScaledFindsTheSameOverlapsAtFirst) {
     }
 }
 
+TEST_P(ChangedScene, CrowdedAndScaledDoesTheSameInSnugBoxes) {
+    if (GetParam().policies.box_side != BoxSide::snug) {
+        GTEST_SKIP() << "a wide box has one unit of length added";
+    }
+    const Scene crowded = tests::random_scene_of_density(300, 0.9, 10, 4);
+    for (const double factor : {0x1p-20, 0x1p20}) {
+        Scene end = crowded;
+        end.discs = end_of(crowded, {});
+        EXPECT_TRUE(same_bits(end_of(scaled(crowded, factor), {}), scaled(end, factor).discs)) << factor;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Registry, ChangedScene, testing::ValuesIn(variants().begin(), variants().end()),
                          tests::variant_test_name);
 

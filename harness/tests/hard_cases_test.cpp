@@ -180,7 +180,8 @@ TEST_P(HardCases, NearlyCoincidentDiscsExchangeTheirNormalComponents) {
     }
     EXPECT_EQ(velocity(0), (Disc{0, 0, -1, 0}));
     EXPECT_EQ(velocity(1), (Disc{0, 0, 0, 0}));
-    for (const std::size_t i : {std::size_t{2}, std::size_t{3}}) { // a unit normal rounds once more than d / |d|^2 does
+    for (const std::size_t i :
+         {std::size_t{2}, std::size_t{3}}) { // a unit normal rounds once more than d / |d|^2 does
         EXPECT_NEAR(discs[i].vx, -0.5, 0x1p-51);
         EXPECT_NEAR(discs[i].vy, i == 2 ? 0.5 : -0.5, 0x1p-51);
     }

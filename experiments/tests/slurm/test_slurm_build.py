@@ -4,6 +4,9 @@ import json
 import os
 from pathlib import Path
 
+import pytest
+
+from experiments.tests.conftest import ROOT
 from experiments.tests.slurm.conftest import Place
 
 CMAKE = """#!/bin/sh
@@ -37,3 +40,21 @@ def test_each_kind_of_node_builds_once_for_itself(place: Place, tmp_path: Path) 
     assert len(place.records()) == 10
     assert len(set(programs.values())) == 2, "every kind of node has a program of its own"
     assert place.say("resume").count("nothing to submit; all is measured") == 2
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    not (ROOT / "build" / "gcc" / "carom").is_file(),
+    reason="build/gcc/carom is not built (`make build` builds it)",
+)
+def test_a_job_builds_the_real_program_for_its_own_processor(place: Place) -> None:
+    place.site("w5-3423", common="build = true")
+    site = place.workplace.root / "cluster.toml"
+    site.write_text(site.read_text(encoding="utf-8").replace("minutes = 5", "minutes = 30"), encoding="utf-8")
+    place.say("submit", "--build", str(ROOT / "build"))
+    place.cluster.wait_until_idle(1500)
+    records = [json.loads(path.read_text(encoding="utf-8")) for path in place.records()]
+    assert len(records) == 5
+    for record in records:
+        assert record["check"]["verdict"] == "passed"
+        assert "-march=native" in record["provenance"]["compiler_flags"]
