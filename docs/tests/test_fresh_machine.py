@@ -92,7 +92,8 @@ def machine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
     for name in CONFIGURATION:
         source, target = Path("/", name), root / name
         if source.is_dir():
-            shutil.copytree(source, target, dirs_exist_ok=True, symlinks=True, ignore_dangling_symlinks=True)
+            shutil.rmtree(target, ignore_errors=True)
+            shutil.copytree(source, target, symlinks=True)
         elif source.is_file():
             shutil.copy(source, target)
     new = Machine(root)
