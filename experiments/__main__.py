@@ -35,7 +35,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             signal.signal(number, _interrupt)
     options = _parser().parse_args(arguments)
     try:
-        return _VERBS[options.verb].run(options)
+        code = _VERBS[options.verb].run(options)
+        sys.stdout.flush()  # here, so that what cannot be written is told below
+        return code
     except InputError as error:
         print(error, file=sys.stderr)
         return 1
