@@ -19,6 +19,9 @@ from analysis.statistics.verdicts import judge_one
 from analysis.studies import Study
 
 POINT = ["scene_name", "series", "x"]
+Entrant = tuple[str, float]
+"""A point of one scene: its series and its x."""
+
 SMALL = 0.1
 """Errors below this follow their leading term in dt: a tenth of a radius, or of the reference's value."""
 
@@ -169,10 +172,11 @@ def advice(table: pd.DataFrame, timed: pd.DataFrame) -> list[tuple[float, dict[s
     Of bounds with the same choices only the tightest is kept: whoever needs less gets it for the same price.
     """
     found: list[tuple[float, dict[str, Choice | None]]] = []
+    parts = {str(scene): part for scene, part in table.groupby("scene_name", sort=False)}
+    races = {scene: Race(timed[timed["scene_name"] == scene]) for scene in parts}
     for bound in _bounds(table["error"]):
         choices = {
-            str(scene): cheapest(part[part["error"] <= bound], timed[timed["scene_name"] == scene])
-            for scene, part in table.groupby("scene_name", sort=False)
+            scene: cheapest(part[part["error"] <= bound], races[scene]) for scene, part in parts.items()
         }
         if found and found[-1][1] == choices:
             found.pop()
@@ -180,32 +184,36 @@ def advice(table: pd.DataFrame, timed: pd.DataFrame) -> list[tuple[float, dict[s
     return found
 
 
-def cheapest(candidates: pd.DataFrame, timed: pd.DataFrame) -> Choice | None:
+class Race:
+    """The times of one scene's points; whom it has compared it remembers."""
+
+    def __init__(self, timed: pd.DataFrame) -> None:
+        processes = process_medians(timed, "seconds")
+        self._processes = dict(iter(processes.groupby(["series", "x"])))
+        self._slower: dict[tuple[Entrant, Entrant], bool] = {}
+
+    def is_slower(self, candidate: Entrant, reference: Entrant) -> bool:
+        """Whether the candidate was found slower, from ratios within blocks."""
+        key = candidate, reference
+        if key not in self._slower:
+            sides = self._processes[reference], self._processes[candidate]
+            self._slower[key] = (
+                judge_one(log_ratios(*sides, value="seconds")["log_ratio"])["verdict"] == "slower"
+            )
+        return self._slower[key]
+
+
+def cheapest(candidates: pd.DataFrame, race: Race) -> Choice | None:
     """Return the candidate with the least median time, None if there is no candidate.
 
-    `others` are the candidates that were not found slower than it, from ratios within blocks.
+    `others` are the candidates that were not found slower than it.
     """
     if candidates.empty:
         return None
-    best, *rest = candidates.sort_values("median", kind="stable").to_dict("records")
-    processes = process_medians(timed, "seconds")
-    reference = _of(processes, best["series"], best["x"])
-    others = [
-        (str(row["series"]), float(row["x"]))
-        for row in rest
-        if not _is_slower(reference, _of(processes, row["series"], row["x"]))
-    ]
-    seconds = Interval(best["median"], best["low"], best["high"])
-    return Choice(str(best["series"]), float(best["x"]), seconds, others)
-
-
-def _is_slower(reference: pd.DataFrame, candidate: pd.DataFrame) -> bool:
-    ratios = log_ratios(reference, candidate, value="seconds")["log_ratio"]
-    return bool(judge_one(ratios)["verdict"] == "slower")
-
-
-def _of(processes: pd.DataFrame, series: str, x: float) -> pd.DataFrame:
-    return processes[(processes["series"] == series) & (processes["x"] == x)]
+    first, *rest = candidates.sort_values("median", kind="stable").to_dict("records")
+    best, *entrants = ((str(row["series"]), float(row["x"])) for row in (first, *rest))
+    others = [entrant for entrant in entrants if not race.is_slower(entrant, best)]
+    return Choice(*best, Interval(first["median"], first["low"], first["high"]), others)
 
 
 def _bounds(values: Sequence[float] | pd.Series) -> list[float]:

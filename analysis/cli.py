@@ -50,7 +50,12 @@ def _parser() -> argparse.ArgumentParser:
             "--results", type=Path, default=Path("results"), metavar="DIR", help="default: results"
         )
         if name == "figures":
-            command.add_argument("--experiment", metavar="NAME", help="only the figures of this experiment")
+            which = command.add_mutually_exclusive_group()
+            which.add_argument("--experiment", metavar="NAME", help="only the figures of this experiment")
+            text = (
+                "read names of experiments, a line each; draw each at once, and say how many figures it has"
+            )
+            which.add_argument("--follow", action="store_true", help=text)
         command.set_defaults(run=run)
     compare = commands.add_parser(
         "compare",
@@ -77,6 +82,10 @@ def _parser() -> argparse.ArgumentParser:
 def _figures(options: argparse.Namespace) -> int:
     from analysis.study_figures import draw_all
 
+    if options.follow:
+        for line in sys.stdin:
+            print(len(draw_all(options.results, line.strip())), flush=True)
+        return 0
     drawn = draw_all(options.results, options.experiment)
     for figure in drawn:
         print(figure.files[0])

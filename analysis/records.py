@@ -6,6 +6,7 @@ import math
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -86,7 +87,6 @@ def _warn_on_standard_error(line: str) -> None:
 def _readable(
     results: Path, folder: Path, failures: bool, skipped: list[str]
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    validator = Draft202012Validator(json.loads(SCHEMA_FILE.read_text(encoding="utf-8")))
     seen: dict[str, str] = {}
     for path in sorted(folder.rglob("*.json")):
         name = path.relative_to(results).as_posix()
@@ -95,7 +95,7 @@ def _readable(
         except OSError as error:
             skipped.append(f"{path}: skipped: {error.strerror}")
             continue
-        problem, record = _parse(content, validator, failures)
+        problem, record = _parse(content, failures)
         digest = hashlib.sha256(content).hexdigest()
         if problem is None and digest in seen:
             problem = f"the same record as {seen[digest]}"
@@ -106,10 +106,18 @@ def _readable(
         yield name, record
 
 
-def _parse(
-    content: bytes, validator: Draft202012Validator, failures: bool
-) -> tuple[str | None, dict[str, Any]]:
-    """Return what is wrong with a file's content, or None and the record."""
+@cache
+def _validator() -> Draft202012Validator:
+    return Draft202012Validator(json.loads(SCHEMA_FILE.read_text(encoding="utf-8")))
+
+
+@cache
+def _parse(content: bytes, failures: bool) -> tuple[str | None, dict[str, Any]]:
+    """Return what is wrong with a file's content, or None and the record, which is not to be changed.
+
+    Remembered by content: whoever loads a growing folder again and again pays for what is new.
+    """
+    validator = _validator()
     try:
         record = json.loads(content, parse_float=_finite, parse_constant=_finite)
     except UnicodeDecodeError:

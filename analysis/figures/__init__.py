@@ -30,6 +30,7 @@ from analysis.figures import (
     timeline,
 )
 from analysis.figures.style import Data, Drawing, Table, mark_partial, partial, save, styled
+from analysis.parallel import in_parallel
 from analysis.studies import Study
 
 
@@ -135,20 +136,31 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
 def draw(data: Data, folder: Path, prefix: str = "", experiment: str | None = None) -> Iterator[Drawn]:
     """Draw every figure that the study has records for, or those of one experiment, into the folder.
 
-    Each is written as SVG, PNG and PDF, and marked as partial where planned records are missing.
+    Each is written as SVG, PNG and PDF, and marked as partial where planned records are missing. Several are
+    drawn at once, one on each processor.
     """
-    for entry in [*FIGURES, *further(data.study)]:
-        if experiment not in (None, entry.experiment):
-            continue
-        name = f"{prefix}{entry.name}"
-        with styled(name):
-            drawing = entry.draw(data)
-        if drawing is None:
-            continue
-        missing = partial(data.study, entry.experiment)
-        mark_partial(drawing.figure, missing)
-        caption = f"{drawing.caption} {missing[0].upper()}{missing[1:]}." if missing else drawing.caption
-        yield Drawn(entry, caption, save(drawing, folder, name), drawing.verdicts, drawing.tables)
+    entries = [entry for entry in [*FIGURES, *further(data.study)] if experiment in (None, entry.experiment)]
+
+    def drawn(number: int) -> _Saved | None:
+        return _draw(entries[number], data, folder, f"{prefix}{entries[number].name}")
+
+    for entry, saved in zip(entries, in_parallel(drawn, len(entries)), strict=True):
+        if saved is not None:
+            yield Drawn(entry, *saved)
+
+
+_Saved = tuple[str, list[Path], pd.DataFrame | None, Sequence[Table]]
+
+
+def _draw(entry: Entry, data: Data, folder: Path, name: str) -> _Saved | None:
+    with styled(name):
+        drawing = entry.draw(data)
+    if drawing is None:
+        return None
+    missing = partial(data.study, entry.experiment)
+    mark_partial(drawing.figure, missing)
+    caption = f"{drawing.caption} {missing[0].upper()}{missing[1:]}." if missing else drawing.caption
+    return caption, save(drawing, folder, name), drawing.verdicts, drawing.tables
 
 
 def further(study: Study) -> list[Entry]:

@@ -4,6 +4,7 @@ import sys
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
@@ -21,11 +22,11 @@ def write(results: Path) -> list[Path]:
     Draws the figures on the way. Without the libraries that the PDF needs, one line on standard error says so
     and an earlier, now outdated PDF is removed. Raises InputError if there is no such folder.
     """
-    page = render(results)
+    gathered = content(load(results), results)
     html, pdf = results / "report.html", results / "report.pdf"
-    _replace(html, page.encode())
+    _replace(html, _page(gathered).encode())
     try:
-        document = _pdf(page)
+        document = _pdf(_page(gathered, images=True), results)
     except (ImportError, OSError) as error:
         why = " ".join(str(error).split())
         print(f"{pdf}: not written, only the HTML: {why} (WeasyPrint needs Pango; {REMEDY})", file=sys.stderr)
@@ -35,11 +36,11 @@ def write(results: Path) -> list[Path]:
     return [html, pdf]
 
 
-def _pdf(page: str) -> bytes:
+def _pdf(page: str, folder: Path) -> bytes:
     # Imported late, and in silence: without Pango the import fails, and prints a banner first.
     with redirect_stdout(StringIO()):
         from weasyprint import HTML
-    data: bytes = HTML(string=page).write_pdf()
+    data: bytes = HTML(string=page, base_url=f"{folder.resolve().as_uri()}/").write_pdf()
     return data
 
 
@@ -54,6 +55,11 @@ def _replace(path: Path, data: bytes) -> None:
 
 def render(results: Path) -> str:
     """Return the report as one HTML page that needs nothing but itself."""
+    return _page(content(load(results), results))
+
+
+def _page(gathered: dict[str, Any], *, images: bool = False) -> str:
+    """Return the page; with `images`, figures are files beside it, quicker to lay out for a PDF."""
     environment = Environment(
         loader=PackageLoader("analysis.report", "."),
         autoescape=select_autoescape(default=True),
@@ -61,4 +67,4 @@ def render(results: Path) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template(TEMPLATE).render(content(load(results), results))
+    return environment.get_template(TEMPLATE).render(gathered, images=images)

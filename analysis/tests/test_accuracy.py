@@ -118,7 +118,9 @@ def test_advice_is_the_cheapest_below_each_bound(measured: Study) -> None:
 
 def test_a_bound_that_nothing_meets_has_no_choice(measured: Study) -> None:
     table = points(measured, BY_KEY["path"])
-    assert accuracy.cheapest(table[table["error"] < 1e-9], accuracy.times(measured, NAME)) is None
+    assert (
+        accuracy.cheapest(table[table["error"] < 1e-9], accuracy.Race(accuracy.times(measured, NAME))) is None
+    )
 
 
 def test_equal_choices_are_both_named(tmp_path: Path) -> None:
@@ -134,7 +136,7 @@ def test_equal_choices_are_both_named(tmp_path: Path) -> None:
         (table["precision"] == "double") & (table["scene_name"] == "dense") & (table["error"] < 0.01)
     ]
     timed = accuracy.times(measured, NAME)
-    choice = accuracy.cheapest(double, timed[timed["scene_name"] == "dense"])
+    choice = accuracy.cheapest(double, accuracy.Race(timed[timed["scene_name"] == "dense"]))
     assert choice is not None
     assert {choice.series, *(series for series, _ in choice.others)} == {"checkered", "row"}
     assert {x for _, x in choice.others} == {16}
