@@ -9,7 +9,9 @@ RESERVE = 0.1
 
 @dataclass(frozen=True)
 class Load:
-    """What an experiment costs: seconds a block, seconds once (scenes, checks, figure), and its limits."""
+    """What an experiment still costs: seconds a block, seconds once (scenes, checks, figure, less the blocks
+    that are done), and its limits.
+    """
 
     name: str
     block_seconds: float
@@ -18,7 +20,7 @@ class Load:
     wanted: int
 
     def seconds(self, blocks: int) -> float:
-        """The experiment's wall time with so many blocks."""
+        """The wall time that the experiment still takes to have so many blocks."""
         return self.once_seconds + blocks * self.block_seconds
 
 

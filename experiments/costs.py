@@ -13,15 +13,19 @@ from experiments.site import clean_environment
 
 PROBE = Scene(particles=10000, side=3162, radius=16, steps=10, min_velocity=2, max_velocity=5)
 
-# Rough on purpose: only how long the study takes depends on them, and records correct them as they come in.
-_BOX_PER_DISC = 0.1
+# Rough on purpose: they only foretell, before anything is measured, how long the study takes.
+_BOX_PER_DISC = 0.2
+_GROWTH_BEYOND_CACHES = 0.2
 _RUNS_OF_A_PROFILE = 3
 _RUNS_OF_A_CHECK = 2
 _RUNS_FOR_ERRORS = 3
 _SLOWED_BY_CACHEGRIND = 60
 _SECONDS_PER_DISC_READ = 6e-7
-# The longest, which only the paper scale has, takes a hundred times as much; the reserve is for that, too.
 _SECONDS_PER_HARD_CASE = 0.01
+_SECONDS_OF_LONG_CASES = {"drift": 3.0}
+
+SECONDS_PER_PROCESS = 0.03
+"""What a process takes beside its own account of its time: its start, its end, the look at its record."""
 
 
 @dataclass(frozen=True)
@@ -38,15 +42,17 @@ class Costs:
     def __init__(self, probes: Mapping[str, Probe], measured: Mapping[str, list[float]]) -> None:
         self._probes = dict(probes)
         self._measured = {point: list(seconds) for point, seconds in measured.items()}
+        self._models: dict[str, float] = {}
         self._ratios: dict[str, list[float]] = {}
+        self._corrections: dict[str, float] = {}
 
     def point(self, point: Point) -> float:
         """One process of a point, warm-up included."""
         if point.program.sha256 is None:
             return 0.0
         if seconds := self._measured.get(point.id):
-            return statistics.median(seconds)
-        return self._modelled(point) * self._correction(point.experiment)
+            return statistics.median(seconds) + SECONDS_PER_PROCESS
+        return self._modelled(point) * self._correction(point.experiment) + SECONDS_PER_PROCESS
 
     def check(self, point: Point) -> float:
         """The verification of every step of the point's variant on its scene."""
@@ -75,15 +81,22 @@ class Costs:
         """A process of the point took this long."""
         self._measured.setdefault(point.id, []).append(seconds)
         self._ratios.setdefault(point.experiment, []).append(seconds / self._modelled(point))
+        self._corrections.clear()
 
     def _correction(self, experiment: str) -> float:
         """Measured over modelled: of this experiment if it has any measurement, else of all of them."""
-        ratios = self._ratios.get(experiment) or [ratio for some in self._ratios.values() for ratio in some]
-        return statistics.median(ratios) if ratios else 1.0
+        if experiment not in self._corrections:
+            own = self._ratios.get(experiment)
+            ratios = own or [ratio for some in self._ratios.values() for ratio in some]
+            self._corrections[experiment] = statistics.median(ratios) if ratios else 1.0
+        return self._corrections[experiment]
 
     def _modelled(self, point: Point) -> float:
-        probe = self._probe(point)
-        return probe.process + _reading(point.scene) + _runs(point) * _run(point, probe)
+        if point.id not in self._models:
+            probe = self._probe(point)
+            seconds = probe.process + _reading(point.scene) + _runs(point) * _run(point, probe)
+            self._models[point.id] = seconds
+        return self._models[point.id]
 
     def _probe(self, point: Point) -> Probe:
         return self._probes.get(probe_key(point), Probe(step=0.01, process=0.05))
@@ -97,14 +110,23 @@ def probe_key(point: Point) -> str:
 def probe(point: Point, scene: Path, record: Path, time_limit: float) -> Probe | None:
     """Time a short run of the point's variant; None if it fails, which the run proper will explain."""
     words = [str(point.program.path), "bench", str(scene), "--variant", point.variant]
-    words += ["--threads", str(point.threads), "--repetitions", "3", "--record", str(record)]
+    words += [
+        "--threads",
+        str(point.threads),
+        "--warm-up",
+        "0",
+        "--repetitions",
+        "3",
+        "--record",
+        str(record),
+    ]
     done = process.run(words, clean_environment(dict(point.openmp)), time_limit)
     content = read_json(record)
     if done.exit_code != 0 or content is None:
         return None
     # The least of them: a probe is short, and whatever else runs can only lengthen it.
     steps = min(float(repetition["steps_seconds"]) for repetition in content["repetitions"])
-    return Probe(steps / PROBE.steps, max(0.0, float(content["process_seconds"]) - 4 * steps))
+    return Probe(steps / PROBE.steps, max(0.0, float(content["process_seconds"]) - 3 * steps))
 
 
 def to_probe(points: Iterable[Point], known: Mapping[str, object]) -> list[Point]:
@@ -120,7 +142,7 @@ def _runs(point: Point) -> int:
 def _run(point: Point, probe: Probe) -> float:
     """Seconds of one run from the first step to the last."""
     if isinstance(point.scene, HardCase):
-        return _SECONDS_PER_HARD_CASE
+        return _SECONDS_OF_LONG_CASES.get(point.scene.case, _SECONDS_PER_HARD_CASE)
     return point.scene.steps * point.substeps * probe.step * _work(point.scene) / _work(PROBE)
 
 
@@ -129,8 +151,11 @@ def _reading(scene: AnyScene) -> float:
 
 
 def _work(scene: Scene) -> float:
-    """A step's work in discs: empty boxes are looked at too, and dense discs resolved again and again."""
+    """A step's work in discs: empty boxes are looked at too, dense discs resolved again and again, and what
+    outgrows the caches costs more each time.
+    """
     boxes = (scene.side / (4 * scene.radius + 1)) ** 2
     crowding = 1 + 42 * scene.area_fraction**16
     speed = 1 + 0.06 * (scene.min_velocity + scene.max_velocity) / 2
-    return scene.particles * crowding * speed + _BOX_PER_DISC * boxes
+    beyond = max(1.0, scene.particles / PROBE.particles) ** _GROWTH_BEYOND_CACHES
+    return (scene.particles * crowding * speed + _BOX_PER_DISC * boxes) * beyond

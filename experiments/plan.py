@@ -144,7 +144,7 @@ def _point(
         warm_up=question.warm_up,
         repetitions=question.repetitions,
         errors=question.errors,
-        simulated=question.simulated,
+        simulated=around.scale.simulated(question),
         openmp=tuple(sorted(around.site.binding.environment(threads, around.machine).items())),
         **chunks,
     )

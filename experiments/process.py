@@ -1,12 +1,16 @@
-"""One child process: it never outlives this one, and never goes on beyond its time."""
+"""Child processes: they never outlive this one, and never go on beyond their time."""
 
 import contextlib
 import ctypes
 import os
+import select
 import signal
 import subprocess
+import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import TracebackType
+from typing import IO
 
 _PR_SET_PDEATHSIG = 1
 _PRCTL = ctypes.CDLL(None, use_errno=True).prctl
@@ -43,17 +47,7 @@ def run(
     `communicate` waits in the kernel, so that nothing here takes the CPU from the process that is timed.
     """
     try:
-        child = subprocess.Popen(
-            command,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            errors="replace",
-            start_new_session=True,  # Ctrl-C reaches this process alone, which then ends the child
-            preexec_fn=_die_with_parent,  # safe: this process has no threads
-        )
+        child = _start(command, environment, subprocess.DEVNULL, subprocess.PIPE)
     except OSError as error:
         return Completed(tuple(command), NOT_FOUND, "", f"{command[0]}: cannot be run: {error.strerror}")
     with child:
@@ -67,6 +61,72 @@ def run(
             _kill(child)
             raise
     return Completed(tuple(command), child.returncode, output, said)
+
+
+class Companion:
+    """A child that answers a line with a line, as often as asked, and sleeps in between; a context manager.
+
+    It starts when first asked, and anew once it has ended.
+    """
+
+    def __init__(self, command: Sequence[str]) -> None:
+        self._command = tuple(command)
+        self._child: subprocess.Popen[str] | None = None
+        # A file: a pipe that nobody reads before the end could fill, and stop the child.
+        self._errors = tempfile.TemporaryFile("w+", errors="replace")  # noqa: SIM115 - closed in __exit__
+
+    def __enter__(self) -> "Companion":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._end()
+        self._errors.close()
+
+    def ask(self, question: str, time_limit: float) -> Completed:
+        """Its answer to one line. A child that ends instead, or takes too long, has failed."""
+        if self._child is None:
+            self._errors.seek(0)
+            self._errors.truncate()
+            self._child = _start(self._command, None, subprocess.PIPE, self._errors)
+        child = self._child
+        assert child.stdin is not None
+        assert child.stdout is not None
+        with contextlib.suppress(BrokenPipeError):
+            print(question, file=child.stdin, flush=True)
+        if not select.select([child.stdout], [], [], time_limit)[0]:
+            self._end()
+            said = f"took longer than {time_limit:g} s and was stopped"
+            return Completed(self._command, TIMED_OUT, "", said)
+        if answer := child.stdout.readline():
+            return Completed(self._command, 0, answer, "")
+        exit_code = child.wait()
+        self._end()
+        self._errors.seek(0)
+        return Completed(self._command, exit_code or 1, "", self._errors.read())
+
+    def _end(self) -> None:
+        if self._child is not None:
+            _kill(self._child)
+            with contextlib.suppress(BrokenPipeError), self._child:
+                self._child = None
+
+
+def _start(
+    command: Sequence[str], environment: Mapping[str, str] | None, stdin: int, stderr: int | IO[str]
+) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        command,
+        env=environment,
+        stdin=stdin,
+        stdout=subprocess.PIPE,
+        stderr=stderr,
+        text=True,
+        errors="replace",
+        start_new_session=True,  # Ctrl-C reaches this process alone, which then ends the child
+        preexec_fn=_die_with_parent,  # safe: this process has no threads
+    )
 
 
 def _die_with_parent() -> None:

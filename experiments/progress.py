@@ -1,6 +1,7 @@
 """How far the study is: a bar with the time left on a terminal, plain lines elsewhere."""
 
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import TracebackType
 
@@ -44,19 +45,20 @@ class Report:
         if self._console.is_terminal:
             self._bar.stop()
 
-    def now(self, what: str, status: Status | None = None) -> None:
+    def now(self, what: str, status: Callable[[], Status] | None = None) -> None:
         """Something begins: `what` is shown beside the bar, if there is one."""
         if not self._console.is_terminal:
             return
         if status is not None:
-            total = status.seconds_done + status.seconds_left
-            self._bar.update(self._task, completed=status.seconds_done, total=total, status=str(status))
+            now = status()
+            total = now.seconds_done + now.seconds_left
+            self._bar.update(self._task, completed=now.seconds_done, total=total, status=str(now))
         self._bar.update(self._task, description=what, refresh=True)
 
-    def block(self, what: str, status: Status) -> None:
+    def block(self, what: str, status: Callable[[], Status]) -> None:
         """A block ended: one line where there is no bar."""
         if not self._console.is_terminal:
-            self._console.print(f"{what}: {status}")
+            self._console.print(f"{what}: {status()}")
 
     def line(self, text: str) -> None:
         """One line that stays."""

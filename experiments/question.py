@@ -78,7 +78,7 @@ class Question:
     threads: Threads = "hardware_threads"
     tolerance: Literal["relative", "published"] = "relative"
     substeps: int = 1
-    warm_up: int = 1
+    warm_up: int = 0
     repetitions: int = 1
     errors: bool = False
     simulated: int = 0

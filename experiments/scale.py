@@ -41,6 +41,10 @@ class Scale:
         least = min(asked.minimum, max(FEWEST_BLOCKS, asked.minimum // self.blocks_divisor))
         return replace(question, blocks=replace(asked, minimum=least))
 
+    def simulated(self, question: Question) -> int:
+        """How many steps of a profile are simulated at this scale, 0 for none."""
+        return max(1, question.simulated // self.steps_divisor) if question.simulated else 0
+
     def places(self, question: Question) -> tuple[Place, ...]:
         """A question's scenes at this scale."""
         return tuple(place for place in question.scenes if self.divisor == 1 or not place.paper_only)
@@ -51,9 +55,8 @@ class Scale:
 
 
 SCALES = {
-    "paper": Scale("paper", divisor=1, steps_divisor=1, blocks_divisor=1, budget_seconds=37 * 60),
-    # At this size the start of processes and the drawing outweigh the steps: planned for 3 minutes it took 6.
-    "quick": Scale("quick", divisor=10, steps_divisor=2, blocks_divisor=2, budget_seconds=1.5 * 60),
+    "paper": Scale("paper", divisor=1, steps_divisor=1, blocks_divisor=1, budget_seconds=38 * 60),
+    "quick": Scale("quick", divisor=10, steps_divisor=2, blocks_divisor=2, budget_seconds=2.5 * 60),
 }
 
 

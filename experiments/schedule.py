@@ -31,15 +31,16 @@ class Schedule:
         self._store = store
         self._found = found
         self._costs = costs
+        self._once_each = {one.name: _once_each(one, costs) for one in experiments}
         self._given_up: set[tuple[str, str]] = set()
         self._decided = decided_blocks(store, experiments, found)
         self.blocks = {one.name: one.question.blocks.minimum for one in experiments} | self._decided
 
-    def decide(self, budget_seconds: float) -> None:
-        """Share the budget out among the experiments; those already begun keep what they have."""
+    def decide(self, seconds_left: float) -> None:
+        """Share what is left of the budget among the experiments; those already begun keep what they have."""
         seen: set[object] = set()
         loads = [self._load(experiment, seen) for experiment in self.experiments]
-        self.blocks = allocate(loads, budget_seconds)
+        self.blocks = allocate(loads, seconds_left)
 
     def begin(self, experiment: Experiment) -> int:
         """The experiment's number of blocks, fixed and written down."""
@@ -55,6 +56,10 @@ class Schedule:
             of_scale[experiment.name] = entry
             self._store.keep_note(PLAN, plan)
         return blocks
+
+    def promised(self, experiment: Experiment) -> int:
+        """The blocks that the experiment gets for certain: those decided, until then the least."""
+        return self._decided.get(experiment.name, experiment.question.blocks.minimum)
 
     def missing(self, experiment: Experiment, block: int) -> list[tuple[int, Point]]:
         """Position and point of what is still to be run in one block, in the block's order."""
@@ -97,11 +102,13 @@ class Schedule:
         return math.ceil(self.blocks[control.name] * share)
 
     def _load(self, experiment: Experiment, seen: set[object]) -> Load:
-        block_seconds = sum(self._costs.point(point) for point in experiment.points)
+        seconds = {point.id: self._costs.point(point) for point in experiment.points}
         fixed = self._decided.get(experiment.name)
         limits = experiment.question.blocks
         minimum, wanted = (limits.minimum, limits.wanted) if fixed is None else (fixed, fixed)
-        return Load(experiment.name, block_seconds, self._once(experiment, seen), minimum, wanted)
+        done = sum(seconds[point] for point, block in self._found[experiment.name].seconds if block < minimum)
+        once = self._once(experiment, seen) - done
+        return Load(experiment.name, sum(seconds.values()), once, minimum, wanted)
 
     def _once(self, experiment: Experiment, seen: set[object]) -> float:
         """Figure, scenes and checks of an experiment, but for what is done or counted in `seen`."""
@@ -109,16 +116,10 @@ class Schedule:
             return 0.0
         seconds = self.figure_seconds
         measured = {point for point, _ in self._found[experiment.name].seconds}
-        for point in experiment.points:
-            first = representative(experiment, point)
-            for key, cost in (
-                ((experiment.name, point.id), self._costs.besides(point)),
-                (point.scene, self._costs.scene(point.scene)),
-                ((point.program.sha256, point.variant, first.scene), self._costs.check(first)),
-            ):
-                if key not in seen and point.id not in measured:
-                    seconds += cost
-                seen.add(key)
+        for point, key, cost in self._once_each[experiment.name]:
+            if key not in seen and point not in measured:
+                seconds += cost
+            seen.add(key)
         return seconds
 
     def _all_missing(self) -> list[Point]:
@@ -128,6 +129,20 @@ class Schedule:
             for block in range(self.blocks[one.name])
             for _, point in self.missing(one, block)
         ]
+
+
+def _once_each(experiment: Experiment, costs: Costs) -> list[tuple[str, object, float]]:
+    """What an experiment costs once: the id of the point that needs it, what it is, and its seconds."""
+    return [
+        (point.id, key, seconds)
+        for point in experiment.points
+        for first in [representative(experiment, point)]
+        for key, seconds in (
+            (f"besides {experiment.name} {point.id}", costs.besides(point)),
+            (point.scene, costs.scene(point.scene)),
+            ((point.program.sha256, point.variant, first.scene), costs.check(first)),
+        )
+    ]
 
 
 def decided_blocks(

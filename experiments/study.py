@@ -6,12 +6,12 @@ from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
-from experiments import process, question, site
+from experiments import question, site
 from experiments.costs import PROBE, Costs, Probe, probe, probe_key, to_probe
 from experiments.errors import InputError
 from experiments.plan import SEED, Experiment, Surroundings, plan
 from experiments.point import Point
-from experiments.process import NOT_FOUND
+from experiments.process import NOT_FOUND, Companion
 from experiments.program import Program, find_programs
 from experiments.progress import Report, about, warn
 from experiments.question import load_questions, with_blocks
@@ -25,11 +25,14 @@ from experiments.store import Store, new_session, seconds_by_point
 COSTS = "costs.json"
 POINTS_FAILED = 2
 
-REPORT_SECONDS = 30.0
+REPORT_SECONDS = 40.0
 """What the report takes, which comes after the study and out of the same budget."""
 
-FIGURE_SECONDS = 3.0
+FIGURE_SECONDS = 2.0
 """What drawing one experiment's figure takes, until one has been drawn."""
+
+DRAWING_LIMIT = 600.0
+"""Seconds after which a drawing is given up."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,10 @@ class Study:
         )
         self.store = Store(settings.results, new_session())
 
+    def drawing_command(self) -> list[str]:
+        """What draws the figures of the experiments that it is told, a line each."""
+        return [sys.executable, "-m", "analysis", "figures", "--results", str(self.store.root), "--follow"]
+
     def scenes(self) -> SceneFolder:
         """The generated scenes; the results folder must be held."""
         return SceneFolder(self.store.root / "scenes", self.store.temporary, str(self.generator.sha256))
@@ -88,7 +95,7 @@ class Study:
         costs = Costs(self._probes(runner), seconds_by_point(found.values()))
         figure_seconds = FIGURE_SECONDS if self.settings.figures else 0.0
         schedule = Schedule(self.store, self.experiments, found, costs, figure_seconds)
-        schedule.decide(self.measuring_seconds)
+        schedule.decide(self.measuring_seconds - schedule.status().seconds_done)
         return schedule
 
     def _probes(self, runner: Runner) -> dict[str, Probe]:
@@ -116,7 +123,8 @@ def run(settings: Settings) -> int:
         runner = study.runner()
         schedule = study.schedule(runner, settle=True)
         report.line(summary(schedule, study.budget_seconds))
-        return _Session(study, runner, schedule, report).run()
+        with Companion(study.drawing_command()) as painter:
+            return _Session(study, runner, schedule, report, painter).run()
 
 
 def summary(schedule: Schedule, budget_seconds: float) -> str:
@@ -136,26 +144,42 @@ def summary(schedule: Schedule, budget_seconds: float) -> str:
 
 
 class _Session:
-    """One invocation: experiments one after the other, the control's blocks in between."""
+    """One invocation: a first block of every experiment, then one after the other, the control in between."""
 
-    def __init__(self, study: Study, runner: Runner, schedule: Schedule, report: Report) -> None:
+    def __init__(
+        self, study: Study, runner: Runner, schedule: Schedule, report: Report, painter: Companion
+    ) -> None:
         self._study = study
         self._runner = runner
         self._schedule = schedule
         self._report = report
+        self._painter = painter
         self._failures: Counter[str] = Counter()
         self._others, self._control = split(study.experiments)
+        self._until = time.monotonic() + study.measuring_seconds - schedule.status().seconds_done
 
     def run(self) -> int:
+        """Run what is missing. First blocks come first: they tell what each block costs here, by which the
+        rest of the time is then shared out.
+        """
         incomplete = [one for one in self._others if not self._schedule.is_complete(one)]
         for experiment in incomplete:
-            self._schedule.decide(self._study.measuring_seconds)
-            for block in range(self._schedule.begin(experiment)):
-                self._run_control(everything=False)
-                self._block(experiment, block)
-            self._draw(experiment)
+            self._run_control(everything=False)
+            self._block(experiment, 0)
+            if experiment.question.blocks.wanted == 1:
+                self._rest(experiment)
+        for experiment in incomplete:
+            if experiment.question.blocks.wanted > 1:
+                self._rest(experiment)
         self._run_control(everything=True)
         return self._conclude()
+
+    def _rest(self, experiment: Experiment) -> None:
+        self._schedule.decide(self._until - time.monotonic())
+        for block in range(self._schedule.begin(experiment)):
+            self._run_control(everything=False)
+            self._block(experiment, block)
+        self._draw(experiment)
 
     def _run_control(self, *, everything: bool) -> None:
         """The same thing under two labels, measured all along the study, must come out equal."""
@@ -170,16 +194,16 @@ class _Session:
 
     def _block(self, experiment: Experiment, block: int) -> None:
         missing = self._schedule.missing(experiment, block)
-        blocks = self._schedule.blocks[experiment.name]
+        blocks = self._schedule.promised(experiment)
         what = f"{experiment.name}, block {block + 1} of {blocks}"
         for position, point in missing:
-            self._report.now(what, self._schedule.status())
+            self._report.now(what, self._schedule.status)
             outcome = self._runner.run(Task(experiment, point, block, position, blocks))
             self._schedule.finish(experiment, point, block, outcome.seconds)
             if outcome.seconds is None:
                 self._tell(point, outcome)
         if missing:
-            self._report.block(what, self._schedule.status())
+            self._report.block(what, self._schedule.status)
 
     def _tell(self, point: Point, failed: Outcome) -> None:
         where = f"{point.experiment}, {point.series}, {point.x_name} {point.x:g}"
@@ -193,8 +217,7 @@ class _Session:
             return
         self._report.now(f"{experiment.name}, drawing")
         began = time.monotonic()
-        command = [sys.executable, "-m", "analysis", "figures", "--results", str(self._study.store.root)]
-        done = process.run([*command, "--experiment", experiment.name], time_limit=600)
+        done = self._painter.ask(experiment.name, DRAWING_LIMIT)
         self._schedule.figure_seconds = time.monotonic() - began
         if done.exit_code == 0:
             self._report.line(f"{experiment.name}: complete, drawn into {self._study.store.root / 'figures'}")

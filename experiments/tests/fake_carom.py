@@ -1,8 +1,8 @@
 """Stands in for the carom program: same command line, same exit codes, same records, no discs.
 
-The environment says what goes wrong: FAKE_SECONDS (each measurement takes that long), FAKE_CHECK_FAILS,
-FAKE_BENCH_CRASHES, FAKE_RESULT_WRONG, FAKE_NO_RECORD, FAKE_HANGS (the variant concerned),
-FAKE_LIMITS_FAIL. FAKE_LOG is a file that gets a line for every call.
+The environment says what goes wrong: FAKE_SECONDS (each measurement takes that long),
+FAKE_CHECK_SECONDS (each check), FAKE_CHECK_FAILS, FAKE_BENCH_CRASHES, FAKE_RESULT_WRONG, FAKE_NO_RECORD,
+FAKE_HANGS (the variant concerned), FAKE_LIMITS_FAIL. FAKE_LOG is a file that gets a line for every call.
 """
 
 import hashlib
@@ -29,6 +29,7 @@ def main(words: list[str]) -> int:
         words = [*positional, options["seed"]] if positional else ["3", "100", "5", "10", options["case"]]
         write(options["output"], "".join(f"{word}\n" for word in words))
     elif verb == "check":
+        time.sleep(float(os.environ.get("FAKE_CHECK_SECONDS", "0")))
         if concerns("FAKE_CHECK_FAILS", options):
             print("step 3: discs 1 and 2 left colliding", file=sys.stderr)
             return 2

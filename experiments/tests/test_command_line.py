@@ -125,17 +125,21 @@ def test_a_figure_is_drawn_as_soon_as_its_experiment_is_complete(workplace: Work
     (workplace.root / "analysis" / "__init__.py").touch()
     (workplace.root / "analysis" / "__main__.py").write_text(
         "import sys, glob\n"
-        f"with open({os.fspath(log)!r}, 'a') as file:\n"
-        "    print(*sys.argv[1:], len(glob.glob('results/records/*/*.json')), file=file)\n"
-        "sys.exit('no paper' if sys.argv[-1] == 'pair' else 0)\n"
+        "for line in sys.stdin:\n"
+        f"    with open({os.fspath(log)!r}, 'a') as file:\n"
+        "        records = glob.glob('results/records/*/*.json')\n"
+        "        print(*sys.argv[1:], line.strip(), len(records), file=file)\n"
+        "    if line == 'pair\\n':\n"
+        "        sys.exit('no paper')\n"
+        "    print(1, flush=True)\n"
     )
     code, output, error = finish(workplace.start())
     assert code == 0
     drawn = [line.split() for line in log.read_text().splitlines()]
     assert [words[:-1] for words in drawn] == [
-        ["figures", "--results", "results", "--experiment", name] for name in ("chunks", "pair", "control")
+        ["figures", "--results", "results", "--follow", name] for name in ("chunks", "pair", "control")
     ]
     records = [int(words[-1]) for words in drawn]
-    assert 6 <= records[0] < records[1] < records[2] == 16
+    assert 8 <= records[0] < records[1] < records[2] == 16
     assert "chunks: complete, drawn into results/figures" in output
     assert error == "pair: complete, but its figure could not be drawn: no paper\n"

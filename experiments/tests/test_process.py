@@ -1,11 +1,12 @@
 """Child processes: their end is told in one line, and they end with their parent."""
 
 import sys
+from pathlib import Path
 
 import pytest
 
 from experiments.errors import Interrupted
-from experiments.process import NOT_FOUND, TIMED_OUT, run
+from experiments.process import NOT_FOUND, TIMED_OUT, Companion, run
 
 
 def python(code: str) -> list[str]:
@@ -49,3 +50,39 @@ def test_the_time_limit_stops_grandchildren_too() -> None:
 
 def test_an_interruption_is_no_failed_point() -> None:
     assert not issubclass(Interrupted, Exception)
+
+
+ECHO = """
+import sys
+from pathlib import Path
+for line in sys.stdin:
+    if line == 'fail\\n':
+        sys.exit('it fails')
+    if line == 'sleep\\n':
+        __import__('time').sleep(600)
+    print(__import__('os').getpid(), line.strip(), flush=True)
+"""
+
+
+def test_a_companion_answers_again_and_again() -> None:
+    with Companion(python(ECHO)) as companion:
+        answers = [companion.ask(word, time_limit=20).output.split() for word in ("one", "two")]
+    (first, one), (second, two) = answers
+    assert (one, two) == ("one", "two")
+    assert first == second, "the same process"
+    assert not Path(f"/proc/{first}").exists(), "it ends with its context"
+
+
+def test_a_companion_that_fails_says_why_and_starts_anew() -> None:
+    with Companion(python(ECHO)) as companion:
+        for _ in range(2):
+            failed = companion.ask("fail", time_limit=20)
+            assert (failed.exit_code, failed.reason) == (1, "it fails")
+        assert companion.ask("more", time_limit=20).output.endswith("more\n")
+
+
+def test_a_companion_that_takes_too_long_is_stopped() -> None:
+    with Companion(python(ECHO)) as companion:
+        late = companion.ask("sleep", time_limit=0.3)
+        assert (late.exit_code, late.reason) == (TIMED_OUT, "took longer than 0.3 s and was stopped")
+        assert companion.ask("more", time_limit=20).exit_code == 0
