@@ -64,7 +64,7 @@ def split(records: Records) -> list[Study]:
             machine,
             revision,
             scale,
-            **{name: _part(records, name, runs) for name in TABLES},
+            **_parts(records, runs),
             failures=_failures(records, scale, runs),
             limits=records.limits[records.limits["machine"] == machine],
         )
@@ -82,18 +82,21 @@ def _failures(records: Records, scale: str, runs: pd.DataFrame) -> pd.DataFrame:
     return table[(table["scale"] == scale) & table["site"].isin(runs["site"])].reset_index(drop=True)
 
 
-def _part(records: Records, name: str, runs: pd.DataFrame) -> pd.DataFrame:
-    table = getattr(records, name)
-    table = table[table["file"].isin(runs["file"])].reset_index(drop=True)
-    names = _names_by_binary(runs)
-    keys = zip(table["experiment"], table["series"], table["binary_sha256"], strict=True)
-    return table.assign(series=[names.get(key, key[1]) for key in keys])
+def _parts(records: Records, runs: pd.DataFrame) -> dict[str, pd.DataFrame]:
+    names, parts = _names_by_binary(runs), {}
+    for name in TABLES:
+        table = getattr(records, name)
+        table = table[table["file"].isin(runs["file"])].reset_index(drop=True)
+        keys = zip(table["experiment"], table["series"], table["binary_sha256"], strict=True)
+        parts[name] = table.assign(series=[names.get(key, key[1]) for key in keys])
+    return parts
 
 
 def _names_by_binary(runs: pd.DataFrame) -> dict[tuple[str, str, str], str]:
     names: dict[tuple[str, str, str], str] = {}
-    for (experiment, series), group in runs.groupby(["experiment", "series"]):
-        binaries = group[["binary_sha256", "compiler"]].drop_duplicates()
+    distinct = runs[["experiment", "series", "binary_sha256", "compiler"]].drop_duplicates()
+    for (experiment, series), group in distinct.groupby(["experiment", "series"]):
+        binaries = group[["binary_sha256", "compiler"]]
         if len(binaries) < 2:
             continue
         by_compiler = binaries["compiler"].is_unique
