@@ -51,10 +51,8 @@ def _parser() -> argparse.ArgumentParser:
         )
         if name == "figures":
             which = command.add_mutually_exclusive_group()
-            which.add_argument("--experiment", metavar="NAME", help="only the figures of this experiment")
-            text = (
-                "read names of experiments, a line each; draw each at once, and say how many figures it has"
-            )
+            which.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
+            text = "read such lists from standard input; answer each line with the number of figures drawn"
             which.add_argument("--follow", action="store_true", help=text)
         command.set_defaults(run=run)
     compare = commands.add_parser(
@@ -84,9 +82,9 @@ def _figures(options: argparse.Namespace) -> int:
 
     if options.follow:
         for line in sys.stdin:
-            print(len(draw_all(options.results, line.strip())), flush=True)
+            print(len(draw_all(options.results, line.strip().split(","))), flush=True)
         return 0
-    drawn = draw_all(options.results, options.experiment)
+    drawn = draw_all(options.results, options.experiment.split(",") if options.experiment else ())
     for figure in drawn:
         print(figure.files[0])
     if not drawn:

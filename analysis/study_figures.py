@@ -11,26 +11,28 @@ from analysis.records import InputError, load
 from analysis.studies import Study, split
 
 
-def draw_all(results: Path, experiment: str | None = None) -> list[Drawn]:
-    """Load a results folder and draw into its `figures/`; return what was drawn.
+def draw_all(results: Path, wanted: Sequence[str] = ()) -> list[Drawn]:
+    """Load a results folder and draw into its `figures/`, all experiments or those wanted; return what was
+    drawn.
 
     Raises InputError for an experiment that is neither one of the published questions nor in the records.
     """
     records = load(results)
     names = list(dict.fromkeys([*experiments(), *sorted(records.runs["experiment"])]))
-    if experiment is not None and experiment not in names:
-        raise InputError(f"--experiment: found {experiment!r}, expected one of {', '.join(names)}")
+    for name in wanted:
+        if name not in names:
+            raise InputError(f"--experiment: found {name!r}, expected one of {', '.join(names)}")
     studies = split(records)
-    return [figure for study in studies for figure in draw_study(study, studies, results, experiment)]
+    return [figure for study in studies for figure in draw_study(study, studies, results, wanted)]
 
 
 def draw_study(
-    study: Study, studies: Sequence[Study], results: Path, experiment: str | None = None
+    study: Study, studies: Sequence[Study], results: Path, wanted: Sequence[str] = ()
 ) -> list[Drawn]:
     """Draw one study; the files of any but the first carry its name."""
     prefix = "" if study is studies[0] else f"{slug(study.name)}-"
     data = Data(study, studies, published.load(), results)
-    return list(draw(data, results / "figures", prefix, experiment))
+    return list(draw(data, results / "figures", prefix, wanted))
 
 
 def slug(name: str) -> str:

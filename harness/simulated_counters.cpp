@@ -127,8 +127,8 @@ std::vector<CounterValue> simulate_counters(const Scene& scene, std::string_view
     shortened.steps = std::min(units, scene.steps);
     try {
         // At once: counts do not depend on what else runs, and valgrind takes long to start.
-        auto other = std::async(std::launch::async,
-                                [&] { return simulate_run(beginning, variant, tuning, carom); });
+        auto other =
+            std::async(std::launch::async, [&] { return simulate_run(beginning, variant, tuning, carom); });
         auto with_steps = simulate_run(shortened, variant, tuning, carom);
         auto without_steps = other.get();
         for (const SimulatedName& name : simulated_counts()) {

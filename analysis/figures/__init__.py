@@ -133,13 +133,14 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
 """How an experiment without a figure of its own is drawn, given its name and title, by its tag `figure`."""
 
 
-def draw(data: Data, folder: Path, prefix: str = "", experiment: str | None = None) -> Iterator[Drawn]:
-    """Draw every figure that the study has records for, or those of one experiment, into the folder.
+def draw(data: Data, folder: Path, prefix: str = "", wanted: Sequence[str] = ()) -> Iterator[Drawn]:
+    """Draw every figure that the study has records for, or those of the experiments wanted, into the folder.
 
     Each is written as SVG, PNG and PDF, and marked as partial where planned records are missing. Several are
     drawn at once, one on each processor.
     """
-    entries = [entry for entry in [*FIGURES, *further(data.study)] if experiment in (None, entry.experiment)]
+    known = [*FIGURES, *further(data.study)]
+    entries = [entry for entry in known if not wanted or entry.experiment in wanted]
 
     def drawn(number: int) -> _Saved | None:
         return _draw(entries[number], data, folder, f"{prefix}{entries[number].name}")

@@ -97,13 +97,13 @@ def test_an_experiment_that_nothing_knows_is_refused(
 
 @pytest.mark.parametrize("kind", ["trend", "scaling", "phases", "doughnut"])
 def test_a_figure_that_the_records_do_not_allow_is_one_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], kind: str
 ) -> None:
     known = "phases" if kind == "trend" else "radius"
     write(tmp_path, [record | {"tags": record["tags"] | {"experiment": "mine", "figure": kind}}
                      for record in study([known], blocks=1)])  # fmt: skip
     assert main(["figures", "--results", str(tmp_path)]) == 0
-    lines = capsys.readouterr().err.splitlines()
+    lines = capfd.readouterr().err.splitlines()
     assert lines[0].startswith(f"mine: not drawn: found figure '{kind}'")
 
 

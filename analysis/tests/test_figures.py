@@ -70,7 +70,7 @@ def test_partial_data_are_marked_in_figure_and_caption(tmp_path: Path) -> None:
 
 def test_svg_png_and_pdf_are_written_whole(tmp_path: Path) -> None:
     write(tmp_path, study(["neighbourhood"], blocks=3))
-    (drawn,) = draw_all(tmp_path, "neighbourhood")
+    (drawn,) = draw_all(tmp_path, ["neighbourhood"])
     assert [path.suffix for path in drawn.files] == [".svg", ".png", ".pdf"]
     svg, png, pdf = drawn.files
     assert ElementTree.parse(svg).getroot().tag.endswith("svg")

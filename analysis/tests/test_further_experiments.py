@@ -47,7 +47,7 @@ def unknown(known: str, kind: str, name: str = "small_chunks", **tags: str) -> l
 
 def drawn_of(folder: Path, records: list[dict[str, Any]]) -> Drawn:
     write(folder, records)
-    (drawn,) = draw_all(folder, records[0]["tags"]["experiment"])
+    (drawn,) = draw_all(folder, [records[0]["tags"]["experiment"]])
     return drawn
 
 
