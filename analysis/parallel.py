@@ -1,5 +1,6 @@
 """Calls spread over the processors of this machine."""
 
+import ctypes
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -8,6 +9,8 @@ from multiprocessing import get_context
 from typing import Any, TypeVar
 
 Result = TypeVar("Result")
+
+_PR_SET_PDEATHSIG = 1
 
 _function: Callable[[int], Any] | None = None
 
@@ -29,8 +32,9 @@ def in_parallel(function: Callable[[int], Result], count: int) -> Iterator[Resul
 def _begin(function: Callable[[int], Any]) -> None:
     global _function
     _function = function
-    # Ctrl-C reaches every process: the first tells, the others end with it.
+    # Ctrl-C reaches every process: the first tells, the others end with it, as they do if it is killed.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def _call(number: int) -> Any:  # noqa: ANN401 - whatever the function returns

@@ -1,27 +1,35 @@
-"""Every step of a variant checked once, before anything of it is timed."""
+"""The steps of a variant checked, each of them, before anything of it is timed."""
 
 import hashlib
+from dataclasses import replace
 
 from experiments import process
 from experiments.plan import Experiment
 from experiments.point import Point
 from experiments.process import TIMED_OUT, Completed
 from experiments.program import CHECK_FAILED, check_command
-from experiments.scenes import SceneFile
+from experiments.scenes import HardCase, SceneFile
 from experiments.site import clean_environment
 from experiments.store import Store
 
 
-def representative(experiment: Experiment, point: Point) -> Point:
-    """The point whose scene the variant is checked on: the first with that variant and name of a scene.
+CHECKED_STEPS = 20
+"""How many steps of a generated scene are checked, each of them; of a hard case all are."""
 
-    Checking every step costs as much as several runs, so not every scene of a sweep is checked; the program
-    checks the last step of each timed run besides.
+
+def representative(experiment: Experiment, point: Point) -> Point:
+    """What the variant is checked on: the beginning of the first scene with that variant and scene's name.
+
+    Checking a step costs as much as several, so neither every scene of a sweep nor every step is checked; the
+    program checks the last step of each timed run besides.
     """
     same = (point.program, point.variant, point.scene_name)
-    return next(
+    first = next(
         other for other in experiment.points if (other.program, other.variant, other.scene_name) == same
     )
+    if isinstance(first.scene, HardCase):
+        return first
+    return replace(first, scene=replace(first.scene, steps=min(first.scene.steps, CHECKED_STEPS)))
 
 
 class Verifier:
@@ -32,13 +40,13 @@ class Verifier:
         self._time_limit = time_limit
 
     def check(self, point: Point, scene: SceneFile) -> Completed:
-        """The verdict on the point's variant on that scene: exit code 0 if every step passed."""
+        """The verdict on the point's variant on that scene: exit code 0 if each of its steps passed."""
         kept = self._store.note(_name(point, scene))
         if kept is not None:
             return Completed(tuple(kept["command"]), kept["exit_code"], "", kept["reason"])
         command = check_command(point.program, scene.path, point.variant, point.threads)
         done = process.run(command, clean_environment(dict(point.openmp)), self._time_limit)
-        reason = "" if done.exit_code == 0 else f"check of every step: {done.reason}"
+        reason = "" if done.exit_code == 0 else f"check of each step: {done.reason}"
         if done.exit_code in (0, CHECK_FAILED):
             verdict = {"command": list(command), "exit_code": done.exit_code, "reason": reason}
             self._store.keep_note(_name(point, scene), verdict)

@@ -1,6 +1,11 @@
 """Calls spread over processes: all of them, in order, with what they raise."""
 
 import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
 
 import pytest
 
@@ -34,3 +39,35 @@ def test_what_is_raised_there_is_raised_here() -> None:
     with pytest.raises(OSError, match="No space left on device: 'file 0'") as raised:
         list(in_parallel(fail, 3))
     assert raised.value.filename == "file 0"
+
+
+SLEEPERS = """
+import os, time
+os.sched_getaffinity = lambda _: {0, 1, 2, 3}
+from analysis.parallel import in_parallel
+def sleep(number):
+    print(os.getpid(), flush=True)
+    time.sleep(600)
+list(in_parallel(sleep, 3))
+"""
+
+
+def test_they_end_with_a_parent_that_is_killed() -> None:
+    root = Path(__file__).parents[2]
+    with subprocess.Popen(
+        [sys.executable, "-c", SLEEPERS], stdout=subprocess.PIPE, text=True, cwd=root
+    ) as parent:
+        assert parent.stdout is not None
+        children = [int(parent.stdout.readline()) for _ in range(3)]
+        os.kill(parent.pid, signal.SIGKILL)
+        until = time.monotonic() + 20
+        while any(is_running(child) for child in children):
+            assert time.monotonic() < until, "they go on without their parent"
+            time.sleep(0.01)
+
+
+def is_running(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from experiments.budget import RESERVE, Load, allocate
 from experiments.costs import PROBE, SECONDS_PER_PROCESS, Costs, Probe, probe_key
-from experiments.plan import Surroundings, plan
+from experiments.plan import Experiment, Surroundings, plan
 from experiments.point import Point
 from experiments.program import Program
 from experiments.progress import about
@@ -17,6 +17,7 @@ from experiments.question import FOLDER, Blocks, load_question
 from experiments.scale import SCALES
 from experiments.site import Machine, load_site
 from experiments.tests.conftest import generated
+from experiments.verify import representative
 
 LOADS = st.lists(
     st.builds(
@@ -68,12 +69,16 @@ def test_equal_experiments_get_equal_shares() -> None:
 
 
 def points(name: str) -> tuple[Point, ...]:
+    return planned(name).points
+
+
+def planned(name: str) -> Experiment:
     program = Program("gcc", Path("carom"), "0" * 64)
     missing = Program("clang", Path("carom"), None)
     around = Surroundings(
         load_site("local"), Machine("test", 2, 2), {"gcc": program, "clang": missing}, SCALES["paper"]
     )
-    return plan(load_question(FOLDER / f"{name}.toml"), around).points
+    return plan(load_question(FOLDER / f"{name}.toml"), around)
 
 
 @pytest.fixture(autouse=True)
@@ -161,3 +166,22 @@ def test_a_missing_program_costs_nothing() -> None:
 )
 def test_durations_in_words(seconds: float, words: str) -> None:
     assert about(seconds) == words
+
+
+def test_a_variant_is_checked_on_the_beginning_of_the_first_scene_of_its_name() -> None:
+    experiment = planned("ladder")
+    published = [point for point in experiment.points if point.variant == "published"]
+    assert {generated(point).steps for point in published} == {40, 20, 100, 4}
+    assert {point.scene_name: generated(representative(experiment, point)).steps for point in published} == {
+        "100k at 0.80": 20,
+        "100k at 0.91": 20,
+        "10k at 0.88": 20,
+        "1M at 0.80": 4,
+    }
+    sweep = planned("particles")
+    assert len({representative(sweep, point).scene for point in sweep.points}) == 1
+
+
+def test_a_hard_case_is_checked_to_its_end() -> None:
+    experiment = planned("hard_cases")
+    assert all(representative(experiment, point).scene is point.scene for point in experiment.points)

@@ -233,7 +233,7 @@ def test_more_blocks_keep_those_that_are_there(workplace: Workplace) -> None:
 
 
 FAILURES = {
-    "check": ("FAKE_CHECK_FAILS", "check of every step: step 3: discs 1 and 2 left colliding", 2),
+    "check": ("FAKE_CHECK_FAILS", "check of each step: step 3: discs 1 and 2 left colliding", 2),
     "result": ("FAKE_RESULT_WRONG", "energy changed by 3 %", 2),
     "crash": ("FAKE_BENCH_CRASHES", "killed by SIGABRT: out of memory", -6),
     "no record": ("FAKE_NO_RECORD", "left no record", 1),
