@@ -58,8 +58,8 @@ test-slurm: environment ## the tests that need Slurm, which they unpack themselv
 	$(python) pytest -m slurm
 
 # A point that failed (2) belongs in the report and still fails the goal.
-experiments: environment build-gcc build-clang ## run the study, then report (STUDY= SCALE=quick|paper SITE= RESULTS=)
-	code=0; $(python) experiments run $(study) $(results) || code=$$?; \
+experiments: environment build-gcc build-clang ## run the study, then report (STUDY= SCALE=quick|paper SITE= RESULTS= BUDGET=minutes)
+	code=0; $(python) experiments run $(study) $(results) $${BUDGET:+--budget "$$BUDGET"} || code=$$?; \
 	case $$code in 0|2) $(python) analysis report $(results) && exit $$code;; *) exit $$code;; esac
 
 status: environment ## what of the study is done, what is missing (STUDY= SCALE= SITE= RESULTS=)

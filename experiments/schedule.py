@@ -25,7 +25,10 @@ class Schedule:
         found: Mapping[str, Found],
         costs: Costs,
         figure_seconds: float,
+        *,
+        more: bool = False,
     ) -> None:
+        """With `more`, what an earlier session decided is the least: the budget may give further blocks."""
         self.experiments = tuple(experiments)
         self.figure_seconds = figure_seconds
         self._store = store
@@ -34,6 +37,7 @@ class Schedule:
         self._once_each = {one.name: _once_each(one, costs) for one in experiments}
         self._given_up: set[tuple[str, str]] = set()
         self._decided = decided_blocks(store, experiments, found)
+        self._growing = set(self._decided) if more else set()
         self.blocks = {one.name: one.question.blocks.minimum for one in experiments} | self._decided
 
     def decide(self, seconds_left: float) -> None:
@@ -45,6 +49,7 @@ class Schedule:
     def begin(self, experiment: Experiment) -> int:
         """The experiment's number of blocks, fixed and written down."""
         blocks = self._decided[experiment.name] = self.blocks[experiment.name]
+        self._growing.discard(experiment.name)
         plan = self._store.note(PLAN) or {}
         entry = {
             "blocks": blocks,
@@ -103,9 +108,10 @@ class Schedule:
 
     def _load(self, experiment: Experiment, seen: set[object]) -> Load:
         seconds = {point.id: self._costs.point(point) for point in experiment.points}
-        fixed = self._decided.get(experiment.name)
         limits = experiment.question.blocks
-        minimum, wanted = (limits.minimum, limits.wanted) if fixed is None else (fixed, fixed)
+        minimum = self._decided.get(experiment.name, limits.minimum)
+        is_fixed = experiment.name in self._decided and experiment.name not in self._growing
+        wanted = minimum if is_fixed else limits.wanted
         done = sum(seconds[point] for point, block in self._found[experiment.name].seconds if block < minimum)
         once = self._once(experiment, seen) - done
         return Load(experiment.name, sum(seconds.values()), once, minimum, wanted)

@@ -98,7 +98,8 @@ class Study:
         found = {experiment.name: look(experiment) for experiment in self.experiments}
         costs = Costs(self._probes(runner), seconds_by_point(found.values()))
         figure_seconds = FIGURE_SECONDS if self.settings.figures else 0.0
-        schedule = Schedule(self.store, self.experiments, found, costs, figure_seconds)
+        more = self.settings.budget_seconds is not None
+        schedule = Schedule(self.store, self.experiments, found, costs, figure_seconds, more=more)
         schedule.decide(self.measuring_seconds - schedule.status().seconds_done)
         return schedule
 
@@ -172,6 +173,7 @@ class _Session:
         for experiment in incomplete:
             self._run_control(everything=False)
             self._block(experiment, 0)
+            self._decide()
             if experiment.question.blocks.wanted == 1:
                 self._rest(experiment)
         for experiment in incomplete:
@@ -181,8 +183,11 @@ class _Session:
         self._draw()
         return self._conclude()
 
-    def _rest(self, experiment: Experiment) -> None:
+    def _decide(self) -> None:
         self._schedule.decide(self._until - time.monotonic())
+
+    def _rest(self, experiment: Experiment) -> None:
+        self._decide()
         for block in range(self._schedule.begin(experiment)):
             self._run_control(everything=False)
             self._block(experiment, block)

@@ -12,7 +12,6 @@ from experiments.scenes import HardCase, SceneFile
 from experiments.site import clean_environment
 from experiments.store import Store
 
-
 CHECKED_STEPS = 20
 """How many steps of a generated scene are checked, each of them; of a hard case all are."""
 

@@ -65,29 +65,6 @@ def test_the_control_is_spread_over_the_study(workplace: Workplace) -> None:
     assert places[-1] > len(order) * 2 / 3
 
 
-def test_a_first_block_of_everything_comes_before_a_second_of_anything(workplace: Workplace) -> None:
-    run(workplace.settings)
-    words = [call["words"] for call in workplace.calls() if "--tag" in call["words"]]
-    blocks = ["block=0" in one for one in words if "experiment=control" not in one]
-    assert blocks == [True] * 5 + [False] * 5
-
-
-def test_the_least_blocks_are_promised_until_more_are_decided(workplace: Workplace) -> None:
-    workplace.question("pair", PAIR.replace("wanted = 2", "wanted = 4"))
-    run(workplace.settings)
-    planned = {
-        (one["tags"]["block"], one["tags"]["blocks_planned"]) for one in workplace.records("pair").values()
-    }
-    assert planned == {(0, 2), (1, 4), (2, 4), (3, 4)}
-
-
-def test_time_spent_on_other_things_leaves_less_for_more_blocks(workplace: Workplace) -> None:
-    workplace.question("pair", PAIR.replace("wanted = 2", "wanted = 40"))
-    workplace.behave(FAKE_SECONDS="0.1", FAKE_CHECK_SECONDS="2")
-    run(replace(workplace.settings, budget_seconds=5.0, figures=False))
-    assert len(workplace.records("pair")) == 2 * 2, "nothing is left after the checks and the least blocks"
-
-
 def test_openmp_is_told_what_the_site_says_and_nothing_else(workplace: Workplace) -> None:
     workplace.behave(OMP_SCHEDULE="static,7", OMP_NUM_THREADS="13")
     run(workplace.settings)
