@@ -136,12 +136,13 @@ def test_a_figure_is_drawn_as_soon_as_its_experiment_is_complete(workplace: Work
     code, output, error = finish(workplace.start())
     assert code == 0
     drawn = [line.split() for line in log.read_text().splitlines()]
-    told = ("chunks", "pair,control", "pair", "control")
-    assert [words[:-1] for words in drawn] == [
-        ["figures", "--results", "results", "--follow", names] for names in told
-    ], "the first alone; what follows soon after together; where that fails, each by itself"
+    assert {tuple(words[:-2]) for words in drawn} == {("figures", "--results", "results", "--follow")}
+    told = [words[-2] for words in drawn]
+    assert told[0] == "chunks"
+    together, late = ["pair,control", "pair", "control"], ["pair", "control"]
+    assert told[1:] in (together, late), "what follows soon together, and each alone where that fails"
     records = [int(words[-1]) for words in drawn]
     assert 8 <= records[0] < 16
-    assert records[1:] == [16, 16, 16]
+    assert records[-1] == 16
     assert "chunks: complete, drawn into results/figures" in output
     assert error == "pair: complete, but its figure could not be drawn: no paper\n"
