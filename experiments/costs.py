@@ -17,6 +17,7 @@ PROBE = Scene(particles=10000, side=3162, radius=16, steps=10, min_velocity=2, m
 _BOX_PER_DISC = 0.2
 _GROWTH_BEYOND_CACHES = 0.2
 _RUNS_OF_A_PROFILE = 3
+_PROBED = 3
 _RUNS_OF_A_CHECK = 3
 _RUNS_FOR_ERRORS = 3
 _SLOWED_BY_CACHEGRIND = 60
@@ -110,23 +111,15 @@ def probe_key(point: Point) -> str:
 def probe(point: Point, scene: Path, record: Path, time_limit: float) -> Probe | None:
     """Time a short run of the point's variant; None if it fails, which the run proper will explain."""
     words = [str(point.program.path), "bench", str(scene), "--variant", point.variant]
-    words += [
-        "--threads",
-        str(point.threads),
-        "--warm-up",
-        "0",
-        "--repetitions",
-        "3",
-        "--record",
-        str(record),
-    ]
+    words += ["--threads", str(point.threads), "--record", str(record), "--warm-up", "0"]
+    words += ["--repetitions", str(_PROBED)]
     done = process.run(words, clean_environment(dict(point.openmp)), time_limit)
     content = read_json(record)
     if done.exit_code != 0 or content is None:
         return None
     # The least of them: a probe is short, and whatever else runs can only lengthen it.
     steps = min(float(repetition["steps_seconds"]) for repetition in content["repetitions"])
-    return Probe(steps / PROBE.steps, max(0.0, float(content["process_seconds"]) - 3 * steps))
+    return Probe(steps / PROBE.steps, max(0.0, float(content["process_seconds"]) - _PROBED * steps))
 
 
 def to_probe(points: Iterable[Point], known: Mapping[str, object]) -> list[Point]:
