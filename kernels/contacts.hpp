@@ -9,15 +9,16 @@
 
 namespace carom {
 
-/// Two overlapping discs, the first one before the second in storage order; or a disc at a wall.
+/// Two overlapping discs, the first one before the second in storage order; or a disc at a wall, as both.
 struct OverlappingDiscs {
-    static constexpr int wall = -1; ///< as `second`
-
     int first;
     int second;
+
+    bool at_wall() const { return first == second; }
 };
 
-/// The same with the unit normal from the first disc to the second, of no meaning at a wall.
+/// The same with the unit normal from the first disc to the second. At a wall the normal is NaN: of no motion
+/// along it can be said that it does not approach, so that a look needs no question of its own for walls.
 template <class Real> struct Contact {
     OverlappingDiscs discs;
     std::array<Real, 2> normal;

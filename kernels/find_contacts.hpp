@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "collide.hpp"
@@ -69,8 +70,9 @@ Tally add_contacts(const State<policies>& state, Strip<typename State<policies>:
     Tally tally;
     for (std::size_t k = 0; k < size; ++k) {
         const OverlappingDiscs pair = strip.found[k];
-        if (pair.second == OverlappingDiscs::wall) {
-            strip.contacts.push_back({pair, {}});
+        if (pair.at_wall()) {
+            constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
+            strip.contacts.push_back({pair, {nan, nan}});
             continue;
         }
         const auto& first = state.discs[static_cast<std::size_t>(pair.first)];
@@ -119,7 +121,7 @@ std::size_t search_block(State<policies>& state, const Candidates<policies>& can
         }
         if (state.grid.at_wall(row, column) && overlaps_wall(state.discs[disc], state.side, state.radius))
             [[unlikely]] {
-            *room(found, size++, 1) = {i, OverlappingDiscs::wall};
+            *room(found, size++, 1) = {i, i};
         }
         const BoxRange rows = Look<policies.neighbourhood>::along(state.grid, state.discs[disc].y, row);
         const BoxRange near = Look<policies.neighbourhood>::along(state.grid, state.discs[disc].x, column);

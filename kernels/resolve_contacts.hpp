@@ -29,10 +29,8 @@ int* look_at_contacts(const State<policies>& state, const Strip<RealOf<policies.
     const auto* const contacts = strip.contacts.data();
     for (int k = begin; k < end; ++k) {
         const auto [first, second] = contacts[k].discs;
-        const bool wall = second == OverlappingDiscs::wall;
         *colliding = k;
-        colliding +=
-            wall | (approach_along(contacts[k].normal, discs[first], discs[wall ? first : second]) < 0);
+        colliding += !(approach_along(contacts[k].normal, discs[first], discs[second]) >= 0);
     }
     return colliding;
 }
@@ -48,7 +46,7 @@ Changes resolve_contacts(State<policies>& state, const Strip<RealOf<policies.pre
     for (const int* k = begin; k != end; ++k) {
         const auto& contact = strip.contacts[static_cast<std::size_t>(*k)];
         const auto [first, second] = contact.discs;
-        if (second == OverlappingDiscs::wall) [[unlikely]] {
+        if (contact.discs.at_wall()) [[unlikely]] {
             if (const int turned = resolve_walls(discs[first], state.side, state.radius)) {
                 changes.walls += turned;
                 on_change(first);

@@ -218,5 +218,24 @@ TEST(ToleranceOfApproach, RelativeOverlooksWhatIsRoundingAtTheDiscsOwnSpeed) {
     EXPECT_TRUE(resolve_pair(first, second, relative));
 }
 
+TEST(ToleranceOfApproach, WhatSurelyCountsCounts) {
+    Random random(11);
+    int sure = 0;
+    int counting = 0;
+    for (int trial = 0; trial < 100'000; ++trial) {
+        const double speed = std::ldexp(random.uniform(1, 2), static_cast<int>(random.uniform(-600, 600)));
+        const double approach = -speed * epsilon * std::exp2(random.uniform(4, 16));
+        const bool counts = relative.counts(approach, 1, speed * speed);
+        if (relative.surely_counts(approach, speed * speed)) {
+            EXPECT_TRUE(counts) << "approach " << approach << " at speed " << speed;
+            ++sure;
+        }
+        counting += counts;
+        EXPECT_FALSE(published.surely_counts(approach, speed * speed));
+    }
+    EXPECT_GT(sure, counting / 2); // it is worth asking first
+    EXPECT_LT(sure, counting);
+}
+
 } // namespace
 } // namespace carom

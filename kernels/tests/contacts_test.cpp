@@ -87,7 +87,7 @@ template <Policies policies> void finds_each_pair_once() {
         for (const auto& strip : state.strips) {
             for (const auto& contact : strip.contacts) {
                 const auto [first, second] = contact.discs;
-                if (second != OverlappingDiscs::wall) {
+                if (!contact.discs.at_wall()) {
                     ASSERT_LT(first, second);
                     EXPECT_NEAR(std::hypot(contact.normal[0], contact.normal[1]), 1, 1e-15);
                     pairs.insert(std::minmax({state.number(first), state.number(second)}));
@@ -176,9 +176,7 @@ TEST(StripsOfContacts, ShareNoDiscAndNoMarkWithinAParity) {
         std::map<std::pair<int, int>, std::set<int>> strips_of_disc; // and of a parity
         for (const Place& place : places(state)) {
             for (const int disc : {place.discs.first, place.discs.second}) {
-                if (disc != OverlappingDiscs::wall) {
-                    strips_of_disc[{disc, place.strip % 2}].insert(place.strip);
-                }
+                strips_of_disc[{disc, place.strip % 2}].insert(place.strip);
             }
         }
         std::map<std::pair<std::ptrdiff_t, int>, std::set<int>> strips_of_mark;

@@ -7,7 +7,7 @@ namespace carom {
 namespace {
 
 const Policies& fastest_of(std::size_t count) {
-    Scene scene{.side = 1000, .radius = 1};
+    Scene scene{.side = 1000, .radius = 1, .discs = {}};
     scene.discs.resize(count);
     return fastest_variant(scene).policies;
 }
