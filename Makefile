@@ -26,12 +26,12 @@ help: ## list these verbs
 setup: ## install what is missing and make .venv (PYTHON=another Python, 3.11 or newer)
 	./setup.sh
 
-build: ## build build/$COMPILER/carom (COMPILER=gcc|clang; JOBS=)
+build: ## build build/$COMPILER/carom (COMPILER=gcc|clang; JOBS=; WERROR=1 stops at a warning)
 	case "$$COMPILER" in gcc|clang) ;; *) echo "COMPILER=$$COMPILER: expected gcc or clang" >&2; exit 1;; esac
 	$(MAKE) --no-print-directory "build-$$COMPILER"
 
 build-gcc build-clang: build-%:
-	CXX=$(CXX_$*) $(generator) cmake --preset release -B build/$*
+	CXX=$(CXX_$*) $(generator) cmake --preset release -B build/$* -DCAROM_WARNINGS_AS_ERRORS="$${WERROR:+ON}"
 	cmake --build build/$* $(jobs)
 
 test: lint-python build-gcc build-clang ## build with both compilers and run every quick test

@@ -49,13 +49,23 @@ class ActiveBlocks {
     /// The mark of the first block of a row; those of the row's other blocks, and of the next rows', follow.
     unsigned char* row(int row) { return marks_.data() + static_cast<std::ptrdiff_t>(row + 1) * per_row_; }
 
-    /// The code of a box: its block, and whether the boxes beside it, if any, lie in other ones. `columns`
-    /// are those of the block.
-    int code(int row, BoxRange columns, int column) const {
-        const int block = (row + 1) * per_row_ + columns.first / boxes_per_block;
-        const int left = static_cast<int>(column == columns.first) & static_cast<int>(column > 0);
-        const int right = static_cast<int>(column == columns.last) & static_cast<int>(column < last_column_);
-        return block * 4 + right * 2 + left;
+    /// The codes of a block's boxes: the block, and whether the boxes beside, if any, lie in other ones.
+    struct Codes {
+        int block;
+        int left_edge; ///< the column whose left neighbour lies in another block, or -1
+        int right_edge;
+
+        int operator()(int column) const {
+            return block * 4 + static_cast<int>(column == right_edge) * 2 +
+                   static_cast<int>(column == left_edge);
+        }
+    };
+
+    /// `columns` are those of the block.
+    Codes codes(int row, BoxRange columns) const {
+        return {.block = (row + 1) * per_row_ + columns.first / boxes_per_block,
+                .left_edge = columns.first > 0 ? columns.first : -1,
+                .right_edge = columns.last < last_column_ ? columns.last : -1};
     }
 
     /// Marks blocks. Apart from the rest so that it can be copied into registers: nobody knows what else a

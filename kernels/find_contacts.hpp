@@ -109,22 +109,24 @@ template <Policies policies>
 std::size_t search_block(State<policies>& state, const Candidates<policies>& candidates,
                          std::vector<OverlappingDiscs>& found, int row, BoxRange columns) {
     std::size_t size = 0;
-    const int row_begin = state.grid.box_of(row, 0);
-    const int boxes_per_side = state.grid.boxes_per_side();
+    const Grid grid = state.grid; // a copy, since nobody knows what else a store of integers may change
+    [[maybe_unused]] const ActiveBlocks::Codes codes = state.active.codes(row, columns);
+    const int row_begin = grid.box_of(row, 0);
+    const int boxes_per_side = grid.boxes_per_side();
     const int* const first = state.first.data();
     const int end = first[row_begin + columns.last + 1];
     for (int i = first[row_begin + columns.first]; i < end; ++i) {
         const auto disc = static_cast<std::size_t>(i);
         const int column = state.box_of_disc[disc] - row_begin;
         if constexpr (policies.worklist == Worklist::active) {
-            state.block_of_disc[disc] = state.active.code(row, columns, column);
+            state.block_of_disc[disc] = codes(column);
         }
-        if (state.grid.at_wall(row, column) && overlaps_wall(state.discs[disc], state.side, state.radius))
+        if (grid.at_wall(row, column) && overlaps_wall(state.discs[disc], state.side, state.radius))
             [[unlikely]] {
             *room(found, size++, 1) = {i, i};
         }
-        const BoxRange rows = Look<policies.neighbourhood>::along(state.grid, state.discs[disc].y, row);
-        const BoxRange near = Look<policies.neighbourhood>::along(state.grid, state.discs[disc].x, column);
+        const BoxRange rows = Look<policies.neighbourhood>::along(grid, state.discs[disc].y, row);
+        const BoxRange near = Look<policies.neighbourhood>::along(grid, state.discs[disc].x, column);
         for (int box = row_begin; box <= rows.last * boxes_per_side; box += boxes_per_side) {
             const int from = std::max(i + 1, first[box + near.first]);
             const int to = first[box + near.last + 1];
