@@ -57,7 +57,7 @@ def draw(scene: Path, trajectory: Path, output: Path | None = None, step: int | 
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         with mpl.rc_context(SETTINGS):
-            picture = _Picture(scene.name, box, run)
+            picture = Picture(scene.name, box, run)
             if target.suffix == ".png":
                 picture.show(Moment(run.steps if step is None else step, 0.0))
                 picture.figure.savefig(part, dpi=150)
@@ -103,7 +103,7 @@ def _refuse_format(target: Path) -> None:
         raise InputError(f"{target}: needs ffmpeg, which is not here; install it, or choose a name *.gif")
 
 
-def _animate(picture: "_Picture", run: Trajectory, target: Path) -> None:
+def _animate(picture: "Picture", run: Trajectory, target: Path) -> None:
     animation = FuncAnimation(
         picture.figure, picture.show, moments(run.steps, FRAMES), blit=False, cache_frame_data=False
     )
@@ -111,7 +111,7 @@ def _animate(picture: "_Picture", run: Trajectory, target: Path) -> None:
     animation.save(target, writer=writer(fps=FRAMES_PER_SECOND), dpi=100)
 
 
-class _Picture:
+class Picture:
     """A figure whose discs can be moved."""
 
     def __init__(self, name: str, box: Box, run: Trajectory) -> None:

@@ -5,14 +5,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.collections import EllipseCollection
 from matplotlib.image import imread
+from matplotlib.patches import Rectangle
 from PIL import Image, ImageSequence
 
 from analysis import movie
 from analysis.cli import main
-from analysis.movie import FRAMES, Moment, boxes_per_side, moments
+from analysis.movie import FRAMES, Moment, Picture, boxes_per_side, moments
 from analysis.records import InputError
-from analysis.trajectory import Box
+from analysis.trajectory import Box, read_box, read_trajectory
 
 STEPS = 4
 
@@ -69,6 +71,32 @@ def test_moments_begin_at_the_start_and_end_at_the_end() -> None:
     assert moments(3, 6) == [Moment(step, part) for step in range(3) for part in (0.0, 0.5)] + [
         Moment(3, 0.0)
     ]
+
+
+def test_discs_fly_between_the_steps_and_are_coloured_by_speed(scene: Path, trajectory: Path) -> None:
+    picture = Picture("scene.in", read_box(scene), read_trajectory(trajectory))
+    picture.show(Moment(1, 0.5))
+    (discs,) = (item for item in picture.figure.axes[0].collections if isinstance(item, EllipseCollection))
+    offsets = np.asarray(discs.get_offsets())
+    assert offsets.tolist() == [[11.5, 10.0], [30.0, 31.5], [42.5, 42.5]]
+    assert discs.get_widths().tolist() == discs.get_heights().tolist() == [10.0] * 3
+    assert np.asarray(discs.get_array()) == pytest.approx([1.0, 1.0, np.hypot(5, 5)])
+
+
+def test_boxes_of_one_colour_are_a_box_apart(scene: Path, trajectory: Path) -> None:
+    picture = Picture("scene.in", read_box(scene), read_trajectory(trajectory))
+    boxes = {
+        (round(patch.get_x() / 21), round(patch.get_y() / 21)): patch
+        for patch in picture.figure.axes[0].patches
+        if isinstance(patch, Rectangle) and patch.get_fill()
+    }
+    assert sorted(boxes) == [(column, row) for column in range(3) for row in range(3)]
+    for (column, row), patch in boxes.items():
+        assert patch.get_xy() == (21 * column, 21 * row)
+        assert (patch.get_width(), patch.get_height()) == (min(21, 60 - 21 * column), min(21, 60 - 21 * row))
+        for (other_column, other_row), other in boxes.items():
+            same = patch.get_facecolor() == other.get_facecolor()
+            assert same == (column % 2 == other_column % 2 and row % 2 == other_row % 2)
 
 
 def test_the_boxes_are_the_published_ones() -> None:
