@@ -32,7 +32,8 @@ class Records:
 
     `runs` has a row per record, `times` per repetition of a timed run, `trajectory` per comparison with the
     reference, `phases` per phase and `threads` per phase and thread of a profiled run, `counters` per counter
-    and thread, `limits` per rate that a machine reached at most, `failures` per failed point.
+    and thread, `limits` per rate that a machine reached at most, `outside` per run of a general engine
+    beside the variants, `failures` per failed point.
     `skipped` holds one line for every file that could not be counted.
     """
 
@@ -43,6 +44,7 @@ class Records:
     threads: pd.DataFrame
     counters: pd.DataFrame
     limits: pd.DataFrame
+    outside: pd.DataFrame
     failures: pd.DataFrame
     skipped: list[str] = field(default_factory=list)
 
@@ -63,9 +65,9 @@ def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
     ]
     for line in skipped:
         (warn or _warn_on_standard_error)(line)
-    measured, limits, failed = (
+    measured, limits, outside, failed = (
         [(path, record) for path, record in records if record["kind"] in kinds]
-        for kinds in (("bench", "profile"), ("limits",), ("failure",))
+        for kinds in (("bench", "profile"), ("limits",), ("outside",), ("failure",))
     )
     return Records(
         runs=tables.runs(measured),
@@ -75,6 +77,7 @@ def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
         threads=tables.threads(measured),
         counters=tables.counters(measured),
         limits=tables.limits(limits),
+        outside=tables.outside(outside),
         failures=tables.failures(failed),
         skipped=skipped,
     )
@@ -117,9 +120,8 @@ def _parse(content: bytes, failures: bool) -> tuple[str | None, dict[str, Any]]:
 
     Remembered by content: whoever loads a growing folder again and again pays for what is new.
     """
-    validator = _validator()
     try:
-        record = json.loads(content, parse_float=_finite, parse_constant=_finite)
+        return _checked(json.loads(content, parse_float=_finite, parse_constant=_finite), failures)
     except UnicodeDecodeError:
         return "not UTF-8 text", {}
     except json.JSONDecodeError as error:
@@ -128,6 +130,10 @@ def _parse(content: bytes, failures: bool) -> tuple[str | None, dict[str, Any]]:
         return f"not JSON ({error})", {}
     except RecursionError:
         return "not a Carom record (nested too deeply)", {}
+
+
+def _checked(record: Any, failures: bool) -> tuple[str | None, dict[str, Any]]:  # noqa: ANN401 - any JSON
+    validator = _validator()
     if not isinstance(record, dict) or "schema_version" not in record:
         return "not a Carom record (no schema_version)", {}
     expected = validator.schema["properties"]["schema_version"]["const"]  # type: ignore[index]

@@ -10,7 +10,7 @@ from typing import Any
 
 from experiments.errors import InputError
 from experiments.files import locked, read_json, write_json
-from experiments.schema import RECORD_SCHEMA, validator
+from experiments.schema import RECORD_SCHEMA, is_record
 from experiments.store import Store, new_session
 
 COLLECTED = "collected"
@@ -71,7 +71,7 @@ def _refuse_other_schema(file: Path, content: Any) -> None:  # noqa: ANN401 - re
         raise InputError(
             f"{file}: schema_version: found {json.dumps(version)}, expected {expected}; nothing was collected"
         )
-    if not validator(RECORD_SCHEMA).is_valid(content):
+    if not is_record(content):
         raise InputError(f"{file}: does not match {RECORD_SCHEMA.name}; nothing was collected")
 
 
@@ -105,9 +105,9 @@ def _take(store: Store, found: Sequence[_Found]) -> int:
             continue
         target = store.root / one.place
         there = read_json(target)
-        if there is not None:
-            if there["recorded_at"] >= one.content["recorded_at"]:
-                continue
+        if is_record(there) and there["recorded_at"] >= one.content["recorded_at"]:
+            continue
+        if target.exists():
             store.retire(target)
         write_json(target, one.content, store.temporary)
         known.add(one.sha256)

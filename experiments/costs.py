@@ -37,6 +37,16 @@ class Probe:
     process: float
 
 
+def kept_probes(kept: object) -> dict[str, Probe]:
+    """The probes that were kept; of anything else that stands in their place nothing."""
+    probes = {}
+    for key, value in kept.items() if isinstance(kept, dict) else ():
+        match value:
+            case {"step": float(step), "process": float(seconds)} if step > 0 and seconds >= 0:
+                probes[str(key)] = Probe(step, seconds)
+    return probes
+
+
 class Costs:
     """Estimates in seconds of wall time."""
 

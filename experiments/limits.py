@@ -9,7 +9,7 @@ from experiments.files import move, read_json
 from experiments.point import Point
 from experiments.process import Completed
 from experiments.program import tag_arguments
-from experiments.schema import RECORD_SCHEMA, validator
+from experiments.schema import is_record
 from experiments.site import clean_environment
 from experiments.store import Store
 
@@ -43,7 +43,7 @@ class Limits:
         done = process.run(command, clean_environment(dict(point.openmp)), self._time_limit)
         if done.exit_code != 0:
             return Completed(command, done.exit_code, "", f"limits of the machine: {done.reason}")
-        if not validator(RECORD_SCHEMA).is_valid(read_json(scratch)):
+        if not is_record(read_json(scratch)):
             return Completed(command, 1, "", "limits of the machine: no record that can be used")
         move(scratch, path)
         return done

@@ -53,6 +53,14 @@ def read_toml(path: Path, schema: str) -> dict[str, Any]:
     return document
 
 
+def is_record(content: object) -> bool:
+    """Whether the content of a file is a record of any kind."""
+    try:
+        return validator(RECORD_SCHEMA).is_valid(content)
+    except RecursionError:
+        return False
+
+
 def _finite(text: str) -> float:
     """The number; TOML has nan and infinities, no question has."""
     number = float(text)

@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import re
 import shutil
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -14,7 +15,7 @@ from experiments.files import locked, move, read_json, write_json
 from experiments.plan import Experiment
 from experiments.point import Point, Tags
 from experiments.process import Completed
-from experiments.schema import RECORD_SCHEMA, validator
+from experiments.schema import is_record
 
 Key = tuple[str, int]
 """A point's id and a block's number: one process, one record."""
@@ -81,7 +82,7 @@ class Store:
                 found.seconds[key] = float(record["process_seconds"])
         for path in sorted((self.root / "failures" / experiment.name).glob("*.json")):
             failure, key = read_json(path), _key(path)
-            if key is None or key[0] not in points or key in found.seconds or not _is_valid(failure):
+            if key is None or key[0] not in points or key in found.seconds or not is_record(failure):
                 found.stale.append(path)
             else:
                 found.failures[key] = failure["reason"]
@@ -155,7 +156,7 @@ def new_session() -> str:
 
 def unusable(record: Any, point: Point, block: int) -> str | None:  # noqa: ANN401 - read from a file
     """Why a record does not stand for this process of this point; None if it does."""
-    if not _is_valid(record):
+    if not is_record(record):
         return "it does not match the record schema"
     if record["kind"] == "failure" or record["check"]["verdict"] != "passed":
         return "its result failed the check"
@@ -179,10 +180,6 @@ def seconds_by_point(found: Iterable[Found]) -> dict[str, list[float]]:
     return seconds
 
 
-def _is_valid(record: Any) -> bool:  # noqa: ANN401 - read from a file
-    return record is not None and validator(RECORD_SCHEMA).is_valid(record)
-
-
 def _key(path: Path) -> Key | None:
-    point, separator, block = path.stem.partition("-b")
-    return (point, int(block)) if separator and block.isdigit() else None
+    name = re.fullmatch(r"(.*?)-b([0-9]{1,9})", path.stem, re.DOTALL)
+    return (name[1], int(name[2])) if name else None

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from experiments import question, site
-from experiments.costs import PROBE, Costs, Probe, probe, probe_key, to_probe
+from experiments.costs import PROBE, Costs, Probe, kept_probes, probe, probe_key, to_probe
 from experiments.errors import InputError
 from experiments.plan import SEED, Experiment, Surroundings, plan
 from experiments.point import Point
@@ -104,8 +104,7 @@ class Study:
         return schedule
 
     def _probes(self, runner: Runner) -> dict[str, Probe]:
-        kept = self.store.note(COSTS) or {}
-        probes = {key: Probe(**value) for key, value in kept.items()}
+        probes = kept_probes(self.store.note(COSTS))
         points = [point for experiment in self.experiments for point in experiment.points]
         wanted = to_probe(points, probes)
         for point in wanted:

@@ -40,9 +40,9 @@ class Verifier:
 
     def check(self, point: Point, scene: SceneFile) -> Completed:
         """The verdict on the point's variant on that scene: exit code 0 if each of its steps passed."""
-        kept = self._store.note(_name(point, scene))
+        kept = _verdict(self._store.note(_name(point, scene)))
         if kept is not None:
-            return Completed(tuple(kept["command"]), kept["exit_code"], "", kept["reason"])
+            return kept
         command = check_command(point.program, scene.path, point.variant, point.threads)
         done = process.run(command, clean_environment(dict(point.openmp)), self._time_limit)
         reason = "" if done.exit_code == 0 else f"check of each step: {done.reason}"
@@ -50,6 +50,14 @@ class Verifier:
             verdict = {"command": list(command), "exit_code": done.exit_code, "reason": reason}
             self._store.keep_note(_name(point, scene), verdict)
         return Completed(command, done.exit_code, "", reason if done.exit_code != TIMED_OUT else done.error)
+
+
+def _verdict(kept: object) -> Completed | None:
+    """The verdict that was kept; None where there is none, or something else in its place."""
+    match kept:
+        case {"command": [*command], "exit_code": int(exit_code), "reason": str(reason)}:
+            return Completed(tuple(map(str, command)), exit_code, "", reason)
+    return None
 
 
 def _name(point: Point, scene: SceneFile) -> str:
