@@ -5,7 +5,7 @@
 # Goals and prerequisites run one after another in the order given, also in `make -j2 setup test`.
 .NOTPARALLEL:
 .SILENT:
-.PHONY: help setup environment build build-gcc build-clang test test-all test-slurm fuzz movie experiments status submit \
+.PHONY: help setup environment build build-gcc build-clang test test-all test-slurm fuzz fuzz-scenes fuzz-files movie experiments status submit \
         resume collect figures report compare lint lint-python format clean distclean
 
 export COMPILER ?= gcc
@@ -43,15 +43,22 @@ test-all: test ## and the slow ones, and those that need Slurm
 	ctest --test-dir build/gcc --output-on-failure -L slow
 	ctest --test-dir build/clang --output-on-failure -L slow
 	$(python) pytest -m "slow or slurm"
-	$(MAKE) --no-print-directory fuzz
+	$(MAKE) --no-print-directory fuzz-files
+	if echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' | \
+		clang++ -fsanitize=fuzzer -x c++ - -o /dev/null 2>/dev/null; then $(MAKE) --no-print-directory fuzz-scenes; \
+	else echo "scene reader: not fuzzed: clang++ has no libFuzzer here (Debian: the package libclang-rt-dev)"; fi
 
-fuzz: environment ## let random input loose on every reader (TIME=60, seconds for each; needs libclang-rt-dev)
+fuzz: fuzz-scenes fuzz-files ## let random input loose on every reader (TIME=60, seconds for each; needs libclang-rt-dev)
+
+fuzz-scenes: environment
 	$(generator) cmake --preset fuzz
 	cmake --build build/fuzz $(jobs)
 	mkdir -p build/fuzz/corpus
 	build/fuzz/harness/tests/fuzz/scene_seeds build/fuzz/seeds
 	build/fuzz/harness/tests/fuzz/scene_reader_fuzz -max_total_time="$${TIME:-60}" -timeout=10 -print_final_stats=1 \
 		-dict=harness/tests/fuzz/scene.dict -artifact_prefix=build/fuzz/ build/fuzz/corpus build/fuzz/seeds
+
+fuzz-files: environment
 	CAROM_FUZZ_SECONDS="$${TIME:-60}" $(python) pytest -m fuzz -s
 
 test-slurm: environment ## the tests that need Slurm, which they unpack themselves (Debian's packages, no root)
@@ -86,7 +93,7 @@ report: environment ## write the report of whatever is there (RESULTS=)
 movie: environment build ## draw a run (SCENE= OUT=*.mp4|*.gif|*.png VARIANT= STEP=)
 	: "$${SCENE:?a scene file}"
 	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
-	"build/$$COMPILER/carom" run "$$SCENE" $${VARIANT:+--variant "$$VARIANT"} --trajectory "$$folder/trajectory" && \
+	"build/$$COMPILER/carom" run "$$SCENE" --variant "$${VARIANT:-published}" --trajectory "$$folder/trajectory" && \
 	$(python) analysis movie "$$SCENE" "$$folder/trajectory" $${OUT:+--output "$$OUT"} $${STEP:+--step "$$STEP"}
 
 compare: environment ## compare two result folders (A= B=)

@@ -146,6 +146,18 @@ def points(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
     return pd.concat(parts).sort_values(["area_fraction", "series", "x"], ignore_index=True)
 
 
+def outside(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
+    """Return a row for each scene and number of substeps of a general engine: `engine`, `median`, `low`,
+    `high` of the seconds for a unit of simulated time, and `error`. Empty but for the drift of energy.
+    """
+    table = study.outside[study.outside["experiment"] == experiment].dropna(subset=["energy_drift"])
+    if table.empty or measure.key != "energy":
+        return pd.DataFrame()
+    place = ["scene_name", "substeps", "engine"]
+    errors = table.groupby(place)["energy_drift"].median().rename("error").reset_index()
+    return summarise(table, place, "seconds").merge(errors, on=place)
+
+
 def orders(table: pd.DataFrame) -> pd.DataFrame:
     """Return per scene and series of `points` the fitted `order` of the error in dt, an Interval."""
     keys = ["scene_name", "series"]

@@ -31,6 +31,8 @@ MOST_BOXES = 48
 COLOURS = ("#dceaf5", "#fbe6d4", "#ddf0e4", "#f3e3ee")
 """Of the boxes, pale: even and odd rows times even and odd columns."""
 
+TURNS = ("first", "second", "third", "fourth")
+
 SUFFIXES = (".mp4", ".gif", ".png")
 
 
@@ -124,6 +126,7 @@ class Picture:
         _draw_boxes(axes, box)
         self._title: Text = axes.set_title("", color=INK)
         self._discs = self._add_discs(axes, box)
+        self.figure.set_layout_engine("constrained", h_pad=0.1)
         # The layout is settled once, not once a frame.
         self.figure.draw_without_rendering()
         self.figure.set_layout_engine("none")
@@ -177,7 +180,7 @@ def _draw_boxes(axes: Axes, box: Box) -> None:
                 Rectangle(corner, width, height, facecolor=colour, edgecolor="white", linewidth=0.5)
             )
     axes.legend(
-        handles=[Patch(facecolor=colour, label=f"{turn}.") for turn, colour in enumerate(COLOURS, 1)],
+        handles=[Patch(facecolor=colour, label=turn) for turn, colour in zip(TURNS, COLOURS, strict=True)],
         loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=4, frameon=False,
         title="Boxes of one colour are resolved in parallel: no disc is in reach of two of them.",
     )  # fmt: skip

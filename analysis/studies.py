@@ -26,6 +26,8 @@ class Study:
     failures: pd.DataFrame
     limits: pd.DataFrame
     """What the machine can do at most, whatever the revision and the scale."""
+    outside: pd.DataFrame
+    """Runs of a general engine on the machine at that scale, whatever the revision."""
 
     @property
     def name(self) -> str:
@@ -67,6 +69,9 @@ def split(records: Records) -> list[Study]:
             **_parts(records, runs),
             failures=_failures(records, scale, runs),
             limits=records.limits[records.limits["machine"] == machine],
+            outside=records.outside[
+                (records.outside["machine"] == machine) & (records.outside["scale"] == scale)
+            ],
         )
         for (machine, revision, scale), runs in records.runs.groupby(["machine", "revision", "scale"])
     ]

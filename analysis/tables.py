@@ -38,6 +38,10 @@ LIMITS = [
     "file", "machine", "compiler", "limit", "threads", "level", "working_set_bytes", "lanes", "best",
     "median", "repetitions",
 ]  # fmt: skip
+OUTSIDE = [
+    "file", "machine", "scale", "experiment", "scene_name", "block", "session", "substeps", "engine",
+    "seconds", "energy_drift",
+]  # fmt: skip
 IDENTITY = ["compiler_family", "node", "machine", "revision"]
 CONTEXT = [
     "file", "kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene", "scene_sha256", *SCENE,
@@ -191,6 +195,31 @@ def limits(records: Named) -> pd.DataFrame:
         for row in record["limits"][limit]
     ]
     return pd.DataFrame(rows, columns=LIMITS)
+
+
+def outside(records: Named) -> pd.DataFrame:
+    """One row a run of a general engine beside the variants: where it stands, `engine` with its version,
+    `seconds` for a unit of simulated time, and the size of its relative `energy_drift`.
+    """
+    rows = [
+        {
+            "file": name,
+            "machine": _machine(record["provenance"]),
+            **{column: record["tags"].get(column) for column in ("experiment", "block")},
+            **{column: str(record["tags"].get(column, "")) for column in ("scale", "scene_name", "session")},
+            "substeps": record["axes"]["substeps"],
+            "engine": f"{record['engine']['name']} {record['engine']['version']}",
+            "seconds": run["steps_seconds"] / record["scene"]["steps"],
+            "energy_drift": record["errors"]["energy_drift"],
+        }
+        for name, record in records
+        for run in record["repetitions"]
+    ]
+    return (
+        pd.DataFrame(rows, columns=OUTSIDE)
+        .astype({"energy_drift": float})
+        .assign(energy_drift=lambda table: table["energy_drift"].abs())
+    )
 
 
 def failures(records: Named) -> pd.DataFrame:

@@ -1,5 +1,6 @@
 """One process of one point, from its scene to its record or to the reason why there is none."""
 
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -7,6 +8,7 @@ from experiments import process
 from experiments.errors import InputError
 from experiments.files import move, read_json
 from experiments.limits import Limits
+from experiments.outside import Outside
 from experiments.plan import Experiment
 from experiments.point import Point, Tags
 from experiments.process import NOT_FOUND, Completed
@@ -61,6 +63,7 @@ class Runner:
         self._time_limit = time_limit
         self._verifier = Verifier(store, time_limit)
         self._limits = Limits(store, time_limit)
+        self._outside = Outside(store, time_limit)
 
     def run(self, task: Task) -> Outcome:
         """Verify the point's variant if that is still to be done, then measure it.
@@ -82,6 +85,9 @@ class Runner:
         limits = self._limits.measure(point)
         if limits.exit_code != 0:
             return self._fail(task, limits)
+        failed = self._outside.measure(point, task.block, scene, task.tags(self._store.session))
+        if failed is not None and failed.exit_code != 0:
+            print(f"outside engine: not measured: {failed.reason}", file=sys.stderr)
         return self._measure(task, scene)
 
     def scene(self, scene: AnyScene) -> SceneFile:

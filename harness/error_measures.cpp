@@ -11,6 +11,7 @@
 #include "harness/measure.hpp"
 #include "harness/momentum_balance.hpp"
 #include "harness/penetration.hpp"
+#include "harness/record.hpp"
 #include "kernels/event_driven.hpp"
 
 namespace carom {
@@ -140,11 +141,6 @@ class Watch {
     std::vector<Disc> before_;
     std::int64_t pair_resolves_ = 0;
 };
-
-/// A number, or null where there is none or it is not finite.
-Json number_or_null(const std::optional<double>& value) {
-    return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
-}
 
 Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <string>
 
@@ -9,6 +10,7 @@
 
 #include "harness/commands.hpp"
 #include "harness/errors.hpp"
+#include "harness/help.hpp"
 
 namespace {
 
@@ -29,6 +31,7 @@ int main(int count, char** arguments) {
     // A file that may not grow further is then told as a full disk is, in one line.
     std::signal(SIGXFSZ, SIG_IGN);
     CLI::App program("Carom: a performance study of colliding discs that checks itself", "carom");
+    program.formatter(std::make_shared<carom::WrappedHelp>());
     program.require_subcommand(1);
     program.set_version_flag("--version", "carom " CAROM_VERSION);
     program.set_help_all_flag("--help-all", "Print the help of every verb");
@@ -41,6 +44,7 @@ int main(int count, char** arguments) {
     carom::add_reference_command(program);
     carom::add_doctor_command(program);
     carom::add_limits_command(program);
+    carom::add_outside_command(program);
     if (count > 1 && arguments[1][0] != '-' && !is_verb(program, arguments[1])) {
         return fail(
             1, ("found '" + std::string(arguments[1]) + "', expected a verb out of `carom --help`").c_str());

@@ -31,17 +31,6 @@ Json axes_json(const Variant& variant, const Tuning& tuning) {
     return axes;
 }
 
-Json scene_json(const Measurement& measurement) {
-    const Scene& scene = measurement.scene;
-    return {{"name", measurement.scene_name},
-            {"sha256", measurement.scene_sha256},
-            {"particles", scene.discs.size()},
-            {"side", scene.side},
-            {"radius", scene.radius},
-            {"steps", scene.steps},
-            {"area_fraction", area_fraction(scene)}};
-}
-
 Json work_json(const Measurement& measurement, const Tally& work) {
     return {{"steps", std::int64_t{measurement.scene.steps} * measurement.tuning.substeps},
             {"overlaps", work.overlaps},
@@ -54,8 +43,7 @@ Json errors_json(const Measurement& measurement, const Run& last) {
     const Scene& scene = measurement.scene;
     const Checker checker(scene.side, scene.radius, 1.0 / measurement.tuning.substeps,
                           measurement.tuning.tolerance, rounding_of(measurement.variant.policies));
-    const auto drift = energy_drift(scene, last.discs);
-    return {{"energy_drift", drift && std::isfinite(*drift) ? Json(*drift) : Json(nullptr)},
+    return {{"energy_drift", number_or_null(energy_drift(scene, last.discs))},
             {"discs_outside", discs_outside(scene, last.discs)},
             {"unresolved_pairs", checker.count_colliding(last.discs)}};
 }
@@ -87,6 +75,20 @@ Json tags_json(const std::vector<std::string>& tags) {
     return object;
 }
 
+Json scene_json(const Scene& scene, const std::string& name, const std::string& sha256) {
+    return {{"name", name},
+            {"sha256", sha256},
+            {"particles", scene.discs.size()},
+            {"side", scene.side},
+            {"radius", scene.radius},
+            {"steps", scene.steps},
+            {"area_fraction", area_fraction(scene)}};
+}
+
+Json number_or_null(const std::optional<double>& value) {
+    return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
 Json record_json(const Measurement& measurement) {
     const Run& last = measurement.repetitions.back();
     Json repetitions = Json::array();
@@ -100,7 +102,7 @@ Json record_json(const Measurement& measurement) {
             {"recorded_at", utc_now()},
             {"tags", tags_json(measurement.tags)},
             {"axes", axes_json(measurement.variant, measurement.tuning)},
-            {"scene", scene_json(measurement)},
+            {"scene", scene_json(measurement.scene, measurement.scene_name, measurement.scene_sha256)},
             {"warm_ups", measurement.warm_ups},
             {"repetitions", repetitions},
             {"parse_seconds", measurement.parse_seconds},

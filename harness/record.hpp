@@ -37,6 +37,12 @@ void write_record(const std::string& path, const nlohmann::ordered_json& record)
 /// Tags as an object: a value that is a JSON number becomes one, any other is text. Throws InputError.
 nlohmann::ordered_json tags_json(const std::vector<std::string>& tags);
 
+/// What a record says of a scene and of its file: the name without folders, and the hash of its bytes.
+nlohmann::ordered_json scene_json(const Scene& scene, const std::string& name, const std::string& sha256);
+
+/// A number, or null where there is none or it is not finite.
+nlohmann::ordered_json number_or_null(const std::optional<double>& value);
+
 /// Now, in UTC, as ISO 8601 says it.
 std::string utc_now();
 

@@ -42,11 +42,14 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     scenes = dict(list(table.groupby("scene_name", sort=False)))
     figure, panels = new_figure(3.0, columns=len(scenes))
     looks = _looks(table)
+    outside = accuracy.outside(data.study, experiment, measure)
     zero = 10 ** np.floor(np.log10(table.loc[table["error"] > 0, "error"].min()) - 1)
     for axes, (scene, part) in zip(panels, scenes.items(), strict=True):
         _front(axes, part, zero)
         for series, line in part.groupby("series"):
             _line(axes, line, zero, *looks[str(series)])
+        if not outside.empty and scene in set(outside["scene_name"]):
+            _outside(axes, outside[outside["scene_name"] == scene], zero)
         axes.set(xscale="log", yscale="log")
         axes.annotate(
             _panel_name(str(scene), part), (1, 1), xycoords="axes fraction", ha="right", va="top",
@@ -56,12 +59,15 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     panels[0].set_ylabel("time per unit of simulated time, ms")
     figure.supxlabel(measure.label, fontsize=8, color=INK)
     entries = [(f"{mark} {series}", colour) for series, (colour, mark) in looks.items()]
-    key(panels[0], [*entries, ("▬ Pareto front, with its substeps", FAINT)])
+    if not outside.empty:
+        entries += [(f"◆ {engine}", INK) for engine in outside["engine"].unique()]
+    key(panels[0], [*entries, ("▬ Pareto front (substeps)", FAINT)])
     timed = accuracy.times(data.study, experiment)
     tables = [_advice(table, timed, measure)]
     if measure.converges:
         tables.append(_orders(table))
-    return Drawing(figure, _caption(table, data, experiment, subject, measure), tables=tables)
+    caption = _caption(table, data, experiment, subject, measure) + _outside_sentence(outside, table)
+    return Drawing(figure, caption, tables=tables)
 
 
 def _looks(table: pd.DataFrame) -> dict[str, tuple[str, str]]:
@@ -100,6 +106,39 @@ def _front(axes: Axes, part: pd.DataFrame, zero: float) -> None:
             f"{substeps:g}", (one, other), xytext=(-4, -4), textcoords="offset points", ha="right", va="top",
             fontsize=6, color=INK, zorder=4,
         )  # fmt: skip
+
+
+def _outside(axes: Axes, rows: pd.DataFrame, zero: float) -> None:
+    """Draw a general engine's points: a dotted line of diamonds, its least and most substeps named."""
+    rows = rows.sort_values("substeps")
+    x, y = rows["error"].clip(lower=zero), MILLI * rows["median"]
+    spread = [MILLI * (rows["median"] - rows["low"]), MILLI * (rows["high"] - rows["median"])]
+    axes.errorbar(x, y, yerr=spread, color=INK, linestyle=":", marker="D", markersize=3.5, linewidth=0.8)
+    for place in {0, len(rows) - 1}:
+        axes.annotate(
+            f"{rows['substeps'].iloc[place]:g}", (x.iloc[place], y.iloc[place]), xytext=(4, 3),
+            textcoords="offset points", fontsize=6, color=INK,
+        )  # fmt: skip
+
+
+def _outside_sentence(outside: pd.DataFrame, table: pd.DataFrame) -> str:
+    """Say what a general engine takes and loses with one substep, beside the cheapest choice there."""
+    said = []
+    for scene, rows in outside.groupby("scene_name", sort=False) if len(outside) else ():
+        first = rows.sort_values("substeps").iloc[0]
+        cheapest = table[table["scene_name"] == scene].sort_values("median").iloc[0]
+        times = number(first["median"] / cheapest["median"])
+        said.append(
+            f"{scene}: {number(MILLI * first['median'])}{NO_BREAK}ms with a drift of "
+            f"{first['error']:.2g} in steps of 1/{first['substeps']:g}, {times} times the time of "
+            f"{place(str(cheapest['series']), cheapest['x'])}"
+        )
+    if not said:
+        return ""
+    return (
+        f" {' and '.join(outside['engine'].unique())}, a general engine on one thread, stands outside: it is "
+        f"not checked, and not on the front. {'; '.join(said)}."
+    )
 
 
 def _panel_name(scene: str, part: pd.DataFrame) -> str:

@@ -240,6 +240,29 @@ def limits(machine: Machine, copy: dict[str, tuple[int, float]], arithmetic: flo
     }
 
 
+def outside(
+    machine: Machine, scene: str, substeps: int, block: int, seconds: float, drift: float | None
+) -> dict[str, Any]:
+    """Return the record of a general engine's run of ten units of time, `seconds` each."""
+    content = {"particles": 2000, "side": 4011.0, "radius": 16.0, "steps": 10, "area_fraction": 0.1}
+    return {
+        "schema_version": 1,
+        "kind": "outside",
+        "recorded_at": "2024-05-01T09:00:00Z",
+        "tags": {
+            "experiment": "speed_against_error", "series": "outside", "scene_name": scene,
+            "x_name": "substeps", "x": substeps, "block": block, "scale": "paper", "session": "s1",
+            "point": f"outside-{scene}-{substeps}",
+        },
+        "engine": {"name": "Chipmunk", "version": "7.0.3", "iterations": 10},
+        "axes": {"threads": 1, "substeps": substeps},
+        "scene": {"name": "outside.in", "sha256": "0" * 64, **content},
+        "repetitions": [{"steps_seconds": 10 * seconds, "cpu_seconds": 10 * seconds}],
+        "errors": {"energy_drift": drift, "discs_outside": 0},
+        "provenance": machine.provenance("g++ 12.2.0", 1),
+    }  # fmt: skip
+
+
 def failure(experiment: str, series: str, reason: str, **tags: str) -> dict[str, Any]:
     """Return the record of a point that failed."""
     return {

@@ -15,7 +15,7 @@ from analysis.records import load
 from analysis.report.horizons import horizons
 from analysis.studies import Study, split
 from analysis.study_figures import draw_all
-from analysis.tests.synthetic import write
+from analysis.tests.synthetic import Machine, outside, write
 from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_points import SUBSTEPS
 from analysis.tests.synthetic_study import study
@@ -220,3 +220,32 @@ def test_numbers_read_well() -> None:
     assert [power_of_ten(value) for value in (1e-2, 1.0, 1e-13, 1e4)] == ["0.01", "1", "10⁻¹³", "10⁴"]
     assert place("row", 8) == "row, dt\u00a0=\u00a01/8"
     assert place("row", 1) == "row, dt\u00a0=\u00a01"
+
+
+def test_a_general_engine_stands_outside_where_energy_is_measured_and_nowhere_else(tmp_path: Path) -> None:
+    engine = [
+        outside(Machine(), "medium", substeps, block, 0.02 * substeps, -3e-3 / substeps)
+        for substeps in (1, 4)
+        for block in range(3)
+    ]
+    write(tmp_path, [*records(), *engine, outside(Machine(), "medium", 8, 0, 1.0, None)])
+    found = split(load(tmp_path))[0]
+    table = accuracy.outside(found, NAME, BY_KEY["energy"])
+    assert table[["scene_name", "substeps", "engine"]].to_numpy().tolist() == [
+        ["medium", 1, "Chipmunk 7.0.3"],
+        ["medium", 4, "Chipmunk 7.0.3"],
+    ]
+    assert table["median"].tolist() == pytest.approx([0.02, 0.08])
+    assert table["error"].tolist() == pytest.approx([3e-3, 7.5e-4])
+    cheapest = points(found, BY_KEY["energy"]).query("scene_name == 'medium'")["median"].min()
+    caption = drawing(found, "energy", tmp_path).caption
+    assert "Chipmunk 7.0.3, a general engine on one thread, stands outside" in caption
+    assert re.search(r"medium: 20\.0\sms with a drift of 0\.003 in steps of 1/1, [\d.]+ times", caption)
+    assert cheapest < 0.02
+    assert accuracy.outside(found, NAME, BY_KEY["path"]).empty
+    assert "Chipmunk" not in drawing(found, "path", tmp_path).caption
+
+
+def test_without_a_general_engine_nothing_is_said_of_one(measured: Study, folder: Path) -> None:
+    assert accuracy.outside(measured, NAME, BY_KEY["energy"]).empty
+    assert "outside" not in drawing(measured, "energy", folder).caption

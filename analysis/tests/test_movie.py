@@ -79,12 +79,15 @@ def test_discs_fly_between_the_steps_and_are_coloured_by_speed(scene: Path, traj
     (discs,) = (item for item in picture.figure.axes[0].collections if isinstance(item, EllipseCollection))
     offsets = np.asarray(discs.get_offsets())
     assert offsets.tolist() == [[11.5, 10.0], [30.0, 31.5], [42.5, 42.5]]
-    assert discs.get_widths().tolist() == discs.get_heights().tolist() == [10.0] * 3
+    assert np.asarray([discs.get_widths(), discs.get_heights()]).tolist() == [[10.0] * 3] * 2
     assert np.asarray(discs.get_array()) == pytest.approx([1.0, 1.0, np.hypot(5, 5)])
 
 
 def test_boxes_of_one_colour_are_a_box_apart(scene: Path, trajectory: Path) -> None:
     picture = Picture("scene.in", read_box(scene), read_trajectory(trajectory))
+    legend = picture.figure.axes[0].get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == list(movie.TURNS)
     boxes = {
         (round(patch.get_x() / 21), round(patch.get_y() / 21)): patch
         for patch in picture.figure.axes[0].patches

@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -99,6 +100,26 @@ def test_commands_that_are_only_looked_at_exist(name: str) -> None:
                 verbs = [word for word in words[1:] if "=" not in word]
                 assert verbs, f"{name}:{block.line}: {line}"
                 assert set(verbs) <= MAKEFILE_VERBS, f"{name}:{block.line}: {line}"
+            if words[:2] == [".venv/bin/python", "-m"]:
+                package, verb = words[2:4]
+                assert (
+                    subprocess.run(
+                        [sys.executable, "-m", package, verb, "--help"],
+                        cwd=ROOT,
+                        capture_output=True,
+                        check=False,
+                    ).returncode
+                    == 0
+                ), f"{name}:{block.line}: {line}"
+            if words[:1] == ["build/gcc/carom"] and BUILT:
+                assert (
+                    subprocess.run(
+                        [*words[:2], "--help"], cwd=ROOT, capture_output=True, check=False
+                    ).returncode
+                    == 0
+                ), f"{name}:{block.line}: {line}"
+            if words[:2] == ["cmake", "--preset"]:
+                assert f'"name": "{words[2]}"' in (ROOT / "CMakePresets.json").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", DOCUMENTS)

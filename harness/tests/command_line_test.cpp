@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cstddef>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -22,6 +25,16 @@ class CommandLine : public testing::Test {
     std::string scene = directory.write("scene.in", scene_text(tests::corner()));
 };
 
+/// The length of the longest line.
+std::size_t width(const std::string& text) {
+    std::size_t longest = 0;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        longest = std::max(longest, line.size());
+    }
+    return longest;
+}
+
 TEST_F(CommandLine, WithoutAVerbIsRefused) {
     EXPECT_TRUE(refused(run_carom({}), 1, {"carom: "}));
     EXPECT_TRUE(refused(run_carom({"frobnicate"}), 1, {"carom: ", "frobnicate"}));
@@ -31,12 +44,15 @@ TEST_F(CommandLine, HelpsWithTheProgramAndEveryVerb) {
     const ProgramResult help = run_carom({"--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_EQ(help.error, "");
-    for (const std::string verb : {"list", "run", "check", "generate"}) {
-        EXPECT_NE(help.output.find(verb), std::string::npos) << verb;
+    EXPECT_LE(width(help.output), 80);
+    for (const std::string verb : {"list", "run", "check", "bench", "profile", "generate", "reference",
+                                   "doctor", "limits", "outside"}) {
+        EXPECT_NE(help.output.find("\n  " + verb + ' '), std::string::npos) << verb;
         const ProgramResult verb_help = run_carom({verb, "--help"});
         EXPECT_EQ(verb_help.exit_code, 0) << verb;
         EXPECT_EQ(verb_help.error, "") << verb;
         EXPECT_NE(verb_help.output.find("--help"), std::string::npos) << verb;
+        EXPECT_LE(width(verb_help.output), 80) << verb_help.output;
     }
 }
 
@@ -47,7 +63,7 @@ TEST_F(CommandLine, TellsItsVersion) {
 TEST_F(CommandLine, HelpShowsTheDefaults) {
     const std::string help = run_carom({"run", "--help"}).output;
     for (const char* option :
-         {"SCENE", "THREADS", "--threads", "--variant", "published", "--substeps", "--tolerance", "relative",
+         {"SCENE", "THREADS", "--threads", "--variant TEXT=auto", "--substeps", "--tolerance", "relative",
           "--sweep-limit", "100000", "--trajectory", "--json"}) {
         EXPECT_NE(help.find(option), std::string::npos) << option;
     }
