@@ -82,7 +82,8 @@ class Store:
                 found.seconds[key] = float(record["process_seconds"])
         for path in sorted((self.root / "failures" / experiment.name).glob("*.json")):
             failure, key = read_json(path), _key(path)
-            if key is None or key[0] not in points or key in found.seconds or not is_record(failure):
+            is_failure = is_record(failure) and failure["kind"] == "failure"
+            if key is None or key[0] not in points or key in found.seconds or not is_failure:
                 found.stale.append(path)
             else:
                 found.failures[key] = failure["reason"]
@@ -158,7 +159,9 @@ def unusable(record: Any, point: Point, block: int) -> str | None:  # noqa: ANN4
     """Why a record does not stand for this process of this point; None if it does."""
     if not is_record(record):
         return "it does not match the record schema"
-    if record["kind"] == "failure" or record["check"]["verdict"] != "passed":
+    if record["kind"] not in ("bench", "profile"):
+        return f"it is of the kind {record['kind']}"
+    if record["check"]["verdict"] != "passed":
         return "its result failed the check"
     if record["provenance"]["binary_sha256"] != point.program.sha256:
         return "it was measured with another program"

@@ -42,8 +42,8 @@ template <class Real = double> struct Approach {
         return approach < -absolute && approach < -relative * std::sqrt(distance_squared * speed_squared);
     }
 
-    /// Does an approach below 0 surely count, whatever the rounding, in unit distance? Without a root, which
-    /// takes longer than all the rest of a resolve; where this is false, `counts` decides.
+    /// Does an approach below 0 surely count, whatever the rounding, in unit distance? It spares nearly every
+    /// pair the root; where it is false, `counts` decides.
     bool surely_counts(Real approach, Real speed_squared) const {
         return absolute == 0 && approach * approach > 2 * (relative * relative) * speed_squared;
     }

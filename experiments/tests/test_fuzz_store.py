@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from experiments.schema import is_record
 from experiments.study import Study, run
 from experiments.tests.conftest import PAIR, Workplace
 
@@ -80,6 +81,28 @@ def test_anything_in_a_results_folder_is_put_aside_or_counted_once(
         assert found.stale == []
         assert run(place) == 0
         assert study.store.find(experiment).seconds.keys() == _keys([*records, missing])
+
+
+def test_a_record_of_another_kind_is_put_aside(measured: Workplace) -> None:
+    first, second = sorted((measured.results / "records" / "pair").iterdir())[:2]
+    bench = json.loads(first.read_text(encoding="utf-8"))
+    outside = {**bench, "kind": "outside", "axes": {"threads": 1, "substeps": 1}}
+    outside["engine"] = {"name": "Chipmunk", "version": "7.0.3", "iterations": 10}
+    first.write_text(json.dumps(outside), encoding="utf-8")
+    wrong = measured.results / "failures" / "pair" / second.name
+    wrong.parent.mkdir(parents=True)
+    second.rename(wrong)
+    assert is_record(json.loads(first.read_text(encoding="utf-8")))
+    study = Study(measured.settings)
+    with study.store.opened():
+        found = study.store.settle(study.experiments[0])
+    assert found.seconds.keys().isdisjoint(_keys([first, second]))
+    assert found.failures == {}
+    assert not first.exists()
+    assert not wrong.exists()
+    assert run(measured.settings) == 0
+    assert first.exists()
+    assert second.exists()
 
 
 def _keys(records: list[Path]) -> set[tuple[str, int]]:
