@@ -107,6 +107,19 @@ def comma_locale(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return {**os.environ, "LOCPATH": str(folder), "LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"}
 
 
+def test_more_discs_than_memory_is_one_line(tmp_path: Path) -> None:
+    scene, trajectory = tmp_path / "many.in", tmp_path / "trajectory"
+    assert carom("generate", 500_000, 10_000, 5, 1, 1, 2, "--output", scene).returncode == 0
+    room = 60 << 20
+    done = carom(
+        "run", scene, 1, "--trajectory", trajectory,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (room, room)),
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert done.stderr == "carom: out of memory: expected a machine with room for the scene and its boxes\n"
+    assert sorted(tmp_path.iterdir()) == [scene]
+
+
 def test_the_locale_has_a_decimal_comma(comma_locale: dict[str, str]) -> None:
     code = "import locale; locale.setlocale(locale.LC_ALL, ''); print(locale.localeconv()['decimal_point'])"
     done = subprocess.run(
