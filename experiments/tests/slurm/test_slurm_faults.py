@@ -1,7 +1,9 @@
 """What clusters do to jobs: nodes die, tasks are cancelled, time runs out; nothing is lost or doubled."""
 
 import json
+import random
 import re
+import time
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -12,6 +14,7 @@ from experiments.tests.slurm.cluster import MAX_ARRAY_SIZE, node_of, until
 from experiments.tests.slurm.conftest import MACHINE, Place
 
 PARTITION = "w5-3423"
+KILLS = 4
 
 
 def measurements(place: Place) -> Counter[str]:
@@ -64,6 +67,32 @@ def test_half_an_array_cancelled_is_what_resume_submits(place: Place) -> None:
     place.cluster.wait_until_idle()
     assert measurements(place) == {f"block={block}": 1 for block in range(6)}
     assert re.search(rf"^{PARTITION} +machine +6 +0 +0 +0 +0$", place.say("status"), re.MULTILINE)
+
+
+def test_tasks_killed_at_random_moments_lose_at_most_the_point_they_were_on(place: Place) -> None:
+    place.site(PARTITION, common="blocks_per_task = 12")
+    place.workplace.behave(FAKE_SECONDS="0.5")
+    blocks(place, 12)
+    moments = random.Random(20240301)
+    finished: dict[Path, Any] = {}
+    place.say("submit")
+    for _ in range(KILLS):
+        until(lambda: len(place.cluster.tasks("RUNNING")) == 1, "no task runs", 30)
+        time.sleep(moments.uniform(0, 2))
+        place.cluster.ask("scancel", "--signal=KILL", "--full", "--me")
+        place.cluster.wait_until_idle()
+        now = contents(place.records())
+        assert finished.items() <= now.items(), "what was finished is there, unchanged"
+        finished = now
+        place.say("resume")
+    assert len(finished) < 12, "some of the kills hit a task at work"
+    place.cluster.wait_until_idle()
+    after = contents(place.records())
+    assert len(after) == 12
+    assert finished.items() <= after.items()
+    counts = measurements(place)
+    assert counts.keys() == {f"block={block}" for block in range(12)}
+    assert counts.total() <= 12 + KILLS, "a kill costs no more than one process"
 
 
 def test_what_waits_or_runs_is_not_submitted_again(place: Place) -> None:
