@@ -1,0 +1,91 @@
+"""What holds of any times whatever: of verdicts, pairs, bootstrap intervals and Holm's correction."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from analysis.statistics.bootstrap import summarise
+from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pareto import front
+from analysis.statistics.verdicts import MARGIN, holm, judge_one, not_faster
+
+RATIOS = st.lists(st.floats(-3, 3), min_size=1, max_size=20)
+SECONDS = st.floats(1e-6, 1e4)
+MIRRORED = {"faster": "slower", "slower": "faster"}
+
+
+def processes(rows: list[list[float]]) -> pd.DataFrame:
+    """The timed repetitions of processes, a list each, in blocks of their own."""
+    return pd.DataFrame(
+        [
+            {"file": f"{block}.json", "session": "s", "node": "n", "block": block, "steps_seconds": value}
+            for block, values in enumerate(rows)
+            for value in values
+        ]
+    )
+
+
+@given(RATIOS)
+@settings(max_examples=200, deadline=None)
+def test_a_verdict_is_that_of_its_interval_and_mirrored_by_changing_sides(values: list[float]) -> None:
+    row, other = judge_one(values), judge_one([-value for value in values])
+    assert other["verdict"] == MIRRORED.get(row["verdict"], row["verdict"])
+    assert other["ratio"] == pytest.approx(1 / row["ratio"])
+    assert other["p"] == pytest.approx(row["p"])
+    assert row["low"] <= row["ratio"] <= row["high"]
+    assert row["low"] <= row["decision_low"] <= row["decision_high"] <= row["high"]
+    lowest, highest = 1 / (1 + MARGIN), 1 + MARGIN
+    if row["verdict"] == "faster":
+        assert row["decision_high"] <= lowest + 1e-9
+    elif row["verdict"] == "slower":
+        assert row["decision_low"] >= highest - 1e-9
+    elif row["verdict"] == "equivalent":
+        assert lowest - 1e-9 <= row["decision_low"] <= row["decision_high"] <= highest + 1e-9
+    if row["verdict"] == "faster":
+        assert not not_faster(values)
+    if row["verdict"] == "slower":
+        assert not_faster(values)
+
+
+@given(st.lists(st.tuples(SECONDS, SECONDS), min_size=2, max_size=8), st.floats(1e-3, 1e3))
+@settings(max_examples=50, deadline=None)
+def test_ratios_do_not_ask_for_the_unit_of_time(blocks: list[tuple[float, float]], unit: float) -> None:
+    def ratios(scale: float) -> pd.Series:
+        sides = (processes([[scale * pair[side]] for pair in blocks]) for side in (0, 1))
+        return log_ratios(*map(process_medians, sides))["log_ratio"]
+
+    assert ratios(unit).to_numpy() == pytest.approx(ratios(1).to_numpy(), abs=1e-9)
+    assert ratios(1).to_numpy() == pytest.approx([np.log(new / old) for old, new in blocks], abs=1e-9)
+
+
+@given(st.lists(st.lists(SECONDS, min_size=1, max_size=4), min_size=1, max_size=6))
+@settings(max_examples=50, deadline=None)
+def test_a_bootstrap_interval_stands_within_the_samples(rows: list[list[float]]) -> None:
+    table = processes(rows).assign(series="one")
+    row = summarise(table, ["series"]).iloc[0]
+    values = table["steps_seconds"]
+    assert row["median"] == pytest.approx(np.median([np.median(values) for values in rows]))
+    assert values.min() * (1 - 1e-12) <= row["low"] <= row["high"] <= values.max() * (1 + 1e-12)
+    assert (row["processes"], row["samples"]) == (len(rows), len(table))
+
+
+@given(st.lists(st.floats(0, 1), min_size=1, max_size=12), st.randoms())
+def test_holm_only_raises_keeps_the_order_and_does_not_ask_for_it(p: list[float], random: object) -> None:
+    adjusted = holm(p)
+    assert all(before <= after <= 1 for before, after in zip(p, adjusted, strict=True))
+    assert adjusted[int(np.argmin(p))] == pytest.approx(min(1, len(p) * min(p)))
+    order = list(range(len(p)))
+    random.shuffle(order)  # type: ignore[attr-defined]
+    assert [adjusted[place] for place in order] == pytest.approx(holm([p[place] for place in order]))
+
+
+@given(st.lists(st.tuples(st.integers(0, 5), st.integers(0, 5)), min_size=1, max_size=12, unique=True))
+def test_the_front_is_whom_nobody_beats_in_both(points: list[tuple[int, int]]) -> None:
+    errors, times = (pd.Series(values, dtype=float) for values in zip(*points, strict=True))
+    expected = [
+        not any(e <= error and t <= time and (e, t) != (error, time) for e, t in points)
+        for error, time in points
+    ]
+    assert list(front(errors, times)) == expected
