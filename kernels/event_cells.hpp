@@ -28,7 +28,7 @@ template <class Real> class EventCells {
         const double spacing = std::max(2.0 * scene.radius * (1 + 1e-9), scene.side / std::sqrt(count + 1));
         per_side_ = static_cast<int>(std::clamp(std::floor(scene.side / spacing), 1.0, 10'000.0));
         cell_side_ = static_cast<Real>(scene.side) / static_cast<Real>(per_side_);
-        first_.assign(static_cast<std::size_t>(per_side_ * per_side_), none);
+        first_.assign(cell(per_side_, 0), none);
     }
 
     int per_side() const { return per_side_; }
@@ -73,7 +73,10 @@ template <class Real> class EventCells {
     }
 
   private:
-    std::size_t cell(int row, int column) const { return static_cast<std::size_t>(row * per_side_ + column); }
+    std::size_t cell(int row, int column) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(per_side_) +
+               static_cast<std::size_t>(column);
+    }
     Place& at(int i) { return places_[static_cast<std::size_t>(i)]; }
 
     Real cell_side_;

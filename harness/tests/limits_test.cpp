@@ -41,7 +41,7 @@ TEST(WorkingSets, GrowByFactorsOfFourUpToEightTimesTheLastLevel) {
     for (std::size_t k = 0; k + 1 < sets.size(); ++k) {
         EXPECT_EQ(sets[k].bytes, (32 * kibi) << (2 * k));
     }
-    EXPECT_EQ(sets.back().bytes, 2 * 4 * 32 * mebi);
+    EXPECT_EQ(sets.back().bytes, 256 * mebi);
 }
 
 TEST(WorkingSets, AreInTheSmallestLevelOfDataCacheThatHoldsThem) {

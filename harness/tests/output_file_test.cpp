@@ -79,7 +79,8 @@ TEST(OutputFile, LeavesTheFileOfThatNameAloneUnlessFinished) {
 
 TEST(OutputFile, WritesMoreThanTheSystemTakesAtOnce) {
     const TemporaryDirectory directory;
-    const std::string text(20'000'000, 'x');
+    std::string text;
+    text.resize(20'000'000, 'x');
     OutputFile file(directory / "result");
     file.write(text);
     file.finish();
