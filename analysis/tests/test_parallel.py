@@ -41,12 +41,12 @@ def test_what_is_raised_there_is_raised_here() -> None:
     assert raised.value.filename == "file 0"
 
 
-SLEEPERS = """
+SLEEPERS = r"""
 import os, time
 os.sched_getaffinity = lambda _: {0, 1, 2, 3}
 from analysis.parallel import in_parallel
 def sleep(number):
-    print(os.getpid(), flush=True)
+    os.write(1, f"{os.getpid()}\n".encode())  # at once, whoever else writes
     time.sleep(600)
 list(in_parallel(sleep, 3))
 """
@@ -58,8 +58,10 @@ def test_they_end_with_a_parent_that_is_killed() -> None:
         [sys.executable, "-c", SLEEPERS], stdout=subprocess.PIPE, text=True, cwd=root
     ) as parent:
         assert parent.stdout is not None
-        children = [int(parent.stdout.readline()) for _ in range(3)]
-        os.kill(parent.pid, signal.SIGKILL)
+        try:
+            children = [int(parent.stdout.readline()) for _ in range(3)]
+        finally:
+            os.kill(parent.pid, signal.SIGKILL)
         until = time.monotonic() + 20
         while any(is_running(child) for child in children):
             assert time.monotonic() < until, "they go on without their parent"
