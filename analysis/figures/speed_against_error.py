@@ -114,9 +114,9 @@ def _outside(axes: Axes, rows: pd.DataFrame, zero: float) -> None:
     x, y = rows["error"].clip(lower=zero), MILLI * rows["median"]
     spread = [MILLI * (rows["median"] - rows["low"]), MILLI * (rows["high"] - rows["median"])]
     axes.errorbar(x, y, yerr=spread, color=INK, linestyle=":", marker="D", markersize=3.5, linewidth=0.8)
-    for place in {0, len(rows) - 1}:
+    for end in {0, len(rows) - 1}:
         axes.annotate(
-            f"{rows['substeps'].iloc[place]:g}", (x.iloc[place], y.iloc[place]), xytext=(4, 3),
+            f"{rows['substeps'].iloc[end]:g}", (x.iloc[end], y.iloc[end]), xytext=(4, 3),
             textcoords="offset points", fontsize=6, color=INK,
         )  # fmt: skip
 

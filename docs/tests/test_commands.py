@@ -91,6 +91,10 @@ def test_no_command_escapes(name: str) -> None:
             )
 
 
+def has_help(command: list[str]) -> bool:
+    return subprocess.run([*command, "--help"], cwd=ROOT, capture_output=True, check=False).returncode == 0
+
+
 @pytest.mark.parametrize("name", having("verbs", "fresh"))
 def test_commands_that_are_only_looked_at_exist(name: str) -> None:
     for block in (*shell(name, "verbs"), *shell(name, "fresh")):
@@ -101,23 +105,9 @@ def test_commands_that_are_only_looked_at_exist(name: str) -> None:
                 assert verbs, f"{name}:{block.line}: {line}"
                 assert set(verbs) <= MAKEFILE_VERBS, f"{name}:{block.line}: {line}"
             if words[:2] == [".venv/bin/python", "-m"]:
-                package, verb = words[2:4]
-                assert (
-                    subprocess.run(
-                        [sys.executable, "-m", package, verb, "--help"],
-                        cwd=ROOT,
-                        capture_output=True,
-                        check=False,
-                    ).returncode
-                    == 0
-                ), f"{name}:{block.line}: {line}"
+                assert has_help([sys.executable, *words[1:4]]), f"{name}:{block.line}: {line}"
             if words[:1] == ["build/gcc/carom"] and BUILT:
-                assert (
-                    subprocess.run(
-                        [*words[:2], "--help"], cwd=ROOT, capture_output=True, check=False
-                    ).returncode
-                    == 0
-                ), f"{name}:{block.line}: {line}"
+                assert has_help(words[:2]), f"{name}:{block.line}: {line}"
             if words[:2] == ["cmake", "--preset"]:
                 assert f'"name": "{words[2]}"' in (ROOT / "CMakePresets.json").read_text(encoding="utf-8")
 
