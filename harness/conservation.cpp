@@ -104,8 +104,8 @@ std::optional<std::string> conservation_violation(const std::vector<Disc>& befor
         if (totals[i].size == 0) {
             continue;
         }
-        const auto violation = totals[i].size == 1 ? violation_alone(before[i], after[i], lowest, walls)
-                                                   : violation_of(totals[i], lowest, tolerance);
+        auto violation = totals[i].size == 1 ? violation_alone(before[i], after[i], lowest, walls)
+                                             : violation_of(totals[i], lowest, tolerance);
         if (violation) {
             return violation;
         }

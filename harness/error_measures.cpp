@@ -81,6 +81,7 @@ class Companion {
 
     template <class SomeDisc> static std::vector<double> speeds(const std::vector<SomeDisc>& discs) {
         std::vector<double> result;
+        result.reserve(discs.size());
         for (const SomeDisc& disc : discs) {
             result.push_back(std::hypot(disc.vx, disc.vy));
         }

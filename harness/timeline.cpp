@@ -13,7 +13,7 @@ namespace carom {
 namespace {
 
 std::string name_of(const Span& span) {
-    const std::string phase(word(span.phase));
+    std::string phase(word(span.phase));
     switch (span.kind) {
     case Span::Kind::phase:
         return phase;

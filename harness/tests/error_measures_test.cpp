@@ -58,9 +58,9 @@ TEST(MomentumBalance, DoesNotExplainWhatNoWallOfTheAxisTouches) {
 }
 
 TEST(MomentumBalance, CannotTellTheImpulsesOfAGroupFromWallToWall) {
-    std::vector<Disc> row;
-    for (int i = 0; i < 25; ++i) {
-        row.push_back({1 + 2.0 * i, 20, 0, 0});
+    std::vector<Disc> row(25);
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        row[i] = {1 + 2.0 * static_cast<double>(i), 20, 0, 0};
     }
     EXPECT_FALSE(balance_of(row, row).from_wall_to_wall());
     std::vector<Disc> pushed = row;

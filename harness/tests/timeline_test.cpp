@@ -34,7 +34,7 @@ nlohmann::json timeline_of(int threads, bool chunks, std::int64_t& sweeps) {
     const auto path =
         std::filesystem::temp_directory_path() / ("carom_timeline_" + std::to_string(getpid()) + ".json");
     write_timeline(path.string(), profiler, "a \"title\"");
-    const auto json = nlohmann::json::parse(read_file(path));
+    auto json = nlohmann::json::parse(read_file(path));
     std::filesystem::remove(path);
     return json;
 }

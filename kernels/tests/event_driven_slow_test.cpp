@@ -27,9 +27,11 @@ TEST(EventDrivenForLong, KeepsEnergyTo1em12OverAMillionCollisions) {
         Random random(21);
         Scene scene{.side = side, .radius = 1, .steps = 0, .discs = {}};
         for (int i = 0; i < per_side * per_side; ++i) {
+            const int row = i / per_side;
+            const int column = i % per_side;
             const double vx = random.uniform(-1, 1);
-            scene.discs.push_back({side / per_side * (i % per_side + 0.5),
-                                   side / per_side * (i / per_side + 0.5), vx, random.uniform(-1, 1)});
+            scene.discs.push_back(
+                {side / per_side * (column + 0.5), side / per_side * (row + 0.5), vx, random.uniform(-1, 1)});
         }
         EventDriven<double> reference(scene);
         const double start = twice_energy(reference.discs());

@@ -205,7 +205,8 @@ TEST(SnugGrid, HasNoScale) {
 
 TEST(GridNeighbours, AreNoMoreThanTheNeighbourhoodAllows) {
     const Grid grid(50, 1);
-    for (double position = -3; position < 53; position += 0.25) {
+    for (int quarters = -12; quarters < 212; ++quarters) {
+        const double position = quarters / 4.0;
         const int index = grid.coordinate(position);
         const BoxRange nine = Look<Neighbourhood::nine>::along(grid, position, index);
         const BoxRange four = Look<Neighbourhood::four>::along(grid, position, index);
