@@ -98,8 +98,25 @@ void Profiler::loop_begin(int thread) {
     const double begin = now();
     note_gap(thread, begin);
     one.loop_begin = begin;
+    one.waited = 0;
     one.next_index = -1;
     ++current(one).loops;
+}
+
+void Profiler::wait_begin(int thread) {
+    Track& one = track(thread);
+    one.wait_begin = now();
+    if (timeline_.chunks) {
+        keep_chunk(one, one.wait_begin);
+    }
+    one.next_index = -1;
+}
+
+void Profiler::wait_end(int thread) {
+    Track& one = track(thread);
+    const double end = now();
+    one.waited += end - one.wait_begin;
+    keep(one, {.kind = Span::Kind::wait, .phase = phase_, .begin = one.wait_begin, .end = end});
 }
 
 void Profiler::iteration(int thread, int index) {
@@ -136,7 +153,8 @@ void Profiler::loop_end(int thread) {
     if (timeline_.chunks) {
         keep_chunk(one, one.loop_end);
     }
-    current(one).busy_seconds += one.loop_end - one.loop_begin;
+    current(one).busy_seconds += one.loop_end - one.loop_begin - one.waited;
+    current(one).waiting_seconds += one.waited;
     keep(one, {.kind = Span::Kind::loop, .phase = phase_, .begin = one.loop_begin, .end = one.loop_end});
 }
 

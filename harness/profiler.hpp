@@ -17,7 +17,7 @@ inline constexpr std::size_t phase_count = 4;
 /// What one thread did in one phase, summed over all steps.
 struct ThreadWork {
     double busy_seconds = 0;    ///< in iterations of parallel loops; for the master also in serial code
-    double waiting_seconds = 0; ///< at barriers, and while the master runs serial code
+    double waiting_seconds = 0; ///< at barriers, for other iterations, and while the master runs serial code
     std::int64_t iterations = 0;
     std::int64_t chunks = 0;
     std::int64_t loops = 0;
@@ -61,6 +61,8 @@ class Profiler final : public Probe {
     void sweep_begin() override;
     void sweep_end() override;
     void loop_begin(int thread) override;
+    void wait_begin(int thread) override;
+    void wait_end(int thread) override;
     void iteration(int thread, int index) override;
     void loop_end(int thread) override;
     void barrier_end(int thread) override;
@@ -82,6 +84,8 @@ class Profiler final : public Probe {
         double last_event = 0; ///< the end of the last barrier, or the beginning of the phase
         double loop_begin = 0;
         double loop_end = 0;
+        double wait_begin = 0;
+        double waited = 0; ///< in the loop, for other iterations
         double chunk_begin = 0;
         std::int64_t chunk_first = 0;
         std::int64_t next_index = -1;

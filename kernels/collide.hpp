@@ -32,10 +32,13 @@ bool overlap(const BasicDisc<Real>& first, const BasicDisc<Real>& second,
 template <class Real = double> struct Approach {
     Real relative;
     Real absolute;
+    Real sure; ///< see surely_counts
 
     explicit Approach(Tolerance tolerance)
         : relative(tolerance == Tolerance::relative ? 64 * std::numeric_limits<Real>::epsilon() : 0),
-          absolute(tolerance == Tolerance::published ? static_cast<Real>(1e-7) : 0) {}
+          absolute(tolerance == Tolerance::published ? static_cast<Real>(1e-7) : 0),
+          sure(tolerance == Tolerance::relative ? 2 * (relative * relative)
+                                                : std::numeric_limits<Real>::infinity()) {}
 
     /// `approach` is (v2 - v1).d; `distance_squared` is |d|^2, `speed_squared` |v1|^2 + |v2|^2.
     bool counts(Real approach, Real distance_squared, Real speed_squared) const {
@@ -45,7 +48,7 @@ template <class Real = double> struct Approach {
     /// Does an approach below 0 surely count, whatever the rounding, in unit distance? It spares nearly every
     /// pair the root; where it is false, `counts` decides.
     bool surely_counts(Real approach, Real speed_squared) const {
-        return absolute == 0 && approach * approach > 2 * (relative * relative) * speed_squared;
+        return approach * approach > sure * speed_squared;
     }
 };
 

@@ -30,40 +30,49 @@ template <class Real> struct Strip {
     std::vector<Contact<Real>> contacts;
     std::vector<int> first; ///< of each block of boxes, its first contact; at the end, their number
     std::vector<OverlappingDiscs> found; ///< of one block, while it is searched
-    std::vector<int> colliding; ///< which contacts may collide, while they are resolved; room for one more
+    std::vector<int> active;             ///< blocks of one row to look at, in a sweep; room for one more
+    std::vector<int> colliding;          ///< contacts that may collide, in a sweep; room for one more
 };
 
-/// Which blocks of boxes have contacts to look at again, for Worklist::active. A block is a run of boxes of
-/// one row. Before the first row stands a row of blocks that have none, so that every row has one before it.
+/// Which blocks of boxes have contacts to look at: with Worklist::all always all of them. A block is a run of
+/// boxes of one row. Before the first row stands a row of blocks that have none, so that every row has one
+/// before it.
 class ActiveBlocks {
   public:
     static constexpr int boxes_per_block = 16;
 
     explicit ActiveBlocks(int boxes_per_side)
         : per_row_((boxes_per_side + boxes_per_block - 1) / boxes_per_block),
-          last_column_(boxes_per_side - 1),
-          marks_(static_cast<std::size_t>(per_row_) * (static_cast<std::size_t>(boxes_per_side) + 1)) {}
+          stride_((per_row_ + cache_line - 1) / cache_line * cache_line), last_column_(boxes_per_side - 1),
+          marks_(static_cast<std::size_t>(stride_) * (static_cast<std::size_t>(boxes_per_side) + 1)) {}
 
     int per_row() const { return per_row_; }
 
-    /// The mark of the first block of a row; those of the row's other blocks, and of the next rows', follow.
-    unsigned char* row(int row) { return marks_.data() + static_cast<std::ptrdiff_t>(row + 1) * per_row_; }
+    /// The mark of the first block of a row; those of the row's other blocks follow.
+    unsigned char* row(int row) { return marks_.data() + static_cast<std::ptrdiff_t>(row + 1) * stride_; }
 
-    /// The codes of a block's boxes: the block, and whether the boxes beside, if any, lie in other ones.
-    struct Codes {
-        int block;
+    /// Of a disc, the marks of its own block and of those that the boxes beside its own lie in: two at most,
+    /// and the same one twice for most discs.
+    struct Beside {
+        int left;
+        int right;
+    };
+
+    /// The same for every column of a block.
+    struct Block {
+        int mark;
         int left_edge; ///< the column whose left neighbour lies in another block, or -1
         int right_edge;
 
-        int operator()(int column) const {
-            return block * 4 + static_cast<int>(column == right_edge) * 2 +
-                   static_cast<int>(column == left_edge);
+        Beside beside(int column) const {
+            return {mark - static_cast<int>(column == left_edge),
+                    mark + static_cast<int>(column == right_edge)};
         }
     };
 
     /// `columns` are those of the block.
-    Codes codes(int row, BoxRange columns) const {
-        return {.block = (row + 1) * per_row_ + columns.first / boxes_per_block,
+    Block block(int row, BoxRange columns) const {
+        return {.mark = (row + 1) * stride_ + columns.first / boxes_per_block,
                 .left_edge = columns.first > 0 ? columns.first : -1,
                 .right_edge = columns.last < last_column_ ? columns.last : -1};
     }
@@ -72,25 +81,27 @@ class ActiveBlocks {
     /// store of bytes may change.
     struct Marker {
         unsigned char* marks;
-        std::ptrdiff_t per_row;
+        std::ptrdiff_t stride;
 
-        /// Marks every block that can hold a contact of a disc in the box of that code: as the first disc, in
-        /// its own; as the second, in that of the box to the left and of the three boxes below.
-        void mark(int code) const {
-            const int left = code & 1;
-            const int right = code >> 1 & 1;
-            unsigned char* own = marks + (code >> 2);
-            unsigned char* below = own - per_row;
-            own[0] = 1;
-            own[-left] = 1;
-            below[-left] = 1;
-            below[right] = 1;
+        /// Marks every block that can hold a contact of that disc: as the first one, in its own box; as the
+        /// second, in the box to the left or one of the three below. (The box to the right can hold none, but
+        /// to leave it out would take longer.)
+        void mark(Beside beside) const {
+            unsigned char* const below = marks - stride;
+            marks[beside.left] = 1;
+            marks[beside.right] = 1;
+            below[beside.left] = 1;
+            below[beside.right] = 1;
         }
     };
-    Marker marker() { return {marks_.data(), per_row_}; }
+    Marker marker() { return {marks_.data(), stride_}; }
 
   private:
+    /// Rows are so far apart that no two threads write to one cache line at a time.
+    static constexpr int cache_line = 64;
+
     int per_row_;
+    int stride_;
     int last_column_;
     std::vector<unsigned char> marks_;
 };

@@ -110,7 +110,7 @@ std::size_t search_block(State<policies>& state, const Candidates<policies>& can
                          std::vector<OverlappingDiscs>& found, int row, BoxRange columns) {
     std::size_t size = 0;
     const Grid grid = state.grid; // a copy, since nobody knows what else a store of integers may change
-    [[maybe_unused]] const ActiveBlocks::Codes codes = state.active.codes(row, columns);
+    [[maybe_unused]] const ActiveBlocks::Block block = state.active.block(row, columns);
     const int row_begin = grid.box_of(row, 0);
     const int boxes_per_side = grid.boxes_per_side();
     const int* const first = state.first.data();
@@ -119,7 +119,7 @@ std::size_t search_block(State<policies>& state, const Candidates<policies>& can
         const auto disc = static_cast<std::size_t>(i);
         const int column = state.box_of_disc[disc] - row_begin;
         if constexpr (policies.worklist == Worklist::active) {
-            state.block_of_disc[disc] = codes(column);
+            state.blocks_of_disc[disc] = block.beside(column);
         }
         if (grid.at_wall(row, column) && overlaps_wall(state.discs[disc], state.side, state.radius))
             [[unlikely]] {
@@ -154,9 +154,10 @@ template <Policies policies> Tally find_in_strip(State<policies>& state, int ind
         }
     }
     strip.first.push_back(static_cast<int>(strip.contacts.size()));
+    strip.active.resize(static_cast<std::size_t>(state.active.per_row()) + 1);
     strip.colliding.resize(strip.contacts.size() + 1);
-    if constexpr (policies.worklist == Worklist::active) {
-        std::fill_n(state.active.row(rows.first), strip.first.size() - 1, static_cast<unsigned char>(1));
+    for (int row = rows.first; row <= rows.last; ++row) {
+        std::fill_n(state.active.row(row), state.active.per_row(), static_cast<unsigned char>(1));
     }
     return tally;
 }

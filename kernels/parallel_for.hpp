@@ -1,5 +1,8 @@
 #pragma once
 
+#include <thread>
+#include <type_traits>
+
 #include <omp.h>
 
 #include "policies.hpp"
@@ -12,16 +15,41 @@ namespace carom {
 
 #pragma omp declare reduction(+ : Tally : omp_out += omp_in)
 
+/// For iterations that need not wait for others.
+struct Always {
+    constexpr bool operator()(int /*i*/) const { return true; }
+};
+
+/// How often a thread asks whether its iteration can begin before it lets others run in between.
+inline constexpr int patience = 10'000;
+
+/// Waits until `ready(i)`.
+template <class SomeProbe, class Ready> void await(int i, const Ready& ready, int thread, SomeProbe& probe) {
+    probe.wait_begin(thread);
+    for (int asked = 1; !ready(i); ++asked) {
+        if (asked % patience == 0) {
+            std::this_thread::yield();
+        }
+    }
+    probe.wait_end(thread);
+}
+
 /// Runs `body(i)`, which returns a Tally, for i in [0, count) on `threads` threads under the given schedule,
-/// and returns the sum. Iterations must not write what another one reads. `chunk` must be positive and counts
-/// only where the schedule has one. Exceptions must not leave `body`.
-template <Schedule schedule, class SomeProbe, class Body>
-Tally parallel_for(int threads, int count, [[maybe_unused]] int chunk, SomeProbe& probe, const Body& body) {
+/// and returns the sum. Iterations must not write what another one reads, unless `ready` keeps them apart: an
+/// iteration begins when `ready(i)` is true. What makes it true must be among the iterations before i; since
+/// each thread takes its iterations in rising order, the first one not done can then always go on. `chunk`
+/// must be positive and counts only where the schedule has one. Exceptions must not leave `body`.
+template <Schedule schedule, class SomeProbe, class Body, class Ready = Always>
+Tally parallel_for(int threads, int count, [[maybe_unused]] int chunk, SomeProbe& probe, const Body& body,
+                   const Ready& ready = {}) {
     Tally tally;
 #pragma omp parallel num_threads(threads) reduction(+ : tally)
     {
         const int thread = omp_get_thread_num();
         const auto iterate = [&](int i) {
+            if (!ready(i)) {
+                await(i, ready, thread, probe);
+            }
             probe.iteration(thread, i);
             tally += body(i);
         };
@@ -37,29 +65,31 @@ Tally parallel_for(int threads, int count, [[maybe_unused]] int chunk, SomeProbe
                 iterate(i);
             }
         } else if constexpr (schedule == Schedule::dynamic) {
-#pragma omp for schedule(dynamic) nowait
+#pragma omp for schedule(monotonic : dynamic) nowait
             for (int i = 0; i < count; ++i) {
                 iterate(i);
             }
         } else if constexpr (schedule == Schedule::dynamic_chunk) {
-#pragma omp for schedule(dynamic, chunk) nowait
+#pragma omp for schedule(monotonic : dynamic, chunk) nowait
             for (int i = 0; i < count; ++i) {
                 iterate(i);
             }
         } else if constexpr (schedule == Schedule::guided) {
-#pragma omp for schedule(guided) nowait
+#pragma omp for schedule(monotonic : guided) nowait
             for (int i = 0; i < count; ++i) {
                 iterate(i);
             }
         } else {
-#pragma omp for schedule(guided, chunk) nowait
+#pragma omp for schedule(monotonic : guided, chunk) nowait
             for (int i = 0; i < count; ++i) {
                 iterate(i);
             }
         }
         probe.loop_end(thread);
+        if constexpr (!std::is_same_v<SomeProbe, NoProbe>) { // whom the end of the region, a barrier, will do
 #pragma omp barrier
-        probe.barrier_end(thread);
+            probe.barrier_end(thread);
+        }
     }
     return tally;
 }

@@ -18,6 +18,7 @@ enum class Order {
     repeat,    ///< one thread; every disc in turn, each again and again while it changes
     once,      ///< one thread; every disc in turn, one pass each
     strips,    ///< strips of rows of boxes: even ones in parallel, then odd ones
+    wavefront, ///< the same, but a strip waits for those beside it alone, from sweep to sweep
 };
 
 /// Whether pairs within one box are resolved already while overlaps are found.

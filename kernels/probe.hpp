@@ -10,7 +10,8 @@ enum class Phase { move, bin, find, resolve };
 ///
 /// The master calls `phase_begin`, `phase_end`, `sweep_begin` and `sweep_end` outside parallel loops. Each
 /// thread calls `loop_begin` when it enters a parallel loop, `iteration` before each of its iterations,
-/// `loop_end` when it has none left, and `barrier_end` when all threads are through.
+/// `loop_end` when it has none left, and `barrier_end` when all threads are through; `wait_begin` and
+/// `wait_end`, before an iteration, where it has to wait for others. Sweeps that run as one are told as one.
 class Probe {
   public:
     virtual ~Probe() = default;
@@ -19,6 +20,8 @@ class Probe {
     virtual void sweep_begin() = 0;
     virtual void sweep_end() = 0;
     virtual void loop_begin(int thread) = 0;
+    virtual void wait_begin(int thread) = 0;
+    virtual void wait_end(int thread) = 0;
     virtual void iteration(int thread, int index) = 0;
     virtual void loop_end(int thread) = 0;
     virtual void barrier_end(int thread) = 0;
@@ -32,9 +35,10 @@ class NoProbe {
     void sweep_begin() {}
     void sweep_end() {}
     void loop_begin(int /*thread*/) {}
+    void wait_begin(int /*thread*/) {}
+    void wait_end(int /*thread*/) {}
     void iteration(int /*thread*/, int /*index*/) {}
     void loop_end(int /*thread*/) {}
-    void barrier_end(int /*thread*/) {}
 };
 
 } // namespace carom

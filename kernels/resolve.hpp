@@ -4,6 +4,7 @@
 #include "state.hpp"
 #include "sweep.hpp"
 #include "tally.hpp"
+#include "wavefront.hpp"
 
 namespace carom {
 
@@ -16,16 +17,19 @@ template <Policies policies, class SomeProbe>
 Tally resolve(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const ApproachOf<policies> approaching(tuning.tolerance);
     [[maybe_unused]] Pending pending(policies.order == Order::track ? state.count() : 0);
-    [[maybe_unused]] Tuning one_thread = tuning;
+    [[maybe_unused]] Wavefront wavefront(
+        policies.order == Order::wavefront ? state.grid.strip_count(strip_height(policies.order)) : 0);
+    Tuning one_thread = tuning;
     one_thread.threads = 1;
     Tally total;
-    Tally last{.pair_resolves = few_changes};
-    bool changed = true;
-    while (changed) {
+    Swept last{.last_changes = few_changes};
+    while (last.last_changes > 0) {
         if (total.sweeps == tuning.sweep_limit) {
             total.settled = false;
             return total;
         }
+        const bool few = policies.worklist == Worklist::active && last.last_changes < few_changes;
+        [[maybe_unused]] const Tuning& now = few ? one_thread : tuning;
         probe.sweep_begin();
         if constexpr (policies.order == Order::checkered) {
             last = sweep_checkered(state, tuning, approaching, probe);
@@ -33,14 +37,15 @@ Tally resolve(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
             last = sweep_pending(state, pending, approaching);
         } else if constexpr (is_sequential(policies.order)) {
             last = sweep_discs(state, approaching);
+        } else if constexpr (policies.order == Order::wavefront) {
+            const int done = static_cast<int>(total.sweeps);
+            last =
+                sweep_wavefront(state, wavefront, done, tuning.sweep_limit - done, now, approaching, probe);
         } else {
-            const bool few = policies.worklist == Worklist::active && last.pair_resolves < few_changes;
-            last = sweep_strips(state, few ? one_thread : tuning, approaching, probe);
+            last = sweep_strips(state, now, approaching, probe);
         }
         probe.sweep_end();
-        ++total.sweeps;
-        total += last;
-        changed = policies.order == Order::track ? !pending.now.empty() : last.changed();
+        total += last.work;
     }
     return total;
 }

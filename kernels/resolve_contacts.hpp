@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
 
 #include "collide.hpp"
 #include "contacts.hpp"
@@ -10,7 +9,8 @@
 #include "state.hpp"
 #include "tally.hpp"
 
-// Why no two threads touch the same disc or mark. Strips of one parity run at the same time. The contacts of
+// Why no two threads touch the same disc or mark. Strips run at the same time only if they are of one parity
+// or, in a wavefront, at least two strips lie between them, which is all the farther. The contacts of
 // a strip are between its own discs, and between its last row and the first row of the next strip; so a strip
 // touches discs of itself and of the next one's first row, and no other strip of its parity touches either.
 // It marks blocks of the rows of those discs and of the rows before: from the last row of the strip before to
@@ -40,11 +40,12 @@ int* look_at_contacts(const State<policies>& state, const Strip<RealOf<policies.
 template <Policies policies, class OnChange>
 Changes resolve_contacts(State<policies>& state, const Strip<RealOf<policies.precision>>& strip,
                          const int* begin, const int* end, const ApproachOf<policies>& approaching,
-                         const OnChange& on_change) {
+                         const OnChange on_change) {
     Changes changes;
     auto* const discs = state.discs.data();
+    const auto* const contacts = strip.contacts.data();
     for (const int* k = begin; k != end; ++k) {
-        const auto& contact = strip.contacts[static_cast<std::size_t>(*k)];
+        const auto& contact = contacts[*k];
         const auto [first, second] = contact.discs;
         if (contact.discs.at_wall()) [[unlikely]] {
             if (const int turned = resolve_walls(discs[first], state.side, state.radius)) {
@@ -60,40 +61,62 @@ Changes resolve_contacts(State<policies>& state, const Strip<RealOf<policies.pre
     return changes;
 }
 
+/// Writes which of a row's blocks are active to `found`, in their order; returns its end.
+inline int* active_blocks(const unsigned char* marks, int blocks, int* found) {
+    for (int block = 0; block < blocks; ++block) {
+        *found = block;
+        found += marks[block] != 0;
+    }
+    return found;
+}
+
 /// Blocks whose contacts are all looked at before the first of them is resolved. With more of them fewer
 /// predictions fail, but more contacts are looked at too early: it takes more sweeps.
 inline constexpr int blocks_at_once = 4;
 
+/// What one row of a strip does in a sweep. `first_contact` is that of each block of the row, and of the
+/// next row's first one.
+template <Policies policies, class OnChange>
+Changes resolve_row(State<policies>& state, Strip<RealOf<policies.precision>>& strip, int row,
+                    const int* first_contact, const ApproachOf<policies>& approaching,
+                    const OnChange on_change) {
+    Changes changes;
+    unsigned char* const marks = state.active.row(row);
+    const int* block = strip.active.data();
+    const int* const last = active_blocks(marks, state.active.per_row(), strip.active.data());
+    while (block != last) {
+        int* const begin = strip.colliding.data();
+        int* end = begin;
+        for (const int* const stop = block + std::min<std::ptrdiff_t>(blocks_at_once, last - block);
+             block != stop; ++block) {
+            if constexpr (policies.worklist == Worklist::active) {
+                marks[*block] = 0;
+            }
+            end = look_at_contacts(state, strip, first_contact[*block], first_contact[*block + 1], end);
+        }
+        changes += resolve_contacts(state, strip, begin, end, approaching, on_change);
+    }
+    return changes;
+}
+
 /// What one strip does in a sweep. All of it, or the blocks with a disc that has changed since they were
-/// looked at, those included that become active on the way: what is left out would change nothing.
+/// looked at, of each row those that are active when its turn comes: what is left out would change nothing.
 template <Policies policies>
     requires(policies.overlaps == Overlaps::contacts)
 Changes resolve_strip(State<policies>& state, int index, const ApproachOf<policies>& approaching) {
     auto& strip = state.strips[static_cast<std::size_t>(index)];
-    const int first_row = state.grid.rows_of_strip(index, strip_height(policies.order)).first;
-    unsigned char* const active = state.active.row(first_row);
     const auto marker = state.active.marker();
-    const int* const block_of_disc = state.block_of_disc.data();
-    const auto on_change = [&](int i) {
+    const auto* const blocks_of_disc = state.blocks_of_disc.data();
+    const auto on_change = [=](int i) {
         if constexpr (policies.worklist == Worklist::active) {
-            marker.mark(block_of_disc[i]);
+            marker.mark(blocks_of_disc[i]);
         }
-    };
-    const auto is_active = [&](int block) {
-        return policies.worklist == Worklist::all || std::exchange(active[block], 0) != 0;
     };
     Changes changes;
-    const int blocks = static_cast<int>(strip.first.size()) - 1;
-    for (int block = 0; block < blocks;) {
-        int* const begin = strip.colliding.data();
-        int* end = begin;
-        for (const int stop = std::min(block + blocks_at_once, blocks); block < stop; ++block) {
-            if (is_active(block)) {
-                const int* const first = strip.first.data() + block;
-                end = look_at_contacts(state, strip, first[0], first[1], end);
-            }
-        }
-        changes += resolve_contacts(state, strip, begin, end, approaching, on_change);
+    const int* first_contact = strip.first.data();
+    const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
+    for (int row = rows.first; row <= rows.last; ++row, first_contact += state.active.per_row()) {
+        changes += resolve_row(state, strip, row, first_contact, approaching, on_change);
     }
     return changes;
 }

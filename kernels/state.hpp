@@ -25,12 +25,12 @@ template <class Real> struct OverlapsOf<Overlaps::lists, Real> {
 
 template <class Real> struct OverlapsOf<Overlaps::contacts, Real> {
     std::vector<Strip<Real>> strips;
-    std::vector<int> block_of_disc; ///< the code of its box, see ActiveBlocks
+    std::vector<ActiveBlocks::Beside> blocks_of_disc;
     ActiveBlocks active;
 
     OverlapsOf(const Grid& grid, int count)
         : strips(static_cast<std::size_t>(grid.strip_count(strip_height(Order::strips)))),
-          block_of_disc(static_cast<std::size_t>(count)), active(grid.boxes_per_side()) {}
+          blocks_of_disc(static_cast<std::size_t>(count)), active(grid.boxes_per_side()) {}
 };
 
 /// What a simulation knows between its phases.

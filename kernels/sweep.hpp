@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <vector>
 
 #include "parallel_for.hpp"
@@ -29,8 +31,19 @@ namespace carom {
 /// How many of the indices below `count` have the parity of `first`, which is 0 or 1.
 constexpr int every_other(int count, int first) { return (count - first + 1) / 2; }
 
+/// What a sweep did, or several that ran as one.
+struct Swept {
+    Tally work{};
+    std::int64_t last_changes = 0; ///< of the last of them: what it changed, or what it left to be looked at
+};
+
+inline Swept one_sweep(Tally work) {
+    work.sweeps = 1;
+    return {work, work.pair_resolves + work.wall_resolves};
+}
+
 template <Policies policies, class SomeProbe>
-Tally sweep_checkered(State<policies>& state, const Tuning& tuning, const ApproachOf<policies>& approaching,
+Swept sweep_checkered(State<policies>& state, const Tuning& tuning, const ApproachOf<policies>& approaching,
                       SomeProbe& probe) {
     Tally tally;
     const int side = state.grid.boxes_per_side();
@@ -46,12 +59,12 @@ Tally sweep_checkered(State<policies>& state, const Tuning& tuning, const Approa
                 });
         }
     }
-    return tally;
+    return one_sweep(tally);
 }
 
 /// One sweep of `row` or `strips`. A row is a strip of one row.
 template <Policies policies, class SomeProbe>
-Tally sweep_strips(State<policies>& state, const Tuning& tuning, const ApproachOf<policies>& approaching,
+Swept sweep_strips(State<policies>& state, const Tuning& tuning, const ApproachOf<policies>& approaching,
                    SomeProbe& probe) {
     Tally tally;
     const int count = state.grid.strip_count(strip_height(policies.order));
@@ -60,7 +73,7 @@ Tally sweep_strips(State<policies>& state, const Tuning& tuning, const ApproachO
             tuning.threads, every_other(count, first), tuning.resolve_chunk, probe,
             [&](int k) { return Tally(resolve_strip(state, first + 2 * k, approaching)); });
     }
-    return tally;
+    return one_sweep(tally);
 }
 
 /// Can disc i touch a wall, as far as its box tells?
@@ -71,7 +84,7 @@ template <Policies policies> bool at_wall(const State<policies>& state, int i) {
 
 /// One sweep of `once` or `repeat`: every disc in the order of its number.
 template <Policies policies>
-Tally sweep_discs(State<policies>& state, const ApproachOf<policies>& approaching) {
+Swept sweep_discs(State<policies>& state, const ApproachOf<policies>& approaching) {
     Tally tally;
     for (int i = 0; i < state.count(); ++i) {
         if constexpr (policies.order == Order::repeat) {
@@ -80,7 +93,7 @@ Tally sweep_discs(State<policies>& state, const ApproachOf<policies>& approachin
             tally += resolve_disc_once(state, i, at_wall(state, i), approaching, ignore_partner);
         }
     }
-    return tally;
+    return one_sweep(tally);
 }
 
 /// The discs that `track` has yet to visit: a partner changed them after their own last visit.
@@ -98,7 +111,7 @@ struct Pending {
 
 /// One sweep of `track`: the pending discs, in the order in which they came to be pending.
 template <Policies policies>
-Tally sweep_pending(State<policies>& state, Pending& pending, const ApproachOf<policies>& approaching) {
+Swept sweep_pending(State<policies>& state, Pending& pending, const ApproachOf<policies>& approaching) {
     Tally tally;
     const auto remember = [&](int j) {
         if (!pending.is_pending[static_cast<std::size_t>(j)]) {
@@ -110,13 +123,15 @@ Tally sweep_pending(State<policies>& state, Pending& pending, const ApproachOf<p
         pending.is_pending[static_cast<std::size_t>(i)] = 0;
         const Changes changes = resolve_disc(state, i, at_wall(state, i), approaching, remember);
         tally += changes;
-        if (changes.pairs + changes.walls >= passes_per_visit) {
+        if (changes.count() >= passes_per_visit) {
             remember(i);
         }
     }
     pending.now.swap(pending.next);
     pending.next.clear();
-    return tally;
+    Swept swept = one_sweep(tally);
+    swept.last_changes = std::ssize(pending.now);
+    return swept;
 }
 
 } // namespace carom

@@ -30,7 +30,8 @@ struct Changes {
     int pairs = 0;
     int walls = 0;
 
-    bool any() const { return pairs + walls > 0; }
+    int count() const { return pairs + walls; }
+    bool any() const { return count() > 0; }
     Changes& operator+=(const Changes& other) {
         pairs += other.pairs;
         walls += other.walls;

@@ -23,7 +23,7 @@ struct Rule {
 constexpr Rule rules[] = {
     {.most_discs = 150, .variant = "once"},
     {.most_discs = std::numeric_limits<std::size_t>::max(),
-     .variant = "nine-strips-self_contained_off-resolve_dynamic-sorted-snug-contacts-filtered-active"},
+     .variant = "nine-wavefront-self_contained_off-resolve_dynamic-sorted-snug-contacts-filtered-active"},
 };
 
 } // namespace

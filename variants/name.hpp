@@ -13,7 +13,8 @@ constexpr std::string_view word(Neighbourhood value) {
 }
 
 constexpr std::string_view word(Order value) {
-    constexpr std::array<std::string_view, 6> words{"checkered", "row", "track", "repeat", "once", "strips"};
+    constexpr std::array<std::string_view, 7> words{"checkered", "row",    "track",    "repeat",
+                                                    "once",      "strips", "wavefront"};
     return words[static_cast<std::size_t>(value)];
 }
 

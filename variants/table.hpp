@@ -23,7 +23,8 @@ constexpr std::string_view impossible(const Policies& policies) {
         return "two snug boxes of one colour, or rows of one parity, are too near each other";
     }
     if (policies.overlaps == Overlaps::contacts &&
-        (policies.storage != Storage::sorted || policies.order != Order::strips)) {
+        (policies.storage != Storage::sorted ||
+         (policies.order != Order::strips && policies.order != Order::wavefront))) {
         return "contacts are owned by strips of sorted discs";
     }
     if (policies.overlaps == Overlaps::contacts && policies.self_contained == SelfContained::on) {
@@ -52,7 +53,8 @@ inline constexpr auto ladder = climb(
     flip(&Policies::box_side, BoxSide::snug),
     flip(&Policies::search, Search::filtered),
     flip(&Policies::worklist, Worklist::active),
-    flip(&Policies::resolve_schedule, Schedule::dynamic));
+    flip(&Policies::resolve_schedule, Schedule::dynamic),
+    flip(&Policies::order, Order::wavefront));
 // clang-format on
 
 /// The whole design space, the published best first. A row names what differs from it; one more line is one

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -19,6 +22,8 @@ class Recorder {
     explicit Recorder(int threads) : threads_(static_cast<std::size_t>(threads)) {}
 
     void loop_begin(int thread) { ++of(thread).begins; }
+    void wait_begin(int thread) { ++of(thread).waits_begun; }
+    void wait_end(int thread) { ++of(thread).waits_ended; }
     void iteration(int thread, int index) { of(thread).iterations.push_back(index); }
     void loop_end(int thread) {
         ++of(thread).ends;
@@ -33,6 +38,8 @@ class Recorder {
 
     struct Thread {
         int begins = 0;
+        int waits_begun = 0;
+        int waits_ended = 0;
         int ends = 0;
         int barriers = 0;
         std::vector<int> iterations;
@@ -76,10 +83,11 @@ TYPED_TEST(ParallelFor, RunsEveryIterationOnceAndAddsUpTheirTallies) {
                         return Tally{.overlaps = i, .pair_resolves = 1, .wall_resolves = 2, .sweeps = 3};
                     });
                 EXPECT_TRUE(std::ranges::all_of(runs, [](int times) { return times == 1; }));
-                EXPECT_EQ(tally, (Tally{.overlaps = count * (count - 1) / 2,
-                                        .pair_resolves = count,
-                                        .wall_resolves = 2 * count,
-                                        .sweeps = 3 * count}));
+                const std::int64_t each = count;
+                EXPECT_EQ(tally, (Tally{.overlaps = each * (each - 1) / 2,
+                                        .pair_resolves = each,
+                                        .wall_resolves = 2 * each,
+                                        .sweeps = 3 * each}));
             }
         }
     }
@@ -113,6 +121,50 @@ TYPED_TEST(ParallelFor, TellsTheProbeOfEveryThreadItAskedFor) {
         for (int i = 0; i < 100; ++i) {
             EXPECT_EQ(iterations[static_cast<std::size_t>(i)], i);
         }
+    }
+}
+
+/// Each iteration needs what the one so far before it has written: without waiting for it, on several
+/// threads, it would read a 0.
+TYPED_TEST(ParallelFor, BeginsAnIterationWhenItIsReady) {
+    constexpr int count = 2000;
+    constexpr int before = 3;
+    for (const int threads : {1, 2, 3, 8}) {
+        SCOPED_TRACE(threads);
+        Recorder recorder(threads);
+        std::vector<int> written(count);
+        std::vector<std::atomic<bool>> is_written(count);
+        parallel_for<TypeParam::schedule>(
+            threads, count, 4, recorder,
+            [&](int i) {
+                written.at(static_cast<std::size_t>(i)) =
+                    i < before ? 1 : written.at(static_cast<std::size_t>(i - before)) + 1;
+                is_written.at(static_cast<std::size_t>(i)).store(true, std::memory_order_release);
+                return Tally{};
+            },
+            [&](int i) {
+                return i < before ||
+                       is_written.at(static_cast<std::size_t>(i - before)).load(std::memory_order_acquire);
+            });
+        for (int i = 0; i < count; ++i) {
+            EXPECT_EQ(written.at(static_cast<std::size_t>(i)), i / before + 1);
+        }
+        for (const Recorder::Thread& thread : recorder.threads()) {
+            EXPECT_EQ(thread.waits_begun, thread.waits_ended);
+            EXPECT_LE(thread.waits_begun, std::ssize(thread.iterations));
+        }
+    }
+}
+
+TEST(Waiting, IsToldOnlyWhereAnIterationIsNotReady) {
+    for (const bool late : {false, true}) {
+        Recorder recorder(1);
+        bool asked = !late;
+        parallel_for<Schedule::dynamic>(
+            1, 5, 1, recorder, [](int) { return Tally{}; },
+            [&asked](int i) { return i != 3 || std::exchange(asked, true); });
+        EXPECT_EQ(recorder.threads()[0].waits_begun, late ? 1 : 0);
+        EXPECT_EQ(recorder.threads()[0].waits_ended, late ? 1 : 0);
     }
 }
 

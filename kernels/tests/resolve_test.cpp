@@ -116,9 +116,12 @@ template <Policies policies> Tally sweep_of(State<policies>& state, int threads)
     const Tuning tuning{.threads = threads};
     const Approach approaching(tuning.tolerance);
     if constexpr (policies.order == Order::checkered) {
-        return sweep_checkered(state, tuning, approaching, probe);
+        return sweep_checkered(state, tuning, approaching, probe).work;
+    } else if constexpr (policies.order == Order::wavefront) {
+        Wavefront wavefront(state.grid.strip_count(strip_height(policies.order)));
+        return sweep_wavefront(state, wavefront, 0, 1, tuning, approaching, probe).work;
     } else {
-        return sweep_strips(state, tuning, approaching, probe);
+        return sweep_strips(state, tuning, approaching, probe).work;
     }
 }
 
@@ -146,6 +149,7 @@ template <Order order> void one_sweep_reaches_every_box() {
 TEST(CheckeredOrder, ReachesEveryBoxInASweep) { one_sweep_reaches_every_box<Order::checkered>(); }
 TEST(RowOrder, ReachesEveryBoxInASweep) { one_sweep_reaches_every_box<Order::row>(); }
 TEST(StripsOrder, ReachesEveryBoxInASweep) { one_sweep_reaches_every_box<Order::strips>(); }
+TEST(WavefrontOrder, ReachesEveryBoxInASweep) { one_sweep_reaches_every_box<Order::wavefront>(); }
 
 /// Three discs in a row: the first runs into the second, which passes the blow on to the third.
 template <Order order = Order::checkered, Direction direction = Direction::reverse> auto chain() {

@@ -26,7 +26,8 @@ Scene jammed() { return {.side = 4, .radius = 1, .steps = 1, .discs = {{1, 2, 0,
 template <Order order> void gives_up_at_the_sweep_limit(const Scene& scene) {
     for (const int limit : {1, 7, 250}) {
         SCOPED_TRACE(limit);
-        const auto outcome = tests::simulate<Policies{.order = order}>(scene, {.sweep_limit = limit});
+        const auto outcome =
+            tests::simulate<Policies{.order = order}>(scene, {.threads = 2, .sweep_limit = limit});
         EXPECT_FALSE(outcome.work.settled);
         EXPECT_EQ(outcome.work.sweeps, limit);
         double energy_before = 0;
@@ -45,6 +46,8 @@ TEST(SweepLimit, EndsEveryOrderOnADiscWedgedBetweenWalls) {
     gives_up_at_the_sweep_limit<Order::track>(wedged());
     gives_up_at_the_sweep_limit<Order::repeat>(wedged());
     gives_up_at_the_sweep_limit<Order::once>(wedged());
+    gives_up_at_the_sweep_limit<Order::strips>(wedged());
+    gives_up_at_the_sweep_limit<Order::wavefront>(wedged());
 }
 
 TEST(SweepLimit, EndsEveryOrderOnDiscsJammedBetweenWalls) {
@@ -53,6 +56,8 @@ TEST(SweepLimit, EndsEveryOrderOnDiscsJammedBetweenWalls) {
     gives_up_at_the_sweep_limit<Order::track>(jammed());
     gives_up_at_the_sweep_limit<Order::repeat>(jammed());
     gives_up_at_the_sweep_limit<Order::once>(jammed());
+    gives_up_at_the_sweep_limit<Order::strips>(jammed());
+    gives_up_at_the_sweep_limit<Order::wavefront>(jammed());
 }
 
 TEST(SweepLimit, IsNoErrorWhereTheLastSweepSettles) {

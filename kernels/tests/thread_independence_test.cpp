@@ -52,6 +52,8 @@ TEST(ThreadIndependence, OfTheCheckeredOrder) { depends_on_no_thread_and_no_sche
 
 TEST(ThreadIndependence, OfTheRowOrder) { depends_on_no_thread_and_no_schedule<Order::row>(); }
 
+TEST(ThreadIndependence, OfTheWavefrontOrder) { depends_on_no_thread_and_no_schedule<Order::wavefront>(); }
+
 /// The other policies, under the schedule that mixes iterations most.
 template <Policies policies> void depends_on_no_thread_in_any_scene() {
     for (const auto& [name, scene] : tests::all_scenes()) {

@@ -21,6 +21,7 @@ TEST(Word, IsTheDesignsForEveryPolicyValue) {
     EXPECT_EQ(word(Order::repeat), "repeat");
     EXPECT_EQ(word(Order::once), "once");
     EXPECT_EQ(word(Order::strips), "strips");
+    EXPECT_EQ(word(Order::wavefront), "wavefront");
     EXPECT_EQ(word(Storage::numbered), "numbered");
     EXPECT_EQ(word(Storage::sorted), "sorted");
     EXPECT_EQ(word(BoxSide::wide), "wide");

@@ -57,6 +57,8 @@ class Counter final : public Probe {
     void sweep_begin() override { ++sweeps; }
     void sweep_end() override {}
     void loop_begin(int) override {}
+    void wait_begin(int /*thread*/) override {}
+    void wait_end(int /*thread*/) override {}
     void iteration(int, int) override {}
     void loop_end(int) override {}
     void barrier_end(int) override {}
