@@ -1,9 +1,9 @@
 #pragma once
 
-#include <thread>
 #include <type_traits>
 
 #include <omp.h>
+#include <sched.h>
 
 #include "policies.hpp"
 #include "probe.hpp"
@@ -28,7 +28,7 @@ template <class SomeProbe, class Ready> void await(int i, const Ready& ready, in
     probe.wait_begin(thread);
     for (int asked = 1; !ready(i); ++asked) {
         if (asked % patience == 0) {
-            std::this_thread::yield();
+            sched_yield();
         }
     }
     probe.wait_end(thread);
