@@ -77,7 +77,8 @@ TEST_F(ErrorsOption, ShowsInTheSummaryOfARun) {
 TEST_F(ErrorsOption, FieldsAreThoseOfTheSchema) {
     const auto schema = nlohmann::json::parse(content_of(CAROM_SCHEMA));
     const auto& properties = schema["$defs"]["errors"]["properties"];
-    for (const auto& [field, value] : record_of({"--errors"})["errors"].items()) {
+    const nlohmann::json errors = record_of({"--errors"})["errors"];
+    for (const auto& [field, value] : errors.items()) {
         EXPECT_TRUE(properties.contains(field)) << field;
     }
     EXPECT_EQ(properties.size(), fields.size());
