@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <map>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -193,31 +193,6 @@ TEST(StripsOfContacts, ShareNoDiscAndNoMarkWithinAParity) {
             ASSERT_EQ(strips.size(), 1) << "block " << mark_and_parity.first;
         }
     }
-}
-
-TEST(Filter, DropsNoPairThatOverlaps) {
-    tests::Random random(73);
-    int dropped = 0;
-    for (int trial = 0; trial < 200'000; ++trial) {
-        const double side = random.magnitude(-30, 30);
-        const double radius = side * random.magnitude(-9, 1);
-        const double far = random.below(10) == 0 ? random.magnitude(0, 20) : 1;
-        const Disc one{far * side * random.uniform(-1, 2), far * side * random.uniform(-1, 2), 0, 0};
-        const double angle = random.uniform(0, 6.3);
-        const double distance = 2 * radius * (random.coin() ? 1 : random.uniform(0, 2));
-        const Disc two{one.x + distance * std::cos(angle), one.y + distance * std::sin(angle), 0, 0};
-        const std::vector<float> x{filter_position(two.x, 1 / side), 0, 0, 0};
-        const std::vector<float> y{filter_position(two.y, 1 / side), 0, 0, 0};
-        const FourInts kept =
-            may_overlap(x.data(), y.data(), filter_position(one.x, 1 / side),
-                        filter_position(one.y, 1 / side), filter_reach_squared(side, radius), 1);
-        if (overlap(one, two, 4 * radius * radius)) {
-            ASSERT_EQ(kept[0], -1) << one << " and " << two << ", L = " << side << ", r = " << radius;
-        }
-        ASSERT_EQ(kept[1] | kept[2] | kept[3], 0);
-        dropped += kept[0] == 0;
-    }
-    EXPECT_GT(dropped, 10'000) << "a filter that drops nothing is none";
 }
 
 template <Policies policies> void keeps_to_the_definition() {
