@@ -24,11 +24,12 @@ def summarise(
     rows = []
     for key, group in times.groupby(by, sort=True):
         padded = _padded(group, value)
+        medians = _row_medians(padded.reshape(-1, padded.shape[2]))
         low, high = np.quantile(_replicates(padded), [(1 - level) / 2, (1 + level) / 2])
         rows.append(
             {
                 **dict(zip(by, key, strict=True)),
-                "median": float(np.median(_row_medians(padded.reshape(-1, padded.shape[2])))),
+                "median": float(_row_medians(medians[np.newaxis])[0]),
                 "low": float(low),
                 "high": float(high),
                 "sessions": padded.shape[0],

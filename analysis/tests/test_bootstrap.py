@@ -54,3 +54,12 @@ def test_unequal_repetitions_and_a_single_process() -> None:
     assert summary_of(ragged)["samples"] == 9
     single = summary_of(table[(table["block"] == 0) & (table["repetition"] == 0)])
     assert single["low"] == single["median"] == single["high"]
+
+
+def test_sessions_of_unequal_length_lose_no_process() -> None:
+    table = times_table({"a": 1.0}, 7, 2, Noise(), seed=6)
+    resumed = table.assign(session=np.where(table["block"] >= 5, "second", "first"))
+    row = summary_of(resumed)
+    assert (row["sessions"], row["processes"]) == (2, 7)
+    assert row["median"] == summary_of(table)["median"]
+    assert row["low"] <= row["median"] <= row["high"]
