@@ -159,11 +159,12 @@ def plain_ticks(axis: mpl.axis.Axis, values: Sequence[float] | None = None) -> N
 
 
 def logarithmic_ticks(axis: mpl.axis.Axis) -> None:
-    """Put plain numbers at the powers of ten of a logarithmic axis and, over less than a decade and a half,
-    at 2 and 5 times them. Call it when the limits of the axis are settled.
+    """Put plain numbers at the powers of ten of a logarithmic axis and between them, over about a decade at
+    2 and 5 times them, over two at 3 times. Call it when the limits of the axis are settled.
     """
     low, high = axis.get_view_interval()
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 30 * low else (1.0,)))
+    between = (1.0, 2.0, 5.0) if high < 12 * low else (1.0, 3.0) if high < 200 * low else (1.0,)
+    axis.set_major_locator(LogLocator(subs=between))
     plain_ticks(axis)
 
 
@@ -186,7 +187,8 @@ def partial(study: Study, experiment: str) -> str | None:
 def mark_partial(figure: Figure, text: str | None) -> None:
     """Say in the figure itself that data are missing."""
     if text:
-        figure.text(0.995, 0.995, text, ha="right", va="top", fontsize=7, color=VERMILLION, weight="bold")
+        # A title of the whole figure is given room of its own by the layout, unlike a text.
+        figure.suptitle(text, x=0.995, ha="right", fontsize=7, color=VERMILLION, weight="bold")
 
 
 def save(drawing: Drawing, folder: Path, name: str) -> list[Path]:
