@@ -130,7 +130,7 @@ TEST_F(RunCommand, PrintsAShortSummary) {
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.error, "");
     for (const char* part :
-         {"150 discs", "6 steps", "variant once", "2 threads", "whole process", "steps/s", "disc-steps/s",
+         {"150 discs", "6 steps", "variant ", "2 threads", "whole process", "steps/s", "disc-steps/s",
           "overlaps", "pair resolves", "sweeps", "energy drift", "discs outside"}) {
         EXPECT_PRED_FORMAT2(testing::IsSubstring, part, result.output);
     }
