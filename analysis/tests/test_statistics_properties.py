@@ -60,15 +60,20 @@ def test_ratios_do_not_ask_for_the_unit_of_time(blocks: list[tuple[float, float]
     assert ratios(1).to_numpy() == pytest.approx([np.log(new / old) for old, new in blocks], abs=1e-9)
 
 
-@given(st.lists(st.lists(SECONDS, min_size=1, max_size=4), min_size=1, max_size=6))
+@given(
+    st.lists(
+        st.tuples(st.sampled_from("abc"), st.lists(SECONDS, min_size=1, max_size=4)), min_size=1, max_size=6
+    )
+)
 @settings(max_examples=50, deadline=None)
-def test_a_bootstrap_interval_stands_within_the_samples(rows: list[list[float]]) -> None:
-    table = processes(rows).assign(series="one")
-    row = summarise(table, ["series"]).iloc[0]
+def test_a_bootstrap_interval_stands_within_the_samples(runs: list[tuple[str, list[float]]]) -> None:
+    sessions, rows = zip(*runs, strict=True)
+    table = processes(list(rows)).assign(series="one")
+    row = summarise(table.assign(session=table["block"].map(dict(enumerate(sessions)))), ["series"]).iloc[0]
     values = table["steps_seconds"]
     assert row["median"] == pytest.approx(np.median([np.median(values) for values in rows]))
     assert values.min() * (1 - 1e-12) <= row["low"] <= row["high"] <= values.max() * (1 + 1e-12)
-    assert (row["processes"], row["samples"]) == (len(rows), len(table))
+    assert (row["sessions"], row["processes"], row["samples"]) == (len(set(sessions)), len(rows), len(table))
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=12), st.randoms())
