@@ -43,7 +43,12 @@ def _column(name: str) -> Callable[[pd.DataFrame], pd.Series]:
 
 
 def _against_reference(name: str) -> Callable[[pd.DataFrame], pd.Series]:
-    return lambda runs: (runs[name] / runs[f"{name}_reference"] - 1).abs()
+    def error(runs: pd.DataFrame) -> pd.Series:
+        reference = runs[f"{name}_reference"]
+        # Relative to 0, as where the exact run meets no wall, there is no error.
+        return (runs[name] / reference.where(reference != 0) - 1).abs()
+
+    return error
 
 
 def _parting(runs: pd.DataFrame) -> pd.Series:
@@ -148,9 +153,11 @@ def points(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
 
 def outside(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
     """Return a row for each scene and number of substeps of a general engine: `engine`, `median`, `low`,
-    `high` of the seconds for a unit of simulated time, and `error`. Empty but for the drift of energy.
+    `high` of the seconds for a unit of simulated time, and `error`, on the scenes of its runs. Empty but
+    for the drift of energy.
     """
     table = study.outside[study.outside["experiment"] == experiment].dropna(subset=["energy_drift"])
+    table = table[table["scene_sha256"].isin(study.runs_of(experiment)["scene_sha256"])]
     if table.empty or measure.key != "energy":
         return pd.DataFrame()
     place = ["scene_name", "substeps", "engine"]

@@ -116,15 +116,15 @@ def _name(runs: pd.DataFrame, rung: float) -> str:
 
 def _judged(times: pd.DataFrame, pairs_of: PairsOf, by: list[str]) -> pd.DataFrame:
     processes = process_medians(times)
+    # The rungs of all scenes, so that one that a scene lacks has no ratio there, not that of its neighbour.
+    rungs_of_all = sorted(processes["series_number"].unique())
     pairs = []
     for scene, group in processes.groupby("scene_name"):
-        numbers = sorted(group["series_number"].unique())
-        for before, after in pairs_of(numbers):
+        for before, after in pairs_of(rungs_of_all):
             sides = (group[group["series_number"] == rung] for rung in (before, after))
             pairs.append(log_ratios(*sides).assign(scene_name=scene, series_number=after))
-    if not pairs:
-        return pd.DataFrame(columns=[*by, *COLUMNS])
-    return judge(pd.concat(pairs), by)
+    found = [part for part in pairs if len(part)]
+    return judge(pd.concat(found), by) if found else pd.DataFrame(columns=[*by, *COLUMNS])
 
 
 def _changes(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:

@@ -1,4 +1,6 @@
-"""Splits records into studies: what was measured on one machine, from one source revision, at one scale."""
+"""Splits records into studies: what was measured on one machine, from one source revision, at one scale, and
+no series with two programs.
+"""
 
 from dataclasses import dataclass
 
@@ -9,6 +11,9 @@ from analysis.records import Records
 SCALES = ["paper", "quick"]
 TABLES = ["runs", "times", "trajectory", "phases", "threads", "counters"]
 
+CHECK_FAILED = 2
+"""The program's exit code when a result fails its check."""
+
 
 @dataclass(frozen=True)
 class Study:
@@ -17,6 +22,8 @@ class Study:
     machine: str
     revision: str
     scale: str
+    program: str
+    """The hashes of its programs, where another study has others on the same machine."""
     runs: pd.DataFrame
     times: pd.DataFrame
     trajectory: pd.DataFrame
@@ -32,7 +39,8 @@ class Study:
     @property
     def name(self) -> str:
         """One line that tells this study from every other."""
-        return f"{self.machine}, {self.scale} scale, revision {self.revision}"
+        program = f", program {self.program}" if self.program else ""
+        return f"{self.machine}, {self.scale} scale, revision {self.revision}{program}"
 
     @property
     def cores(self) -> int | None:
@@ -53,19 +61,32 @@ class Study:
         """Return the records of one experiment whose check passed."""
         return self.runs[(self.runs["experiment"] == experiment) & (self.runs["check_verdict"] == "passed")]
 
+    def failed_checks(self, experiment: str | None = None) -> int:
+        """Return how many results failed their check, in one experiment or in all: records that say so, and
+        points without one for that reason.
+        """
+        tables = (
+            table if experiment is None else table[table["experiment"] == experiment]
+            for table in (self.runs, self.failures)
+        )
+        runs, failures = tables
+        return int((runs["check_verdict"] == "failed").sum() + (failures["exit_code"] == CHECK_FAILED).sum())
+
 
 def split(records: Records) -> list[Study]:
     """Return the studies in the records, the one to show first at the front: published sizes, then most
     records.
 
-    A series that mixes several binaries within a study is told apart by compiler, or by the binary's hash. A
-    failure does not tell its machine: it belongs to every study of its scale and site.
+    Where a series was measured with several programs, each makes a study of its own. A failure does not tell
+    its machine: it belongs to every study of its scale and site.
     """
+    keys = ["machine", "revision", "scale"]
     studies = [
         Study(
             machine,
             revision,
             scale,
+            program,
             **_parts(records, runs),
             failures=_failures(records, scale, runs),
             limits=records.limits[records.limits["machine"] == machine],
@@ -73,9 +94,25 @@ def split(records: Records) -> list[Study]:
                 (records.outside["machine"] == machine) & (records.outside["scale"] == scale)
             ],
         )
-        for (machine, revision, scale), runs in records.runs.groupby(["machine", "revision", "scale"])
+        for (machine, revision, scale), alike in records.runs.groupby(keys)
+        for program, runs in _by_program(alike)
     ]
     return sorted(studies, key=lambda study: (_scale_order(study.scale), -len(study.runs)))
+
+
+def _by_program(runs: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """Split runs so that no series has two programs: of each series the program with the most runs of all
+    first. Each part with the names of its programs; without, if there is one part.
+    """
+    most = runs["binary_sha256"].value_counts(sort=False).sort_index().sort_values(kind="stable")
+    programs = runs.assign(
+        place=-runs["binary_sha256"].map(dict(zip(most.index, range(len(most)), strict=True)))
+    )
+    place = programs.groupby(["experiment", "series"])["place"].rank("dense")
+    parts = [runs[place == number] for number in sorted(place.unique())]
+    if len(parts) == 1:
+        return [("", runs)]
+    return [(", ".join(sorted(part["binary_sha256"].str[:8].unique())), part) for part in parts]
 
 
 def _scale_order(scale: str) -> int:
@@ -88,24 +125,7 @@ def _failures(records: Records, scale: str, runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def _parts(records: Records, runs: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    names, parts = _names_by_binary(runs), {}
-    for name in TABLES:
-        table = getattr(records, name)
-        table = table[table["file"].isin(runs["file"])].reset_index(drop=True)
-        keys = zip(table["experiment"], table["series"], table["binary_sha256"], strict=True)
-        parts[name] = table.assign(series=[names.get(key, key[1]) for key in keys])
-    return parts
-
-
-def _names_by_binary(runs: pd.DataFrame) -> dict[tuple[str, str, str], str]:
-    names: dict[tuple[str, str, str], str] = {}
-    distinct = runs[["experiment", "series", "binary_sha256", "compiler"]].drop_duplicates()
-    for (experiment, series), group in distinct.groupby(["experiment", "series"]):
-        binaries = group[["binary_sha256", "compiler"]]
-        if len(binaries) < 2:
-            continue
-        by_compiler = binaries["compiler"].is_unique
-        for binary, compiler in binaries.itertuples(index=False):
-            label = compiler if by_compiler else f"program {binary[:8]}"
-            names[(experiment, series, binary)] = f"{series} ({label})"
-    return names
+    tables = {name: getattr(records, name) for name in TABLES}
+    return {
+        name: table[table["file"].isin(runs["file"])].reset_index(drop=True) for name, table in tables.items()
+    }

@@ -39,8 +39,8 @@ LIMITS = [
     "median", "repetitions",
 ]  # fmt: skip
 OUTSIDE = [
-    "file", "machine", "scale", "experiment", "scene_name", "block", "session", "substeps", "engine",
-    "seconds", "energy_drift",
+    "file", "machine", "scale", "experiment", "scene_name", "scene_sha256", "block", "session", "substeps",
+    "engine", "seconds", "energy_drift",
 ]  # fmt: skip
 IDENTITY = ["compiler_family", "node", "machine", "revision"]
 CONTEXT = [
@@ -207,6 +207,7 @@ def outside(records: Named) -> pd.DataFrame:
             "machine": _machine(record["provenance"]),
             **{column: record["tags"].get(column) for column in ("experiment", "block")},
             **{column: str(record["tags"].get(column, "")) for column in ("scale", "scene_name", "session")},
+            "scene_sha256": record["scene"]["sha256"],
             "substeps": record["axes"]["substeps"],
             "engine": f"{record['engine']['name']} {record['engine']['version']}",
             "seconds": run["steps_seconds"] / record["scene"]["steps"],

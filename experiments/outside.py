@@ -60,5 +60,5 @@ class Outside:
 
 
 def _name(point: Point, scene: SceneFile) -> str:
-    content = [point.program.sha256, asdict(point.machine), scene.sha256, point.substeps]
+    content = [point.program.sha256, asdict(point.machine), scene.sha256, point.scene_name, point.substeps]
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:16]

@@ -50,23 +50,25 @@ def waterfall(data: Data, experiment: str, subject: str) -> Drawing | None:
     names = table.drop_duplicates("series_number").set_index("series_number")["change"].sort_index()
     figure, panels = _panels(len(scenes), len(names) + 1)
     for scene, (axes, margin) in zip(scenes, panels, strict=True):
-        rows = _rows(table, steps, scene)
+        rows = _rows(table, steps, scene, names)
         total = whole.loc[scene] if scene in whole.index else None
-        _bars(axes, rows, names)
+        _bars(axes, rows, names, total is not None)
         _figures(margin, rows, names, total)
         axes.set_title(scene_title(runs, scene), pad=13)
-    return Drawing(figure, _caption(subject, runs, times, table), _verdicts(steps, table, runs))
+    failed = data.study.failed_checks(experiment)
+    return Drawing(figure, _caption(subject, runs, times, table, failed), _verdicts(steps, table, runs))
 
 
-def _rows(table: pd.DataFrame, steps: pd.DataFrame, scene: str) -> list[Row]:
+def _rows(table: pd.DataFrame, steps: pd.DataFrame, scene: str, names: pd.Series) -> list[Row]:
     """Return the scene's rungs in order, with the `before` of each and its `verdict` against the rung
-    before.
+    before, where that was measured.
     """
     judged = steps[["scene_name", "series_number", "ratio", "low", "high", "verdict"]]
     judged = judged.rename(columns={"low": "ratio_low", "high": "ratio_high"})
     rows = table[table["scene_name"] == scene].merge(judged, on=["scene_name", "series_number"], how="left")
     rows = rows.sort_values("series_number")
-    return list(rows.assign(before=rows["nanoseconds"].shift()).to_dict("records"))
+    before = rows.set_index("series_number")["nanoseconds"].reindex(names.index).shift()
+    return list(rows.assign(before=rows["series_number"].map(before)).to_dict("records"))
 
 
 def _panels(scenes: int, rows: int) -> tuple[Figure, list[tuple[Axes, Axes]]]:
@@ -82,7 +84,7 @@ def _panels(scenes: int, rows: int) -> tuple[Figure, list[tuple[Axes, Axes]]]:
     return figure, pairs
 
 
-def _bars(axes: Axes, rows: list[Row], names: pd.Series) -> None:
+def _bars(axes: Axes, rows: list[Row], names: pd.Series, has_both_ends: bool) -> None:
     heights = {rung: -float(place) for place, rung in enumerate(names.index)}
     axes.set_xscale("log")
     for row in rows:
@@ -94,7 +96,7 @@ def _bars(axes: Axes, rows: list[Row], names: pd.Series) -> None:
             axes.barh(height, right - left, left=left, color=colour, height=0.55, zorder=2)
         axes.plot([row["low"], row["high"]], [height, height], color=INK, linewidth=1.4, zorder=3)
         axes.plot(row["nanoseconds"], height, "o", color=INK, markersize=3, zorder=4)
-    if len(rows) > 1:
+    if has_both_ends:
         first, last = rows[0]["nanoseconds"], rows[-1]["nanoseconds"]
         left, width = min(first, last), abs(first - last)
         axes.barh(-len(names), width, left=left, color=lighten(FAINT), height=0.3, zorder=2)
@@ -119,6 +121,8 @@ def _figures(axes: Axes, rows: list[Row], names: pd.Series, total: pd.Series | N
         wrong = row["passed"] < row["records"] or pd.isna(row["nanoseconds"])
         for end, text in zip(columns.values(), cells, strict=True):
             _write(axes, end, heights[row["series_number"]], text, VERMILLION if wrong else INK, "center")
+    for rung in set(names.index) - {row["series_number"] for row in rows}:
+        _write(axes, columns["sweeps"], heights[rung], "no result", VERMILLION, "center")
     if total is not None:
         _write(axes, columns["sweeps"], -len(names), speed_up(total), INK, "center", "bold")
     axes.set(xlim=(0, 1), ylim=(-len(names) - 0.6, 0.6))
@@ -152,11 +156,11 @@ def _verdicts(steps: pd.DataFrame, table: pd.DataFrame, runs: pd.DataFrame) -> p
     return steps.assign(name=names)
 
 
-def _caption(subject: str, runs: pd.DataFrame, times: pd.DataFrame, table: pd.DataFrame) -> str:
+def _caption(subject: str, runs: pd.DataFrame, times: pd.DataFrame, table: pd.DataFrame, failed: int) -> str:
     processes = count(times["file"].nunique(), "process")
     threads = count(int(times["threads"].iloc[0]), "thread")
-    failed = int(table["records"].sum() - table["passed"].sum())
-    checks = f"all {count(len(runs), 'result')} passed" if not failed else f"{failed} of {len(runs)} failed"
+    results = count(int(table["passed"].sum()) + failed, "result")
+    checks = f"{failed} of {results} failed" if failed else f"all {results} passed"
     scopes = " and ".join(sorted(runs["check_scope"].unique()))
     return (
         f"{subject[0].upper()}{subject[1:]} ({threads}). {'; '.join(claims(runs, times))}. Each rung "

@@ -43,6 +43,8 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     figure, panels = new_figure(3.0, columns=len(scenes))
     looks = _looks(table)
     outside = accuracy.outside(data.study, experiment, measure)
+    if not outside.empty:
+        outside = outside[outside["scene_name"].isin(scenes)]
     zero = 10 ** np.floor(np.log10(table.loc[table["error"] > 0, "error"].min()) - 1)
     for axes, (scene, part) in zip(panels, scenes.items(), strict=True):
         _front(axes, part, zero)

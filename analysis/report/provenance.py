@@ -50,9 +50,9 @@ def _values(column: pd.Series) -> str:
 def checks(study: Study) -> str:
     """Say how many results were checked, how, and the greatest error measures found."""
     runs = study.runs
-    failed = int((runs["check_verdict"] == "failed").sum())
     drift = runs["energy_drift"].abs().max()
-    passed = count(len(runs) - failed, "result")
+    passed = count(int((runs["check_verdict"] == "passed").sum()), "result")
+    failed = study.failed_checks()
     said = f"{passed} passed and {count(failed, 'result')} failed the program's own check"
     scopes = " and ".join(sorted(runs["check_scope"].unique()))
     energy = "" if pd.isna(drift) else f"; greatest relative drift of energy {drift:.1e}"

@@ -53,7 +53,7 @@ class Machine:
             "commit": self.commit,
             "dirty": False,
             "diff_sha256": None,
-            "binary_sha256": digest(self.host, compiler),
+            "binary_sha256": digest(self.partition or self.host, compiler),
             "slurm": slurm,
         }
 
@@ -241,10 +241,12 @@ def limits(machine: Machine, copy: dict[str, tuple[int, float]], arithmetic: flo
 
 
 def outside(
-    machine: Machine, scene: str, substeps: int, block: int, seconds: float, drift: float | None
+    machine: Machine, beside: dict[str, Any], substeps: int, block: int, seconds: float, drift: float | None
 ) -> dict[str, Any]:
-    """Return the record of a general engine's run of ten units of time, `seconds` each."""
-    content = {"particles": 2000, "side": 4011.0, "radius": 16.0, "steps": 10, "area_fraction": 0.1}
+    """Return the record of a general engine's run on the scene of another record, `seconds` for each unit of
+    time.
+    """
+    scene = beside["tags"]["scene_name"]
     return {
         "schema_version": 1,
         "kind": "outside",
@@ -256,8 +258,8 @@ def outside(
         },
         "engine": {"name": "Chipmunk", "version": "7.0.3", "iterations": 10},
         "axes": {"threads": 1, "substeps": substeps},
-        "scene": {"name": "outside.in", "sha256": "0" * 64, **content},
-        "repetitions": [{"steps_seconds": 10 * seconds, "cpu_seconds": 10 * seconds}],
+        "scene": beside["scene"],
+        "repetitions": [dict.fromkeys(("steps_seconds", "cpu_seconds"), beside["scene"]["steps"] * seconds)],
         "errors": {"energy_drift": drift, "discs_outside": 0},
         "provenance": machine.provenance("g++ 12.2.0", 1),
     }  # fmt: skip

@@ -47,6 +47,10 @@ def drawing(study: Study, key: str, folder: Path) -> Drawing:
     return drawn
 
 
+def on_scene(records: list[dict[str, Any]], name: str) -> dict[str, Any]:
+    return next(record for record in records if record["tags"]["scene_name"] == name)
+
+
 def points(measured: Study, measure: Measure) -> Any:  # noqa: ANN401
     return accuracy.points(measured, NAME, measure)
 
@@ -223,12 +227,16 @@ def test_numbers_read_well() -> None:
 
 
 def test_a_general_engine_stands_outside_where_energy_is_measured_and_nowhere_else(tmp_path: Path) -> None:
+    variants = records()
+    beside = on_scene(variants, "medium")
     engine = [
-        outside(Machine(), "medium", substeps, block, 0.02 * substeps, -3e-3 / substeps)
+        outside(Machine(), beside, substeps, block, 0.02 * substeps, -3e-3 / substeps)
         for substeps in (1, 4)
         for block in range(3)
     ]
-    write(tmp_path, [*records(), *engine, outside(Machine(), "medium", 8, 0, 1.0, None)])
+    another = beside | {"scene": beside["scene"] | {"sha256": "0" * 64}}
+    old = [outside(Machine(), another, 1, block, 5.0, -1.0) for block in range(3, 8)]
+    write(tmp_path, [*variants, *engine, *old, outside(Machine(), beside, 8, 0, 1.0, None)])
     found = split(load(tmp_path))[0]
     table = accuracy.outside(found, NAME, BY_KEY["energy"])
     assert table[["scene_name", "substeps", "engine"]].to_numpy().tolist() == [
@@ -244,6 +252,27 @@ def test_a_general_engine_stands_outside_where_energy_is_measured_and_nowhere_el
     assert cheapest < 0.02
     assert accuracy.outside(found, NAME, BY_KEY["path"]).empty
     assert "Chipmunk" not in drawing(found, "path", tmp_path).caption
+
+
+def test_a_scene_on_which_no_variant_has_an_error_is_left_out_with_its_engine(tmp_path: Path) -> None:
+    variants = records()
+    for record in variants:
+        if record["tags"]["scene_name"] == "dense":
+            record.pop("errors", None)
+    engine = [outside(Machine(), on_scene(variants, "dense"), 1, block, 0.02, -3e-3) for block in range(3)]
+    write(tmp_path, [*variants, *engine])
+    assert "Chipmunk" not in drawing(split(load(tmp_path))[0], "energy", tmp_path).caption
+
+
+def test_where_the_reference_is_0_there_is_no_relative_error(tmp_path: Path) -> None:
+    variants = records()
+    for record in variants:
+        if record["tags"]["scene_name"] == "dense" and "pressure_reference" in record.get("errors", {}):
+            record["errors"]["pressure_reference"] = 0.0
+    write(tmp_path, variants)
+    found = split(load(tmp_path))[0]
+    assert set(points(found, BY_KEY["pressure"])["scene_name"]) == {"dilute", "medium"}
+    assert "dense" not in drawing(found, "pressure", tmp_path).caption
 
 
 def test_without_a_general_engine_nothing_is_said_of_one(measured: Study, folder: Path) -> None:

@@ -12,7 +12,7 @@ from analysis.figures.style import Data, Drawing, styled
 from analysis.ladder import claims, factors, headlines, named, rungs, totals
 from analysis.records import load
 from analysis.studies import Study, split
-from analysis.tests.synthetic import Machine, profile, write
+from analysis.tests.synthetic import Machine, failure, profile, write
 from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_points import LADDER
 from analysis.tests.synthetic_study import SHARES, study
@@ -130,7 +130,28 @@ def test_a_rung_that_fails_its_check_is_shown_as_wrong_and_has_no_time(tmp_path:
     drawing = drawn(study_of(tmp_path, records), tmp_path)
     assert texts(drawing).count("✗") == 2
     assert texts(drawing).count("none") == 2
-    assert "12 of 48 failed" in drawing.caption
+    assert "12 of 48\N{NO-BREAK SPACE}results failed" in drawing.caption
+
+
+def test_a_rung_without_a_result_is_named_and_lends_its_place_to_no_other(tmp_path: Path) -> None:
+    records = ladder_records()
+    first, third = (list(LADDER)[place] for place in (0, 2))
+    lacking = {"dense": first, "sparse": third}
+    kept = [
+        record for record in records if lacking[str(record["tags"]["scene_name"])] != record["tags"]["series"]
+    ]
+    assert len(kept) == len(records) - 12
+    failed = failure("ladder", third, "step 3: two discs left colliding", scene_name="sparse")
+    one = study_of(tmp_path, [*kept, failed])
+    runs, times = tables(one)
+    assert list(totals(times)["scene_name"]) == ["sparse"], "without its first rung a scene has no total"
+    steps = factors(times).groupby("scene_name")["series_number"].agg(set)
+    assert steps["dense"] == set(range(3, len(LADDER) + 1))
+    assert steps["sparse"] == set(range(2, len(LADDER) + 1)) - {3, 4}
+    drawing = drawn(one, tmp_path)
+    assert texts(drawing).count("no result") == 2
+    assert sum("faster than the published best" in sentence for sentence in claims(runs, times)) == 1
+    assert "1 of 37\N{NO-BREAK SPACE}results failed" in drawing.caption
 
 
 def test_noise_leaves_a_small_factor_inconclusive(tmp_path: Path) -> None:

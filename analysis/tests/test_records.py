@@ -128,11 +128,19 @@ def test_the_nodes_of_a_partition_are_one_machine(tmp_path: Path) -> None:
     assert set(studies[0].runs["node"]) == {"n1", "n2"}
 
 
-def test_a_series_of_two_binaries_is_told_apart(tmp_path: Path) -> None:
-    for compiler in ("g++ 12.2.0", "g++ 13.1.0"):
-        point = Point("checkered", 20, 1.0, "steps", compiler=compiler)
-        made = bench("steps", point, 0, [1.0], Machine())
-        made["tags"]["point"] = compiler.replace(" ", "-")
-        write(tmp_path, [made])
+def test_a_series_of_two_programs_makes_two_studies_and_two_series_one(tmp_path: Path) -> None:
+    def measured(series: str, compiler: str, block: int) -> dict[str, Any]:
+        point = Point(series, 20, 1.0, "steps", compiler=compiler)
+        made = bench("steps", point, block, [1.0], Machine())
+        made["tags"]["point"] = f"{series}-{compiler.replace(' ', '-')}"
+        return made
+
+    old, new, clang = "g++ 12.2.0", "g++ 13.1.0", "clang 14.0.6"
+    write(tmp_path, [measured("gcc", old, block) for block in range(3)] + [measured("clang", clang, 0)])
     (one,) = split(load(tmp_path))
-    assert set(one.times["series"]) == {"checkered (g++ 12.2.0)", "checkered (g++ 13.1.0)"}
+    assert (one.program, set(one.times["compiler"])) == ("", {old, clang})
+    write(tmp_path, [measured("gcc", new, block) for block in range(2)])
+    first, second = split(load(tmp_path))
+    assert [set(one.times["compiler"]) for one in (first, second)] == [{old, clang}, {new}]
+    assert first.program in first.name
+    assert first.name != second.name
