@@ -32,9 +32,13 @@ def process_noise(times: pd.DataFrame) -> pd.DataFrame:
     differences, not trends. Those with a single block or configuration have no estimate and are left out.
     """
     rows = []
-    for experiment, group in process_medians(times).groupby("experiment"):
-        keys = ["series", "x", *(key for key in ("label", "scene_name") if group[key].notna().any())]
-        table = group.pivot_table(index=PAIR, columns=keys, values="steps_seconds", aggfunc="median").dropna()
+    processes = process_medians(times)
+    processes = processes.assign(**{key: processes[key].fillna("") for key in ("label", "scene_name")})
+    for experiment, group in processes.groupby("experiment"):
+        keys = ["series", "x", "label", "scene_name"]
+        table = group.pivot_table(index=PAIR, columns=keys, values="steps_seconds", aggfunc="median")
+        # A configuration that soon failed would leave no block whole.
+        table = table.loc[:, 2 * table.notna().sum() >= len(table)].dropna()
         if min(table.shape) < 2:
             continue
         logs = np.log(table.to_numpy())

@@ -132,13 +132,17 @@ def _ratio(processes: pd.DataFrame, reference: float, candidate: float) -> Float
 
 
 def _block_exponents(processes: pd.DataFrame) -> list[float]:
-    """Return the log-log slope of every block that has at least two points; none if an x is not positive."""
-    if (processes["x"] <= 0).any():
+    """Return the log-log slope of every block that has all x, at least two; none if an x is not positive.
+
+    The slope of a part of the range is another one wherever the curve is not straight.
+    """
+    every = processes["x"].nunique()
+    if (processes["x"] <= 0).any() or every < 2:
         return []
     return [
         float(stats.linregress(np.log(block["x"]), np.log(block["steps_seconds"])).slope)
         for _, block in processes.groupby(PAIR)
-        if block["x"].nunique() > 1
+        if block["x"].nunique() == every
     ]
 
 

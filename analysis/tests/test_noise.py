@@ -40,6 +40,15 @@ def test_bursts_ask_for_the_blocks_that_ranks_need() -> None:
     assert noise_of(Noise(process=0.002, repetition=0, burst_rate=0.05, burst_size=2))["needed"] == RANKS_FROM
 
 
+def test_a_label_on_one_side_and_a_configuration_that_soon_failed_leave_the_estimate() -> None:
+    table = times_table({"a": 1.0, "b": 1.3, "c": 2.0}, 8, 1, Noise(burst_rate=0, drift=0), seed=1)
+    whole = process_noise(table.assign(figure="comparison"))
+    labelled = table.assign(figure="comparison", label=table["series"].map({"a": "A"}))
+    assert process_noise(labelled)["noise"].tolist() == whole["noise"].tolist()
+    failed = labelled[(labelled["series"] != "c") | (labelled["block"] == 0)]
+    assert process_noise(failed)["blocks"].tolist() == [8]
+
+
 def test_the_warning_names_the_worst_and_what_to_do() -> None:
     loud, quiet = (Noise(process=level, repetition=0, burst_rate=0) for level in (0.03, 0.001))
     table = process_noise(

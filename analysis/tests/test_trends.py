@@ -29,6 +29,12 @@ def test_the_exponent_of_a_power_law_is_found(exponent: float) -> None:
     assert trend.exponent.low - 0.01 <= exponent <= trend.exponent.high + 0.01
 
 
+def test_an_interrupted_block_does_not_move_the_exponent() -> None:
+    bent = curve({10.0: 1.0, 100.0: 1.5, 1000.0: 40.0}, blocks=5)
+    cut = bent[~((bent["block"] == 4) & (bent["x"] == 1000.0))]
+    assert growth(cut).exponent == growth(bent[bent["block"] < 4]).exponent
+
+
 def test_a_constant_time_is_flat_or_undecided_and_never_a_trend() -> None:
     verdicts = [
         growth(curve(dict.fromkeys((1.0, 2.0, 4.0), 1.0), 12, seed=seed)).verdict for seed in range(40)
