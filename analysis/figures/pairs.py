@@ -117,11 +117,15 @@ def _by_block(axes: Axes, curves: dict[str, pd.DataFrame]) -> None:
     axes.set(xlabel="block", ylabel="time of the steps, s", title="measured")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     labels = []
+    both = pd.concat(curves.values())[["node", "block"]]
+    blocks = sorted(set(both.itertuples(index=False, name=None)))
     for (name, processes), colour in zip(curves.items(), (BLUE, VERMILLION), strict=True):
-        ordered = processes.sort_values(["session", "block"])
-        axes.plot(
-            range(1, len(ordered) + 1), ordered["steps_seconds"], color=colour, marker="o", linewidth=0.8
-        )
+        # Nodes number their blocks alike: they stand one after another.
+        ordered = processes.sort_values(["node", "block"])
+        places = [
+            1 + blocks.index(place) for place in ordered[["node", "block"]].itertuples(index=False, name=None)
+        ]
+        axes.plot(places, ordered["steps_seconds"], color=colour, marker="o", linewidth=0.8)
         labels.append((name, ordered["steps_seconds"].iloc[-1], colour))
     axes.margins(y=0.15)
     label_ends(axes, labels)

@@ -22,7 +22,7 @@ from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import ERROR, MARGIN, judge_one
 from analysis.studies import Study, split
 from analysis.study_figures import draw_study
-from analysis.wording import blocks, change, share
+from analysis.wording import blocks, change, count, share
 
 STYLE = Path(__file__).parent / "report.css"
 CONTROL = "control"
@@ -105,9 +105,9 @@ def control_sentence(study: Study) -> str:
     if len(sides) != 2:
         return "The control (one variant, two labels) was not measured: nothing vouches for the rest."
     row = judge_one(log_ratios(*sides)["log_ratio"])
-    said = (
-        f"one variant, measured under two labels over the whole run, differs by {change(row)} ({blocks(row)})"
-    )
+    sessions, beside = study.times["session"].nunique(), processes["session"].nunique()
+    over = "the whole run" if beside == sessions else f"{beside} of {count(sessions, 'session')}"
+    said = f"one variant, measured under two labels over {over}, differs by {change(row)} ({blocks(row)})"
     if row["verdict"] == "equivalent":
         return f"The control came out equivalent, as it must: {said}."
     if row["verdict"] == "inconclusive":

@@ -10,7 +10,7 @@ from analysis import claims, report
 from analysis.cli import main
 from analysis.records import InputError, load
 from analysis.report.provenance import commands
-from analysis.tests.synthetic import Machine, write
+from analysis.tests.synthetic import Machine, failure, write
 from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_study import study
 from analysis.tests.test_figures import DRAWN
@@ -130,6 +130,17 @@ def test_without_pango_only_the_pdf_is_missing(
 
 def test_no_records_at_all_still_make_a_report(tmp_path: Path) -> None:
     assert "There are no records yet" in text_of(report.render(tmp_path))
+
+
+def test_sessions_without_a_control_and_results_that_failed_are_counted(tmp_path: Path) -> None:
+    records = study(["control", "threads"], blocks=6, noise=QUIET)
+    for record in records:
+        if record["tags"]["experiment"] == "threads":
+            record["tags"]["session"] = "another"
+    write(tmp_path, [*records, failure("threads", "checkered", "step 3: discs 1 and 2 are still colliding")])
+    said = text_of(report.render(tmp_path))
+    assert "measured under two labels over 1 of 2 sessions" in said
+    assert "1 result failed the program's own check" in said
 
 
 def test_a_failed_control_is_shouted(tmp_path: Path) -> None:
