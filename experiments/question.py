@@ -1,5 +1,6 @@
 """A question of the study: one TOML file, read, checked and frozen."""
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,6 +13,7 @@ from experiments.schema import read_toml
 FOLDER = Path(__file__).parent
 CONTROL = "control"
 
+_NUMBER = re.compile(r"\s*-?(0|[1-9]\d*)(\.\d+)?([eE][+-]?\d+)?\s*")
 _OF_THE_RUN = ("threads", "find_chunk", "resolve_chunk", "substeps")
 _OF_ERRORS = ("speed_against_error", "hard_cases")
 _OF_SCENES = (*_OF_ERRORS, "ladder", "limits")
@@ -161,6 +163,7 @@ def _check(question: Question) -> None:
     file, sweep, blocks = question.file, question.sweep, question.blocks
     if blocks.wanted < blocks.minimum:
         raise InputError(f"{file}: blocks.wanted: found {blocks.wanted}, expected at least {blocks.minimum}")
+    _check_names(question)
     _check_scenes(question)
     _check_errors(question)
     if sweep.parameter == "substeps" and question.substeps != 1:
@@ -170,6 +173,18 @@ def _check(question: Question) -> None:
             raise InputError(f"{file}: sweep.{key}: found for {sweep.parameter}, expected for {only} only")
     for number, series in enumerate(question.series, start=1):
         _check_values(question, f"series[{number}]", series)
+
+
+def _check_names(question: Question) -> None:
+    """A tag that reads as a number is one in a record, and no longer the name that it was."""
+    named = {"file name": question.name}
+    for number, series in enumerate(question.series, start=1):
+        named |= {f"series[{number}].name": series.name, f"series[{number}].label": series.label or ""}
+    for number, place in enumerate(question.scenes, start=1):
+        named[f"scenes[{number}].name"] = place.name or ""
+    for key, name in named.items():
+        if _NUMBER.fullmatch(name):
+            raise InputError(f'{question.file}: {key}: found "{name}", expected a name that is no number')
 
 
 def _check_scenes(question: Question) -> None:

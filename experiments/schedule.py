@@ -95,9 +95,18 @@ class Schedule:
         once = sum(self._once(one, seen) for one in self.experiments)
         return Status(
             planned=planned,
-            done=planned - len(missing),
+            done=planned - len(missing) - self._without_hope(),
             seconds_done=sum(sum(found.seconds.values()) for found in self._found.values()),
             seconds_left=once + sum(self._costs.point(point) for point in missing),
+        )
+
+    def _without_hope(self) -> int:
+        """How many processes of points that failed will not be run."""
+        return sum(
+            (point.id, block) not in self._found[one.name].seconds and (one.name, point.id) in self._given_up
+            for one in self.experiments
+            for point in one.points
+            for block in range(self.blocks[one.name])
         )
 
     def control_due(self, control: Experiment) -> int:

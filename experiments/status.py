@@ -41,7 +41,9 @@ def rows(store: Store, experiments: Sequence[Experiment]) -> list[Row]:
     result = []
     for experiment in experiments:
         one = found[experiment.name]
-        blocks = decided.get(experiment.name, experiment.question.blocks.minimum)
+        # A run that was told how many blocks to make may have made more than the question asks for.
+        begun = 1 + max((block for _, block in one.seconds), default=-1)
+        blocks = max(begun, decided.get(experiment.name, experiment.question.blocks.minimum))
         failed_points = {point for point, _ in one.failures}
         keys = [(point.id, block) for point in experiment.points for block in range(blocks)]
         result.append(

@@ -207,6 +207,8 @@ def test_more_blocks_keep_those_that_are_there(workplace: Workplace) -> None:
     run(replace(workplace.settings, blocks=4))
     assert len(workplace.records("pair")) == 8
     assert before.items() <= workplace.records("pair").items()
+    row = rows(workplace)["pair"]
+    assert (row.blocks, row.done, row.missing) == (4, 8, 0), "more than the question asks for"
 
 
 FAILURES = {
@@ -233,7 +235,9 @@ def test_a_failed_point_is_recorded_and_the_others_go_on(
     assert "nine" not in {one["axes"]["variant"] for one in workplace.records().values()}
     row = rows(workplace)["pair"]
     assert (row.done, row.failed, row.missing, row.reason) == (2, 2, 0, reason)
-    assert "points failed: pair (1)" in capsys.readouterr().err
+    told = capsys.readouterr()
+    assert "points failed: pair (1)" in told.err
+    assert "16 of 16" not in told.out, "what failed is not done"
 
 
 def test_a_wrong_variant_is_never_timed(workplace: Workplace) -> None:

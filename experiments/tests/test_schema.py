@@ -48,6 +48,10 @@ MISTAKES = {
         PAIR.replace("four_boxes", "for_boxes"),
         'did you mean "four_boxes"?',
     ),
+    "name that is a number": (
+        PAIR.replace('name = "four"', 'name = "1e3"'),
+        'series[1].name: found "1e3", expected a name that is no number',
+    ),
     "unknown parameter": (
         CHUNKS.replace('"find_chunk"', '"find_chunks"'),
         'sweep.parameter: found "find_chunks", expected one of threads, find_chunk, resolve_chunk, '
