@@ -65,7 +65,7 @@ class Place:
     def report(self) -> str:
         """The report of what was collected."""
         command = [sys.executable, "-m", "analysis", "report", "--results", str(self.workplace.results)]
-        subprocess.run(command, cwd=ROOT, check=True, capture_output=True, timeout=300)
+        subprocess.run(command, cwd=ROOT, check=True, capture_output=True, timeout=900)
         return (self.workplace.results / "report.html").read_text(encoding="utf-8")
 
 

@@ -48,7 +48,7 @@ def test_three_kinds_of_node_with_one_processor_are_no_different(place: Place) -
     place.site(common="blocks_per_task = 10")
     for blocks in BLOCKS:
         place.say("submit", "--build", str(ROOT / "build"), "--blocks", str(blocks))
-        place.cluster.wait_until_idle(900)
+        place.cluster.wait_until_idle(1800)
         assert len(place.records()) == blocks * len(PARTITIONS)
         place.say("collect")
         caption = caption_of_machines(place.report())
