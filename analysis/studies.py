@@ -104,11 +104,9 @@ def _by_program(runs: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     """Split runs so that no series has two programs: of each series the program with the most runs of all
     first. Each part with the names of its programs; without, if there is one part.
     """
-    most = runs["binary_sha256"].value_counts(sort=False).sort_index().sort_values(kind="stable")
-    programs = runs.assign(
-        place=-runs["binary_sha256"].map(dict(zip(most.index, range(len(most)), strict=True)))
-    )
-    place = programs.groupby(["experiment", "series"])["place"].rank("dense")
+    programs = runs["binary_sha256"]
+    order = programs.map(programs.value_counts().sort_index().rank(method="first", ascending=False))
+    place = order.groupby([runs["experiment"], runs["series"]]).rank("dense")
     parts = [runs[place == number] for number in sorted(place.unique())]
     if len(parts) == 1:
         return [("", runs)]

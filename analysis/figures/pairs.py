@@ -21,7 +21,7 @@ from analysis.figures.style import (
     plain_ticks,
 )
 from analysis.statistics.intervals import RANKS_FROM
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.wording import blocks, change, exact
 
@@ -117,15 +117,12 @@ def _by_block(axes: Axes, curves: dict[str, pd.DataFrame]) -> None:
     axes.set(xlabel="block", ylabel="time of the steps, s", title="measured")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     labels = []
-    both = pd.concat(curves.values())[["node", "block"]]
-    blocks = sorted(set(both.itertuples(index=False, name=None)))
-    for (name, processes), colour in zip(curves.items(), (BLUE, VERMILLION), strict=True):
-        # Nodes number their blocks alike: they stand one after another.
-        ordered = processes.sort_values(["node", "block"])
-        places = [
-            1 + blocks.index(place) for place in ordered[["node", "block"]].itertuples(index=False, name=None)
-        ]
-        axes.plot(places, ordered["steps_seconds"], color=colour, marker="o", linewidth=0.8)
+    both = pd.concat(curves)
+    # Nodes number their blocks alike: they stand one after another.
+    both["place"] = 1 + both.groupby(PAIR).ngroup()
+    for name, colour in zip(curves, (BLUE, VERMILLION), strict=True):
+        ordered = both.loc[name].sort_values("place")
+        axes.plot(ordered["place"], ordered["steps_seconds"], color=colour, marker="o", linewidth=0.8)
         labels.append((name, ordered["steps_seconds"].iloc[-1], colour))
     axes.margins(y=0.15)
     label_ends(axes, labels)
