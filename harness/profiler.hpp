@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "kernels/cache_line.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/probe.hpp"
 
@@ -77,7 +78,7 @@ class Profiler final : public Probe {
 
   private:
     /// What one thread writes; a cache line apart from the others'.
-    struct alignas(64) Track {
+    struct alignas(cache_line) Track {
         std::array<ThreadWork, phase_count> work;
         std::vector<Span> spans;
         std::size_t left_out = 0;

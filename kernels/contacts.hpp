@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "cache_line.hpp"
 #include "grid.hpp"
 #include "policies.hpp"
 
@@ -97,11 +98,8 @@ class ActiveBlocks {
     Marker marker() { return {marks_.data(), stride_}; }
 
   private:
-    /// Rows are so far apart that no two threads write to one cache line at a time.
-    static constexpr int cache_line = 64;
-
     int per_row_;
-    int stride_;
+    int stride_; ///< of rows, so that no two threads write to one cache line at a time
     int last_column_;
     std::vector<unsigned char> marks_;
 };

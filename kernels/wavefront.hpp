@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "cache_line.hpp"
 #include "parallel_for.hpp"
 #include "policies.hpp"
 #include "resolve_contacts.hpp"
@@ -42,7 +43,7 @@ class Wavefront {
 
   private:
     /// Apart from the others', so that no store disturbs who waits for another strip.
-    struct alignas(64) Progress {
+    struct alignas(cache_line) Progress {
         std::atomic<int> sweeps = 0;
     };
 
