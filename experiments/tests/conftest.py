@@ -12,9 +12,10 @@ from typing import Any
 
 import pytest
 
+from experiments import status
 from experiments.point import Point
 from experiments.scenes import Scene
-from experiments.study import Settings
+from experiments.study import Settings, Study
 
 ROOT = Path(__file__).parents[2]
 FAKE = Path(__file__).with_name("fake_carom.py")
@@ -199,6 +200,15 @@ class Workplace:
     def calls(self) -> list[dict[str, Any]]:
         """What the fake program was asked to do, if it logs."""
         return [json.loads(line) for line in (self.root / "log").read_text().splitlines()]
+
+    def measured(self) -> int:
+        """How many processes were run to measure a point: a probe has no tag."""
+        return sum("--tag" in call["words"] for call in self.calls())
+
+    def rows(self) -> dict[str, status.Row]:
+        """Question -> its line of `make status`."""
+        study = Study(self.settings)
+        return {row.name: row for row in status.rows(study.store, study.experiments)}
 
 
 def generated(point: Point) -> Scene:

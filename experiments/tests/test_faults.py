@@ -15,7 +15,6 @@ from experiments.study import run
 from experiments.tests.conftest import CONTROL, PAIR, ROOT, Workplace
 from experiments.tests.small_disk import run_on_small_disk
 from experiments.tests.test_command_line import finish
-from experiments.tests.test_run import rows
 
 # With its source named, the second mount does not repeat the first one's options, among them an owner whom
 # the namespace of an ordinary user does not know.
@@ -107,10 +106,10 @@ def test_a_damaged_record_is_put_aside_and_measured_again(workplace: Workplace, 
     if content is None:
         content = json.dumps(json.loads(victim.read_text()) | {"schema_version": 0}).encode()
     victim.write_bytes(content)
-    assert rows(workplace)["pair"].stale == 1
-    assert rows(workplace)["pair"].done == 3
+    assert workplace.rows()["pair"].stale == 1
+    assert workplace.rows()["pair"].done == 3
     assert run(workplace.settings) == 0
-    assert rows(workplace)["pair"].done == 4
+    assert workplace.rows()["pair"].done == 4
     assert (workplace.results / "stale" / victim.relative_to(workplace.results)).read_bytes() == content
 
 
@@ -121,6 +120,6 @@ def test_what_cannot_be_opened_is_put_aside_and_measured_again(workplace: Workpl
     folder.mkdir()
     link.unlink()
     link.symlink_to(link)
-    assert rows(workplace)["pair"].done == 2
+    assert workplace.rows()["pair"].done == 2
     assert run(workplace.settings) == 0
-    assert rows(workplace)["pair"].done == 4
+    assert workplace.rows()["pair"].done == 4

@@ -1,4 +1,4 @@
-"""A whole study with a fake program: complete, resumed, stale, failed; what is there is never lost."""
+"""A whole study with a fake program: complete, resumed, stale; what is there is never lost."""
 
 import json
 from dataclasses import replace
@@ -7,23 +7,12 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from experiments import status
 from experiments.errors import InputError
 from experiments.schema import RECORD_SCHEMA
-from experiments.study import POINTS_FAILED, Study, run
+from experiments.study import Study, run
 from experiments.tests.conftest import ERRORS, PAIR, Workplace
 
 SCHEMA = json.loads(RECORD_SCHEMA.read_text(encoding="utf-8"))
-
-
-def measured(workplace: Workplace) -> int:
-    """How many processes were run to measure a point: a probe has no tag."""
-    return sum("--tag" in call["words"] for call in workplace.calls())
-
-
-def rows(workplace: Workplace) -> dict[str, status.Row]:
-    study = Study(workplace.settings)
-    return {row.name: row for row in status.rows(study.store, study.experiments)}
 
 
 def test_a_study_leaves_a_record_for_every_point_and_block(workplace: Workplace) -> None:
@@ -115,7 +104,7 @@ def test_a_record_without_the_errors_asked_for_is_measured_again(workplace: Work
     record = json.loads(path.read_text())
     del record["errors"]["trajectory"]
     path.write_text(json.dumps(record))
-    assert rows(workplace)["errors"].stale == 1
+    assert workplace.rows()["errors"].stale == 1
     assert run(workplace.settings) == 0
     assert "trajectory" in json.loads(path.read_text())["errors"]
 
@@ -132,7 +121,7 @@ def test_running_again_measures_nothing_twice(workplace: Workplace) -> None:
     run(workplace.settings)
     before = workplace.records()
     assert run(workplace.settings) == 0
-    assert measured(workplace) == len(before)
+    assert workplace.measured() == len(before)
     assert workplace.records() == before
 
 
@@ -141,9 +130,9 @@ def test_only_what_is_missing_is_run(workplace: Workplace) -> None:
     lost = sorted(workplace.results.glob("records/*/*.json"))[::3]
     for path in lost:
         path.unlink()
-    done = measured(workplace)
+    done = workplace.measured()
     assert run(workplace.settings) == 0
-    assert measured(workplace) - done == len(lost)
+    assert workplace.measured() - done == len(lost)
     assert all(path.exists() for path in lost)
 
 
@@ -151,7 +140,7 @@ def test_another_program_makes_every_record_stale(workplace: Workplace) -> None:
     run(workplace.settings)
     before = workplace.records()
     workplace.build(extra="# a change")
-    assert rows(workplace)["chunks"].stale == 6
+    assert workplace.rows()["chunks"].stale == 6
     assert run(workplace.settings) == 0
     assert not before.keys() & workplace.records().keys()
     stale = {path.name for path in workplace.results.glob("stale/records/*/*.json")}
@@ -165,16 +154,16 @@ def test_a_changed_scene_is_measured_again_and_the_old_one_found_again(workplace
     run(workplace.settings)
     assert not before.keys() & workplace.records("pair").keys()
     workplace.question("pair", PAIR)
-    done = measured(workplace)
+    done = workplace.measured()
     run(workplace.settings)
-    assert measured(workplace) == done
+    assert workplace.measured() == done
     assert workplace.records("pair") == before
 
 
 def test_a_renamed_series_is_measured_again(workplace: Workplace) -> None:
     run(workplace.settings)
     workplace.question("pair", PAIR.replace('name = "four"', 'name = "4"'.replace("4", "quadrant")))
-    assert rows(workplace)["pair"].stale == 2
+    assert workplace.rows()["pair"].stale == 2
     run(workplace.settings)
     assert {one["tags"]["series"] for one in workplace.records("pair").values()} == {"quadrant", "nine"}
 
@@ -184,9 +173,9 @@ def test_a_damaged_record_is_measured_again(workplace: Workplace) -> None:
     torn, empty, *_ = sorted(workplace.results.glob("records/*/*.json"))
     torn.write_text(torn.read_text()[:200])
     empty.write_text("")
-    done = measured(workplace)
+    done = workplace.measured()
     run(workplace.settings)
-    assert measured(workplace) - done == 2
+    assert workplace.measured() - done == 2
     jsonschema.validate(json.loads(torn.read_text()), SCHEMA)
 
 
@@ -207,76 +196,8 @@ def test_more_blocks_keep_those_that_are_there(workplace: Workplace) -> None:
     run(replace(workplace.settings, blocks=4))
     assert len(workplace.records("pair")) == 8
     assert before.items() <= workplace.records("pair").items()
-    row = rows(workplace)["pair"]
+    row = workplace.rows()["pair"]
     assert (row.blocks, row.done, row.missing) == (4, 8, 0), "more than the question asks for"
-
-
-FAILURES = {
-    "check": ("FAKE_CHECK_FAILS", "check of each step: step 3: discs 1 and 2 left colliding", 2),
-    "result": ("FAKE_RESULT_WRONG", "energy changed by 3 %", 2),
-    "crash": ("FAKE_BENCH_CRASHES", "killed by SIGABRT: out of memory", -6),
-    "no record": ("FAKE_NO_RECORD", "left no record", 1),
-}
-
-
-@pytest.mark.parametrize(("behaviour", "reason", "code"), FAILURES.values(), ids=FAILURES.keys())
-def test_a_failed_point_is_recorded_and_the_others_go_on(
-    workplace: Workplace, behaviour: str, reason: str, code: int, capsys: pytest.CaptureFixture[str]
-) -> None:
-    workplace.behave(**{behaviour: "nine"})
-    assert run(workplace.settings) == POINTS_FAILED
-    [failure] = workplace.failures()
-    jsonschema.validate(failure, SCHEMA)
-    assert (failure["reason"], failure["exit_code"]) == (reason, code)
-    assert failure["axes"]["variant"] == "nine"
-    assert failure["tags"]["experiment"] == "pair"
-    assert len(workplace.records("pair")) == 2, "the other variant, in both blocks"
-    assert len(workplace.records("chunks")) == 6
-    assert "nine" not in {one["axes"]["variant"] for one in workplace.records().values()}
-    row = rows(workplace)["pair"]
-    assert (row.done, row.failed, row.missing, row.reason) == (2, 2, 0, reason)
-    told = capsys.readouterr()
-    assert "points failed: pair (1)" in told.err
-    assert "16 of 16" not in told.out, "what failed is not done"
-
-
-def test_a_wrong_variant_is_never_timed(workplace: Workplace) -> None:
-    workplace.behave(FAKE_CHECK_FAILS="nine")
-    run(workplace.settings)
-    timed = [call["words"] for call in workplace.calls() if "--tag" in call["words"]]
-    assert not any("nine" in words for words in timed)
-
-
-def test_a_failed_point_is_tried_again_by_the_next_run(workplace: Workplace) -> None:
-    workplace.behave(FAKE_BENCH_CRASHES="nine")
-    run(workplace.settings)
-    workplace.behave(FAKE_BENCH_CRASHES="none")
-    assert run(workplace.settings) == 0
-    assert len(workplace.records("pair")) == 4
-    assert not workplace.failures()
-
-
-def test_a_process_that_hangs_is_stopped(workplace: Workplace) -> None:
-    site = Path(__file__).parents[1] / "sites" / "local.toml"
-    impatient = workplace.root / "impatient.toml"
-    impatient.write_text(site.read_text().replace("time_limit_seconds = 600", "time_limit_seconds = 0.5"))
-    workplace.behave(FAKE_HANGS="nine")
-    assert run(replace(workplace.settings, site=str(impatient))) == POINTS_FAILED
-    [failure] = workplace.failures()
-    assert failure["reason"] == "took longer than 0.5 s and was stopped"
-    assert len(workplace.records("pair")) == 2
-
-
-def test_a_build_that_is_missing_is_a_gap_with_a_remedy(workplace: Workplace) -> None:
-    clang = PAIR.replace('variant = "nine"', 'variant = "published"\nprogram = "clang"')
-    workplace.question("pair", clang)
-    assert run(workplace.settings) == 0
-    [failure] = workplace.failures()
-    assert "is not built; build it with `make build COMPILER=clang`" in failure["reason"]
-    workplace.build("clang")
-    assert run(workplace.settings) == 0
-    assert len(workplace.records("pair")) == 4
-    assert not workplace.failures()
 
 
 def test_without_any_program_there_is_one_line(workplace: Workplace) -> None:
@@ -303,9 +224,9 @@ def test_the_scales_do_not_cost_each_other_anything(workplace: Workplace) -> Non
     paper = workplace.records()
     run(replace(workplace.settings, scale="quick"))
     assert {one["tags"]["scale"] for one in workplace.records().values()} == {"quick"}
-    done = measured(workplace)
+    done = workplace.measured()
     run(workplace.settings)
-    assert measured(workplace) == done
+    assert workplace.measured() == done
     assert workplace.records() == paper
 
 
