@@ -6,7 +6,7 @@
 
 #include "harness/error_measures.hpp"
 #include "harness/generate.hpp"
-#include "harness/tests/each_variant.hpp"
+#include "variants/tests/each_variant.hpp"
 
 namespace carom {
 namespace {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "harness/measure.hpp"
-#include "harness/tests/each_variant.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "variants/registry.hpp"
+#include "variants/tests/each_variant.hpp"
 
 namespace carom {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "harness/changed_scenes.hpp"
 #include "harness/overlapping_pairs.hpp"
-#include "harness/tests/each_variant.hpp"
 #include "harness/tests/hard_cases.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "kernels/tests/simulate.hpp"
+#include "variants/tests/each_variant.hpp"
 
 namespace carom {
 namespace {

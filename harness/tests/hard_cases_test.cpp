@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/tests/each_variant.hpp"
 #include "harness/tests/hard_cases.hpp"
 #include "kernels/tests/simulate.hpp"
+#include "variants/tests/each_variant.hpp"
 
 namespace carom {
 namespace {

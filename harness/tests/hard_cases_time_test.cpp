@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "harness/changed_scenes.hpp"
-#include "harness/tests/each_variant.hpp"
 #include "harness/tests/hard_cases.hpp"
+#include "variants/tests/each_variant.hpp"
 
 namespace carom {
 namespace {

@@ -10,8 +10,8 @@
 #include "harness/generate.hpp"
 #include "harness/measure.hpp"
 #include "harness/profiler.hpp"
-#include "harness/tests/each_variant.hpp"
 #include "variants/registry.hpp"
+#include "variants/tests/each_variant.hpp"
 
 namespace carom {
 namespace {

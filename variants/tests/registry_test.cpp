@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <ostream>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,11 +9,9 @@
 #include "variants/name.hpp"
 #include "variants/registry.hpp"
 #include "variants/table.hpp"
+#include "variants/tests/each_variant.hpp"
 
 namespace carom {
-
-static void PrintTo(const Variant& variant, std::ostream* stream) { *stream << variant.name; }
-
 namespace {
 
 using tests::same_bits;
@@ -82,24 +78,8 @@ End end_of(Simulation& simulation, int steps) {
     return {simulation.discs(), work};
 }
 
-End run(const Variant& variant, const Scene& scene, const Tuning& tuning) {
-    return end_of(*variant.simulate(scene, tuning), scene.steps);
-}
-
-TEST_P(EveryVariant, EndsInTheSameBitsForAnyThreadsAndChunks) {
-    const Scene scene = tests::random_scene_of_density(600, 0.9, 4, 91);
-    const End expected = run(GetParam(), scene, {.threads = 1});
-    ASSERT_GT(expected.work.pair_resolves, 500);
-    for (const Tuning& tuning :
-         {Tuning{.threads = 1, .find_chunk = 1, .resolve_chunk = 1}, Tuning{.threads = 2},
-          Tuning{.threads = 3, .find_chunk = 7, .resolve_chunk = 2},
-          Tuning{.threads = 8, .find_chunk = 1, .resolve_chunk = 1}}) {
-        SCOPED_TRACE(testing::Message() << tuning.threads << " threads, chunks of " << tuning.find_chunk
-                                        << " and " << tuning.resolve_chunk);
-        const End found = run(GetParam(), scene, tuning);
-        EXPECT_TRUE(same_bits(found.discs, expected.discs));
-        EXPECT_EQ(found.work, expected.work);
-    }
+End run(const Variant& variant, const Scene& scene) {
+    return end_of(*variant.simulate(scene, {}), scene.steps);
 }
 
 TEST_P(EveryVariant, EndsInTheSameBitsUnderObservation) {
@@ -107,7 +87,7 @@ TEST_P(EveryVariant, EndsInTheSameBitsUnderObservation) {
     Counter counter;
     const auto observed = GetParam().simulate_observed(scene, {}, counter);
     const End found = end_of(*observed, scene.steps);
-    const End expected = run(GetParam(), scene, {});
+    const End expected = run(GetParam(), scene);
     EXPECT_TRUE(same_bits(found.discs, expected.discs));
     EXPECT_EQ(found.work, expected.work);
     EXPECT_EQ(counter.sweeps, expected.work.sweeps);
@@ -118,22 +98,15 @@ TEST_P(EveryVariant, RunsTheSimulationOfItsOwnPolicies) {
     // Head-on, the pair settles in one visit: how many sweeps and resolves it takes tells the order and
     // self-contained.
     const Scene scene{.side = 50, .radius = 1, .steps = 1, .discs = {{21, 22, 1, 0}, {23.5, 22, 0, 0}}};
-    const Tally work = run(GetParam(), scene, {}).work;
+    const Tally work = run(GetParam(), scene).work;
     const Policies& policies = GetParam().policies;
     const bool resolved_while_finding = policies.self_contained == SelfContained::on;
     const int sweeps = resolved_while_finding || policies.order == Order::track ? 1 : 2;
     EXPECT_EQ(work, (Tally{.overlaps = 1, .pair_resolves = 1, .sweeps = sweeps}));
 }
 
-std::string test_name(const testing::TestParamInfo<Variant>& variant) {
-    std::string name(variant.param.name);
-    std::ranges::replace(name, '-', '_');
-    return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(Registry, EveryVariant, testing::ValuesIn(variants().begin(), variants().end()),
-                         test_name);
+                         tests::variant_test_name);
 
 } // namespace
-
 } // namespace carom
