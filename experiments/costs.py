@@ -5,11 +5,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from experiments import process
 from experiments.files import read_json
 from experiments.point import Point
 from experiments.scenes import AnyScene, HardCase, Scene
-from experiments.site import clean_environment
+from experiments.turn import run_in_turn
 
 PROBE = Scene(particles=10000, side=3162, radius=16, steps=10, min_velocity=2, max_velocity=5)
 
@@ -123,7 +122,7 @@ def probe(point: Point, scene: Path, record: Path, time_limit: float) -> Probe |
     words = [str(point.program.path), "bench", str(scene), "--variant", point.variant]
     words += ["--threads", str(point.threads), "--record", str(record), "--warm-up", "0"]
     words += ["--repetitions", str(_PROBED)]
-    done = process.run(words, clean_environment(dict(point.openmp)), time_limit)
+    done = run_in_turn(words, dict(point.openmp), time_limit)
     content = read_json(record)
     if done.exit_code != 0 or content is None:
         return None

@@ -1,11 +1,11 @@
 """Files that are whole or not there, and a folder that has one user at a time."""
 
+import contextlib
 import fcntl
 import json
 import math
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -28,14 +28,26 @@ def _finite(text: str) -> float:
 
 
 def write_json(path: Path, content: object, temporary: Path) -> None:
-    """Write a JSON file so that a power failure leaves the old one or the new one, never a part of one."""
-    scratch = temporary / f"{path.parent.name}-{path.name}"
-    with scratch.open("w", encoding="utf-8") as file:
-        json.dump(content, file, indent=1, sort_keys=True)
-        file.write("\n")
-        file.flush()
-        os.fsync(file.fileno())
-    move(scratch, path)
+    """Write a JSON file, as `write_text` does."""
+    write_text(path, json.dumps(content, indent=1, sort_keys=True) + "\n", temporary)
+
+
+def write_text(path: Path, text: str, temporary: Path) -> None:
+    """Write a file so that a power failure leaves the old one or the new one, never a part of one.
+
+    Meanwhile it is `.*.part` in `temporary`, a folder on the same disk.
+    """
+    scratch = temporary / f".{path.parent.name}-{path.name}.part"
+    try:
+        with scratch.open("w", encoding="utf-8") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        move(scratch, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            scratch.unlink()
+        raise
 
 
 def move(source: Path, target: Path) -> None:
@@ -49,7 +61,7 @@ def move(source: Path, target: Path) -> None:
         os.close(folder)
 
 
-@contextmanager
+@contextlib.contextmanager
 def locked(folder: Path) -> Iterator[None]:
     """Hold the folder for this process; the kernel lets go of it however the process ends.
 

@@ -4,14 +4,13 @@ import hashlib
 import json
 from dataclasses import asdict
 
-from experiments import process
 from experiments.files import move, read_json
 from experiments.point import Point
 from experiments.process import Completed
 from experiments.program import tag_arguments
 from experiments.schema import is_record
-from experiments.site import clean_environment
 from experiments.store import Store
+from experiments.turn import run_in_turn
 
 FIGURE = "limits"
 """The kind of figure that compares with them."""
@@ -37,10 +36,10 @@ class Limits:
         scratch = self._store.temporary / "limits.json"
         words = [str(point.program.path), "limits", "--threads", str(point.threads), "--record", str(scratch)]
         command = (*words, *tag_arguments({"experiment": FOLDER, "site": point.site}))
-        if point.figure != FIGURE or read_json(path) is not None:
+        if point.figure != FIGURE or self._store.holds(path, "limits"):
             return Completed(command, 0, "", "")
         scratch.unlink(missing_ok=True)
-        done = process.run(command, clean_environment(dict(point.openmp)), self._time_limit)
+        done = run_in_turn(command, dict(point.openmp), self._time_limit)
         if done.exit_code != 0:
             return Completed(command, done.exit_code, "", f"limits of the machine: {done.reason}")
         if not is_record(read_json(scratch)):

@@ -4,16 +4,14 @@ import hashlib
 import json
 from dataclasses import asdict
 
-from experiments import process
 from experiments.files import move, read_json
 from experiments.point import Point, Tags
 from experiments.process import Completed
 from experiments.program import tag_arguments
 from experiments.scenes import SceneFile
 from experiments.schema import is_record
-from experiments.site import clean_environment
 from experiments.store import Store
-from experiments.turn import turn
+from experiments.turn import run_in_turn
 
 FIGURE = "speed_against_error"
 """The kind of figure that it stands in."""
@@ -41,14 +39,13 @@ class Outside:
         if point.figure != FIGURE or point.program.sha256 in self._without:
             return None
         path = self._store.root / "records" / FOLDER / f"{_name(point, scene)}-b{block}.json"
-        if read_json(path) is not None:
+        if self._store.holds(path, "outside"):
             return None
         scratch = self._store.temporary / "outside.json"
         scratch.unlink(missing_ok=True)
         words = [str(point.program.path), "outside", str(scene.path), "--substeps", str(point.substeps)]
         words += ["--record", str(scratch), *tag_arguments({**tags, "series": "outside"})]
-        with turn():
-            done = process.run(words, clean_environment(dict(point.openmp)), self._time_limit)
+        done = run_in_turn(words, dict(point.openmp), self._time_limit)
         if ABSENT in done.error:
             self._without.add(point.program.sha256)
             return None

@@ -4,7 +4,6 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from experiments import process
 from experiments.errors import InputError
 from experiments.files import move, read_json
 from experiments.limits import Limits
@@ -14,9 +13,8 @@ from experiments.point import Point, Tags
 from experiments.process import NOT_FOUND, Completed
 from experiments.program import CHECK_FAILED, Program, generate
 from experiments.scenes import AnyScene, SceneFile, SceneFolder, sha256_of
-from experiments.site import clean_environment
 from experiments.store import Store, unusable
-from experiments.turn import turn
+from experiments.turn import run_in_turn
 from experiments.verify import Verifier, representative
 
 
@@ -101,8 +99,7 @@ class Runner:
         tags = task.tags(self._store.session)
         timeline = self._store.temporary / "timeline.json" if _is_drawn(task) else None
         command = point.command(scene.path, scratch, tags, timeline, point.besides(task.block))
-        with turn():
-            done = process.run(command, clean_environment(dict(point.openmp)), self._time_limit)
+        done = run_in_turn(command, dict(point.openmp), self._time_limit)
         record = read_json(scratch)
         if done.exit_code == 0:
             wrong = unusable(record, point, task.block)

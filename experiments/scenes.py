@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from experiments.errors import InputError
+from experiments.files import write_text
 
 _DIGITS = 12
 """How many of a scene's SHA-256 stand in the name of its file."""
@@ -99,12 +100,12 @@ class SceneFolder:
         self.temporary = temporary
         self._known: dict[AnyScene, SceneFile] = {}
         marker = folder / "generator"
-        if marker.is_file() and marker.read_text(encoding="ascii").strip() == generator_sha256:
+        if marker.is_file() and marker.read_bytes().decode(errors="replace").strip() == generator_sha256:
             return
         folder.mkdir(parents=True, exist_ok=True)
         for path in folder.glob("*.in"):
             path.unlink()
-        marker.write_text(generator_sha256 + "\n", encoding="ascii")
+        write_text(marker, generator_sha256 + "\n", temporary)
 
     def get(self, scene: AnyScene, generate: Callable[[AnyScene, Path], None]) -> SceneFile:
         """The scene's file; `generate` writes it to a temporary path if it is missing or damaged."""

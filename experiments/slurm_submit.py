@@ -6,7 +6,7 @@ from pathlib import Path
 
 from experiments import slurm_scheduler
 from experiments.errors import InputError
-from experiments.files import locked, write_json
+from experiments.files import locked, write_json, write_text
 from experiments.progress import warn
 from experiments.site import load_site
 from experiments.slurm_jobs import Job, PartitionFolder, Unit, folders, results_of, submitted, units
@@ -77,7 +77,7 @@ def _submit(folder: PartitionFolder, study: Study, queue: Queue, array_size: int
     script = path.with_suffix(".sbatch")
     text = _script(folder, study, job, path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    script.write_text(text, encoding="utf-8")
+    write_text(script, text, path.parent)
     write_json(path, job.content(), path.parent)
     try:
         number = slurm_scheduler.submit(script)

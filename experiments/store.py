@@ -114,12 +114,21 @@ class Store:
         """Move a file below `stale/`, beside any earlier one of the same name."""
         target = self.root / "stale" / path.relative_to(self.root)
         number = 0
-        while target.exists():
+        while os.path.lexists(target):
             number += 1
             target = target.with_name(f"{path.stem}.{number}.json")
         # Whoever else settles the same folder may have been faster.
         with contextlib.suppress(FileNotFoundError):
             move(path, target)
+
+    def holds(self, path: Path, kind: str) -> bool:
+        """Whether a record of that kind is there; whatever else stands in its place is put aside."""
+        record = read_json(path)
+        if is_record(record) and record["kind"] == kind:
+            return True
+        if os.path.lexists(path):
+            self.retire(path)
+        return False
 
     def keep_record(self, point: Point, block: int, scratch: Path) -> None:
         """Take in a finished record; an earlier failure of the same process is history then."""

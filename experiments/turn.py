@@ -1,13 +1,25 @@
-"""One measurement at a time on one host: two at once would disturb each other."""
+"""One program that computes at a time on one host: two at once would disturb each other's measurements."""
 
 import contextlib
 import fcntl
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from experiments import process
 from experiments.errors import InputError
+from experiments.process import Completed
+from experiments.site import clean_environment
+
+
+def run_in_turn(command: Sequence[str], openmp: Mapping[str, str], time_limit: float) -> Completed:
+    """Run a program to its end with these OpenMP variables and no others, while no other one computes.
+
+    The time limit, in seconds, counts from when its turn has come. Raises InputError like `turn`.
+    """
+    with turn():
+        return process.run(command, clean_environment(openmp), time_limit)
 
 
 @contextlib.contextmanager

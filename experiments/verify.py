@@ -3,14 +3,13 @@
 import hashlib
 from dataclasses import replace
 
-from experiments import process
 from experiments.plan import Experiment
 from experiments.point import Point
 from experiments.process import TIMED_OUT, Completed
 from experiments.program import CHECK_FAILED, check_command
 from experiments.scenes import HardCase, SceneFile
-from experiments.site import clean_environment
 from experiments.store import Store
+from experiments.turn import run_in_turn
 
 CHECKED_STEPS = 20
 """How many steps of a generated scene are checked, each of them; of a hard case all are."""
@@ -44,7 +43,7 @@ class Verifier:
         if kept is not None:
             return kept
         command = check_command(point.program, scene.path, point.variant, point.threads)
-        done = process.run(command, clean_environment(dict(point.openmp)), self._time_limit)
+        done = run_in_turn(command, dict(point.openmp), self._time_limit)
         reason = "" if done.exit_code == 0 else f"check of each step: {done.reason}"
         if done.exit_code in (0, CHECK_FAILED):
             verdict = {"command": list(command), "exit_code": done.exit_code, "reason": reason}

@@ -211,6 +211,22 @@ class Workplace:
         return {row.name: row for row in status.rows(study.store, study.experiments)}
 
 
+def damage(path: Path, kind: str) -> None:
+    """Put something else in the place of a record: `torn`, `foreign`, `of another kind` or `a folder`."""
+    record = json.loads(path.read_text(encoding="utf-8"))
+    path.unlink()
+    if kind == "a folder":
+        path.mkdir()
+    elif kind == "torn":
+        path.write_text(json.dumps(record)[:99], encoding="utf-8")
+    else:
+        other = {"schema_version": 0} if kind == "foreign" else {"kind": "failure"}
+        path.write_text(json.dumps(record | other), encoding="utf-8")
+
+
+DAMAGES = ("torn", "foreign", "of another kind", "a folder")
+
+
 def generated(point: Point) -> Scene:
     """The point's scene, which is no hard case."""
     assert isinstance(point.scene, Scene)

@@ -2,7 +2,8 @@
 
 The environment says what goes wrong: FAKE_SECONDS (each measurement takes that long),
 FAKE_CHECK_SECONDS (each check), FAKE_CHECK_FAILS, FAKE_BENCH_CRASHES, FAKE_RESULT_WRONG, FAKE_NO_RECORD,
-FAKE_HANGS (the variant concerned), FAKE_LIMITS_FAIL. FAKE_LOG is a file that gets a line for every call.
+FAKE_HANGS (the variant concerned), FAKE_LIMITS_FAIL. FAKE_LOG is a file that gets a line for every call,
+FAKE_SPANS one that gets a line for every call that computes: its verb, when it began and when it ended.
 """
 
 import hashlib
@@ -20,6 +21,15 @@ VARIANTS = ["published", "nine", "row", "track"]
 
 def main(words: list[str]) -> int:
     note(words)
+    began = time.monotonic()
+    code = answer(words)
+    if "FAKE_SPANS" in os.environ and words[0] not in ("list", "generate"):
+        with Path(os.environ["FAKE_SPANS"]).open("a", encoding="utf-8") as file:
+            file.write(f"{words[0]} {began} {time.monotonic()}\n")
+    return code
+
+
+def answer(words: list[str]) -> int:
     verb, rest = words[0], words[1:]
     if verb == "list":
         print("\n".join(VARIANTS))
@@ -39,12 +49,14 @@ def main(words: list[str]) -> int:
         if "FAKE_LIMITS_FAIL" in os.environ:
             print("--threads: found 2, but OpenMP grants 1", file=sys.stderr)
             return 1
+        time.sleep(float(os.environ.get("FAKE_SECONDS", "0")))
         write(options["record"], json.dumps(make_limits(options)))
     elif verb == "outside":
         said = os.environ.get("FAKE_OUTSIDE", "built without Chipmunk")
         if said != "measure":
             print(said, file=sys.stderr)
             return 1
+        time.sleep(float(os.environ.get("FAKE_SECONDS", "0")))
         write(options["record"], json.dumps(make_outside(positional[0], options)))
     else:
         print(f'found "{verb}", expected a verb', file=sys.stderr)

@@ -117,6 +117,12 @@ def test_a_signal_stops_cleanly(workplace: Workplace, number: signal.Signals) ->
     no_child_is_left(workplace)
     assert not (workplace.results / ".running").exists()
     assert not workplace.failures()
+    kept = workplace.records()
+    assert kept
+    workplace.behave(FAKE_SECONDS="0")
+    assert finish(workplace.start("run", "--no-figures"))[0] == 0
+    assert len(workplace.records()) == 16
+    assert kept.items() <= workplace.records().items()
 
 
 def test_a_figure_is_drawn_as_soon_as_its_experiment_is_complete(workplace: Workplace) -> None:

@@ -22,9 +22,8 @@ FULL = """
 run() {
     PYTHONPATH="$3" "$2" -m experiments run --results results --build build --questions questions --no-figures
 }
-run "$@"; echo "code $?"
-find results -name '*.json' -size 0 -printf 'torn: %p\\n'
-find results -name '*.json' -exec "$2" -m json.tool {} /dev/null \\;
+run "$@" 2>said; echo "code $?"; sed 's/^/said: /' said
+find results -name '*.json' ! -exec "$2" -m json.tool {} /dev/null \\; -printf 'torn: %p\\n'
 mount -o remount,size=10m none results && run "$@"; echo "code $?"
 find results/records -name '*.json' | wc -l
 """
@@ -37,9 +36,38 @@ def test_a_full_disk_is_one_line_and_with_room_the_study_goes_on(workplace: Work
     assert "torn" not in said
     first, second = re.findall(r"^code (\d+)$", said, re.MULTILINE)
     assert first in ("1", "2"), said
-    assert "No space left on device" in said
+    lines = re.findall(r"^said: (.*)$", said, re.MULTILINE)
+    assert len(lines) == 1, said
+    assert "No space left on device" in lines[0]
     assert second == "0", said
     assert said.splitlines()[-1] == "16", "all that was missing was measured"
+
+
+FULL_WHILE_DRAWING = """
+export PYTHONPATH="$3"
+"$2" -m experiments run --results results --build build --questions questions --no-figures || exit
+"$2" -m analysis figures --results results >/dev/null || exit
+sha256sum results/figures/* >before
+head -c 10m /dev/zero >results/ballast 2>/dev/null
+"$2" -m analysis "$4" --results results 2>said; echo "code $?"
+sed 's/^/said: /' said
+sha256sum results/figures/* >after; cmp before after && echo as it was
+find results -name '*.part*'
+"""
+
+
+@pytest.mark.parametrize("verb", ["figures", "report"])
+def test_a_disk_that_is_full_while_drawing_keeps_the_figures_of_before(
+    workplace: Workplace, verb: str
+) -> None:
+    words = (sys.executable, str(ROOT), verb)
+    said = run_on_small_disk(workplace.results, "10m", workplace.root, FULL_WHILE_DRAWING, *words)
+    code, line, kept = said.splitlines()[-3:]
+    assert code == "code 1", said
+    assert re.fullmatch(
+        r"said: results/\S+: No space left on device, expected a writable place with room", line
+    )
+    assert kept == "as it was"
 
 
 def not_writable(folder: Path) -> dict[str, Path]:

@@ -6,7 +6,7 @@ import pytest
 
 from experiments.limits import FOLDER
 from experiments.study import run
-from experiments.tests.conftest import PAIR, Workplace
+from experiments.tests.conftest import DAMAGES, PAIR, Workplace, damage
 
 LIMITS = PAIR.replace('figure = "comparison"', 'figure = "limits"\nverb = "profile"\nthreads = 1')
 
@@ -71,3 +71,14 @@ def test_without_limits_nothing_is_profiled_and_the_reason_is_kept(place: Workpl
 def test_a_profile_against_limits_leaves_no_timeline(place: Workplace) -> None:
     assert run(place.settings) == 0
     assert not (place.results / "timelines").exists()
+
+
+@pytest.mark.parametrize("kind", DAMAGES)
+def test_damaged_ones_are_put_aside_and_measured_again(place: Workplace, kind: str) -> None:
+    assert run(place.settings) == 0
+    (path,) = place.results.glob(f"records/{FOLDER}/*.json")
+    damage(path, kind)
+    assert run(replace(place.settings, blocks=4)) == 0
+    (record,) = place.records(FOLDER).values()
+    assert record["kind"] == "limits"
+    assert (place.results / "stale" / "records" / FOLDER / path.name).exists()

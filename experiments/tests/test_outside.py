@@ -6,7 +6,7 @@ import pytest
 
 from experiments.outside import FOLDER
 from experiments.study import run
-from experiments.tests.conftest import ERRORS, PAIR, Workplace
+from experiments.tests.conftest import DAMAGES, ERRORS, PAIR, Workplace, damage
 
 
 @pytest.fixture
@@ -56,3 +56,16 @@ def test_other_figures_do_not_pay_for_it(empty_workplace: Workplace) -> None:
     empty_workplace.behave(FAKE_OUTSIDE="measure")
     assert run(empty_workplace.settings) == 0
     assert calls(empty_workplace) == []
+
+
+@pytest.mark.parametrize("kind", DAMAGES)
+def test_a_damaged_record_is_put_aside_and_measured_again(place: Workplace, kind: str) -> None:
+    place.behave(FAKE_OUTSIDE="measure")
+    assert run(place.settings) == 0
+    damaged = sorted(place.results.glob(f"records/{FOLDER}/*.json"))[0]
+    damage(damaged, kind)
+    for path in place.results.glob("records/errors/*.json"):
+        path.unlink()
+    assert run(place.settings) == 0
+    assert {record["kind"] for record in place.records(FOLDER).values()} == {"outside"}
+    assert (place.results / "stale" / "records" / FOLDER / damaged.name).exists()

@@ -35,26 +35,33 @@ def scene(tmp_path: Path) -> Path:
     return path
 
 
-def test_kills_leave_whole_files_or_none(tmp_path: Path, scene: Path) -> None:
-    trajectory, record = tmp_path / "trajectory", tmp_path / "record.json"
+def test_kills_leave_whole_files_or_none(tmp_path: Path) -> None:
+    scene, trajectory, record = tmp_path / "scene.in", tmp_path / "trajectory", tmp_path / "record.json"
+    carom("generate", 500, 500, 5, 400, -4, 4, "--output", scene)
+    began = time.monotonic()
     carom("run", scene, 1, "--trajectory", trajectory)
+    seconds = time.monotonic() - began
     whole = trajectory.read_bytes()
     trajectory.unlink()
     moments = random.Random(20240301)
-    killed = 0
+    killed = half_written = 0
     for turn in range(KILLS):
         words = ["run", scene, 1, "--trajectory", trajectory]
         if turn % 2:
             words = ["bench", scene, "--threads", 1, "--record", record]
         process = subprocess.Popen([str(PROGRAM), *map(str, words)], stdout=subprocess.DEVNULL)
-        time.sleep(moments.uniform(0, 0.05))
+        time.sleep(moments.uniform(0, seconds))
         process.kill()
         killed += process.wait() == -signal.SIGKILL
+        for left in tmp_path.glob("*.part*"):
+            half_written += 1
+            left.unlink()
         assert not trajectory.exists() or trajectory.read_bytes() == whole
         assert not record.exists() or json.loads(record.read_text())["kind"] == "bench"
         trajectory.unlink(missing_ok=True)
         record.unlink(missing_ok=True)
     assert killed > 0, "some of the kills came in time"
+    assert half_written > 0, "and some while a file was being written"
 
 
 FULL = """

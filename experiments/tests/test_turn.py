@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 from experiments.errors import InputError
+from experiments.tests.conftest import ERRORS, Workplace
+from experiments.tests.test_limits import LIMITS
 from experiments.turn import turn
 
 ANOTHER = """
@@ -40,6 +42,25 @@ def test_turns_of_two_processes_do_not_overlap() -> None:
     spans = sorted(times(process) for process in [another(0.3), another(0.3), another(0.3)])
     assert all(len(span) == 2 for span in spans)
     assert all(before[1] <= after[0] for before, after in itertools.pairwise(spans))
+
+
+def test_what_two_runners_run_does_not_overlap(empty_workplace: Workplace) -> None:
+    place = empty_workplace
+    place.question("close", LIMITS)
+    place.question("errors", ERRORS)
+    spans = place.root / "spans"
+    place.behave(
+        FAKE_SPANS=str(spans), FAKE_SECONDS="0.02", FAKE_CHECK_SECONDS="0.05", FAKE_OUTSIDE="measure"
+    )
+    runners = [place.start("run", "--no-figures", "--results", name) for name in ("one", "two")]
+    for runner in runners:
+        _, error = runner.communicate(timeout=120)
+        assert (runner.returncode, error) == (0, "")
+    lines = [line.split() for line in spans.read_text(encoding="utf-8").splitlines()]
+    assert {verb for verb, _, _ in lines} == {"bench", "check", "limits", "outside", "profile"}
+    times_of = sorted((float(began), float(ended), verb) for verb, began, ended in lines)
+    for before, after in itertools.pairwise(times_of):
+        assert before[1] <= after[0], f"{after[2]} began before {before[2]} had ended"
 
 
 def test_a_killed_process_gives_up_its_turn() -> None:
