@@ -2,10 +2,12 @@
 boxes of the grid in the four colours in which the checkered order resolves them.
 """
 
+import logging
 import math
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
+from subprocess import CalledProcessError
 from typing import Any
 
 import matplotlib as mpl
@@ -18,6 +20,7 @@ from matplotlib.patches import Patch, Rectangle
 from matplotlib.text import Text
 
 from analysis.figures.style import INK, SETTINGS
+from analysis.files import replacing
 from analysis.records import InputError
 from analysis.trajectory import Box, Floats, Trajectory, read_box, read_trajectory
 
@@ -48,28 +51,21 @@ def draw(scene: Path, trajectory: Path, output: Path | None = None, step: int | 
     """Draw the run of a scene and return the file.
 
     A file *.mp4 needs ffmpeg, *.gif does not; *.png is the picture of one step, the last if none is given.
-    Without an output it is results/movies/SCENE.mp4, or .gif where ffmpeg is missing. Raises InputError.
+    Without an output it is results/movies/SCENE.mp4, or .gif where ffmpeg is missing. Raises InputError, and
+    OSError where the file cannot be written.
     """
     target = output or Path("results", "movies", scene.stem).with_suffix(".mp4" if _has_ffmpeg() else ".gif")
     _refuse_format(target)
     box, run = read_box(scene), read_trajectory(trajectory)
     if step is not None and not 0 <= step <= run.steps:
         raise InputError(f"--step: found {step}, expected a step from 0 to {run.steps}")
-    part = target.with_name(f".{target.stem}.part{target.suffix}")
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with mpl.rc_context(SETTINGS):
-            picture = Picture(scene.name, box, run)
-            if target.suffix == ".png":
-                picture.show(Moment(run.steps if step is None else step, 0.0))
-                picture.figure.savefig(part, dpi=150)
-            else:
-                _animate(picture, run, part)
-        part.replace(target)
-    except OSError as error:
-        raise InputError(f"{target}: cannot be written: {error.strerror}") from error
-    finally:
-        part.unlink(missing_ok=True)
+    with mpl.rc_context(SETTINGS), replacing(target) as part:
+        picture = Picture(scene.name, box, run)
+        if target.suffix == ".png":
+            picture.show(Moment(run.steps if step is None else step, 0.0))
+            picture.figure.savefig(part, dpi=150)
+        else:
+            _animate(picture, run, part)
     return target
 
 
@@ -110,7 +106,13 @@ def _animate(picture: "Picture", run: Trajectory, target: Path) -> None:
         picture.figure, picture.show, moments(run.steps, FRAMES), blit=False, cache_frame_data=False
     )
     writer: Any = FFMpegWriter if target.suffix == ".mp4" else PillowWriter
-    animation.save(target, writer=writer(fps=FRAMES_PER_SECOND), dpi=100)
+    # It would print all that ffmpeg says; one line of it is told below.
+    logging.getLogger("matplotlib.animation").setLevel(logging.CRITICAL)
+    try:
+        animation.save(target, writer=writer(fps=FRAMES_PER_SECOND), dpi=100)
+    except (CalledProcessError, BrokenPipeError) as error:
+        said = str(getattr(error, "stderr", "")).strip().splitlines() or ["it broke off without a word"]
+        raise InputError(f"ffmpeg: {said[-1]}; a name *.gif needs no ffmpeg") from error
 
 
 class Picture:

@@ -79,12 +79,11 @@ def read_trajectory(path: Path) -> Trajectory:
 
 def _lines(path: Path) -> Iterator[str]:
     try:
-        with path.open(encoding="ascii", newline="\n") as file:
+        # A byte that is no ASCII text becomes a letter that no number has, and is told with its line.
+        with path.open(encoding="ascii", errors="surrogateescape", newline="\n") as file:
             yield from file
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: found a byte that is no ASCII text, expected numbers") from error
 
 
 def _number(text: str, place: str, expected: str) -> float:

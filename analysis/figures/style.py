@@ -17,6 +17,7 @@ from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
+from analysis.files import replacing
 from analysis.published import Published
 from analysis.studies import Study
 from analysis.wording import exact
@@ -192,8 +193,7 @@ def mark_partial(figure: Figure, text: str | None) -> None:
 
 
 def save(drawing: Drawing, folder: Path, name: str) -> list[Path]:
-    """Write the figure in every format, each through a temporary name; return the files."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """Write the figure in every format; return the files."""
     files = []
     with styled(name):
         # The layout is settled once, not once a format.
@@ -201,12 +201,8 @@ def save(drawing: Drawing, folder: Path, name: str) -> list[Path]:
         drawing.figure.set_layout_engine("none")
         for suffix in FORMATS:
             target = folder / f"{name}.{suffix}"
-            scratch = target.with_suffix(f".{suffix}.part")
             metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[suffix]
-            try:
-                drawing.figure.savefig(scratch, format=suffix, dpi=200, metadata=metadata)
-                scratch.replace(target)
-            finally:
-                scratch.unlink(missing_ok=True)
+            with replacing(target) as part:
+                drawing.figure.savefig(part, format=suffix, dpi=200, metadata=metadata)
             files.append(target)
     return files

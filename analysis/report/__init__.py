@@ -8,6 +8,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
+from analysis.files import replacing
 from analysis.records import load
 from analysis.report.content import content
 
@@ -24,15 +25,19 @@ def write(results: Path) -> list[Path]:
     """
     gathered = content(load(results), results)
     html, pdf = results / "report.html", results / "report.pdf"
-    _replace(html, _page(gathered).encode())
+    with replacing(html) as part:
+        part.write_text(_page(gathered), encoding="utf-8")
     try:
         document = _pdf(_page(gathered, images=True), results)
     except (ImportError, OSError) as error:
+        if getattr(error, "errno", None) is not None:
+            raise  # of the disk: that a library cannot be loaded has no number
         why = " ".join(str(error).split())
         print(f"{pdf}: not written, only the HTML: {why} (WeasyPrint needs Pango; {REMEDY})", file=sys.stderr)
         pdf.unlink(missing_ok=True)
         return [html]
-    _replace(pdf, document)
+    with replacing(pdf) as part:
+        part.write_bytes(document)
     return [html, pdf]
 
 
@@ -42,15 +47,6 @@ def _pdf(page: str, folder: Path) -> bytes:
         from weasyprint import HTML
     data: bytes = HTML(string=page, base_url=f"{folder.resolve().as_uri()}/").write_pdf()
     return data
-
-
-def _replace(path: Path, data: bytes) -> None:
-    scratch = path.with_suffix(f"{path.suffix}.part")
-    try:
-        scratch.write_bytes(data)
-        scratch.replace(path)
-    finally:
-        scratch.unlink(missing_ok=True)
 
 
 def render(results: Path) -> str:

@@ -76,7 +76,7 @@ def test_svg_png_and_pdf_are_written_whole(tmp_path: Path) -> None:
     assert ElementTree.parse(svg).getroot().tag.endswith("svg")
     assert image.imread(png).shape[1] == 1400
     assert pdf.read_bytes().startswith(b"%PDF")
-    assert not list((tmp_path / "figures").glob("*.part"))
+    assert not list((tmp_path / "figures").glob("*.part*"))
 
 
 def test_the_same_records_give_the_same_svg(tmp_path: Path) -> None:

@@ -1,3 +1,4 @@
+import os
 import shutil
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from analysis.movie import FRAMES, Moment, Picture, boxes_per_side, moments
 from analysis.records import InputError
 from analysis.trajectory import Box, read_box, read_trajectory
 
+ROOT = Path(__file__).parents[2]
 STEPS = 4
 
 
@@ -113,7 +115,7 @@ def test_the_boxes_are_the_published_ones() -> None:
     [
         (["--output", "run.avi"], "run.avi: found the suffix '.avi', expected one of .mp4, .gif, .png"),
         (["--output", "run.png", "--step", "5"], "--step: found 5, expected a step from 0 to 4"),
-        (["--output", "scene.in/run.png"], "expected a writable place with room"),
+        (["--output", "scene.in/run.png"], "scene.in: File exists, expected a writable place with room"),
     ],
 )
 def test_what_cannot_be_drawn_is_one_line(
@@ -127,7 +129,23 @@ def test_what_cannot_be_drawn_is_one_line(
     monkeypatch.chdir(scene.parent)
     assert main(["movie", str(scene), str(trajectory), *arguments]) == 1
     (line,) = capsys.readouterr().err.splitlines()
-    assert said in line
+    assert line.startswith(said)
+
+
+def test_an_ffmpeg_that_fails_is_one_line(
+    scene: Path, trajectory: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = scene.parent
+    (folder / "ffmpeg").write_text("#!/bin/sh\ncat >/dev/null\necho 'Unknown encoder h264' >&2\nexit 8\n")
+    (folder / "ffmpeg").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
+    monkeypatch.chdir(folder)
+    command = [sys.executable, "-m", "analysis", "movie", str(scene), str(trajectory), "--output", "run.mp4"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stderr == "ffmpeg: Unknown encoder h264; a name *.gif needs no ffmpeg\n"
+    assert not list(folder.glob("*run*"))
 
 
 def test_without_ffmpeg_there_is_a_gif_and_a_remedy(

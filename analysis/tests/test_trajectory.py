@@ -1,3 +1,4 @@
+import re
 from pathlib import Path
 
 import numpy as np
@@ -34,19 +35,19 @@ def test_states_discs_and_columns(tmp_path: Path) -> None:
         (GOOD[: GOOD.rindex("1 1")], ":4: found the end of the file, expected disc 1"),
         (GOOD + "3 0 0 0 0 0\n", ":5: found '3 0 0 0 0 0', expected step 2, disc 0"),
         (GOOD + "\n", ":5: found an empty line, expected six numbers"),
+        ("0 0 1 2 0.5 1\xff\n", ":1: found '1?', expected a finite number"),
     ],
 )
 def test_a_bad_line_is_named(tmp_path: Path, text: str, said: str) -> None:
     path = tmp_path / "trajectory"
-    path.write_text(text)
+    path.write_text(text, encoding="latin-1")
     with pytest.raises(InputError) as refused:
         read_trajectory(path)
     assert str(refused.value).startswith(f"{path}{said}")
 
 
-def test_what_is_no_file_and_no_text_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "binary").write_bytes(b"0 0 1 2 \xff 0\n")
-    for name, said in (("absent", "No such file"), ("", "Is a directory"), ("binary", "no ASCII text")):
+def test_what_is_no_file_is_refused(tmp_path: Path) -> None:
+    for name, said in (("absent", "No such file"), ("", "Is a directory")):
         with pytest.raises(InputError, match=said):
             read_trajectory(tmp_path / name)
 
@@ -109,7 +110,7 @@ def is_read_or_refused_in_one_line(content: bytes) -> None:
         else:
             is_a_trajectory(found)
             return
-        assert said.startswith(str(path))
+        assert re.match(rf"{re.escape(str(path))}:\d+: found .*, expected ", said)
         assert said.isprintable()
 
 
