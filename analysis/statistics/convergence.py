@@ -21,6 +21,10 @@ def order(step: ArrayLike, error: ArrayLike, ceiling: float) -> Interval:
     fitted = (value > 0) & (value < ceiling)
     if fitted.sum() < FEWEST or len(np.unique(dt[fitted])) < FEWEST:
         return Interval(np.nan, -np.inf, np.inf)
-    line = stats.linregress(np.log(dt[fitted]), np.log(value[fitted]))
-    half = float(stats.t.ppf(0.975, fitted.sum() - 2) * line.stderr)
+    x, y = np.log(dt[fitted]), np.log(value[fitted])
+    line = stats.linregress(x, y)
+    freedom = len(x) - 2
+    # Not line.stderr, which is NaN for equal errors.
+    scatter = np.sum((y - line.intercept - line.slope * x) ** 2) / freedom
+    half = float(stats.t.ppf(0.975, freedom) * np.sqrt(scatter / np.sum((x - x.mean()) ** 2)))
     return Interval(float(line.slope), float(line.slope) - half, float(line.slope) + half)

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
-from analysis.statistics.convergence import order
+from analysis.statistics.convergence import FEWEST, order
 from analysis.statistics.pareto import front
 
 DT = 1 / 2.0 ** np.arange(7)
@@ -15,6 +15,23 @@ def test_a_known_order_is_found_without_doubt(known: float) -> None:
     fitted = order(DT, 0.05 * DT**known, ceiling=0.1)
     assert fitted.estimate == pytest.approx(known)
     assert fitted.high - fitted.low < 1e-6
+
+
+@given(st.floats(0.25, 4), st.floats(-20, 20), st.floats(-20, 20))
+def test_a_power_law_has_its_order_in_any_unit(known: float, error_unit: float, time_unit: float) -> None:
+    unit = 10**error_unit
+    fitted = order(10**time_unit * DT, unit * DT**known, ceiling=2 * unit)
+    assert fitted.estimate == pytest.approx(known, rel=1e-6)
+    assert fitted.low <= fitted.estimate <= fitted.high
+
+
+@example([0, 0, 0, 0, 0.25, 0.25, 0.25])
+@given(st.lists(st.floats(0, 1), min_size=len(DT), max_size=len(DT)))
+def test_any_errors_have_an_order_within_its_interval_or_none(errors: list[float]) -> None:
+    fitted = order(DT, errors, ceiling=0.5)
+    none = sum(0 < error < 0.5 for error in errors) < FEWEST
+    assert np.isnan(fitted.estimate) == none
+    assert none or fitted.low <= fitted.estimate <= fitted.high
 
 
 def test_the_interval_covers_the_known_order_as_often_as_it_says() -> None:

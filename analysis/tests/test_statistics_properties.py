@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, process_medians
-from analysis.statistics.pareto import front
 from analysis.statistics.verdicts import MARGIN, holm, judge_one, not_faster
 
 RATIOS = st.lists(st.floats(-3, 3), min_size=1, max_size=20)
@@ -84,13 +83,3 @@ def test_holm_only_raises_keeps_the_order_and_does_not_ask_for_it(p: list[float]
     order = list(range(len(p)))
     random.shuffle(order)  # type: ignore[attr-defined]
     assert [adjusted[place] for place in order] == pytest.approx(holm([p[place] for place in order]))
-
-
-@given(st.lists(st.tuples(st.integers(0, 5), st.integers(0, 5)), min_size=1, max_size=12, unique=True))
-def test_the_front_is_whom_nobody_beats_in_both(points: list[tuple[int, int]]) -> None:
-    errors, times = (pd.Series(values, dtype=float) for values in zip(*points, strict=True))
-    expected = [
-        not any(e <= error and t <= time and (e, t) != (error, time) for e, t in points)
-        for error, time in points
-    ]
-    assert list(front(errors, times)) == expected
