@@ -13,10 +13,12 @@ from pathlib import Path
 import pytest
 from documents import DOCUMENTS, KINDS, ROOT, Block, blocks, document, shell, write_file
 
-LOOKS_LIKE_A_COMMAND = re.compile(
-    r"^\s*(make|cmake|ctest|python|\.venv/bin/python|build/\w+/carom|carom|git|apt-get) ", re.MULTILINE
-)
+COMMAND = r"(make|cmake|ctest|python|\.venv/bin/python|build/\w+/carom|carom|git|apt-get) "
+LOOKS_LIKE_A_COMMAND = re.compile(rf"^\s*{COMMAND}", re.MULTILINE)
+INDENTED_COMMAND = re.compile(rf"^(    |\t){COMMAND}", re.MULTILINE)
+FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 BUILT = (ROOT / "build" / "gcc" / "carom").is_file()
+CMAKE_LISTS = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
 MAKEFILE_VERBS = set(
     re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
 )
@@ -82,6 +84,8 @@ def test_all_commands_from_an_empty_build(tmp_path: Path, name: str) -> None:
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_no_command_escapes(name: str) -> None:
+    unfenced = FENCED.sub("", (ROOT / name).read_text(encoding="utf-8"))
+    assert not INDENTED_COMMAND.search(unfenced), f"{name}: has commands outside of ```sh"
     for block in document(name):
         if block.language == "sh":
             assert block.word in KINDS, f"{name}:{block.line}: found '{block.word}' behind sh"
@@ -95,28 +99,42 @@ def has_help(command: list[str]) -> bool:
     return subprocess.run([*command, "--help"], cwd=ROOT, capture_output=True, check=False).returncode == 0
 
 
+def exists(words: list[str]) -> bool:
+    """Whether a command's program, verb, goal or preset is there; False for what is no known command."""
+    match words:
+        case [setting, *rest] if re.fullmatch(r"[A-Z_]+=\S+", setting):
+            return exists(rest)
+        case ["make", *rest]:
+            goals = {word for word in rest if "=" not in word}
+            return bool(goals) and goals <= MAKEFILE_VERBS
+        case [".venv/bin/python", "-m", *rest]:
+            return has_help([sys.executable, "-m", *rest[:2]])
+        case ["build/gcc/carom", verb, *_]:
+            return not BUILT or has_help(["build/gcc/carom", verb])
+        case [program] if program.startswith("build/gcc/"):
+            return not BUILT or (ROOT / program).is_file()
+        case ["cmake" | "ctest", "--preset", preset] | ["cmake", "--build", "--preset", preset, *_]:
+            return f'"name": "{preset}"' in (ROOT / "CMakePresets.json").read_text(encoding="utf-8")
+        case ["cmake", "-B", "build/gcc", option]:
+            return f"option({option.removeprefix('-D').split('=')[0]} " in CMAKE_LISTS
+        case ["apt-get", "install", package]:
+            return package in CMAKE_LISTS
+        case ["srun", _, *rest] if "build/gcc/carom" in rest:
+            return exists(rest[rest.index("build/gcc/carom") :])
+    return False
+
+
 @pytest.mark.parametrize("name", having("verbs", "fresh"))
 def test_commands_that_are_only_looked_at_exist(name: str) -> None:
     for block in (*shell(name, "verbs"), *shell(name, "fresh")):
-        for line in block.text.splitlines():
-            words = line.split("#")[0].split()
-            if words[:1] == ["make"]:
-                verbs = [word for word in words[1:] if "=" not in word]
-                assert verbs, f"{name}:{block.line}: {line}"
-                assert set(verbs) <= MAKEFILE_VERBS, f"{name}:{block.line}: {line}"
-            if words[:2] == [".venv/bin/python", "-m"]:
-                assert has_help([sys.executable, *words[1:4]]), f"{name}:{block.line}: {line}"
-            if words[:1] == ["build/gcc/carom"] and BUILT:
-                assert has_help(words[:2]), f"{name}:{block.line}: {line}"
-            if words[:2] == ["cmake", "--preset"]:
-                assert f'"name": "{words[2]}"' in (ROOT / "CMakePresets.json").read_text(encoding="utf-8")
+        for line in filter(None, (line.split("#")[0].strip() for line in block.text.splitlines())):
+            for command in line.split("&&"):
+                assert exists(command.split()), f"{name}:{block.line}: {command}"
 
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_links_lead_somewhere(name: str) -> None:
-    text = re.sub(
-        r"^```.*?^```$", "", (ROOT / name).read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL
-    )
+    text = FENCED.sub("", (ROOT / name).read_text(encoding="utf-8"))
     for target in re.findall(r"\]\(([^)\s]+)\)", text):
         if not target.startswith(("http://", "https://")):
             file, _, anchor = target.partition("#")
@@ -134,6 +152,20 @@ def anchors(path: Path) -> set[str]:
 def test_blocks_are_found_with_their_kind_and_line() -> None:
     found = list(blocks("a\n\n```sh slow\nx\ny\n```\n\n```\nz\n```\n"))
     assert found == [Block("sh", "slow", "x\ny\n", 3), Block("", "", "z\n", 8)]
+
+
+def test_what_does_not_exist_is_seen() -> None:
+    for command in (
+        "make nonsense",
+        "make",
+        "cmake --preset nonsense",
+        "cmake -B build/gcc -DCAROM=1",
+        "A=1 frob",
+        "ctest",
+        "",
+    ):
+        assert not exists(command.split()), command
+    assert exists(["A=1", "make", "setup"])
 
 
 def test_a_command_that_fails_fails(tmp_path: Path) -> None:
