@@ -5,8 +5,8 @@
 # Goals and prerequisites run one after another in the order given, also in `make -j2 setup test`.
 .NOTPARALLEL:
 .SILENT:
-.PHONY: help setup environment build build-gcc build-clang test test-all test-slurm fuzz fuzz-scenes fuzz-files movie experiments status submit \
-        resume collect figures report compare lint lint-python format clean distclean
+.PHONY: help setup environment build build-gcc build-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files movie experiments status \
+        submit resume collect figures report compare lint lint-quick format clean distclean
 
 export COMPILER ?= gcc
 CXX_gcc := g++
@@ -34,7 +34,7 @@ build-gcc build-clang: build-%:
 	CXX=$(CXX_$*) $(generator) cmake --preset release -B build/$* -DCAROM_WARNINGS_AS_ERRORS="$${WERROR:+ON}"
 	cmake --build build/$* $(jobs)
 
-test: lint-python build-gcc build-clang ## build with both compilers and run every quick test
+test: lint-quick build-gcc build-clang ## build with both compilers and run every quick test
 	ctest --test-dir build/gcc --output-on-failure --no-tests=error -LE slow $(jobs)
 	ctest --test-dir build/clang --output-on-failure --no-tests=error -LE slow $(jobs)
 	$(python) pytest
@@ -43,6 +43,8 @@ test-all: test ## and the slow ones, and those that need Slurm
 	ctest --test-dir build/gcc --output-on-failure -L slow
 	ctest --test-dir build/clang --output-on-failure -L slow
 	$(python) pytest -m "slow or slurm"
+	if command -v run-clang-tidy >/dev/null; then $(MAKE) --no-print-directory lint; \
+	else echo "clang-tidy: not run: it is not here (Debian: the package clang-tidy)"; fi
 	$(MAKE) --no-print-directory fuzz-files
 	if echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' | \
 		clang++ -fsanitize=fuzzer -x c++ - -o /dev/null 2>/dev/null; then $(MAKE) --no-print-directory fuzz-scenes; \
@@ -60,6 +62,11 @@ fuzz-scenes: environment
 
 fuzz-files: environment
 	CAROM_FUZZ_SECONDS="$${TIME:-60}" $(python) pytest -m fuzz -s
+
+sanitize: environment ## run the quick C++ tests with AddressSanitizer and UBSan, then with ThreadSanitizer (most of an hour)
+	for preset in asan-ubsan tsan; do \
+		$(generator) cmake --preset $$preset && cmake --build --preset $$preset $(jobs) && ctest --preset $$preset $(jobs) || exit 1; \
+	done
 
 test-slurm: environment ## the tests that need Slurm, which they unpack themselves (Debian's packages, no root)
 	$(python) pytest -m slurm
@@ -100,14 +107,14 @@ compare: environment ## compare two result folders (A= B=)
 	: "$${A:?one result folder}" "$${B:?the other result folder}"
 	$(python) analysis compare "$$A" "$$B"
 
-lint: lint-python build-clang ## every static check of C++ and Python (clang-tidy from the package of that name)
-	$(sources) -exec .venv/bin/clang-format --dry-run --Werror {} +
+lint: lint-quick build-clang ## every static check of C++ and Python (clang-tidy from the package of that name)
 	run-clang-tidy -quiet -p build/clang -j "$${JOBS:-$$(nproc)}"
-	$(python) mypy
 
-lint-python: environment
+lint-quick: environment
+	$(sources) -exec .venv/bin/clang-format --dry-run --Werror {} +
 	$(python) ruff check
 	$(python) ruff format --check
+	$(python) mypy
 
 format: environment ## format C++ and Python
 	$(sources) -exec .venv/bin/clang-format -i {} +
