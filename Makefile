@@ -5,8 +5,8 @@
 # Goals and prerequisites run one after another in the order given, also in `make -j2 setup test`.
 .NOTPARALLEL:
 .SILENT:
-.PHONY: help setup environment build build-gcc build-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files movie experiments status \
-        submit resume collect figures report compare lint lint-quick format clean distclean
+.PHONY: help setup environment build build-gcc build-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files movie \
+        experiments status submit resume collect figures report compare lint lint-quick format clean distclean
 
 export COMPILER ?= gcc
 CXX_gcc := g++

@@ -20,10 +20,9 @@ def replacing(target: Path) -> Iterator[Path]:
         with part.open("rb") as file:
             os.fsync(file.fileno())
         part.replace(target)
-    except OSError as error:
-        if error.filename in (None, os.fspath(part)):
-            raise OSError(error.errno, error.strerror or str(error), os.fspath(target)) from error
-        raise
-    finally:
+    except BaseException as error:
         with contextlib.suppress(OSError):
             part.unlink()
+        if isinstance(error, OSError) and error.filename in (None, os.fspath(part)):
+            raise OSError(error.errno, error.strerror or str(error), os.fspath(target)) from error
+        raise

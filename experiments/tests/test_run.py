@@ -168,17 +168,6 @@ def test_a_renamed_series_is_measured_again(workplace: Workplace) -> None:
     assert {one["tags"]["series"] for one in workplace.records("pair").values()} == {"quadrant", "nine"}
 
 
-def test_a_damaged_record_is_measured_again(workplace: Workplace) -> None:
-    run(workplace.settings)
-    torn, empty, *_ = sorted(workplace.results.glob("records/*/*.json"))
-    torn.write_text(torn.read_text()[:200])
-    empty.write_text("")
-    done = workplace.measured()
-    run(workplace.settings)
-    assert workplace.measured() - done == 2
-    jsonschema.validate(json.loads(torn.read_text()), SCHEMA)
-
-
 def test_a_damaged_scene_is_generated_again(workplace: Workplace) -> None:
     run(workplace.settings)
     scene = next(workplace.results.glob("scenes/100-*.in"))
