@@ -1,8 +1,10 @@
+import tracemalloc
+
 import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.statistics.bootstrap import summarise
+from analysis.statistics.bootstrap import _replicates, summarise
 from analysis.tests.synthetic_noise import Noise, times_table
 
 
@@ -63,3 +65,27 @@ def test_sessions_of_unequal_length_lose_no_process() -> None:
     assert (row["sessions"], row["processes"]) == (2, 7)
     assert row["median"] == summary_of(table)["median"]
     assert row["low"] <= row["median"] <= row["high"]
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 6, 7])
+def test_repetitions_are_drawn_with_replacement(count: int) -> None:
+    values = np.cumsum(np.arange(1.0, count + 1))
+    generator = np.random.default_rng(1)
+    drawn = np.median(generator.choice(values, (100_000, count)), axis=1)
+    found = _replicates(np.tile(values, (1, 1, 1)))
+    for value in np.unique(drawn):
+        assert np.mean(found <= value) == pytest.approx(np.mean(drawn <= value), abs=0.05), value
+    assert set(found) <= {(one + other) / 2 for one in values for other in values}
+
+
+def test_very_many_repetitions_cost_no_more_memory_than_few() -> None:
+    rows = 301 * 240
+    table = pd.DataFrame(
+        {"series": "a", "file": np.arange(rows) // 301, "session": np.arange(rows) // 3010}
+    ).assign(steps_seconds=np.random.default_rng(2).uniform(1, 2, rows))
+    tracemalloc.start()
+    row = summary_of(table)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert (row["sessions"], row["processes"], row["samples"]) == (24, 240, rows)
+    assert most < 200e6, "2000 replicates of all repetitions would be 1.2 GB"
