@@ -79,8 +79,9 @@ const Variant& require_variant(const std::string& name, const Scene& scene) {
     const Variant& variant = name == automatic ? fastest_variant(scene) : require_variant(name);
     if (!holds(variant.policies, scene)) {
         throw InputError("--variant " + name +
-                         ": computes in float, and the scene has numbers beyond 1e15 or a radius "
-                         "below 1e-15; expected a variant in double");
+                         ": computes in float, and the scene has numbers beyond 1e15, a radius below "
+                         "1e-15, or a fastest speed whose product with the radius is not within 1e-15 "
+                         "to 1e17; expected a variant in double");
     }
     return variant;
 }

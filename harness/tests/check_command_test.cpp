@@ -63,5 +63,19 @@ TEST_F(CheckCommand, NamesTheSubstepOfTheViolation) {
                         {"step 1 substep 2 of 2: "}));
 }
 
+TEST_F(CheckCommand, RefusesAFloatVariantWhereItsRangeEnds) {
+    for (const char* text :
+         {"1\n1e16\n1\n1\n0 5 5 1 0\n", "1\n1\n1e-16\n1\n0 0.5 0.5 1 0\n", "1\n10\n1\n1\n0 5 5 1e-16 0\n",
+          "1\n10\n1\n1\n0 5 5 1e16 0\n", "1\n1e10\n1e9\n1\n0 5e9 5e9 1e9 0\n"}) {
+        const std::string beyond = directory.write("beyond.in", text);
+        EXPECT_TRUE(refused(run_carom({"check", beyond, "1", "--variant", "float"}), 1,
+                            {"--variant float: computes in float", "expected a variant in double"}))
+            << text;
+        EXPECT_EQ(run_carom({"check", beyond, "1", "--variant", "published"}).exit_code, 0) << text;
+    }
+    const std::string at_rest = directory.write("at_rest.in", "1\n10\n1\n1\n0 5 5 0 0\n");
+    EXPECT_EQ(run_carom({"check", at_rest, "1", "--variant", "float"}).exit_code, 0);
+}
+
 } // namespace
 } // namespace carom

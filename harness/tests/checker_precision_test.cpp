@@ -113,6 +113,17 @@ TEST(CheckerInFloat, PassesRightSteps) {
     }
 }
 
+/// In double the disc stands a little off the wall that it touches in float.
+TEST(CheckerInFloat, RoundsTheBoxAsTheVariantDoes) {
+    const Scene scene{.side = 1558.9630366183724,
+                      .radius = 15.187010857032297,
+                      .steps = 1,
+                      .discs = {{1543.7760257613402, 216.35663577983073, 0x1p-30, 0x1p-30},
+                                {1543.7760257613402, 216.35377285612796, 0, 0}}};
+    EXPECT_EQ(first_violation(scene, 1, in_float), "");
+    EXPECT_NE(first_violation(scene, 1, Rounding()), "");
+}
+
 TEST(CheckerInFloat, IsNeededForFloat) {
     EXPECT_PRED_FORMAT2(testing::IsSubstring, "moved from",
                         first_violation(tests::random_scene(200, 60, 1, 12, 3, 1), 1, Rounding()));
