@@ -122,7 +122,7 @@ def probe(point: Point, scene: Path, record: Path, time_limit: float) -> Probe |
     words = [str(point.program.path), "bench", str(scene), "--variant", point.variant]
     words += ["--threads", str(point.threads), "--record", str(record), "--warm-up", "0"]
     words += ["--repetitions", str(_PROBED)]
-    done = run_in_turn(words, dict(point.openmp), time_limit)
+    done = run_in_turn(words, point.openmp, time_limit)
     content = read_json(record)
     if done.exit_code != 0 or content is None:
         return None

@@ -39,7 +39,7 @@ class Limits:
         if point.figure != FIGURE or self._store.holds(path, "limits"):
             return Completed(command, 0, "", "")
         scratch.unlink(missing_ok=True)
-        done = run_in_turn(command, dict(point.openmp), self._time_limit)
+        done = run_in_turn(command, point.openmp, self._time_limit)
         if done.exit_code != 0:
             return Completed(command, done.exit_code, "", f"limits of the machine: {done.reason}")
         if not is_record(read_json(scratch)):

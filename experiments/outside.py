@@ -45,7 +45,7 @@ class Outside:
         scratch.unlink(missing_ok=True)
         words = [str(point.program.path), "outside", str(scene.path), "--substeps", str(point.substeps)]
         words += ["--record", str(scratch), *tag_arguments({**tags, "series": "outside"})]
-        done = run_in_turn(words, dict(point.openmp), self._time_limit)
+        done = run_in_turn(words, point.openmp, self._time_limit)
         if ABSENT in done.error:
             self._without.add(point.program.sha256)
             return None

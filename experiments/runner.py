@@ -99,7 +99,7 @@ class Runner:
         tags = task.tags(self._store.session)
         timeline = self._store.temporary / "timeline.json" if _is_drawn(task) else None
         command = point.command(scene.path, scratch, tags, timeline, point.besides(task.block))
-        done = run_in_turn(command, dict(point.openmp), self._time_limit)
+        done = run_in_turn(command, point.openmp, self._time_limit)
         record = read_json(scratch)
         if done.exit_code == 0:
             wrong = unusable(record, point, task.block)

@@ -4,7 +4,7 @@ import contextlib
 import fcntl
 import os
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from experiments import process
@@ -13,13 +13,13 @@ from experiments.process import Completed
 from experiments.site import clean_environment
 
 
-def run_in_turn(command: Sequence[str], openmp: Mapping[str, str], time_limit: float) -> Completed:
+def run_in_turn(command: Sequence[str], openmp: Iterable[tuple[str, str]], time_limit: float) -> Completed:
     """Run a program to its end with these OpenMP variables and no others, while no other one computes.
 
     The time limit, in seconds, counts from when its turn has come. Raises InputError like `turn`.
     """
     with turn():
-        return process.run(command, clean_environment(openmp), time_limit)
+        return process.run(command, clean_environment(dict(openmp)), time_limit)
 
 
 @contextlib.contextmanager

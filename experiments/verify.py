@@ -43,7 +43,7 @@ class Verifier:
         if kept is not None:
             return kept
         command = check_command(point.program, scene.path, point.variant, point.threads)
-        done = run_in_turn(command, dict(point.openmp), self._time_limit)
+        done = run_in_turn(command, point.openmp, self._time_limit)
         reason = "" if done.exit_code == 0 else f"check of each step: {done.reason}"
         if done.exit_code in (0, CHECK_FAILED):
             verdict = {"command": list(command), "exit_code": done.exit_code, "reason": reason}

@@ -292,18 +292,5 @@ TEST_P(HardCases, NoDiscsDoNothing) {
 INSTANTIATE_TEST_SUITE_P(Registry, HardCases, testing::ValuesIn(variants().begin(), variants().end()),
                          tests::variant_test_name);
 
-TEST(HardCaseList, HasEveryCaseOnce) {
-    std::string names;
-    for (const auto& one : hard_cases()) {
-        names.append(names.empty() ? "" : " ").append(one.name);
-        EXPECT_EQ(find_hard_case(one.name), &one);
-        EXPECT_FALSE(one.description.empty());
-    }
-    EXPECT_EQ(names, "cradle corner pinned rack_break three_body coincident nearly_coincident grazing jammed "
-                     "hexagonal fast at_rest one_disc no_discs scaled_down scaled_up far_coordinates drift "
-                     "reversed renumbered mirrored rotated");
-    EXPECT_EQ(find_hard_case("no such case"), nullptr);
-}
-
 } // namespace
 } // namespace carom
