@@ -14,7 +14,8 @@
 
 namespace carom {
 
-/// Puts every disc's number into the list of its box, in the order of the numbers.
+/// Puts every disc's number into the list of its box, in the order of the numbers. On one thread, as the
+/// published program does.
 template <Policies policies, class SomeProbe>
     requires(policies.storage == Storage::numbered)
 void bin(State<policies>& state, const Tuning& /*tuning*/, SomeProbe& /*probe*/) {
@@ -22,7 +23,9 @@ void bin(State<policies>& state, const Tuning& /*tuning*/, SomeProbe& /*probe*/)
         box.clear();
     }
     for (int i = 0; i < state.count(); ++i) {
-        state.boxes[static_cast<std::size_t>(state.box_of_disc[static_cast<std::size_t>(i)])].push_back(i);
+        const auto& disc = state.discs[static_cast<std::size_t>(i)];
+        const int box = state.grid.box_of(state.grid.coordinate(disc.y), state.grid.coordinate(disc.x));
+        state.boxes[static_cast<std::size_t>(box)].push_back(i);
     }
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <type_traits>
 
 #include "policies.hpp"
@@ -92,7 +93,9 @@ bool resolve_pair(BasicDisc<Real>& first, BasicDisc<Real>& second, const Approac
 /// put together what was stored apart.
 template <class Real> struct BothComponents {
     using Register [[gnu::vector_size(2 * sizeof(Real))]] = Real;
+    static constexpr std::size_t position_offset = offsetof(BasicDisc<Real>, x);
     static constexpr std::size_t velocity_offset = offsetof(BasicDisc<Real>, vx);
+    static_assert(offsetof(BasicDisc<Real>, y) == position_offset + sizeof(Real));
     static_assert(offsetof(BasicDisc<Real>, vy) == velocity_offset + sizeof(Real));
 
     static Register load(const std::array<Real, 2>& vector) {
@@ -100,15 +103,21 @@ template <class Real> struct BothComponents {
         std::memcpy(&both, vector.data(), sizeof both);
         return both;
     }
-    static Register load_velocity(const BasicDisc<Real>& disc) {
-        Register both;
-        std::memcpy(&both, reinterpret_cast<const unsigned char*>(&disc) + velocity_offset, sizeof both);
-        return both;
-    }
+    static Register load_position(const BasicDisc<Real>& disc) { return load_at<position_offset>(disc); }
+    static Register load_velocity(const BasicDisc<Real>& disc) { return load_at<velocity_offset>(disc); }
     static void store_velocity(Register both, BasicDisc<Real>& disc) {
         std::memcpy(reinterpret_cast<unsigned char*>(&disc) + velocity_offset, &both, sizeof both);
     }
     static Real sum(Register both) { return both[0] + both[1]; }
+
+  private:
+    template <std::size_t offset> static Register load_at(const BasicDisc<Real>& disc) {
+        static_assert(offset % sizeof(Register) == 0 && alignof(BasicDisc<Real>) % sizeof(Register) == 0);
+        Register both;
+        const auto* const bytes = reinterpret_cast<const unsigned char*>(&disc) + offset;
+        std::memcpy(&both, std::assume_aligned<sizeof(Register)>(bytes), sizeof both);
+        return both;
+    }
 };
 
 /// (v2 - v1).n
@@ -152,19 +161,31 @@ bool overlaps_wall(const BasicDisc<Real>& disc, std::type_identity_t<Real> side,
     return disc.x - radius <= 0 || disc.x + radius >= side || disc.y - radius <= 0 || disc.y + radius >= side;
 }
 
-/// Turns each velocity component of a disc that overlaps a wall and moves into it; returns how many were
-/// turned.
+/// A disc that moves into a wall that it overlaps moves away from each wall that it overlaps, at the same
+/// speed; returns how many components of its velocity were turned.
 template <class Real = double>
 int resolve_walls(BasicDisc<Real>& disc, std::type_identity_t<Real> side, std::type_identity_t<Real> radius) {
-    int turned = 0;
-    const auto turn = [&](Real position, Real& velocity) {
-        if ((position - radius <= 0 && velocity < 0) || (position + radius >= side && velocity > 0)) {
+    const auto is_low = [&](Real position) { return position - radius <= 0; };
+    const auto is_high = [&](Real position) { return position + radius >= side; };
+    const auto into_wall = [&](Real position, Real velocity) {
+        return (is_low(position) && velocity < 0) || (is_high(position) && velocity > 0);
+    };
+    const int turned = into_wall(disc.x, disc.vx) + into_wall(disc.y, disc.vy);
+    if (turned == 0) {
+        return 0;
+    }
+    const auto turn_away = [&](Real position, Real& velocity) {
+        // Wedged between two walls it is turned, as long as somebody goes on asking.
+        if (is_low(position) && is_high(position)) {
             velocity = -velocity;
-            ++turned;
+        } else if (is_low(position)) {
+            velocity = std::abs(velocity);
+        } else if (is_high(position)) {
+            velocity = -std::abs(velocity);
         }
     };
-    turn(disc.x, disc.vx);
-    turn(disc.y, disc.vy);
+    turn_away(disc.x, disc.vx);
+    turn_away(disc.y, disc.vy);
     return turned;
 }
 

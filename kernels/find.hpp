@@ -1,10 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <vector>
 
 #include "collide.hpp"
 #include "parallel_for.hpp"
 #include "policies.hpp"
+#include "resolve_lists.hpp"
 #include "state.hpp"
 
 namespace carom {
@@ -21,44 +24,120 @@ template <> struct Look<Neighbourhood::nine> {
 
 template <> struct Look<Neighbourhood::four> {
     static BoxRange along(const Grid& grid, double position, int index) {
-        const int other = std::clamp(index + grid.reach(position, index), 0, grid.boxes_per_side() - 1);
+        const int other = std::clamp(index + grid.reach(position), 0, grid.boxes_per_side() - 1);
         return {std::min(index, other), std::max(index, other)};
     }
 };
 
-/// Finds the overlaps of every disc of one box, from the lowest row and column looked into to the highest,
-/// and resolves those within the box if asked to.
+/// Calls `look(row, column)` for each box that a disc of box (row, column) looks into, but for its own, in
+/// the published order: of four boxes the neighbour along x, the one along y, the diagonal one; of nine
+/// column by column.
+template <Neighbourhood neighbourhood, class LookInto>
+void for_each_other_box(BoxRange rows, BoxRange columns, int row, int column, const LookInto& look) {
+    if constexpr (neighbourhood == Neighbourhood::nine) {
+        for (int other_column = columns.first; other_column <= columns.last; ++other_column) {
+            for (int other_row = rows.first; other_row <= rows.last; ++other_row) {
+                if (other_row != row || other_column != column) {
+                    look(other_row, other_column);
+                }
+            }
+        }
+    } else {
+        const int other_row = rows.first + rows.last - row;
+        const int other_column = columns.first + columns.last - column;
+        if (other_column != column) {
+            look(row, other_column);
+        }
+        if (other_row != row) {
+            look(other_row, column);
+            if (other_column != column) {
+                look(other_row, other_column);
+            }
+        }
+    }
+}
+
+/// Finds the overlaps within one box, each pair once, and resolves it at once if asked to.
+template <Policies policies>
+void find_within_box(State<policies>& state, int row, int column, const ApproachOf<policies>& approaching,
+                     Tally& tally) {
+    const auto reach_squared = state.reach_squared();
+    const auto& own = state.discs_in(row, column);
+    for (auto i = own.begin(); i != own.end(); ++i) {
+        state.overlaps[static_cast<std::size_t>(*i)].clear();
+    }
+    for (auto i = own.begin(); i != own.end(); ++i) {
+        auto& disc = state.discs[static_cast<std::size_t>(*i)];
+        auto j = i;
+        for (++j; j != own.end(); ++j) {
+            auto& other = state.discs[static_cast<std::size_t>(*j)];
+            if (!overlap(disc, other, reach_squared)) {
+                continue;
+            }
+            state.overlaps[static_cast<std::size_t>(*i)].push_back(*j);
+            state.overlaps[static_cast<std::size_t>(*j)].push_back(*i);
+            if constexpr (policies.self_contained == SelfContained::on) {
+                ++tally.pair_attempts;
+                tally.pair_resolves += resolve_pair(disc, other, approaching);
+            }
+        }
+    }
+}
+
+/// Resolves within one box until no pair in it collides. What is left after `rounds_within_box` rounds the
+/// resolve of the step will find.
+template <Policies policies>
+Changes resolve_within_box(State<policies>& state, int row, int column,
+                           const ApproachOf<policies>& approaching) {
+    Remembered remembered;
+    Changes changes =
+        visit_each<LookAtWalls::no>(state, state.discs_in(row, column), remembered, approaching);
+    for (int round = 0; round < rounds_within_box && !remembered.next.empty(); ++round) {
+        changes += visit_remembered<LookAtWalls::no>(state, remembered, approaching);
+    }
+    return changes;
+}
+
+/// Finds the overlaps of one box's discs with those of other boxes, and which of its discs overlap a wall.
+/// Returns how many entries the lists of the box's discs have in all.
+template <Policies policies> std::int64_t find_beyond_box(State<policies>& state, int row, int column) {
+    const auto reach_squared = state.reach_squared();
+    const bool at_wall = state.grid.at_wall(row, column);
+    std::int64_t entries = 0;
+    for (const int i : state.discs_in(row, column)) {
+        const auto disc = state.discs[static_cast<std::size_t>(i)];
+        auto& overlaps = state.overlaps[static_cast<std::size_t>(i)];
+        const auto look = [&](int other_row, int other_column) {
+            for (const int j : state.discs_in(other_row, other_column)) {
+                if (overlap(disc, state.discs[static_cast<std::size_t>(j)], reach_squared)) {
+                    overlaps.push_back(j);
+                }
+            }
+        };
+        for_each_other_box<policies.neighbourhood>(
+            Look<policies.neighbourhood>::along(state.grid, disc.y, row),
+            Look<policies.neighbourhood>::along(state.grid, disc.x, column), row, column, look);
+        state.overlaps_wall[static_cast<std::size_t>(i)] =
+            at_wall && overlaps_wall(disc, state.side, state.radius);
+        entries += static_cast<std::int64_t>(overlaps.size());
+    }
+    return entries;
+}
+
+/// Finds the overlaps of every disc of one box and notes which overlap a wall; with self-contained resolves,
+/// before it looks into other boxes it resolves within the box until no pair there collides. `entries` is
+/// raised by the length of the lists.
 ///
 /// Any two boxes may run at the same time: only the lists and the velocities of the box's own discs are
 /// written, and of other boxes only positions are read, which nobody writes.
 template <Policies policies>
-Tally find_in_box(State<policies>& state, int row, int column, const ApproachOf<policies>& approaching) {
-    Tally tally;
-    const auto reach_squared = state.reach_squared();
-    for (const int i : state.discs_in(row, column)) {
-        auto& disc = state.discs[static_cast<std::size_t>(i)];
-        auto& overlaps = state.overlaps[static_cast<std::size_t>(i)];
-        overlaps.clear();
-        const BoxRange rows = Look<policies.neighbourhood>::along(state.grid, disc.y, row);
-        const BoxRange columns = Look<policies.neighbourhood>::along(state.grid, disc.x, column);
-        for (int other_row = rows.first; other_row <= rows.last; ++other_row) {
-            for (int other_column = columns.first; other_column <= columns.last; ++other_column) {
-                [[maybe_unused]] const bool own = other_row == row && other_column == column;
-                for (const int j : state.discs_in(other_row, other_column)) {
-                    auto& other = state.discs[static_cast<std::size_t>(j)];
-                    if (i == j || !overlap(disc, other, reach_squared)) {
-                        continue;
-                    }
-                    overlaps.push_back(j);
-                    tally.overlaps += i < j;
-                    if constexpr (policies.self_contained == SelfContained::on) {
-                        tally.pair_resolves += own && resolve_pair(disc, other, approaching);
-                    }
-                }
-            }
-        }
+void find_in_box(State<policies>& state, int row, int column, const ApproachOf<policies>& approaching,
+                 Tally& tally) {
+    find_within_box(state, row, column, approaching, tally);
+    if constexpr (policies.self_contained == SelfContained::on) {
+        tally += resolve_within_box(state, row, column, approaching);
     }
-    return tally;
+    tally.overlaps += find_beyond_box(state, row, column);
 }
 
 /// Finds the overlaps of all discs, a box to an iteration.
@@ -66,10 +145,16 @@ template <Policies policies, class SomeProbe>
     requires(policies.overlaps == Overlaps::lists)
 Tally find(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const ApproachOf<policies> approaching(tuning.tolerance);
-    const int columns = state.grid.boxes_per_side();
-    return parallel_for<policies.find_schedule>(
-        tuning.threads, state.grid.box_count(), tuning.find_chunk, probe,
-        [&](int box) { return find_in_box(state, box / columns, box % columns, approaching); });
+    const int boxes_per_side = state.grid.boxes_per_side();
+    Tally tally = parallel_for_boxes<policies.find_schedule>(
+        tuning.threads, boxes_per_side, boxes_per_side, tuning.find_chunk, probe,
+        [&](int row, int column, Tally& sum) {
+            if (!state.is_empty(row, column)) {
+                find_in_box(state, row, column, approaching, sum);
+            }
+        });
+    tally.overlaps /= 2; // each pair stands in two lists
+    return tally;
 }
 
 } // namespace carom

@@ -14,17 +14,18 @@ enum class Neighbourhood {
 enum class Order {
     checkered, ///< four colours of boxes, one colour in parallel after another
     row,       ///< even rows of boxes in parallel, then odd ones
-    track,     ///< one thread; after the first sweep only discs that a partner changed
+    track,     ///< one thread; after the first sweep only discs that a later one changed
     repeat,    ///< one thread; every disc in turn, each again and again while it changes
     once,      ///< one thread; every disc in turn, one pass each
     strips,    ///< strips of rows of boxes: even ones in parallel, then odd ones
     wavefront, ///< the same, but a strip waits for those beside it alone, from sweep to sweep
 };
 
-/// Whether pairs within one box are resolved already while overlaps are found.
+/// Whether pairs within one box are resolved already while overlaps are found, until none in it collides.
 enum class SelfContained { on, off };
 
-/// The way through a disc's list of overlaps.
+/// The way through a disc's list of overlaps; but for discs that are visited again because another one
+/// changed them, whose lists are always gone through from the first (`track`, and within a box).
 enum class Direction {
     reverse, ///< from the last found to the first
     forward, ///< from the first found to the last
@@ -43,6 +44,12 @@ enum class Storage {
 enum class BoxSide {
     wide, ///< 4r + 1
     snug, ///< 2r, or the mean distance between discs where that is more
+};
+
+/// Where the rest of the scene's side goes, which is less than a box.
+enum class Rest {
+    in_last_box, ///< the last row and column are wider
+    own_box,     ///< a row and a column more, narrower than the others
 };
 
 /// What is kept of an overlapping pair.
@@ -94,6 +101,11 @@ constexpr bool has_chunk(Schedule schedule) {
            schedule == Schedule::guided_chunk;
 }
 
+/// As in the published programs, of which the one for rows has a grid of its own.
+constexpr Rest rest_of(Order order) {
+    return order == Order::checkered || is_sequential(order) ? Rest::in_last_box : Rest::own_box;
+}
+
 /// Rows of boxes in a strip. Two at least, but for `row`: see resolve_contacts.hpp.
 constexpr int strip_height(Order order) { return order == Order::row ? 1 : 4; }
 
@@ -103,6 +115,9 @@ using RealOf = std::conditional_t<precision == Precision::double_, double, float
 /// Visits to one disc stop after this many passes even if it still changes; the next sweep goes on. It keeps
 /// a disc wedged between two walls from holding up the sweep limit.
 inline constexpr int passes_per_visit = 100;
+
+/// Within a box discs are visited again in no more than so many rounds.
+inline constexpr int rounds_within_box = 1000;
 
 /// When an approaching pair counts as colliding.
 enum class Tolerance {

@@ -16,7 +16,7 @@ inline constexpr int few_changes = 300;
 template <Policies policies, class SomeProbe>
 Tally resolve(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const ApproachOf<policies> approaching(tuning.tolerance);
-    [[maybe_unused]] Pending pending(policies.order == Order::track ? state.count() : 0);
+    [[maybe_unused]] Remembered remembered;
     [[maybe_unused]] Wavefront wavefront(
         policies.order == Order::wavefront ? state.grid.strip_count(strip_height(policies.order)) : 0);
     Tuning one_thread = tuning;
@@ -34,7 +34,7 @@ Tally resolve(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
         if constexpr (policies.order == Order::checkered) {
             last = sweep_checkered(state, tuning, approaching, probe);
         } else if constexpr (policies.order == Order::track) {
-            last = sweep_pending(state, pending, approaching);
+            last = sweep_track(state, remembered, total.sweeps == 0, approaching);
         } else if constexpr (is_sequential(policies.order)) {
             last = sweep_discs(state, approaching);
         } else if constexpr (policies.order == Order::wavefront) {

@@ -92,6 +92,7 @@ Changes resolve_row(State<policies>& state, Strip<RealOf<policies.precision>>& s
             if constexpr (policies.worklist == Worklist::active) {
                 marks[*block] = 0;
             }
+            changes.attempts += first_contact[*block + 1] - first_contact[*block];
             end = look_at_contacts(state, strip, first_contact[*block], first_contact[*block + 1], end);
         }
         changes += resolve_contacts(state, strip, begin, end, approaching, on_change);

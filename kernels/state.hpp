@@ -19,8 +19,10 @@ template <Overlaps overlaps, class Real> struct OverlapsOf;
 template <class Real> struct OverlapsOf<Overlaps::lists, Real> {
     std::vector<std::vector<int>>
         overlaps; ///< for each disc those it overlaps; each pair stands in both lists
+    std::vector<unsigned char> overlaps_wall; ///< of each disc, whether it overlaps one
 
-    OverlapsOf(const Grid& /*grid*/, int count) : overlaps(static_cast<std::size_t>(count)) {}
+    OverlapsOf(const Grid& /*grid*/, int count)
+        : overlaps(static_cast<std::size_t>(count)), overlaps_wall(static_cast<std::size_t>(count)) {}
 };
 
 template <class Real> struct OverlapsOf<Overlaps::contacts, Real> {
@@ -45,14 +47,19 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
     Grid grid;
 
     explicit State(const Scene& scene)
-        : State(scene,
-                Grid(scene.side, scene.radius, static_cast<int>(scene.discs.size()), policies.box_side)) {}
+        : State(scene, Grid(scene.side, scene.radius, static_cast<int>(scene.discs.size()), policies.box_side,
+                            policies.box_side == BoxSide::wide ? rest_of(policies.order) : Rest::own_box)) {}
 
     int count() const { return static_cast<int>(this->discs.size()); }
     Real reach_squared() const { return (2 * radius) * (2 * radius); }
 
     decltype(auto) discs_in(int row, int column) const {
         return Discs::discs_in_box(grid.box_of(row, column));
+    }
+
+    bool is_empty(int row, int column) const {
+        const auto& discs = discs_in(row, column);
+        return discs.begin() == discs.end();
     }
 
   private:

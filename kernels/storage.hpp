@@ -24,12 +24,10 @@ template <class Real> std::vector<BasicDisc<Real>> discs_of(const Scene& scene) 
 /// The published layout: disc i at index i, and for each box a growable list of the numbers of its discs.
 template <class Real> struct DiscsOf<Storage::numbered, Real> {
     std::vector<BasicDisc<Real>> discs;
-    std::vector<int> box_of_disc; ///< written by the move, read by the binning
     std::vector<std::vector<int>> boxes;
 
     DiscsOf(const Scene& scene, const Grid& grid)
-        : discs(discs_of<Real>(scene)), box_of_disc(discs.size()),
-          boxes(static_cast<std::size_t>(grid.box_count())) {}
+        : discs(discs_of<Real>(scene)), boxes(static_cast<std::size_t>(grid.box_count())) {}
 
     const std::vector<int>& discs_in_box(int box) const { return boxes[static_cast<std::size_t>(box)]; }
     int number(int i) const { return i; }
@@ -44,7 +42,7 @@ struct Indices {
             ++i;
             return *this;
         }
-        bool operator!=(const Iterator& other) const { return i != other.i; }
+        bool operator==(const Iterator& other) const { return i == other.i; }
     };
 
     int first;

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <iterator>
-#include <vector>
 
 #include "parallel_for.hpp"
 #include "policies.hpp"
@@ -49,13 +47,14 @@ Swept sweep_checkered(State<policies>& state, const Tuning& tuning, const Approa
     const int side = state.grid.boxes_per_side();
     for (int first_row = 0; first_row < 2; ++first_row) {
         for (int first_column = 0; first_column < 2; ++first_column) {
-            const int columns = every_other(side, first_column);
-            const int boxes = every_other(side, first_row) * columns;
-            tally += parallel_for<policies.resolve_schedule>(
-                tuning.threads, boxes, tuning.resolve_chunk, probe, [&](int box) {
-                    const int row = first_row + 2 * (box / columns);
-                    const int column = first_column + 2 * (box % columns);
-                    return Tally(resolve_box(state, row, column, approaching));
+            tally += parallel_for_boxes<policies.resolve_schedule>(
+                tuning.threads, every_other(side, first_row), every_other(side, first_column),
+                tuning.resolve_chunk, probe, [&](int k, int l, Tally& sum) {
+                    const int row = first_row + 2 * k;
+                    const int column = first_column + 2 * l;
+                    if (!state.is_empty(row, column)) {
+                        sum += resolve_box(state, row, column, approaching);
+                    }
                 });
         }
     }
@@ -76,61 +75,26 @@ Swept sweep_strips(State<policies>& state, const Tuning& tuning, const ApproachO
     return one_sweep(tally);
 }
 
-/// Can disc i touch a wall, as far as its box tells?
-template <Policies policies> bool at_wall(const State<policies>& state, int i) {
-    const auto& disc = state.discs[static_cast<std::size_t>(i)];
-    return state.grid.at_wall(state.grid.coordinate(disc.y), state.grid.coordinate(disc.x));
-}
-
 /// One sweep of `once` or `repeat`: every disc in the order of its number.
 template <Policies policies>
 Swept sweep_discs(State<policies>& state, const ApproachOf<policies>& approaching) {
     Tally tally;
     for (int i = 0; i < state.count(); ++i) {
-        if constexpr (policies.order == Order::repeat) {
-            tally += resolve_disc(state, i, at_wall(state, i), approaching, ignore_partner);
-        } else {
-            tally += resolve_disc_once(state, i, at_wall(state, i), approaching, ignore_partner);
-        }
+        constexpr bool again = policies.order == Order::repeat;
+        tally += visit<again, policies.direction>(state, i, looks_at_wall<LookAtWalls::yes>(state, i),
+                                                  approaching, ignore_partner);
     }
     return one_sweep(tally);
 }
 
-/// The discs that `track` has yet to visit: a partner changed them after their own last visit.
-struct Pending {
-    std::vector<int> now;
-    std::vector<int> next;
-    std::vector<unsigned char> is_pending;
-
-    explicit Pending(int count) : is_pending(static_cast<std::size_t>(count), 1) {
-        for (int i = 0; i < count; ++i) {
-            now.push_back(i);
-        }
-    }
-};
-
-/// One sweep of `track`: the pending discs, in the order in which they came to be pending.
+/// One sweep of `track`: every disc in the order of its number, then, sweep by sweep, the remembered ones.
 template <Policies policies>
-Swept sweep_pending(State<policies>& state, Pending& pending, const ApproachOf<policies>& approaching) {
-    Tally tally;
-    const auto remember = [&](int j) {
-        if (!pending.is_pending[static_cast<std::size_t>(j)]) {
-            pending.is_pending[static_cast<std::size_t>(j)] = 1;
-            pending.next.push_back(j);
-        }
-    };
-    for (const int i : pending.now) {
-        pending.is_pending[static_cast<std::size_t>(i)] = 0;
-        const Changes changes = resolve_disc(state, i, at_wall(state, i), approaching, remember);
-        tally += changes;
-        if (changes.count() >= passes_per_visit) {
-            remember(i);
-        }
-    }
-    pending.now.swap(pending.next);
-    pending.next.clear();
-    Swept swept = one_sweep(tally);
-    swept.last_changes = std::ssize(pending.now);
+Swept sweep_track(State<policies>& state, Remembered& remembered, bool first,
+                  const ApproachOf<policies>& approaching) {
+    Swept swept = one_sweep(
+        first ? visit_each<LookAtWalls::yes>(state, Indices{0, state.count()}, remembered, approaching)
+              : visit_remembered<LookAtWalls::yes>(state, remembered, approaching));
+    swept.last_changes = std::ssize(remembered.next);
     return swept;
 }
 

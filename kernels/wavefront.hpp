@@ -4,6 +4,9 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "cache_line.hpp"
@@ -73,8 +76,11 @@ Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, in
         return k < even ? 2 * k : 2 * (k - even) + 1;
     };
     std::array<std::atomic<int>, most_sweeps_at_once> changes{};
+    std::array<std::atomic<int>, most_sweeps_at_once> attempts{};
     const auto resolve_turn = [&](int turn) {
-        const Changes made = resolve_strip(state, strip_of(turn), approaching);
+        Changes made = resolve_strip(state, strip_of(turn), approaching);
+        attempts[static_cast<std::size_t>(sweep_of(turn))].fetch_add(std::exchange(made.attempts, 0),
+                                                                     std::memory_order_relaxed);
         if (made.any()) {
             changes[static_cast<std::size_t>(sweep_of(turn))].fetch_add(made.count(),
                                                                         std::memory_order_relaxed);
@@ -88,6 +94,9 @@ Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, in
         [&](int turn) { return wavefront.can_begin(strip_of(turn), done + sweep_of(turn)); });
     const auto last = std::find(changes.begin(), changes.begin() + count - 1, 0);
     swept.work.sweeps = last - changes.begin() + 1;
+    // Of those that were run in vain, whose number depends on that of the threads, nothing is counted.
+    swept.work.pair_attempts =
+        std::accumulate(attempts.begin(), attempts.begin() + swept.work.sweeps, std::int64_t{0});
     swept.last_changes = *last;
     return swept;
 }

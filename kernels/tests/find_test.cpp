@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -82,15 +83,57 @@ TEST(Find, InNineBoxesFindsEveryOverlap) { finds_what_looking_at_all_pairs_finds
 
 TEST(Find, InFourBoxesFindsEveryOverlap) { finds_what_looking_at_all_pairs_finds<only_find>(); }
 
-TEST(Find, ListsPartnersInTheSameOrderInBothNeighbourhoods) {
+struct Offset {
+    int row;
+    int column;
+};
+
+/// The other boxes in the order in which the published program looks into them: of nine column by column, of
+/// four along x, along y, diagonally, towards the half of the box that the disc lies in.
+std::vector<Offset> offsets(Neighbourhood neighbourhood, const Grid& grid, const Disc& disc) {
+    if (neighbourhood == Neighbourhood::nine) {
+        return {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+    }
+    const auto half = [&grid](double position) {
+        return std::fmod(position, grid.box_side()) >= grid.box_side() / 2 ? 1 : -1;
+    };
+    return {{0, half(disc.x)}, {half(disc.y), 0}, {half(disc.y), half(disc.x)}};
+}
+
+/// Every disc's partners: those of its own box by number, then those of one other box after the other.
+template <Policies policies> Lists in_published_order(const State<policies>& state) {
+    Lists lists = brute_force(state.discs, state.radius);
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        const auto row_of = [&](std::size_t k) { return state.grid.coordinate(state.discs[k].y); };
+        const auto column_of = [&](std::size_t k) { return state.grid.coordinate(state.discs[k].x); };
+        const auto others = offsets(policies.neighbourhood, state.grid, state.discs[i]);
+        std::ranges::stable_sort(lists[i], {}, [&](int partner) {
+            const auto j = static_cast<std::size_t>(partner);
+            const int rows = row_of(j) - row_of(i);
+            const int columns = column_of(j) - column_of(i);
+            const auto box = std::ranges::find_if(
+                others, [&](Offset offset) { return offset.row == rows && offset.column == columns; });
+            return rows == 0 && columns == 0 ? -1 : static_cast<int>(box - others.begin());
+        });
+    }
+    return lists;
+}
+
+template <Policies policies> void lists_partners_in_the_published_order() {
     for (const auto& [name, scene] : all_scenes()) {
         SCOPED_TRACE(name);
-        State four = moved(scene);
-        State nine = moved<only_find_in_nine>(scene);
-        find_in(four);
-        find_in(nine);
-        EXPECT_EQ(four.overlaps, nine.overlaps);
+        State<policies> state = moved<policies>(scene);
+        find_in(state);
+        EXPECT_EQ(state.overlaps, in_published_order(state));
     }
+}
+
+TEST(Find, InNineBoxesListsPartnersInThePublishedOrder) {
+    lists_partners_in_the_published_order<only_find_in_nine>();
+}
+
+TEST(Find, InFourBoxesListsPartnersInThePublishedOrder) {
+    lists_partners_in_the_published_order<only_find>();
 }
 
 TEST(Find, ListsPartnersInTheOrderOfTheirNumbersWithinABox) {
@@ -122,6 +165,29 @@ TEST(SelfContainedFind, ResolvesPairsWithinABoxAndNoOthers) {
     EXPECT_EQ(state.discs[1].vx, 0.5);
     EXPECT_EQ(state.discs[2].vx, 0.25);
     EXPECT_EQ(state.discs[3].vx, 0);
+}
+
+TEST(SelfContainedFind, LeavesNothingCollidingWithinABox) {
+    int resolves = 0;
+    for (const auto& [name, scene] : all_scenes()) {
+        SCOPED_TRACE(name);
+        State state = moved<Policies{}>(scene);
+        resolves += static_cast<int>(find_in(state).pair_resolves);
+        const auto box_of = [&](std::size_t i) {
+            return state.grid.box_of(state.grid.coordinate(state.discs[i].y),
+                                     state.grid.coordinate(state.discs[i].x));
+        };
+        for (std::size_t i = 0; i < state.discs.size(); ++i) {
+            for (const int partner : state.overlaps[i]) {
+                const auto j = static_cast<std::size_t>(partner);
+                Disc one = state.discs[i];
+                Disc two = state.discs[j];
+                EXPECT_FALSE(box_of(i) == box_of(j) && resolve_pair(one, two, Approach(Tolerance::relative)))
+                    << i << " and " << j;
+            }
+        }
+    }
+    EXPECT_GT(resolves, 500);
 }
 
 TEST(SelfContainedFind, FindsTheSameOverlaps) {

@@ -28,6 +28,8 @@ Box random_box(Random& random) {
     return {side, radius};
 }
 
+Rest random_rest(Random& random) { return random.coin() ? Rest::own_box : Rest::in_last_box; }
+
 double some_ulps_from(double value, Random& random) {
     const double ulp =
         std::nextafter(std::abs(value), std::numeric_limits<double>::infinity()) - std::abs(value);
@@ -84,6 +86,9 @@ TEST(Grid, HasBoxesOfAtLeastFourRadiiThatCoverTheSide) {
         ASSERT_GE(grid.box_side(), 4 * box.radius);
         ASSERT_GE(grid.boxes_per_side() * grid.box_side(), box.side);
         ASSERT_GE(grid.boxes_per_side(), 1);
+        const Grid wider(box.side, box.radius, 1, BoxSide::wide, Rest::in_last_box);
+        ASSERT_EQ(wider.box_side(), grid.box_side());
+        ASSERT_GE((wider.boxes_per_side() + 1) * wider.box_side(), box.side);
     }
 }
 
@@ -93,6 +98,24 @@ TEST(Grid, HasAtMost4096BoxesAlongASide) {
     EXPECT_EQ(grid.coordinate(1e60), 4095);
     EXPECT_EQ(grid.coordinate(0.5e60), 2048);
     EXPECT_TRUE(grid.at_wall(4095, 7));
+}
+
+TEST(Grid, PutsTheRestWhereItIsTold) {
+    EXPECT_EQ(Grid(52, 1, 1, BoxSide::wide, Rest::own_box).boxes_per_side(), 11);
+    EXPECT_EQ(Grid(50, 1, 1, BoxSide::wide, Rest::own_box).boxes_per_side(), 10);
+    const Grid wider(52, 1, 1, BoxSide::wide, Rest::in_last_box);
+    EXPECT_EQ(wider.boxes_per_side(), 10);
+    EXPECT_EQ(wider.coordinate(44.9), 8);
+    EXPECT_EQ(wider.coordinate(51.9), 9);
+    EXPECT_EQ(Grid(3, 1, 1, BoxSide::wide, Rest::in_last_box).boxes_per_side(), 1);
+    EXPECT_EQ(Grid(1e60, 1e-60, 1, BoxSide::wide, Rest::in_last_box).boxes_per_side(), 4096);
+}
+
+TEST(Grid, OfEachPublishedProgramHasItsRest) {
+    const Scene scene{.side = 52, .radius = 1, .steps = 1, .discs = {}};
+    EXPECT_EQ(State<Policies{}>(scene).grid.boxes_per_side(), 10);
+    EXPECT_EQ(State<Policies{.order = Order::track}>(scene).grid.boxes_per_side(), 10);
+    EXPECT_EQ(State<Policies{.order = Order::row}>(scene).grid.boxes_per_side(), 11);
 }
 
 TEST(GridCoordinate, IsTheNearestBoxForEveryPosition) {
@@ -129,10 +152,36 @@ TEST(GridCoordinate, NeverDecreasesWithThePosition) {
 
 TEST(GridReach, IsTowardsTheNearerBox) {
     const Grid grid(50, 1);
-    EXPECT_EQ(grid.reach(10.1, 2), -1);
-    EXPECT_EQ(grid.reach(12.4, 2), -1);
-    EXPECT_EQ(grid.reach(12.6, 2), 1);
-    EXPECT_EQ(grid.reach(14.9, 2), 1);
+    EXPECT_EQ(grid.reach(10.1), -1);
+    EXPECT_EQ(grid.reach(12.4), -1);
+    EXPECT_EQ(grid.reach(12.5), 1);
+    EXPECT_EQ(grid.reach(12.6), 1);
+    EXPECT_EQ(grid.reach(14.9), 1);
+    EXPECT_EQ(grid.reach(-0.1), -1);
+    EXPECT_EQ(grid.reach(-4.9), -1);
+}
+
+/// What the published program computes, in its own words.
+TEST(GridReach, IsThatOfThePublishedProgramForEveryPosition) {
+    Random random(26);
+    for (int trial = 0; trial < 2'000; ++trial) {
+        const int radius = random.below(60) + 1;
+        const int side = (4 * radius + 1) * (random.below(30) + 1) + random.below(4 * radius + 1);
+        const int width = 4 * radius + 1;
+        const Grid grid(side, radius);
+        for (int one = 0; one < 50; ++one) {
+            const double position =
+                random_position({static_cast<double>(side), static_cast<double>(radius)}, grid, random);
+            if (std::abs(position) < 1e9) {
+                const bool rounded_up = std::trunc(position / width) * width > position && position > 0;
+                const int upper = !rounded_up && std::fmod(position, width) >= width / 2.0 ? 1 : -1;
+                ASSERT_EQ(grid.reach(position), upper) << position << " in boxes of " << width;
+                ASSERT_EQ(grid.coordinate(position),
+                          std::clamp(static_cast<int>(position / width), 0, grid.boxes_per_side() - 1))
+                    << position << " in boxes of " << width;
+            }
+        }
+    }
 }
 
 TEST(GridNeighbours, OfBothNeighbourhoodsHoldEveryOverlappingPartner) {
@@ -140,7 +189,7 @@ TEST(GridNeighbours, OfBothNeighbourhoodsHoldEveryOverlappingPartner) {
     int across = 0;
     for (int trial = 0; trial < 3'000; ++trial) {
         const Box box = random_box(random);
-        const Grid grid(box.side, box.radius);
+        const Grid grid(box.side, box.radius, 1, BoxSide::wide, random_rest(random));
         for (int pair = 0; pair < 50; ++pair) {
             const Disc disc{random_position(box, grid, random), random_position(box, grid, random), 0, 0};
             const Disc partner = random_partner(disc, box.radius, random);
@@ -223,7 +272,7 @@ TEST(GridAtWall, HoldsForTheBoxOfEveryDiscThatOverlapsAWall) {
     int at_high_wall = 0;
     for (int trial = 0; trial < 3'000; ++trial) {
         const Box box = random_box(random);
-        const Grid grid(box.side, box.radius);
+        const Grid grid(box.side, box.radius, 1, BoxSide::wide, random_rest(random));
         for (int one = 0; one < 50; ++one) {
             const double x = random_position(box, grid, random);
             const double y = random_position(box, grid, random);

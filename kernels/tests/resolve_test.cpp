@@ -38,8 +38,8 @@ void every_disc_is_touched_by_one_group_at_most(const State<policies>& state, co
         first = group;
     };
     for (int i = 0; i < state.count(); ++i) {
-        const int box = state.box_of_disc[static_cast<std::size_t>(i)];
-        const int group = group_of(box / state.grid.boxes_per_side(), box % state.grid.boxes_per_side());
+        const auto& disc = state.discs[static_cast<std::size_t>(i)];
+        const int group = group_of(state.grid.coordinate(disc.y), state.grid.coordinate(disc.x));
         if (group < 0) {
             continue;
         }
@@ -166,10 +166,10 @@ TEST(Direction, DecidesWhichPartnerComesFirst) {
     const auto note = [&changed](int j) { changed.push_back(j); };
     // Disc 1 is listed with 0 and then 2; only after the blow from 0 has it anything to pass on to 2.
     ASSERT_EQ(forward.overlaps[1], (std::vector<int>{0, 2}));
-    resolve_disc_once(forward, 1, false, approaching, note);
+    visit<false, Direction::forward>(forward, 1, false, approaching, note);
     EXPECT_EQ(changed, (std::vector<int>{0, 2}));
     changed.clear();
-    resolve_disc_once(reverse, 1, false, approaching, note);
+    visit<false, Direction::reverse>(reverse, 1, false, approaching, note);
     EXPECT_EQ(changed, (std::vector<int>{0}));
 }
 
