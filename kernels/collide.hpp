@@ -43,51 +43,19 @@ template <class Real = double> struct Approach {
 
     /// `approach` is (v2 - v1).d; `distance_squared` is |d|^2, `speed_squared` |v1|^2 + |v2|^2.
     bool counts(Real approach, Real distance_squared, Real speed_squared) const {
-        return approach < -absolute && approach < -relative * std::sqrt(distance_squared * speed_squared);
+        return approach < -absolute &&
+               (relative == 0 || approach < -relative * std::sqrt(distance_squared * speed_squared));
     }
 
-    /// Does an approach below 0 surely count, whatever the rounding, in unit distance? It spares nearly every
-    /// pair the root; where it is false, `counts` decides.
-    bool surely_counts(Real approach, Real speed_squared) const {
-        return approach * approach > sure * speed_squared;
-    }
+    /// Does an approach below 0 surely count, whatever the rounding? `scale` is |d|^2 (|v1|^2 + |v2|^2). It
+    /// spares nearly every pair the root; where it is false, `counts` decides.
+    bool surely_counts(Real approach, Real scale) const { return approach * approach > sure * scale; }
 };
 
 /// Centres closer than this, squared, are coincident: |d|^2 has too few bits left to give a normal.
 template <class Real>
 inline constexpr Real coincident_squared =
     std::numeric_limits<Real>::min() / std::numeric_limits<Real>::epsilon();
-
-template <class Real> Real speed_squared(const BasicDisc<Real>& first, const BasicDisc<Real>& second) {
-    return first.vx * first.vx + first.vy * first.vy + second.vx * second.vx + second.vy * second.vy;
-}
-
-/// Resolves an overlapping pair if it collides; returns whether it did.
-///
-/// Equal masses, elastic, frictionless: the impulse acts along d and conserves momentum, so v1' = v1 + s d
-/// and v2' = v2 - s d. Energy |v1'|^2 + |v2'|^2 = |v1|^2 + |v2|^2 leaves s = 0 or s = ((v2 - v1).d) / |d|^2:
-/// the normal components are exchanged (Landau and Lifshitz, Mechanics, section 17). Coincident centres have
-/// no normal and are not colliding.
-template <class Real>
-bool resolve_pair(BasicDisc<Real>& first, BasicDisc<Real>& second, const Approach<Real>& approaching) {
-    const Real dx = second.x - first.x;
-    const Real dy = second.y - first.y;
-    const Real approach = (second.vx - first.vx) * dx + (second.vy - first.vy) * dy;
-    if (!(approach < 0)) {
-        return false;
-    }
-    const Real distance_squared = dx * dx + dy * dy;
-    if (distance_squared < coincident_squared<Real> ||
-        !approaching.counts(approach, distance_squared, speed_squared(first, second))) {
-        return false;
-    }
-    const Real impulse = approach / distance_squared;
-    first.vx += impulse * dx;
-    first.vy += impulse * dy;
-    second.vx -= impulse * dx;
-    second.vy -= impulse * dy;
-    return true;
-}
 
 /// Both components of a vector in one register. Loaded and stored together: a processor waits where it must
 /// put together what was stored apart.
@@ -119,6 +87,36 @@ template <class Real> struct BothComponents {
         return both;
     }
 };
+
+/// Resolves an overlapping pair if it collides; returns whether it did.
+///
+/// Equal masses, elastic, frictionless: the impulse acts along d and conserves momentum, so v1' = v1 + s d
+/// and v2' = v2 - s d. Energy |v1'|^2 + |v2'|^2 = |v1|^2 + |v2|^2 leaves s = 0 or s = ((v2 - v1).d) / |d|^2:
+/// the normal components are exchanged (Landau and Lifshitz, Mechanics, section 17). Coincident centres have
+/// no normal and are not colliding.
+template <class Real>
+[[gnu::always_inline]] inline bool resolve_pair(BasicDisc<Real>& first, BasicDisc<Real>& second,
+                                                const Approach<Real>& approaching) {
+    using Both = BothComponents<Real>;
+    const auto distance = Both::load_position(second) - Both::load_position(first);
+    const auto velocity1 = Both::load_velocity(first);
+    const auto velocity2 = Both::load_velocity(second);
+    const Real approach = Both::sum((velocity2 - velocity1) * distance);
+    if (!(approach < 0)) {
+        return false;
+    }
+    const Real distance_squared = Both::sum(distance * distance);
+    const Real speed_squared = Both::sum(velocity1 * velocity1 + velocity2 * velocity2);
+    if (distance_squared < coincident_squared<Real> ||
+        (!approaching.surely_counts(approach, distance_squared * speed_squared) &&
+         !approaching.counts(approach, distance_squared, speed_squared))) {
+        return false;
+    }
+    const auto impulse = approach / distance_squared * distance;
+    Both::store_velocity(velocity1 + impulse, first);
+    Both::store_velocity(velocity2 - impulse, second);
+    return true;
+}
 
 /// (v2 - v1).n
 template <class Real>

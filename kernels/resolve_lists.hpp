@@ -18,61 +18,73 @@ template <LookAtWalls walls, Policies policies> bool looks_at_wall(const State<p
     return walls == LookAtWalls::yes && state.overlaps_wall[static_cast<std::size_t>(i)] != 0;
 }
 
-/// A way through a list: `first`, then by `step` to `end`.
-struct Way {
-    int first;
-    int step;
-    int end;
+/// A part of a disc's list of partners that is still to be gone through.
+struct Partners {
+    const int* first;
+    const int* last;
+
+    explicit Partners(const std::vector<int>& list) : first(list.data()), last(list.data() + list.size()) {}
+
+    bool empty() const { return first == last; }
+    int size() const { return static_cast<int>(last - first); }
+
+    /// The next one in the given direction.
+    template <Direction direction> int next() const {
+        return direction == Direction::reverse ? last[-1] : *first;
+    }
+    template <Direction direction> void take() {
+        if constexpr (direction == Direction::reverse) {
+            --last;
+        } else {
+            ++first;
+        }
+    }
 };
 
-template <Direction direction> Way way_through(const std::vector<int>& list) {
-    const int size = static_cast<int>(list.size());
-    return direction == Direction::reverse ? Way{size - 1, -1, -1} : Way{0, 1, size};
-}
-
-/// From place `k` of a list of partners, the next place whose disc approaches `disc`, or `way.end`. Hardly
-/// any does: so the search has no branch but that one.
-template <class Real>
-[[gnu::always_inline]] inline int next_approaching(const BasicDisc<Real>& disc, const BasicDisc<Real>* discs,
-                                                   const int* partners, int k, const Way& way) {
+/// Goes through `partners` up to the next that approaches `disc`, or to their end.
+template <Direction direction, class Real>
+[[gnu::always_inline]] inline void find_approaching(const BasicDisc<Real>& disc, const BasicDisc<Real>* discs,
+                                                    Partners& partners) {
     using Both = BothComponents<Real>;
     const auto position = Both::load_position(disc);
     const auto velocity = Both::load_velocity(disc);
-    for (; k != way.end; k += way.step) {
-        const BasicDisc<Real>& partner = discs[partners[k]];
+    for (; !partners.empty(); partners.take<direction>()) {
+        const BasicDisc<Real>& partner = discs[partners.next<direction>()];
         const auto towards = position - Both::load_position(partner);
         if (Both::sum((velocity - Both::load_velocity(partner)) * towards) < 0) {
             break;
         }
     }
-    return k;
 }
 
-/// The visit of a disc at a wall or with an approaching partner, the first of them at place `k` of its list.
+/// The visit of a disc at a wall or with an approaching partner, the next of `partners`.
 template <bool again, Direction direction, Policies policies, class OnPartner>
-[[gnu::noinline]] Changes visit_from(State<policies>& state, int i, int k, bool at_wall,
+[[gnu::noinline]] Changes visit_from(State<policies>& state, int i, Partners partners, bool at_wall,
                                      const ApproachOf<policies>& approaching, const OnPartner& on_partner) {
     Changes changes;
     auto* const discs = state.discs.data();
-    const std::vector<int>& overlaps = state.overlaps[static_cast<std::size_t>(i)];
-    const Way way = way_through<direction>(overlaps);
+    auto& disc = discs[i];
+    const Partners all(state.overlaps[static_cast<std::size_t>(i)]);
     for (int pass = 0; pass < (again ? passes_per_visit : 1); ++pass) {
         const int before = changes.count();
-        changes.attempts += static_cast<int>(overlaps.size());
-        for (; k != way.end; k = next_approaching(discs[i], discs, overlaps.data(), k + way.step, way)) {
-            const int j = overlaps[static_cast<std::size_t>(k)];
-            if (resolve_pair(discs[i], discs[j], approaching)) {
+        changes.attempts += all.size();
+        while (!partners.empty()) {
+            const int j = partners.next<direction>();
+            if (resolve_pair(disc, discs[j], approaching)) {
                 ++changes.pairs;
                 on_partner(j);
             }
+            partners.take<direction>();
+            find_approaching<direction>(disc, discs, partners);
         }
         if (at_wall) {
-            changes.walls += resolve_walls(discs[i], state.side, state.radius);
+            changes.walls += resolve_walls(disc, state.side, state.radius);
         }
         if (changes.count() == before) {
             break;
         }
-        k = next_approaching(discs[i], discs, overlaps.data(), way.first, way);
+        partners = all;
+        find_approaching<direction>(disc, discs, partners);
     }
     return changes;
 }
@@ -84,21 +96,33 @@ template <bool again, Direction direction, Policies policies, class OnPartner>
 [[gnu::always_inline]] inline Changes visit(State<policies>& state, int i, bool at_wall,
                                             const ApproachOf<policies>& approaching,
                                             const OnPartner& on_partner) {
-    const std::vector<int>& overlaps = state.overlaps[static_cast<std::size_t>(i)];
-    const Way way = way_through<direction>(overlaps);
     const auto* const discs = state.discs.data();
-    const int k = next_approaching(discs[i], discs, overlaps.data(), way.first, way);
-    if (k == way.end && !at_wall) [[likely]] {
-        return {.attempts = static_cast<int>(overlaps.size())};
+    const Partners all(state.overlaps[static_cast<std::size_t>(i)]);
+    Partners partners = all;
+    find_approaching<direction>(discs[i], discs, partners);
+    if (partners.empty() && !at_wall) [[likely]] {
+        return {.attempts = all.size()};
     }
-    return visit_from<again, direction>(state, i, k, at_wall, approaching, on_partner);
+    return visit_from<again, direction>(state, i, partners, at_wall, approaching, on_partner);
 }
 
 inline constexpr auto ignore_partner = [](int) {};
 
+/// Asks for what the visits of a box will read, so that they do not wait for one cache line after another.
+template <Policies policies> void prefetch_box(const State<policies>& state, int row, int column) {
+    for (const int i : state.discs_in(row, column)) {
+        __builtin_prefetch(&state.overlaps[static_cast<std::size_t>(i)]);
+        __builtin_prefetch(&state.discs[static_cast<std::size_t>(i)]);
+    }
+    for (const int i : state.discs_in(row, column)) {
+        __builtin_prefetch(state.overlaps[static_cast<std::size_t>(i)].data());
+    }
+}
+
 template <Policies policies>
 Changes resolve_box(State<policies>& state, int row, int column, const ApproachOf<policies>& approaching) {
     Changes changes;
+    prefetch_box(state, row, column);
     const bool at_wall = state.grid.at_wall(row, column);
     for (const int i : state.discs_in(row, column)) {
         changes += visit<true, policies.direction>(
