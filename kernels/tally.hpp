@@ -8,6 +8,7 @@ namespace carom {
 struct Tally {
     std::int64_t overlaps = 0;      ///< overlapping pairs, each counted once
     std::int64_t pair_resolves = 0; ///< pairs whose velocities were changed
+    std::int64_t pair_attempts = 0; ///< overlapping pairs asked whether they collide
     std::int64_t wall_resolves = 0; ///< velocity components turned by a wall
     std::int64_t sweeps = 0;        ///< sweeps of the resolve, the last, which changes nothing, included
     bool settled = true;            ///< false: the sweep limit was reached with something still colliding
@@ -17,6 +18,7 @@ struct Tally {
     Tally& operator+=(const Tally& other) {
         overlaps += other.overlaps;
         pair_resolves += other.pair_resolves;
+        pair_attempts += other.pair_attempts;
         wall_resolves += other.wall_resolves;
         sweeps += other.sweeps;
         settled = settled && other.settled;
