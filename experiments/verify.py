@@ -42,7 +42,7 @@ class Verifier:
         kept = _verdict(self._store.note(_name(point, scene)))
         if kept is not None:
             return kept
-        command = check_command(point.program, scene.path, point.variant, point.threads)
+        command = check_command(point.program, scene.path, point.variant, point.threads, point.tolerance)
         done = run_in_turn(command, point.openmp, self._time_limit)
         reason = "" if done.exit_code == 0 else f"check of each step: {done.reason}"
         if done.exit_code in (0, CHECK_FAILED):
@@ -60,5 +60,5 @@ def _verdict(kept: object) -> Completed | None:
 
 
 def _name(point: Point, scene: SceneFile) -> str:
-    content = f"{point.program.sha256} {point.variant} {scene.sha256}"
+    content = f"{point.program.sha256} {point.variant} {point.tolerance} {scene.sha256}"
     return f"checks/{hashlib.sha256(content.encode()).hexdigest()[:16]}.json"
