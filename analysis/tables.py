@@ -46,7 +46,7 @@ OUTSIDE = [
 IDENTITY = ["compiler_family", "node", "machine", "revision"]
 CONTEXT = [
     "file", "kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene", "scene_sha256", *SCENE,
-    *PROVENANCE, "openmp", "environment", "warm_ups", *IDENTITY,
+    *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment", "warm_ups", *IDENTITY,
 ]  # fmt: skip
 
 
@@ -75,6 +75,8 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
         **{column: scene[column] for column in SCENE},
         **{column: origin[column] for column in PROVENANCE},
         "openmp": f"{origin['openmp']['runtime']} {origin['openmp']['version']}",
+        "openmp_runtime": origin["openmp"]["runtime"],
+        "proc_bind": origin["openmp"]["proc_bind"],
         "environment": " ".join(f"{k}={v}" for k, v in sorted(origin["openmp"]["environment"].items())),
         "warm_ups": record["warm_ups"],
         "compiler_family": _compiler_family(origin["compiler"]),
