@@ -29,7 +29,7 @@ def fewer_wasted_attempts(
     if before.empty or after.empty:
         return no_records(experiment, "a sweep of seeds")
     if runs["pair_attempts"].isna().any():
-        return Outcome(OPEN, why="attempts were not counted: the records are from an older program")
+        return Outcome(OPEN, why="attempts were not counted by the program that made the records")
     rows = {
         value: judge_one(_over_seeds(before, after, value))
         for value in ("wasted_attempts", "pair_attempts", "pair_resolves")
