@@ -102,13 +102,17 @@ def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> tuple
     origin = claim.published
     number = "" if origin.threads is None else str(origin.threads)
     said = ", ".join(part for part in (number, origin.threads_said) if part) or "not stated"
-    scenes = runs["scene"].nunique()
-    sizes = sorted(int(size) for size in runs["particles"].unique())
-    discs = f"{listed([sizes[0], sizes[-1]], ' to ')} discs" if len(sizes) > 1 else f"{listed(sizes)} discs"
+    ends = {name: _ends(runs[name]) for name in ("particles", "radius", "side", "steps") if len(runs)}
+    scene = "{particles} discs of radius {radius}, side {side}, {steps} steps".format(**ends) if ends else "–"
     models = listed(sorted(runs["cpu_model"].unique()))
     return (
         Compared("threads", said, listed(tested)),
         Compared("machine", origin.machine, models),
-        Compared("scene", origin.scene, f"{discs}, {count(scenes, 'scene')}"),
+        Compared("scene", origin.scene, scene),
         Compared("tolerance", "published", listed(sorted(runs["tolerance"].unique()))),
     )
+
+
+def _ends(column: pd.Series) -> str:
+    """Return a column's value, or its least and greatest."""
+    return listed(sorted({float(column.min()), float(column.max())}), " to ")

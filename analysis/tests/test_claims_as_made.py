@@ -34,6 +34,9 @@ def test_a_verdict_on_other_threads_says_so(
     assert row["said"].replace("\u00a0", " ") == said
     assert (row["claimed_threads"], row["tested_threads"]) == ((20,), (threads,))
     assert figures(row)["threads"] == ("20", str(threads))
+    scene = "100 000 discs of radius 16, side 10 000, 100 steps"
+    assert [one.replace("\u00a0", " ") for one in figures(row)["scene"]] == [scene, scene]
+    assert figures(row)["tolerance"] == ("published", "relative")
 
 
 def test_the_claimed_threads_and_machines_are_those_of_the_published_times() -> None:

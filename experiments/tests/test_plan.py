@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 from experiments.errors import InputError
 from experiments.plan import Surroundings, plan
 from experiments.point import Point
-from experiments.program import Program, find_programs
+from experiments.program import Program, check_command, find_programs
 from experiments.question import load_question
 from experiments.scale import SCALES
-from experiments.scenes import HardCase, Scene
+from experiments.scenes import HardCase, Scene, SceneFile
 from experiments.site import Machine, load_site
 from experiments.tests.conftest import CHUNKS, ERRORS, PAIR, Workplace, generated
+from experiments.verify import note_of
 
 CONTENT: dict[str, st.SearchStrategy[Any]] = {
     "label": st.sampled_from([None, "A", "A-again"]),
@@ -141,6 +142,17 @@ def test_an_optional_series_is_left_out_where_its_program_is_not_built(workplace
         built, programs={**built.programs, "clang": replace(program, name="clang", sha256="1" * 64)}
     )
     assert [one.program.name for one in plan(question, there).points] == ["gcc", "clang"]
+
+
+def test_a_variant_is_checked_with_the_tolerance_that_it_is_timed_with(workplace: Workplace) -> None:
+    (point, _) = plan(
+        load_question(workplace.root / "questions" / "pair.toml"), surroundings(workplace)
+    ).points
+    assert point.tolerance == "published"
+    command = check_command(point.program, Path("s.in"), point.variant, point.threads, point.tolerance)
+    assert command[-2:] == ("--tolerance", "published")
+    scene = SceneFile(Path("s.in"), "0" * 64)
+    assert note_of(point, scene) != note_of(replace(point, tolerance="relative"), scene)
 
 
 def test_what_is_not_bound_is_bound_at_no_number_of_threads(workplace: Workplace) -> None:
