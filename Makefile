@@ -5,7 +5,7 @@
 # Goals and prerequisites run one after another in the order given, also in `make -j2 setup test`.
 .NOTPARALLEL:
 .SILENT:
-.PHONY: help setup environment build build-gcc build-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files movie \
+.PHONY: help setup environment build build-gcc build-clang build-gcc-libomp test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files movie \
         experiments status submit resume collect figures report compare lint lint-quick format clean distclean
 
 export COMPILER ?= gcc
@@ -26,13 +26,20 @@ help: ## list these verbs
 setup: ## install what is missing and make .venv (PYTHON=another Python, 3.11 or newer)
 	./setup.sh
 
-build: ## build build/$COMPILER/carom (COMPILER=gcc|clang; JOBS=; WERROR=1 stops at a warning)
-	case "$$COMPILER" in gcc|clang) ;; *) echo "COMPILER=$$COMPILER: expected gcc or clang" >&2; exit 1;; esac
+build: ## build build/$COMPILER/carom (COMPILER=gcc|clang|gcc-libomp; JOBS=; WERROR=1 stops at a warning)
+	case "$$COMPILER" in gcc|clang|gcc-libomp) ;; *) echo "COMPILER=$$COMPILER: expected gcc, clang or gcc-libomp" >&2; exit 1;; esac
 	$(MAKE) --no-print-directory "build-$$COMPILER"
 
 build-gcc build-clang: build-%:
 	CXX=$(CXX_$*) $(generator) cmake --preset release -B build/$* -DCAROM_WARNINGS_AS_ERRORS="$${WERROR:+ON}"
 	cmake --build build/$* $(jobs)
+
+# g++'s code with the OpenMP runtime of clang++, which has g++'s entry points too: to compare the compilers' code alone.
+build-gcc-libomp:
+	CXX=g++ $(generator) cmake --preset release -B build/gcc-libomp -DBUILD_TESTING=OFF \
+		-DOpenMP_CXX_FLAGS=-fopenmp -DOpenMP_CXX_LIB_NAMES=omp \
+		-DOpenMP_omp_LIBRARY="$$(dirname "$$(readlink -f "$$(command -v clang++)")")/../lib/libomp.so"
+	cmake --build build/gcc-libomp $(jobs) --target carom
 
 test: lint-quick build-gcc build-clang ## build with both compilers and run every quick test
 	ctest --test-dir build/gcc --output-on-failure --no-tests=error -LE slow $(jobs)

@@ -112,7 +112,7 @@ def _claims(options: argparse.Namespace) -> int:
         print(study.name)
         for row in claims.evaluate(study, studies, published.load()).itertuples():
             detail = "; ".join(part for part in (row.measured, row.why) if part)
-            print(f"  {row.id:27}{row.verdict:25}{detail}")
+            print(f"  {row.id:27}{row.said:25} {detail}")
     return 0
 
 

@@ -28,7 +28,8 @@ LATER_AXES = {
 COLUMN_OF = {"overlaps": "overlaps_kept"}
 """The columns of axes whose name in the record is that of a count, too."""
 LATER_COLUMNS = [COLUMN_OF.get(name, name) for name in LATER_AXES]
-WORK = ["overlaps", "pair_resolves", "wall_resolves", "sweeps"]
+WORK = ["overlaps", "pair_resolves", "wall_resolves", "pair_attempts", "sweeps"]
+"""Totals over the S steps; `pair_attempts` is NaN where they were not counted."""
 ERRORS = [
     "energy_drift", "discs_outside", "unresolved_pairs", "momentum_drift", "penetration_worst",
     "penetration_mean", "time_to_tenth_radius", "collision_rate", "collision_rate_reference", "pressure",
@@ -45,7 +46,7 @@ OUTSIDE = [
 IDENTITY = ["compiler_family", "node", "machine", "revision"]
 CONTEXT = [
     "file", "kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene", "scene_sha256", *SCENE,
-    *PROVENANCE, "openmp", "environment", "warm_ups", *IDENTITY,
+    *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment", "warm_ups", *IDENTITY,
 ]  # fmt: skip
 
 
@@ -74,6 +75,8 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
         **{column: scene[column] for column in SCENE},
         **{column: origin[column] for column in PROVENANCE},
         "openmp": f"{origin['openmp']['runtime']} {origin['openmp']['version']}",
+        "openmp_runtime": origin["openmp"]["runtime"],
+        "proc_bind": origin["openmp"]["proc_bind"],
         "environment": " ".join(f"{k}={v}" for k, v in sorted(origin["openmp"]["environment"].items())),
         "warm_ups": record["warm_ups"],
         "compiler_family": _compiler_family(origin["compiler"]),
@@ -105,7 +108,7 @@ def runs(records: Named) -> pd.DataFrame:
     rows = [
         {
             **context(name, record),
-            **{column: record["work"][column] for column in WORK},
+            **{column: record["work"].get(column) for column in WORK},
             **{column: (record["errors"] or {}).get(column) for column in ERRORS},
             "has_errors": _has_errors(record),
             "check_verdict": record["check"]["verdict"],
@@ -122,7 +125,7 @@ def runs(records: Named) -> pd.DataFrame:
         "has_errors", "check_verdict", "check_scope", "check_reason", "repetitions", "parse_seconds",
         "process_seconds", "profile_cost",
     ]  # fmt: skip
-    return _table(rows, [*WORK, *ERRORS, *extra]).astype(dict.fromkeys(ERRORS, float))
+    return _table(rows, [*WORK, *ERRORS, *extra]).astype(dict.fromkeys([*ERRORS, "pair_attempts"], float))
 
 
 def trajectory(records: Named) -> pd.DataFrame:

@@ -1,7 +1,7 @@
 """How numbers are said: one way for captions, claims, the report and the terminal."""
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from typing import Any
 
 import pandas as pd
@@ -32,6 +32,16 @@ def percent(fraction: float, digits: int = 1) -> str:
     if not math.isfinite(fraction):
         return number(fraction)
     return f"{fraction * 100:+.{digits}f}{NO_BREAK}%".replace("-", "−")
+
+
+def factor(ratio: float) -> str:
+    """Return a ratio as a factor, e.g. `×5.67`; an en dash for one that is not known."""
+    return f"×{number(ratio)}" if math.isfinite(ratio) else "–"
+
+
+def listed(values: Iterable[float | str], between: str = ", ") -> str:
+    """Return values side by side, numbers as they are."""
+    return between.join(value if isinstance(value, str) else exact(value) for value in values)
 
 
 def share(fraction: float, digits: int = 0) -> str:

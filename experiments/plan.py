@@ -56,6 +56,7 @@ def plan(question: Question, around: Surroundings) -> Experiment:
         _point(question, number, series, place, value, around)
         for place in around.scale.places(question)
         for number, series in enumerate(question.series, start=1)
+        if not _left_out(series, around)
         for value in _values(question, _known(question, number, series, around), around)
     ]
     if not points:
@@ -72,6 +73,12 @@ def plan(question: Question, around: Surroundings) -> Experiment:
                 f"{other.x:g} measures; expected different points, or a label for one of them"
             )
     return Experiment(question, tuple(points), f"{around.seed} {question.name}")
+
+
+def _left_out(series: Series, around: Surroundings) -> bool:
+    """Whether the series may be missing and its program is."""
+    program = around.programs.get(series.program)
+    return series.optional and (program is None or program.sha256 is None)
 
 
 def _known(question: Question, number: int, series: Series, around: Surroundings) -> Series:
@@ -145,16 +152,22 @@ def _point(
         repetitions=question.repetitions,
         errors=question.errors,
         simulated=around.scale.simulated(question),
-        openmp=tuple(sorted(around.site.binding.environment(threads, around.machine).items())),
+        openmp=_openmp(question, threads, around),
         **chunks,
     )
+
+
+def _openmp(question: Question, threads: int, around: Surroundings) -> tuple[tuple[str, str], ...]:
+    variables = around.site.binding.environment(threads, around.machine, bound=question.bound)
+    return tuple(sorted(variables.items()))
 
 
 def _swept(question: Question, scene: Scene, parameter: str, value: float) -> Scene:
     """The scene with one parameter changed; the side follows where the question keeps the area fraction."""
     if parameter == "area_fraction":
         return scene.with_area_fraction(value)
-    changed: dict[str, Any] = {parameter: int(value) if parameter in ("particles", "steps") else value}
+    whole = parameter in ("particles", "steps", "seed")
+    changed: dict[str, Any] = {parameter: int(value) if whole else value}
     swept = replace(scene, **changed)
     if question.sweep.constant == "area_fraction":
         swept = swept.with_area_fraction(scene.area_fraction)

@@ -57,9 +57,12 @@ def generate(program: Program, scene: AnyScene, path: Path) -> None:
         raise InputError(f"scene {' '.join(scene.arguments)}: {done.reason}")
 
 
-def check_command(program: Program, scene: Path, variant: str, threads: int) -> tuple[str, ...]:
+def check_command(
+    program: Program, scene: Path, variant: str, threads: int, tolerance: str
+) -> tuple[str, ...]:
     """The command that verifies every step of a variant on a scene."""
-    return (str(program.path), "check", str(scene), str(threads), "--variant", variant)
+    words = (str(program.path), "check", str(scene), str(threads), "--variant", variant)
+    return (*words, "--tolerance", tolerance)
 
 
 def tag_arguments(tags: Mapping[str, str | int | float]) -> tuple[str, ...]:

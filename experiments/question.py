@@ -17,7 +17,7 @@ _NUMBER = re.compile(r"\s*-?(0|[1-9]\d*)(\.\d+)?([eE][+-]?\d+)?\s*")
 _OF_THE_RUN = ("threads", "find_chunk", "resolve_chunk", "substeps")
 _OF_ERRORS = ("speed_against_error", "hard_cases")
 _OF_SCENES = (*_OF_ERRORS, "ladder", "limits")
-_WHOLE_NUMBERS = (*_OF_THE_RUN, "particles", "steps")
+_WHOLE_NUMBERS = (*_OF_THE_RUN, "particles", "steps", "seed")
 
 Threads = int | Literal["cores", "hardware_threads"]
 
@@ -60,6 +60,7 @@ class Series:
     label: str | None = None
     find_chunk: int | None = None
     resolve_chunk: int | None = None
+    optional: bool = False
     values: tuple[float, ...] = ()
     quick_values: tuple[float, ...] = ()
 
@@ -78,7 +79,9 @@ class Question:
     claim: str | None = None
     verb: Literal["bench", "profile"] = "bench"
     threads: Threads = "hardware_threads"
+    bound: bool = True
     tolerance: Literal["relative", "published"] = "relative"
+    tolerance_reason: str | None = None
     substeps: int = 1
     warm_up: int = 0
     repetitions: int = 1
@@ -166,6 +169,7 @@ def _check(question: Question) -> None:
     _check_names(question)
     _check_scenes(question)
     _check_errors(question)
+    _check_tolerance(question)
     if sweep.parameter == "substeps" and question.substeps != 1:
         raise InputError(f"{file}: substeps: found beside a sweep of it, expected either")
     for key, only in (("unit", "threads"), ("limit", "threads"), ("constant", "particles")):
@@ -219,6 +223,19 @@ def _check_errors(question: Question) -> None:
         raise InputError(
             f"{file}: scenes: found several for figure {figure}, expected one, or one of the figures "
             f"{', '.join(_OF_SCENES)}"
+        )
+
+
+def _check_tolerance(question: Question) -> None:
+    """A published claim is about the published program, and so about its tolerance, unless that cannot be."""
+    if question.claim and question.tolerance != "published" and question.tolerance_reason is None:
+        raise InputError(
+            f"{question.file}: tolerance: found {question.tolerance} for a published claim, expected "
+            '"published", or a tolerance_reason'
+        )
+    if question.tolerance == "published" and question.tolerance_reason is not None:
+        raise InputError(
+            f"{question.file}: tolerance_reason: found beside the published tolerance, which needs none"
         )
 
 

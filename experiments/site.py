@@ -33,9 +33,9 @@ class Binding:
     proc_bind: str
     proc_bind_oversubscribed: str
 
-    def environment(self, threads: int, machine: Machine) -> dict[str, str]:
-        """The OpenMP variables of a process with `threads` threads."""
-        oversubscribed = threads > machine.cores
+    def environment(self, threads: int, machine: Machine, *, bound: bool = True) -> dict[str, str]:
+        """The OpenMP variables of a process; not `bound`: those of more threads than cores, however few."""
+        oversubscribed = threads > machine.cores or not bound
         return {
             "OMP_DYNAMIC": "false",
             "OMP_NUM_THREADS": str(threads),

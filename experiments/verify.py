@@ -31,7 +31,7 @@ def representative(experiment: Experiment, point: Point) -> Point:
 
 
 class Verifier:
-    """Runs `carom check`, once for each content of program, variant and scene; verdicts are kept."""
+    """Runs `carom check`, once for each program, variant, tolerance and scene; verdicts are kept."""
 
     def __init__(self, store: Store, time_limit: float) -> None:
         self._store = store
@@ -39,15 +39,15 @@ class Verifier:
 
     def check(self, point: Point, scene: SceneFile) -> Completed:
         """The verdict on the point's variant on that scene: exit code 0 if each of its steps passed."""
-        kept = _verdict(self._store.note(_name(point, scene)))
+        kept = _verdict(self._store.note(note_of(point, scene)))
         if kept is not None:
             return kept
-        command = check_command(point.program, scene.path, point.variant, point.threads)
+        command = check_command(point.program, scene.path, point.variant, point.threads, point.tolerance)
         done = run_in_turn(command, point.openmp, self._time_limit)
         reason = "" if done.exit_code == 0 else f"check of each step: {done.reason}"
         if done.exit_code in (0, CHECK_FAILED):
             verdict = {"command": list(command), "exit_code": done.exit_code, "reason": reason}
-            self._store.keep_note(_name(point, scene), verdict)
+            self._store.keep_note(note_of(point, scene), verdict)
         return Completed(command, done.exit_code, "", reason if done.exit_code != TIMED_OUT else done.error)
 
 
@@ -59,6 +59,7 @@ def _verdict(kept: object) -> Completed | None:
     return None
 
 
-def _name(point: Point, scene: SceneFile) -> str:
-    content = f"{point.program.sha256} {point.variant} {scene.sha256}"
+def note_of(point: Point, scene: SceneFile) -> str:
+    """The name under which the verdict on a variant, a tolerance and a scene is kept."""
+    content = f"{point.program.sha256} {point.variant} {point.tolerance} {scene.sha256}"
     return f"checks/{hashlib.sha256(content.encode()).hexdigest()[:16]}.json"

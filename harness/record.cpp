@@ -36,6 +36,7 @@ Json work_json(const Measurement& measurement, const Tally& work) {
             {"overlaps", work.overlaps},
             {"pair_resolves", work.pair_resolves},
             {"wall_resolves", work.wall_resolves},
+            {"pair_attempts", pair_attempts_or_null(work)},
             {"sweeps", work.sweeps}};
 }
 
@@ -87,6 +88,10 @@ Json scene_json(const Scene& scene, const std::string& name, const std::string& 
 
 Json number_or_null(const std::optional<double>& value) {
     return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json pair_attempts_or_null(const Tally& work) {
+    return work.pair_attempts < work.pair_resolves ? Json(nullptr) : Json(work.pair_attempts);
 }
 
 Json record_json(const Measurement& measurement) {

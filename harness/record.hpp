@@ -43,6 +43,10 @@ nlohmann::ordered_json scene_json(const Scene& scene, const std::string& name, c
 /// A number, or null where there is none or it is not finite.
 nlohmann::ordered_json number_or_null(const std::optional<double>& value);
 
+/// The attempts at resolving a pair; null where the variant does not count them: there are never fewer than
+/// resolves.
+nlohmann::ordered_json pair_attempts_or_null(const Tally& work);
+
 /// Now, in UTC, as ISO 8601 says it.
 std::string utc_now();
 

@@ -17,6 +17,7 @@
 #include "harness/policies_json.hpp"
 #include "harness/process_clock.hpp"
 #include "harness/progress_bar.hpp"
+#include "harness/record.hpp"
 #include "harness/scene_file.hpp"
 #include "harness/text.hpp"
 #include "harness/threads.hpp"
@@ -72,10 +73,14 @@ nlohmann::ordered_json summary_json(const RunOptions& options, const Scene& scen
         {"overlaps_per_step", per_step(run.work.overlaps)},
         {"pair_resolves_per_step", per_step(run.work.pair_resolves)},
         {"wall_resolves_per_step", per_step(run.work.wall_resolves)},
+        {"pair_attempts_per_step", nullptr},
         {"sweeps_per_step", per_step(run.work.sweeps)},
         {"energy_drift", nullptr},
         {"discs_outside", discs_outside(scene, run.discs)},
         {"state_hash", state_hash(run.discs)}};
+    if (!pair_attempts_or_null(run.work).is_null()) {
+        json["pair_attempts_per_step"] = per_step(run.work.pair_attempts);
+    }
     if (drift) {
         json["energy_drift"] = *drift;
     }

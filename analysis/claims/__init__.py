@@ -1,52 +1,118 @@
 """The claims of the published study, each tested again on the records."""
 
-import tomllib
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
-from pathlib import Path
-from typing import Any
+from dataclasses import asdict, replace
 
 import pandas as pd
 
-from analysis.claims import curves, machines, ratios
-from analysis.claims.outcome import Outcome
+from analysis.claims import compilers, counts, curves, machines, phases, ratios, scaling, schedules
+from analysis.claims.entry import Claim, Evidence, load
+from analysis.claims.outcome import ELSEWHERE, OPEN, Compared, Outcome, Verdict
 from analysis.published import Published
 from analysis.studies import Study
+from analysis.wording import count, listed
 
-CLAIMS_FILE = Path(__file__).parent / "claims.toml"
+__all__ = ["TESTS", "Claim", "evaluate", "load"]
+
 TESTS: dict[str, Callable[..., Outcome]] = {
-    "scaling": curves.scaling,
+    "scaling": scaling.scaling,
     "grows": curves.grows,
     "linear": curves.linear,
     "falls_then_rises": curves.falls_then_rises,
     "spike_then_linear": curves.spike_then_linear,
     "pair": ratios.pair,
-    "fewer_resolves": ratios.fewer_resolves,
-    "best_schedule": ratios.best_schedule,
-    "phase_dominates": ratios.phase_dominates,
+    "compilers": compilers.compilers,
+    "fewer_wasted_attempts": counts.fewer_wasted_attempts,
+    "best_schedule": schedules.best_schedule,
+    "phase_dominates": phases.phase_dominates,
+    "clock": machines.clock,
 }
-
-
-def load() -> list[dict[str, Any]]:
-    """Read the claims: `id`, `claim`, `published`, `test` and the test's arguments."""
-    return list(tomllib.loads(CLAIMS_FILE.read_text(encoding="utf-8"))["claim"])
+"""Each a function of the evidence and of the claim's arguments."""
 
 
 def evaluate(study: Study, studies: Sequence[Study], published: Published) -> pd.DataFrame:
-    """Return a row a claim: `id`, `claim`, `published`, `experiments`, `verdict`, `measured`, `why`.
+    """Return a row a claim: `id`, `claim`, `effect` and `claimed_threads` as published, `experiments`,
+    `tested_threads`, `verdict` with `said`, the same in words, `measured`, `why`, `figures` and `missing`.
 
     Everything is judged on the records of `study`, except the claim about machines, which needs all of them.
     """
-    rows = []
-    for claim in load():
-        arguments = {
-            key: value for key, value in claim.items() if key not in ("id", "claim", "published", "test")
-        }
-        if claim["test"] == "clock":
-            outcome = machines.clock(study, studies, published, **arguments)
-        else:
-            outcome = TESTS[claim["test"]](study, **arguments)
-        experiments = arguments.get("experiments") or [arguments["experiment"]]
-        stated = {key: claim[key] for key in ("id", "claim", "published")}
-        rows.append({**stated, "experiments": experiments, **asdict(outcome)})
-    return pd.DataFrame(rows)
+    evidence = Evidence(study, studies, published)
+    return pd.DataFrame([_row(claim, evidence) for claim in load()])
+
+
+def _row(claim: Claim, evidence: Evidence) -> dict[str, object]:
+    study = evidence.study
+    runs = study.runs[study.runs["experiment"].isin(claim.experiments)]
+    tested = tuple(sorted(int(number) for number in runs["threads"].unique()))
+    outcome = TESTS[claim.test](evidence, **claim.arguments)
+    outcome = _with_failures(_at_scale(_at_threads(outcome, claim, tested), claim, study.scale), claim, study)
+    figures = (*_setting(claim, tested, runs), *outcome.figures)
+    return {
+        "id": claim.id,
+        "claim": claim.claim,
+        "effect": claim.published.effect,
+        "claimed_threads": () if claim.published.threads is None else (claim.published.threads,),
+        "experiments": list(claim.experiments),
+        "tested_threads": tested,
+        "said": _said(outcome.verdict, claim, tested, study.scale),
+        **asdict(replace(outcome, figures=())),
+        "figures": figures if len(runs) else (),
+    }
+
+
+def _at_threads(outcome: Outcome, claim: Claim, tested: tuple[int, ...]) -> Outcome:
+    """A verdict on other threads than those of the claim is one about them alone."""
+    claimed = claim.published.threads
+    if claimed is None or tested == (claimed,):
+        return outcome
+    return replace(outcome, verdict=ELSEWHERE.get(outcome.verdict, outcome.verdict))
+
+
+def _at_scale(outcome: Outcome, claim: Claim, scale: str) -> Outcome:
+    """A scale at which a claim may not be decided leaves what was measured, and no verdict."""
+    if scale in claim.scales or (outcome.verdict == OPEN and not outcome.measured):
+        return outcome
+    return replace(outcome, verdict=Verdict.OTHER_SCALE, why=claim.other_scales)
+
+
+def _with_failures(outcome: Outcome, claim: Claim, study: Study) -> Outcome:
+    """Say how many points have no time because they failed: what they would have shown is not known."""
+    failed = study.failures[study.failures["experiment"].isin(claim.experiments)]
+    if failed.empty:
+        return outcome
+    said = f"{count(len(failed), 'process')} failed and left no time"
+    return replace(outcome, why=f"{outcome.why}; {said}" if outcome.why else said)
+
+
+def _said(verdict: Verdict, claim: Claim, tested: tuple[int, ...], scale: str) -> str:
+    if verdict == Verdict.OTHER_SCALE:
+        return f"cannot be decided at {scale} scale"
+    plain = {elsewhere: plain for plain, elsewhere in ELSEWHERE.items()}.get(verdict)
+    if plain is None:
+        return str(verdict)
+    return f"{plain} at {_threads(tested)} (claimed at {claim.published.threads})"
+
+
+def _threads(tested: tuple[int, ...]) -> str:
+    return count(tested[0], "thread") if len(tested) == 1 else f"{listed(tested)} threads"
+
+
+def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> tuple[Compared, ...]:
+    """The study's parameters beside those of our records."""
+    origin = claim.published
+    number = "" if origin.threads is None else str(origin.threads)
+    said = ", ".join(part for part in (number, origin.threads_said) if part) or "not stated"
+    ends = {name: _ends(runs[name]) for name in ("particles", "radius", "side", "steps") if len(runs)}
+    scene = "{particles} discs of radius {radius}, side {side}, {steps} steps".format(**ends) if ends else "–"
+    models = listed(sorted(runs["cpu_model"].unique()))
+    return (
+        Compared("threads", said, listed(tested)),
+        Compared("machine", origin.machine, models),
+        Compared("scene", origin.scene, scene),
+        Compared("tolerance", "published", listed(sorted(runs["tolerance"].unique()))),
+    )
+
+
+def _ends(column: pd.Series) -> str:
+    """Return a column's value, or its least and greatest."""
+    return listed(sorted({float(column.min()), float(column.max())}), " to ")

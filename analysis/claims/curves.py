@@ -1,81 +1,118 @@
 """Claims about how the time changes over a swept parameter."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import pandas as pd
 
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Outcome, both, no_records
+from analysis.claims import published_curves
+from analysis.claims.alternatives import alternatives
+from analysis.claims.entry import Evidence
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.trends import growth, linearity, turn
-from analysis.statistics.verdicts import ERROR, MARGIN, holm, judge_one
 from analysis.studies import Study
-from analysis.wording import blocks, change, exact, interval
+from analysis.wording import blocks, change, exact, factor, interval, listed, number
 
 ONE_POINT = "needs at least two values of the swept parameter"
 FOUR_POINTS = "needs four values measured in the same block"
 
 
-def _processes(study: Study, experiment: str) -> pd.DataFrame:
+def published_processes(study: Study, experiment: str) -> pd.DataFrame:
     """Return the processes of the published variant, of which the claims speak, or of all if it has none."""
     processes = process_medians(study.times_of(experiment))
     published = processes[processes["variant"] == "published"]
     return processes if published.empty else published
 
 
-def grows(study: Study, experiments: Sequence[str]) -> Outcome:
-    """Test that the time grows over the whole range of each experiment."""
-    return both([_grows(study, experiment) for experiment in experiments])
+def grows(evidence: Evidence, experiments: Sequence[str]) -> Outcome:
+    """Test that the time grows over the range of each experiment, but for its degenerate ends.
+
+    Those are measured and drawn, and do not decide. How much the time grows is said beside the published
+    growth, and does not decide either: the claim is a direction.
+    """
+    return both([_grows(evidence, experiment) for experiment in experiments])
 
 
-def _grows(study: Study, experiment: str) -> Outcome:
-    processes = _processes(study, experiment)
+def _grows(evidence: Evidence, experiment: str) -> Outcome:
+    processes = published_processes(evidence.study, experiment)
     if processes.empty:
         return no_records(experiment)
-    if processes["x"].nunique() < 2:
+    kept = evidence.published.without_degenerate(experiment, processes)
+    if kept["x"].nunique() < 2:
         return Outcome(OPEN, why=ONE_POINT)
-    trend = growth(processes)
+    trend = growth(kept)
     name = processes["x_name"].iloc[0]
+    without = sorted(set(processes["x"]) - set(kept["x"]))
     measured = (
         f"{change(trend.change)} of time from {name} = {exact(trend.first)} to {exact(trend.last)}, "
         f"exponent {interval(trend.exponent)}, {blocks(trend.change)}"
-    )
+    ) + (f" (without the degenerate {name} = {listed(without)})" if without else "")
+    figures = (_growth_compared(evidence, experiment, kept),)
     if trend.verdict == "inconclusive":
-        return Outcome(OPEN, measured, TOO_FEW)
-    return Outcome(HOLDS if trend.verdict == "grows" else FAILS, measured)
+        return Outcome(OPEN, measured, TOO_FEW, figures)
+    return Outcome(HOLDS if trend.verdict == "grows" else FAILS, measured, figures=figures)
 
 
-def linear(study: Study, experiment: str, within: tuple[float, float]) -> Outcome:
+def _growth_compared(evidence: Evidence, experiment: str, processes: pd.DataFrame) -> Compared:
+    """Return by which factor the time grows from the first to the last x, each over its own range."""
+    curve = published_curves.curve(evidence.published, experiment)
+    theirs = evidence.published.without_degenerate(experiment, curve)
+    said = [_factor(one) if one["x"].nunique() > 1 else "–" for one in (theirs, processes)]
+    return Compared(f"growth of the time over {processes['x_name'].iloc[0]}", *said)
+
+
+def _factor(processes: pd.DataFrame) -> str:
+    """Return the factor of the times and that of x, e.g. `×5.67 from 10 000 to 100 000`."""
+    ends = processes["x"].min(), processes["x"].max()
+    pairs = log_ratios(*(processes[processes["x"] == end] for end in ends))
+    trend = growth(processes).change["ratio"] if len(pairs) else float("nan")
+    return f"{factor(trend)} from {exact(ends[0])} to {exact(ends[1])}"
+
+
+def linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> Outcome:
     """Test that the time is a straight line over x: the exponent of x, over any fixed cost, within the
     bounds.
     """
-    processes = _processes(study, experiment)
-    return no_records(experiment) if processes.empty else _linear(processes, within)
+    processes = published_processes(evidence.study, experiment)
+    if processes.empty:
+        return no_records(experiment)
+    curve = published_curves.curve(evidence.published, experiment)
+    outcome = _linear(processes, curve, within)
+    grown = _growth_compared(evidence, experiment, processes)
+    return Outcome(outcome.verdict, outcome.measured, outcome.why, (*outcome.figures, grown))
 
 
-def _linear(processes: pd.DataFrame, within: tuple[float, float]) -> Outcome:
+def _linear(processes: pd.DataFrame, published: pd.DataFrame, within: tuple[float, float]) -> Outcome:
     line = linearity(processes, within)
     if pd.isna(line.exponent.estimate):
         return Outcome(OPEN, why=FOUR_POINTS)
+    theirs = linearity(published, within).exponent.estimate
+    name = processes["x_name"].iloc[0]
     measured = (
-        f"time = fixed + slope × {processes['x_name'].iloc[0]}^e with e = {interval(line.exponent)}, "
+        f"time = fixed + slope × {name}^e with e = {interval(line.exponent)}, "
         f"taken as linear between {within[0]} and {within[1]}"
     )
+    figures = (Compared(f"exponent over {name}", number(theirs), interval(line.exponent)),)
     if line.verdict == "inconclusive":
-        return Outcome(
-            OPEN, measured, "the exponent's interval reaches across a bound: more blocks would decide"
-        )
-    return Outcome(HOLDS if line.verdict == "linear" else FAILS, measured)
+        why = "the exponent's interval reaches across a bound: more blocks would decide"
+        return Outcome(OPEN, measured, why, figures)
+    return Outcome(HOLDS if line.verdict == "linear" else FAILS, measured, figures=figures)
 
 
-def falls_then_rises(study: Study, experiment: str) -> Outcome:
-    """Test that the time falls to some x inside the range and rises from there."""
-    processes = _processes(study, experiment)
+def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = None) -> Outcome:
+    """Test that the time falls to some x inside the range and rises from there; with `least` also that
+    nowhere in the range it is less than there, by more than the margin.
+    """
+    processes = published_processes(evidence.study, experiment)
     if processes.empty:
         return no_records(experiment)
     if processes["x"].nunique() < 3:
         return Outcome(OPEN, why="needs at least three values of the swept parameter")
+    shape = _shape(processes, published_curves.curve(evidence.published, experiment))
+    return shape if least is None else both([shape, _least_at(processes, least)])
+
+
+def _shape(processes: pd.DataFrame, published: pd.DataFrame) -> Outcome:
     turning = turn(processes)
     name = processes["x_name"].iloc[0]
     where = "" if pd.isna(turning.break_point.estimate) else f", break point {interval(turning.break_point)}"
@@ -83,75 +120,44 @@ def falls_then_rises(study: Study, experiment: str) -> Outcome:
         f"least at {name} = {exact(turning.lowest)}{where}; against it {change(turning.fall)} at the "
         f"smallest and {change(turning.rise)} at the largest {name}, {blocks(turning.fall)}"
     )
+    theirs = turn(published)
+    figures = (
+        Compared(f"least time at {name}", exact(theirs.lowest), exact(turning.lowest)),
+        Compared(f"smallest {name} against it", factor(theirs.fall["ratio"]), factor(turning.fall["ratio"])),
+        Compared(f"largest {name} against it", factor(theirs.rise["ratio"]), factor(turning.rise["ratio"])),
+    )
     if turning.verdict == "inconclusive":
-        return Outcome(OPEN, measured, TOO_FEW)
-    return Outcome(HOLDS if turning.verdict == "falls then rises" else FAILS, measured, turning.verdict)
+        return Outcome(OPEN, measured, TOO_FEW, figures)
+    held = turning.verdict == "falls then rises"
+    return Outcome(HOLDS if held else FAILS, measured, turning.verdict, figures)
 
 
-def spike_then_linear(study: Study, experiment: str, within: tuple[float, float]) -> Outcome:
+def _least_at(processes: pd.DataFrame, least: float) -> Outcome:
+    """Test that no other x is faster than the one said to be the least; several may be within the margin."""
+    name = processes["x_name"].iloc[0]
+    chosen, others = processes[processes["x"] == least], processes[processes["x"] != least]
+    if chosen.empty:
+        return Outcome(OPEN, why=f"needs {name} = {exact(least)}")
+    pairs = pd.concat(
+        log_ratios(chosen, group).assign(name=f"{name} {exact(float(x))}") for x, group in others.groupby("x")
+    )
+    if pairs.empty:
+        return Outcome(OPEN, why=f"needs another {name} in a block with {exact(least)}")
+    found = alternatives(pairs)
+    best = found.best
+    return found.outcome(f"{best['name']} against {exact(least)}: {change(best)} of time, {blocks(best)}")
+
+
+def spike_then_linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> Outcome:
     """Test for a fall at the small end of x and a straight line from the lowest point on."""
-    spike = falls_then_rises(study, experiment)
+    spike = falls_then_rises(evidence, experiment)
     if not spike.measured:
         return spike
-    processes = _processes(study, experiment)
-    lowest = processes.groupby("x")["steps_seconds"].median().idxmin()
-    return both([spike, _linear(processes[processes["x"] >= lowest], within)])
+    ours = _from_the_lowest(published_processes(evidence.study, experiment))
+    theirs = _from_the_lowest(published_curves.curve(evidence.published, experiment))
+    return both([spike, _linear(ours, theirs, within)])
 
 
-@dataclass(frozen=True)
-class Stretch:
-    """A stretch of the thread curve: what the claim says of it, and what a machine needs to have it."""
-
-    start: float
-    end: float
-    margin: float
-    expected: str
-    needs: str
-
-
-def scaling(study: Study, experiment: str, flat_margin: float) -> Outcome:
-    """Test the three stretches of a thread curve: falling to the cores, flat to the hardware threads, rising.
-
-    `flat_margin` is what counts as flat. A stretch that the machine does not have leaves the claim open
-    unless another stretch already contradicts it. The tests are Holm-corrected.
-    """
-    processes = _processes(study, experiment)
-    if processes.empty:
-        return no_records(experiment)
-    stretches = _stretches(sorted(processes["x"].unique()), study, flat_margin)
-    there = [stretch for stretch in stretches if stretch.start < stretch.end]
-    rows = [
-        judge_one(
-            log_ratios(processes[processes["x"] == stretch.start], processes[processes["x"] == stretch.end])[
-                "log_ratio"
-            ],
-            stretch.margin,
-        )
-        for stretch in there
-    ]
-    tested = [
-        _judged_stretch(stretch, row, p)
-        for stretch, row, p in zip(there, rows, holm([row["p"] for row in rows]), strict=True)
-    ]
-    absent = [Outcome(OPEN, why=f"needs {stretch.needs}") for stretch in stretches if stretch not in there]
-    return both(tested + absent)
-
-
-def _stretches(x: list[float], study: Study, flat_margin: float) -> list[Stretch]:
-    cores, hardware = study.cores or study.hardware_threads, study.hardware_threads
-    at_cores, at_hardware = (max((n for n in x if n <= limit), default=x[0]) for limit in (cores, hardware))
-    return [
-        Stretch(x[0], at_cores, MARGIN, "faster", "more than one core"),
-        Stretch(at_cores, at_hardware, flat_margin, "equivalent", "more hardware threads than cores"),
-        Stretch(at_hardware, x[-1], MARGIN, "slower", "runs with more threads than the machine has"),
-    ]
-
-
-def _judged_stretch(stretch: Stretch, row: dict[str, Any], p: float) -> Outcome:
-    measured = f"{stretch.start:g} to {stretch.end:g} threads: {change(row)} of time, {blocks(row)}"
-    if p > ERROR or row["verdict"] == "inconclusive":
-        return Outcome(OPEN, measured, TOO_FEW)
-    if row["verdict"] == stretch.expected:
-        return Outcome(HOLDS, measured)
-    why = f"from {stretch.start:g} to {stretch.end:g} threads {row['verdict']}, expected {stretch.expected}"
-    return Outcome(FAILS, measured, why)
+def _from_the_lowest(processes: pd.DataFrame) -> pd.DataFrame:
+    """Return the processes from the x with the least median on."""
+    return processes[processes["x"] >= processes.groupby("x")["steps_seconds"].median().idxmin()]

@@ -1,74 +1,133 @@
 """The claim about machines, the only one that looks across studies."""
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import pandas as pd
 
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Outcome, no_records
+from analysis.claims.entry import Evidence
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, no_records
 from analysis.published import Published
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.unpaired import judge_unpaired
-from analysis.studies import Study
-from analysis.wording import number
+from analysis.statistics.verdicts import corrected
+from analysis.wording import listed, number
 
 
 @dataclass(frozen=True)
 class Measured:
-    """One machine's processes, with its clock in GHz if known."""
+    """One machine's processes, with its greatest clock in GHz if known."""
 
     machine: str
     gigahertz: float | None
     processes: pd.DataFrame
 
+    @property
+    def threads(self) -> set[int]:
+        """The numbers of threads of its processes."""
+        return {int(number) for number in self.processes["threads"]}
 
-def clock(study: Study, studies: Sequence[Study], published: Published, experiment: str) -> Outcome:
-    """Test that machines ordered by their clock are ordered by their time, at this study's scale.
+    @property
+    def said(self) -> str:
+        """The machine with its clock, threads and median time."""
+        clock = f"{number(self.gigahertz, 2)} GHz" if self.gigahertz else "clock not known"
+        seconds = number(float(self.processes["steps_seconds"].median()))
+        return f"{self.machine}: {clock}, {listed(sorted(self.threads))} threads, {seconds} s"
 
-    Machines are not interleaved, so their processes are compared unpaired, each with the next faster clock.
+
+def clock(evidence: Evidence, experiment: str) -> Outcome:
+    """Test that machines ordered by their greatest clock are ordered by their time, at this study's scale.
+
+    Only the greatest clocks of the published machines are known. The clock in a CPU's name is the base clock,
+    and stands beside none of them. Machines are not interleaved, so their processes are compared unpaired,
+    each with the next faster clock, Holm-corrected; all on one number of threads, or not at all.
     """
-    machines = _machines(study, studies, published, experiment)
+    machines = _machines(evidence, experiment)
     if not machines:
         return no_records(experiment)
-    if len(machines) < 2:
-        return Outcome(OPEN, why="needs two machines of different clocks; only one is present")
-    known = sorted((one for one in machines if one.gigahertz), key=lambda one: one.gigahertz or 0)
-    if len({one.gigahertz for one in known}) < 2:
-        return Outcome(OPEN, why="the CPU models do not tell two different clocks")
-    measured = "; ".join(
-        f"{one.machine}: {number(one.gigahertz or 0, 2)} GHz, "
-        f"{number(float(one.processes['steps_seconds'].median()))} s"
-        for one in known
+    figures = _figures(evidence.published, experiment, machines)
+    measured = "; ".join(one.said for one in machines)
+    why = _undecidable(machines)
+    if why:
+        return Outcome(OPEN, measured if len(machines) > 1 else "", why, figures)
+    ordered = sorted(_known(machines), key=lambda one: one.gigahertz or 0)
+    table = corrected(
+        pd.DataFrame(
+            [
+                judge_unpaired(slow.processes["steps_seconds"], fast.processes["steps_seconds"])
+                for slow, fast in pairwise(ordered)
+                if slow.gigahertz != fast.gigahertz
+            ]
+        )
     )
-    verdicts = {
-        judge_unpaired(slow.processes["steps_seconds"], fast.processes["steps_seconds"])["verdict"]
-        for slow, fast in pairwise(known)
-        if slow.gigahertz != fast.gigahertz
-    }
+    verdicts = set(table["verdict"])
     if {"slower", "equivalent"} & verdicts:
-        return Outcome(FAILS, measured, "a higher clock was not faster")
-    return Outcome(OPEN, measured, TOO_FEW) if "inconclusive" in verdicts else Outcome(HOLDS, measured)
+        return Outcome(FAILS, measured, "a higher clock was not faster", figures)
+    if "inconclusive" in verdicts:
+        return Outcome(OPEN, measured, TOO_FEW, figures)
+    return Outcome(HOLDS, measured, figures=figures)
 
 
-def _machines(
-    study: Study, studies: Sequence[Study], published: Published, experiment: str
-) -> list[Measured]:
+def _known(machines: Sequence[Measured]) -> list[Measured]:
+    return [one for one in machines if one.gigahertz]
+
+
+def _undecidable(machines: Sequence[Measured]) -> str:
+    """Return why the machines present cannot be ordered, or nothing."""
+    if len(machines) < 2:
+        return "needs two machines of different clocks; only one is present"
+    known = _known(machines)
+    if len({one.gigahertz for one in known}) < 2:
+        return "needs two machines whose greatest clocks are known and differ; a base clock in a name is none"
+    threads = set().union(*(one.threads for one in known))
+    if len(threads) > 1:
+        return f"the machines ran on unequal numbers of threads: {listed(sorted(threads))}"
+    return ""
+
+
+def _figures(published: Published, experiment: str, machines: Sequence[Measured]) -> tuple[Compared, ...]:
+    """Return a row a machine, of the study or of ours, where both have it one row."""
+    times = published.experiment(experiment).groupby("series")["seconds"].median()
+    rows = {}
+    for row in published.machines.itertuples():
+        ours = [number(float(one.processes["steps_seconds"].median())) for one in machines
+                if one.gigahertz and _is(str(row.processor), one)]  # fmt: skip
+        theirs = f"{number(float(times[row.machine]))} s" if row.machine in times else "–"
+        rows[row.machine] = Compared(
+            f"{row.machine}, {row.maximum_gigahertz} GHz", theirs, f"{ours[0]} s" if ours else "–"
+        )
+    others = [
+        Compared(one.machine, "–", f"{number(float(one.processes['steps_seconds'].median()))} s")
+        for one in machines
+        if not one.gigahertz
+    ]
+    return (*rows.values(), *others)
+
+
+def _is(processor: str, machine: Measured) -> bool:
+    return _names(processor, str(machine.processes["cpu_model"].iloc[0]))
+
+
+def _names(processor: str, cpu_model: str) -> bool:
+    """Tell whether a published processor is the one that a CPU model names."""
+    return processor.split()[-1].lower() in cpu_model.lower()
+
+
+def _machines(evidence: Evidence, experiment: str) -> list[Measured]:
     machines: dict[str, Measured] = {}
     # This study first: another one of its machine, of another revision, must not speak for it.
-    for other in (study, *studies):
+    for other in (evidence.study, *evidence.studies):
         processes = process_medians(other.times_of(experiment))
-        if other.scale == study.scale and not processes.empty:
-            speed = gigahertz(str(processes["cpu_model"].iloc[0]), published)
+        if other.scale == evidence.study.scale and not processes.empty:
+            speed = gigahertz(str(processes["cpu_model"].iloc[0]), evidence.published)
             machines.setdefault(other.machine, Measured(other.machine, speed, processes))
     return list(machines.values())
 
 
 def gigahertz(cpu_model: str, published: Published) -> float | None:
-    """Return the maximum clock of a CPU of the published study, the clock in the model's name, or None."""
+    """Return the greatest clock of a CPU of the published study; None for any other."""
     for row in published.machines.itertuples():
-        if row.processor.split()[-1].lower() in cpu_model.lower():
+        if _names(str(row.processor), cpu_model):
             return float(row.maximum_gigahertz)
-    stated = re.search(r"@\s*([0-9.]+)\s*GHz", cpu_model)
-    return float(stated.group(1)) if stated else None
+    return None

@@ -9,6 +9,7 @@ from analysis.wording import change, count, exact, interval, number
 
 MEDIANS = "Dots are medians, bars their 95 % bootstrap intervals"
 PROCESSES = "A dot is the median of one process"
+SCENES = "A dot is the geometric mean over the seeds in one block"
 
 
 def opening(times: pd.DataFrame, subject: str, dots: str = MEDIANS) -> str:

@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from analysis.figures.captions import PROCESSES, opening
+from analysis.figures.captions import PROCESSES, SCENES, opening
 from analysis.figures.labels import label_ends
 from analysis.figures.style import (
     BAND,
@@ -74,8 +75,8 @@ def control(data: Data) -> Drawing | None:
 
 
 def reverse(data: Data) -> Drawing | None:
-    """Draw a disc's overlaps traversed in reverse against forward: time, and the pair resolves that it
-    takes.
+    """Draw a disc's overlaps traversed in reverse against forward: time, and the attempts at resolving a pair
+    that it takes.
     """
     sides = Sides(
         "reverse",
@@ -84,7 +85,7 @@ def reverse(data: Data) -> Drawing | None:
         ("reverse", "forward"),
         "A disc's overlaps in reverse against forward",
     )
-    return pair_drawing(data, sides, resolves=True)
+    return pair_drawing(data, sides, work=True)
 
 
 def _self_contained(data: Data, experiment: str, order: str) -> Drawing | None:
@@ -92,25 +93,33 @@ def _self_contained(data: Data, experiment: str, order: str) -> Drawing | None:
     return pair_drawing(data, Sides(experiment, "on", "off", ("on", "off"), subject))
 
 
-def pair_drawing(data: Data, sides: Sides, resolves: bool = False) -> Drawing | None:
+def pair_drawing(data: Data, sides: Sides, work: bool = False) -> Drawing | None:
     """Draw the times of both sides block by block, the published ones, and the ratio with its verdict."""
     times = data.study.times_of(sides.experiment)
     processes = process_medians(times)
     candidate, reference = (
-        processes[processes["series"] == name] for name in (sides.candidate, sides.reference)
+        _one_a_block(processes[processes["series"] == name]) for name in (sides.candidate, sides.reference)
     )
     if candidate.empty or reference.empty:
         return None
     published = data.published.experiment(sides.experiment)
-    extra = bool(resolves) or not published.empty
+    extra = work or not published.empty
     figure, axes = new_figure(2.4, columns=2 + extra, widths=[1.2, *([1.0] * extra), 1.1])
     _by_block(axes[0], {sides.names[0]: candidate, sides.names[1]: reference})
     row = judge_one(log_ratios(reference, candidate)["log_ratio"])
     theirs = _published_panel(axes[1], published, sides) if not published.empty else None
-    if resolves:
-        _resolves(axes[1], data, sides)
+    if work:
+        _work(axes[1], data, sides)
     ratio_panel(axes[-1], row, theirs, sides.names)
-    return Drawing(figure, opening(times, sides.subject, PROCESSES) + _sentences(row, theirs, sides))
+    dots = SCENES if times["x"].nunique() > 1 else PROCESSES
+    return Drawing(figure, opening(times, sides.subject, dots) + _sentences(row, theirs, sides))
+
+
+def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:
+    """Return one row a block: where it holds several scenes of a sweep, the geometric mean of their times."""
+    logs = processes.assign(steps_seconds=np.log(processes["steps_seconds"]))
+    table = logs.groupby(PAIR, as_index=False).agg({"steps_seconds": "mean", "session": "first"})
+    return table.assign(steps_seconds=np.exp(table["steps_seconds"]))
 
 
 def _by_block(axes: Axes, curves: dict[str, pd.DataFrame]) -> None:
@@ -186,23 +195,29 @@ def bounded(axes: Axes) -> None:
     axes.set_xlim(max(min(low, -250 * MARGIN), -100), min(max(high, 250 * MARGIN), 300))
 
 
-def _resolves(axes: Axes, data: Data, sides: Sides) -> None:
+def _work(axes: Axes, data: Data, sides: Sides) -> None:
+    """Draw the attempts at resolving a pair, those that resolve it in a stronger shade; medians of scenes."""
     runs = data.study.runs_of(sides.experiment)
-    per_step = (runs["pair_resolves"] / runs["steps"]).groupby(runs["series"]).median()
+    counts = (
+        runs[["pair_resolves", "pair_attempts"]].div(runs["steps"], axis=0).groupby(runs["series"]).median()
+    )
     for height, (series, name, colour) in enumerate(
         zip((sides.reference, sides.candidate), sides.names[::-1], (VERMILLION, BLUE), strict=True)
     ):
-        axes.barh(height, per_step[series], color=colour, height=0.5)
+        resolves, attempts = counts.loc[series]
+        counted = not np.isnan(attempts)
+        axes.barh(height, attempts if counted else 0, color=lighten(colour, 0.5), height=0.5)
+        axes.barh(height, resolves, color=colour, height=0.5)
+        said = f"{exact(round(resolves))} of {exact(round(attempts))}" if counted else exact(round(resolves))
         axes.annotate(
-            f"{name}: {exact(round(per_step[series]))}",
-            (0, height),
-            xytext=(4, 0),
+            f"{name}: {said}",
+            (0, height + 0.27),
+            xytext=(0, 2),
             textcoords="offset points",
-            va="center",
-            color="white",
+            color=colour,
             fontsize=7,
         )
-    axes.set(yticks=[], xlabel="pair resolves per step", title="work", ylim=(-0.6, 1.6))
+    axes.set(yticks=[], xlabel="resolves of attempts per step", title="work", ylim=(-0.6, 1.6))
     axes.xaxis.set_major_locator(MaxNLocator(3))
     plain_ticks(axes.xaxis)
     axes.spines["left"].set_visible(False)

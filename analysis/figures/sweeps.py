@@ -107,7 +107,9 @@ def trend(
         _published_beside(axes, summary, published, own_x)
         entries.append((f"● published, right{' and upper' if own_x else ''} axis", lighten(BLUE, 0.4)))
         key(axes, entries, raised=18 if own_x else 4)
-    caption = opening(times, subject) + describe(times)
+    caption = opening(times, subject) + describe(data.published.without_degenerate(experiment, times))
+    if set(times["x"]) & set(data.published.degenerate.get(experiment, ())):
+        caption += " At its degenerate end, which is no part of that, all discs start with one velocity."
     if not published.empty:
         caption += " Lighter: the published series on axes of its own, scaled so that both medians are level."
     return Drawing(figure, caption)

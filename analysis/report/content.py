@@ -10,7 +10,6 @@ from markupsafe import Markup
 
 from analysis import claims, published
 from analysis.accuracy import MEASURES, errors
-from analysis.claims.outcome import NO_RECORDS
 from analysis.figures import FIGURES, HARD_CASES, SPEED_AGAINST_ERROR, Drawn, experiments
 from analysis.ladder import headlines
 from analysis.records import Records
@@ -54,7 +53,7 @@ def _study(study: Study, studies: Sequence[Study], results: Path) -> dict[str, A
     drawn = draw_study(study, studies, results)
     table = claims.evaluate(study, studies, published.load())
     if study is not studies[0]:
-        table = table[~table["why"].str.startswith(NO_RECORDS)]
+        table = table[~table["missing"]]
     noise = process_noise(study.times)
     return {
         "name": study.name,

@@ -19,6 +19,8 @@ class Machine:
     cores: int = 2
     hardware_threads: int = 4
     partition: str | None = None
+    proc_bind: str = "close"
+    runtime: str = "libgomp"
     commit: str = "0123456789abcdef0123456789abcdef01234567"
 
     def provenance(self, compiler: str, threads: int) -> dict[str, Any]:
@@ -39,11 +41,11 @@ class Machine:
             "governor": None,
             "operating_system": "Linux 6.1",
             "openmp": {
-                "runtime": "libgomp",
+                "runtime": self.runtime,
                 "version": 201511,
                 "max_threads": threads,
                 "dynamic": False,
-                "proc_bind": "close",
+                "proc_bind": self.proc_bind,
                 "places": self.hardware_threads,
                 "environment": {"OMP_PROC_BIND": "close"},
             },
@@ -71,6 +73,7 @@ class Point:
     axes: dict[str, Any] = field(default_factory=dict)
     scene: dict[str, Any] = field(default_factory=dict)
     pair_resolves: int = 12_000_000
+    pair_attempts: int | None = 30_000_000
     scene_name: str | None = None
     errors: dict[str, Any] | None = None
     tags: dict[str, str | float] = field(default_factory=dict)
@@ -127,6 +130,7 @@ def bench(
             "overlaps": 10_000_000,
             "pair_resolves": point.pair_resolves,
             "wall_resolves": 90_000,
+            "pair_attempts": point.pair_attempts,
             "sweeps": 400,
         },
         "errors": {"energy_drift": 1e-13, "discs_outside": 3, "unresolved_pairs": 0}

@@ -1,6 +1,7 @@
 """A whole synthetic study: the records of every experiment, and what else a results folder may hold."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,13 +25,18 @@ def study(
     speed: float = 1.0,
     seed: int = 1,
     scale: str = "paper",
+    threads: int | None = None,
 ) -> list[dict[str, Any]]:
-    """Return the records of the named experiments, complete: every point in every block."""
+    """Return the records of the named experiments, complete: every point in every block; all on `threads`, if
+    given.
+    """
     generator = np.random.default_rng(seed)
     names = list(names)
     records = []
     for name in names:
         points = EXPERIMENTS[name]()
+        if threads is not None:
+            points = [replace(point, axes=point.axes | {"threads": threads}) for point in points]
         truth = np.array([point.seconds for point in points]) / speed
         samples = (noise or Noise()).seconds(generator, truth, blocks, repetitions)
         for point, rows in zip(points, samples, strict=True):

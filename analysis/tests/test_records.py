@@ -18,11 +18,11 @@ def test_one_row_a_repetition_a_record_a_phase_a_counter(tmp_path: Path) -> None
     write(tmp_path, study(["neighbourhood", "phases"], blocks=3, repetitions=2))
     write(tmp_path, failures())
     records = load(tmp_path, warn=pytest.fail)
-    assert len(records.runs) == 2 * 3 + 2 * 3
+    assert len(records.runs) == 2 * 3 + 3 * 3
     assert len(records.times) == 2 * 3 * 2
-    assert len(records.phases) == 2 * 3 * 4
-    assert len(records.threads) == 2 * 3 * 4 * 2
-    assert len(records.counters) == 2 * 3 * (2 + 2 * 6)
+    assert len(records.phases) == 3 * 3 * 4
+    assert len(records.threads) == 3 * 3 * 4 * 2
+    assert len(records.counters) == 3 * 3 * (2 + 2 * 6)
     assert records.counters.loc[records.counters["name"] == "PAPI_TOT_CYC", "value"].isna().all()
     assert list(records.failures["reason"]) == [
         "step 2: disc 4 left moving into the wall",

@@ -110,6 +110,7 @@ PAIR = f"""
 title = "Pair"
 figure = "comparison"
 claim = "four_boxes"
+tolerance = "published"
 {SCENE}
 {FOUR_AND_NINE}"""
 

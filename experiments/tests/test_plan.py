@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 from experiments.errors import InputError
 from experiments.plan import Surroundings, plan
 from experiments.point import Point
-from experiments.program import Program, find_programs
+from experiments.program import Program, check_command, find_programs
 from experiments.question import load_question
 from experiments.scale import SCALES
-from experiments.scenes import HardCase, Scene
+from experiments.scenes import HardCase, Scene, SceneFile
 from experiments.site import Machine, load_site
 from experiments.tests.conftest import CHUNKS, ERRORS, PAIR, Workplace, generated
+from experiments.verify import note_of
 
 CONTENT: dict[str, st.SearchStrategy[Any]] = {
     "label": st.sampled_from([None, "A", "A-again"]),
@@ -121,6 +122,51 @@ def test_quick_values_are_taken_at_quick_scale(workplace: Workplace) -> None:
     assert {generated(point).particles for point in points} == {10}
 
 
+def test_a_sweep_of_seeds_makes_a_scene_of_each(workplace: Workplace) -> None:
+    text = CHUNKS.replace('"find_chunk"', '"seed"')
+    points = plan(load_question(workplace.question("seeds", text)), surroundings(workplace)).points
+    assert [generated(point).seed for point in points] == [point.x for point in points] == [1, 2, 3]
+    assert len({point.scene.name for point in points}) == 3
+
+
+def test_an_optional_series_is_left_out_where_its_program_is_not_built(workplace: Workplace) -> None:
+    other = 'variant = "published"\nprogram = "clang"'
+    text = PAIR.replace('variant = "nine"', f"{other}\noptional = true")
+    question = load_question(workplace.question("optional", text))
+    assert [one.series for one in plan(question, surroundings(workplace)).points] == ["four"]
+    asked = load_question(workplace.question("asked", PAIR.replace('variant = "nine"', other)))
+    assert [one.series for one in plan(asked, surroundings(workplace)).points] == ["four", "nine"]
+    program = find_programs(load_site("local"), workplace.root / "build")["gcc"]
+    built = surroundings(workplace)
+    there = replace(
+        built, programs={**built.programs, "clang": replace(program, name="clang", sha256="1" * 64)}
+    )
+    assert [one.program.name for one in plan(question, there).points] == ["gcc", "clang"]
+
+
+def test_a_variant_is_checked_with_the_tolerance_that_it_is_timed_with(workplace: Workplace) -> None:
+    (point, _) = plan(
+        load_question(workplace.root / "questions" / "pair.toml"), surroundings(workplace)
+    ).points
+    assert point.tolerance == "published"
+    command = check_command(point.program, Path("s.in"), point.variant, point.threads, point.tolerance)
+    assert command[-2:] == ("--tolerance", "published")
+    scene = SceneFile(Path("s.in"), "0" * 64)
+    assert note_of(point, scene) != note_of(replace(point, tolerance="relative"), scene)
+
+
+def test_what_is_not_bound_is_bound_at_no_number_of_threads(workplace: Workplace) -> None:
+    text = CHUNKS.replace('"find_chunk"', '"threads"')
+    path = workplace.question(
+        "unbound", text.replace('figure = "schedule"', 'figure = "scaling"\nbound = false')
+    )
+    free = plan(load_question(path), surroundings(workplace)).points
+    kept = plan(load_question(workplace.question("bound", text)), surroundings(workplace)).points
+    assert {dict(point.openmp)["OMP_PROC_BIND"] for point in free} == {"false"}
+    assert [dict(point.openmp)["OMP_PROC_BIND"] for point in kept] == ["close", "close", "false"]
+    assert free[0].id != kept[0].id
+
+
 def test_every_variant_meets_every_scene_at_every_value(workplace: Workplace) -> None:
     points = plan(load_question(workplace.question("errors", ERRORS)), surroundings(workplace)).points
     places = [(point.scene_name, point.series, point.x, point.substeps) for point in points]
@@ -176,7 +222,7 @@ MISTAKES = {
     ),
     "program": (
         PAIR.replace('variant = "nine"', 'variant = "nine"\nprogram = "clan"'),
-        'series[2].program: found "clan", expected one of gcc, clang; did you mean "clang"?',
+        'series[2].program: found "clan", expected one of gcc, clang, gcc-libomp; did you mean "clang"?',
     ),
     "the same twice": (
         PAIR.replace('variant = "nine"', 'variant = "published"'),

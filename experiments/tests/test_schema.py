@@ -55,8 +55,8 @@ MISTAKES = {
     "unknown parameter": (
         CHUNKS.replace('"find_chunk"', '"find_chunks"'),
         'sweep.parameter: found "find_chunks", expected one of threads, find_chunk, resolve_chunk, '
-        "substeps, particles, side, radius, steps, min_velocity, max_velocity, area_fraction; did you mean "
-        '"find_chunk"?',
+        "substeps, particles, side, radius, steps, min_velocity, max_velocity, area_fraction, seed; did you "
+        'mean "find_chunk"?',
     ),
     "value twice": (
         CHUNKS.replace("[1, 2, 3]", "[1, 2, 2]"),
@@ -165,6 +165,18 @@ MISTAKES = {
         f'verb = "profile"\n{ERRORS}',
         "errors: found for verb profile, expected for bench only",
     ),
+    "claim with another tolerance": (
+        PAIR.replace('tolerance = "published"\n', ""),
+        'tolerance: found relative for a published claim, expected "published", or a tolerance_reason',
+    ),
+    "reason for the published tolerance": (
+        PAIR.replace('tolerance = "published"', 'tolerance = "published"\ntolerance_reason = "none"'),
+        "tolerance_reason: found beside the published tolerance, which needs none",
+    ),
+    "half a seed": (
+        CHUNKS.replace('"find_chunk"', '"seed"').replace("[1, 2, 3]", "[1, 2.5]"),
+        "series[1].values: found 2.5, expected whole numbers",
+    ),
     "not TOML": (
         "title = \n",
         "is not valid TOML: Invalid value (at line 1, column 9)",
@@ -182,6 +194,13 @@ def test_one_line_for_a_mistake_in_a_question(tmp_path: Path, text: str, expecte
     assert line.startswith(f"{path}: ")
     assert expected in line
     assert "\n" not in line
+
+
+def test_a_claim_may_state_why_it_has_another_tolerance(tmp_path: Path) -> None:
+    path = tmp_path / "sparse.toml"
+    reason = 'tolerance_reason = "its scene does not end under the published one"'
+    path.write_text(PAIR.replace('tolerance = "published"', reason), encoding="utf-8")
+    assert load_question(path).tolerance == "relative"
 
 
 def test_unreadable_files_are_named(tmp_path: Path) -> None:

@@ -17,6 +17,12 @@ from experiments.tests.conftest import generated
 QUESTIONS = sorted(FOLDER.glob("*.toml"))
 NODE = Machine("a node of the published study", cores=10, hardware_threads=20)
 
+THREADS_OF_CLAIMS = {
+    "particles": 20, "grid_length": 20, "radius": 20, "steps": 20, "min_velocity": 20, "max_velocity": 20,
+    "machine": 16, "neighbourhood": 20, "self_contained_checkered": 20, "self_contained_track": 20,
+    "self_contained_repeat": 20, "schedule_find": 8, "schedule_resolve": 8, "schedule_resolve_row": 8,
+    "row": 8, "reverse": 20, "compiler": 20, "phases": 20,
+}  # fmt: skip
 PUBLISHED_THREADS = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 13, 15, 17, 19, 20, 21, 25, 30, 35]
 
 
@@ -65,6 +71,56 @@ def test_threads_are_the_published_ones_cut_to_twice_the_machine() -> None:
     assert on_node == PUBLISHED_THREADS
     here = [point.threads for point in planned("threads", machine=Machine("small", 2, 2)).points]
     assert here == [1, 2, 3, 4]
+
+
+@pytest.mark.parametrize("hardware_threads", [2, 8, 40])
+def test_a_claim_is_tested_on_the_published_number_of_threads_or_on_all_there_are(
+    hardware_threads: int,
+) -> None:
+    questions = {one.name for one in load_questions(FOLDER) if one.claim}
+    assert questions == {*THREADS_OF_CLAIMS, "threads"}
+    machine = Machine("any", max(1, hardware_threads // 2), hardware_threads)
+    for name, threads in THREADS_OF_CLAIMS.items():
+        points = planned(name, machine=machine).points
+        assert {point.threads for point in points} == {min(threads, hardware_threads)}
+
+
+def test_claims_are_timed_with_the_published_tolerance_or_say_why_not() -> None:
+    for question in load_questions(FOLDER):
+        assert question.claim is None or question.tolerance == "published" or question.tolerance_reason
+
+
+def test_no_binding_changes_within_a_sweep_of_threads() -> None:
+    for name in ("threads", "oversubscription"):
+        for machine in (Machine("plain", 4, 4), Machine("two threads a core", 4, 8)):
+            points = planned(name, machine=machine).points
+            assert len({dict(point.openmp)["OMP_PROC_BIND"] for point in points}) == 1
+
+
+def test_while_one_loop_s_schedule_is_swept_the_other_has_the_published_chunk() -> None:
+    for name, chunk in (("schedule_find", "resolve_chunk"), ("schedule_resolve", "find_chunk"),
+                        ("schedule_resolve_row", "find_chunk")):  # fmt: skip
+        published = {"resolve_chunk": 5, "find_chunk": 4}[chunk]
+        assert {getattr(point, chunk) for point in planned(name).points} == {published}
+
+
+@pytest.mark.parametrize("scale", SCALES)
+def test_a_count_is_taken_on_several_seeds(scale: str) -> None:
+    points = planned("reverse", scale).points
+    seeds = {
+        point.series: [generated(one).seed for one in points if one.series == point.series]
+        for point in points
+    }
+    assert seeds == {"reverse": [*range(1, 9)], "forward": [*range(1, 9)]}
+
+
+@pytest.mark.parametrize("name", ["min_velocity", "max_velocity"])
+def test_the_quick_velocities_have_the_published_least_time_and_the_end_before_the_last(name: str) -> None:
+    assert {5, 45, 50} <= {point.x for point in planned(name, "quick").points}
+
+
+def test_early_resolves_are_measured_beside_the_profile_of_the_published_variant() -> None:
+    assert {"published", "self_contained_off"} <= {point.variant for point in planned("phases").points}
 
 
 def test_scenes_are_the_published_ones() -> None:

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/measure.hpp"
+#include "harness/record.hpp"
 #include "harness/scene_file.hpp"
 #include "harness/tests/program.hpp"
 #include "harness/tests/temporary_directory.hpp"
@@ -44,6 +45,12 @@ class RunCommand : public testing::Test {
     std::string wedged = directory.write("wedged.in", "1\n2\n1\n3\n0 0.5 1 0.5 0\n");
 };
 
+TEST(PairAttempts, AreNullWhereTheyWereNotCounted) {
+    EXPECT_TRUE(pair_attempts_or_null({.pair_resolves = 3, .pair_attempts = 0}).is_null());
+    EXPECT_EQ(pair_attempts_or_null({.pair_resolves = 3, .pair_attempts = 3}), 3);
+    EXPECT_EQ(pair_attempts_or_null({.pair_resolves = 0, .pair_attempts = 0}), 0);
+}
+
 TEST_F(RunCommand, SummarisesTheRunAsJson) {
     const auto json = summary({scene, "--threads", "2", "--variant", "published"});
     const tests::Outcome expected = tests::simulate<Policies{}>(busy);
@@ -59,6 +66,8 @@ TEST_F(RunCommand, SummarisesTheRunAsJson) {
     EXPECT_DOUBLE_EQ(json["overlaps_per_step"], static_cast<double>(expected.work.overlaps) / 6);
     EXPECT_DOUBLE_EQ(json["pair_resolves_per_step"], static_cast<double>(expected.work.pair_resolves) / 6);
     EXPECT_DOUBLE_EQ(json["wall_resolves_per_step"], static_cast<double>(expected.work.wall_resolves) / 6);
+    const auto attempts = pair_attempts_or_null(expected.work);
+    EXPECT_EQ(json["pair_attempts_per_step"].is_null(), attempts.is_null());
     EXPECT_DOUBLE_EQ(json["sweeps_per_step"], static_cast<double>(expected.work.sweeps) / 6);
     EXPECT_NEAR(json["energy_drift"], 0, 1e-13);
     const double seconds = json["steps_seconds"];

@@ -1,0 +1,51 @@
+"""The claim about compilers, each of which brings an OpenMP runtime of its own."""
+
+import pandas as pd
+
+from analysis.claims.entry import Evidence
+from analysis.claims.outcome import Compared, Outcome, both, no_records
+from analysis.claims.ratios import judged
+from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.verdicts import judge_one
+from analysis.wording import blocks, change
+
+NOT_TOLD_APART = (
+    "each compiler's code ran with its own OpenMP runtime: what is the code's and what is the runtime's is "
+    "not told apart (`make build COMPILER=gcc-libomp` does)"
+)
+
+
+def compilers(evidence: Evidence, experiment: str, candidate: str, reference: str) -> Outcome:
+    """Test that the candidate's program is faster, each with its own runtime, as the study compared them;
+    and, where the reference's code was measured with the candidate's runtime, that its code alone is.
+
+    Both have to hold: a program that is faster by its runtime alone is not faster code.
+    """
+    times = process_medians(evidence.study.times_of(experiment))
+    if times.empty:
+        return no_records(experiment)
+    family, runtime = times["compiler_family"], times["openmp_runtime"]
+    ours, theirs = times[family == candidate], times[family == reference]
+    if ours.empty or theirs.empty:
+        return no_records(experiment, candidate if ours.empty else reference)
+    shared = theirs["openmp_runtime"].isin(set(runtime[family == candidate]))
+    whole = None if theirs[~shared].empty else _against(theirs[~shared], ours, "with its own runtime")
+    code = None if theirs[shared].empty else _against(theirs[shared], ours, "with the same runtime")
+    parts = [part for part in (whole, code) if part is not None]
+    joined = both(parts)
+    if code is None:
+        why = "; ".join(part for part in (joined.why, NOT_TOLD_APART) if part)
+        return Outcome(joined.verdict, joined.measured, why, joined.figures)
+    return joined
+
+
+def _against(reference: pd.DataFrame, candidate: pd.DataFrame, how: str) -> Outcome:
+    names = [
+        f"{side['compiler_family'].iloc[0]} ({' or '.join(sorted(side['openmp_runtime'].unique()))})"
+        for side in (candidate, reference)
+    ]
+    row = judge_one(log_ratios(reference, candidate)["log_ratio"])
+    measured = f"{names[0]} against {names[1]}: {change(row)} of time, {blocks(row)} ({row['verdict']})"
+    figure = Compared(f"time of {names[0]} against {names[1]}", "–", change(row))
+    outcome = judged(row, "faster", measured, (figure,))
+    return Outcome(outcome.verdict, measured, outcome.why or f"{row['verdict']} {how}", outcome.figures)

@@ -1,0 +1,69 @@
+"""The claim about work that is counted, not timed."""
+
+import numpy as np
+import pandas as pd
+
+from analysis.claims.entry import Evidence
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, no_records
+from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.verdicts import judge_one
+from analysis.wording import blocks, change, count
+
+OF_COUNTS = {"faster": "fewer", "slower": "more"}
+"""The verdicts on a ratio in words for a number of things; the others are the same."""
+
+
+def fewer_wasted_attempts(
+    evidence: Evidence, experiment: str, axis: str, candidate: str, reference: str
+) -> Outcome:
+    """Test that `candidate` wastes fewer attempts: pairs asked whether they collide that then do not.
+
+    A count is the same in each repetition, so that its repetitions are the seeds of the scene: the interval
+    is over them. Attempts, resolves and the time stand beside, and do not decide.
+    """
+    runs = evidence.study.runs_of(experiment)
+    runs = runs[runs["x_name"] == "seed"].assign(
+        wasted_attempts=lambda one: one["pair_attempts"] - one["pair_resolves"]
+    )
+    before, after = (runs[runs[axis] == value] for value in (reference, candidate))
+    if before.empty or after.empty:
+        return no_records(experiment, "a sweep of seeds")
+    if runs["pair_attempts"].isna().any():
+        return Outcome(OPEN, why="attempts were not counted by the program that made the records")
+    rows = {
+        value: judge_one(_over_seeds(before, after, value))
+        for value in ("wasted_attempts", "pair_attempts", "pair_resolves")
+    }
+    times = process_medians(evidence.study.times_of(experiment))
+    seconds = judge_one(_over_blocks(*(times[times[axis] == value] for value in (reference, candidate))))
+    said = "; ".join(
+        f"{change(row)} of {value.replace('_', ' ')} ({OF_COUNTS.get(row['verdict'], row['verdict'])})"
+        for value, row in rows.items()
+    )
+    wasted = rows["wasted_attempts"]
+    measured = (
+        f"{candidate} against {reference}, over {count(wasted['blocks'], 'seed')}: {said}; "
+        f"{change(seconds)} of time, {blocks(seconds)} ({seconds['verdict']})"
+    )
+    figures = (
+        *(Compared(f"{value.replace('_', ' ')}", "–", change(row)) for value, row in rows.items()),
+        Compared("time", "–", change(seconds)),
+    )
+    if wasted["blocks"] < 2:
+        return Outcome(OPEN, measured, "needs at least two seeds", figures)
+    if wasted["verdict"] == "inconclusive":
+        return Outcome(OPEN, measured, TOO_FEW.replace("blocks or a quieter machine", "seeds"), figures)
+    return Outcome(HOLDS if wasted["verdict"] == "faster" else FAILS, measured, figures=figures)
+
+
+def _over_seeds(before: pd.DataFrame, after: pd.DataFrame, value: str) -> pd.Series:
+    """Return ln(after / before) of each seed that both have; a count of 0 has no ratio."""
+    counted = [side.groupby("x")[value].median() for side in (before, after)]
+    ratios = np.log(counted[1] / counted[0])
+    return ratios.replace([np.inf, -np.inf], np.nan).dropna()
+
+
+def _over_blocks(before: pd.DataFrame, after: pd.DataFrame) -> pd.Series:
+    """Return the mean over the seeds of each block: what a block suffers, all its seeds do."""
+    pairs = log_ratios(before, after, match=("x",))
+    return pairs.groupby(["node", "block"])["log_ratio"].mean()

@@ -1,0 +1,107 @@
+"""The claim about threads: what the curve does up to the cores, to the hardware threads, and beyond."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+
+from analysis.claims import published_curves
+from analysis.claims.curves import published_processes
+from analysis.claims.entry import Evidence
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
+from analysis.statistics.pairs import log_ratios
+from analysis.statistics.verdicts import ERROR, MARGIN, holm, judge_one
+from analysis.wording import blocks, change, exact, factor
+
+ANOTHER_BINDING = "threads are bound at one end and not at the other: the binding changes with their number"
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A stretch of the thread curve: what the claim says of it, and what a machine needs to have it."""
+
+    what: str
+    start: float
+    end: float
+    margin: float
+    expected: str
+    needs: str
+
+    def judge(self, processes: pd.DataFrame) -> dict[str, Any]:
+        """Return the row of `judge_one` for the time at its end against that at its start."""
+        ends = (processes[processes["x"] == end] for end in (self.start, self.end))
+        return judge_one(log_ratios(*ends)["log_ratio"], self.margin)
+
+    def same_binding(self, processes: pd.DataFrame) -> bool:
+        """Tell whether both ends were measured with threads bound alike."""
+        return processes[processes["x"].isin([self.start, self.end])]["proc_bind"].nunique() == 1
+
+
+def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_machine: str) -> Outcome:
+    """Test the three stretches of a thread curve: falling to the cores, flat to the hardware threads, rising.
+
+    `flat_margin` is what counts as flat. A stretch that the machine does not have leaves the claim open
+    unless another stretch already contradicts it; one whose ends were bound differently decides nothing.
+    The tests are Holm-corrected.
+    """
+    processes = published_processes(evidence.study, experiment)
+    if processes.empty:
+        return no_records(experiment)
+    study = evidence.study
+    cores = study.cores or study.hardware_threads
+    stretches = _stretches(sorted(processes["x"].unique()), cores, study.hardware_threads, flat_margin)
+    there = [stretch for stretch in stretches if stretch.start < stretch.end]
+    rows = [stretch.judge(processes) for stretch in there]
+    tested = [
+        _judged(stretch, row, p, processes)
+        for stretch, row, p in zip(there, rows, holm([row["p"] for row in rows]), strict=True)
+    ]
+    absent = [Outcome(OPEN, why=f"needs {one.needs}") for one in stretches if one not in there]
+    figures = _compared(evidence, experiment, stretches, processes, published_machine)
+    return both([*tested, *absent, Outcome(HOLDS, figures=figures)])
+
+
+def _stretches(x: list[float], cores: int, hardware: int, flat_margin: float) -> list[Stretch]:
+    at_cores, at_hardware = (max((n for n in x if n <= limit), default=x[0]) for limit in (cores, hardware))
+    beyond = "runs with more threads than the machine has"
+    return [
+        Stretch("up to the cores", x[0], at_cores, MARGIN, "faster", "more than one core"),
+        Stretch(
+            "to the hardware threads", at_cores, at_hardware, flat_margin, "equivalent",
+            "more hardware threads than cores",
+        ),
+        Stretch("beyond", at_hardware, x[-1], MARGIN, "slower", beyond),
+    ]  # fmt: skip
+
+
+def _judged(stretch: Stretch, row: dict[str, Any], p: float, processes: pd.DataFrame) -> Outcome:
+    measured = f"{stretch.start:g} to {stretch.end:g} threads: {change(row)} of time, {blocks(row)}"
+    if not stretch.same_binding(processes):
+        return Outcome(OPEN, measured, ANOTHER_BINDING)
+    if p > ERROR or row["verdict"] == "inconclusive":
+        return Outcome(OPEN, measured, TOO_FEW)
+    if row["verdict"] == stretch.expected:
+        return Outcome(HOLDS, measured)
+    why = f"from {stretch.start:g} to {stretch.end:g} threads {row['verdict']}, expected {stretch.expected}"
+    return Outcome(FAILS, measured, why)
+
+
+def _compared(
+    evidence: Evidence, experiment: str, ours: list[Stretch], processes: pd.DataFrame, machine: str
+) -> tuple[Compared, ...]:
+    """Return each stretch's factor of time on the study's machine and on this one."""
+    curve = published_curves.curve(evidence.published, experiment)
+    size = evidence.published.machines.set_index("machine").loc[machine]
+    theirs = _stretches(
+        sorted(curve["x"].unique()), int(size["cores"]), int(size["hardware_threads"]), MARGIN
+    )
+
+    def said(stretch: Stretch, one: pd.DataFrame) -> str:
+        if stretch.start >= stretch.end:
+            return "–"
+        return f"{factor(stretch.judge(one)['ratio'])} from {exact(stretch.start)} to {exact(stretch.end)}"
+
+    return tuple(
+        Compared(f"time {their.what}", said(their, curve), said(our, processes))
+        for their, our in zip(theirs, ours, strict=True)
+    )

@@ -1,0 +1,103 @@
+"""Claims that one schedule and chunk is the one to choose."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from analysis.claims.alternatives import alternatives
+from analysis.claims.entry import Evidence
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
+from analysis.published import Published
+from analysis.statistics.pairs import PAIR, log_ratios, process_medians
+from analysis.statistics.verdicts import ERROR, judge_one
+from analysis.wording import blocks, change, count, exact, number, percent
+
+ONE_THREAD = "on a single thread a schedule shares nothing out: needs 2 hardware threads"
+
+NOT_BETTER = {
+    "equivalent": "equivalent to the others on average: it does not matter which is chosen",
+    "slower": "slower than the others on average",
+}
+
+
+def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str, chunk: int) -> Outcome:
+    """Test that a schedule is the one to choose, which says two things: that no other one measured is faster,
+    and that choosing matters, so that it is faster than the others on average, both by more than the margin.
+
+    Were the first enough, the claim would hold where all schedules tie; a tie refutes claims about two
+    choices, and so it does here. The average is that of the log ratios within each block.
+    """
+    processes = process_medians(evidence.study.times_of(experiment))
+    if processes.empty:
+        return no_records(experiment)
+    kind = processes[axis].str.split("_").str[0]
+    chosen = processes[(kind == schedule) & (processes["x"] == chunk)]
+    others = processes.drop(chosen.index)
+    if chosen.empty or others.empty:
+        return no_records(experiment, f"{schedule} with chunk {chunk}" if chosen.empty else "any alternative")
+    if processes["threads"].max() < 2:
+        return Outcome(OPEN, why=ONE_THREAD)
+    pairs = pd.concat(
+        log_ratios(chosen, group).assign(name=f"{series} {x:g}")
+        for (series, x), group in others.groupby(["series", "x"])
+    )
+    if pairs.empty:
+        return no_records(experiment, "any block with both sides")
+    average = judge_one(_average(pairs))
+    found = alternatives(pairs, [average["p"]])
+    best, seconds = found.best, number(float(np.median(chosen["steps_seconds"])))
+    measured = (
+        f"{schedule} {chunk}: {seconds} s on {count(int(chosen['threads'].iloc[0]), 'thread')}; "
+        f"best other, {best['name']}: {change(best)} of time, {blocks(best)}"
+    )
+    figures = (
+        Compared("fastest measured", *_fastest(evidence.published, experiment, processes)),
+        Compared("best other against the choice", _best_other(evidence, experiment, schedule, chunk),
+                 f"{best['name']}: {change(best)}"),
+    )  # fmt: skip
+    parts = both([found.outcome(measured), _matters(average, found.further[0])])
+    return Outcome(parts.verdict, parts.measured, parts.why, figures)
+
+
+def _average(pairs: pd.DataFrame) -> pd.Series:
+    """Return ln(choice / mean of the others) of every block that has all of them."""
+    table = pairs.pivot_table(index=PAIR, columns="name", values="log_ratio").dropna()
+    return -table.mean(axis=1)
+
+
+def _matters(average: dict[str, Any], corrected: float) -> Outcome:
+    """Judge the choice against the average of the others: that it is faster confirms, so it is not corrected;
+    that it is not refutes, in one of several ways.
+    """
+    measured = f"against the others on average {change(average)} of time, {blocks(average)}"
+    if average["verdict"] == "faster":
+        return Outcome(HOLDS, measured)
+    if average["verdict"] == "inconclusive" or corrected > ERROR:
+        return Outcome(OPEN, measured, TOO_FEW)
+    return Outcome(FAILS, measured, NOT_BETTER[average["verdict"]])
+
+
+def _fastest(published: Published, experiment: str, processes: pd.DataFrame) -> tuple[str, str]:
+    """Return the schedule with the least time in the study, and that with the least median here."""
+    theirs = published.experiment(experiment).rename(columns={"seconds": "steps_seconds"})
+    said = []
+    for table in (theirs, processes.groupby(["series", "x"], as_index=False)["steps_seconds"].median()):
+        least = None if table.empty else table.loc[table["steps_seconds"].idxmin()]
+        said.append(
+            "–" if least is None
+            else f"{least['series']} {exact(least['x'])}, {number(least['steps_seconds'], 4)} s"
+        )  # fmt: skip
+    return said[0], said[1]
+
+
+def _best_other(evidence: Evidence, experiment: str, schedule: str, chunk: int) -> str:
+    """Return the published best beside the choice, with its change of time."""
+    times = evidence.published.experiment(experiment)
+    chosen = (times["series"] == schedule) & (times["x"] == chunk)
+    if not chosen.any() or chosen.all():
+        return "–"
+    others = times[~chosen]
+    best = others.loc[others["seconds"].idxmin()]
+    ratio = best["seconds"] / times.loc[chosen, "seconds"].iloc[0]
+    return f"{best['series']} {exact(best['x'])}: {percent(ratio - 1)}"
