@@ -56,9 +56,9 @@ fuzz-scenes: environment
 	$(generator) cmake --preset fuzz
 	cmake --build build/fuzz $(jobs)
 	mkdir -p build/fuzz/corpus
-	build/fuzz/harness/tests/fuzz/scene_seeds build/fuzz/seeds
-	build/fuzz/harness/tests/fuzz/scene_reader_fuzz -max_total_time="$${TIME:-60}" -timeout=10 -print_final_stats=1 \
-		-dict=harness/tests/fuzz/scene.dict -artifact_prefix=build/fuzz/ build/fuzz/corpus build/fuzz/seeds
+	build/fuzz/harness/tests/scenes/fuzz/scene_seeds build/fuzz/seeds
+	build/fuzz/harness/tests/scenes/fuzz/scene_reader_fuzz -max_total_time="$${TIME:-60}" -timeout=10 -print_final_stats=1 \
+		-dict=harness/tests/scenes/fuzz/scene.dict -artifact_prefix=build/fuzz/ build/fuzz/corpus build/fuzz/seeds
 
 fuzz-files: environment
 	CAROM_FUZZ_SECONDS="$${TIME:-60}" $(python) pytest -m fuzz -s

@@ -8,9 +8,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "harness/commands.hpp"
-#include "harness/errors.hpp"
-#include "harness/help.hpp"
+#include "harness/commands/commands.hpp"
+#include "harness/commands/help.hpp"
+#include "harness/support/errors.hpp"
 
 namespace {
 

@@ -18,7 +18,7 @@ MAY_INCLUDE = {
     "harness": {"kernels", "variants", "harness"},
 }
 MUST_NOT_IMPORT = {"experiments": "analysis", "analysis": "experiments"}
-GENERATED = {"harness/build_info.hpp"}
+GENERATED = {"harness/machine/build_info.hpp"}
 PRAGMAS = "kernels/parallel_for.hpp"
 
 NO_HEADER_OF_A_KERNEL = {
