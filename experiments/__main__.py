@@ -10,18 +10,18 @@ from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
-from experiments import question, site
-from experiments.collect import collect
-from experiments.errors import InputError, Interrupted, cannot
-from experiments.question import load_questions
-from experiments.scale import SCALES
-from experiments.site import load_site
-from experiments.slurm_jobs import folders
-from experiments.slurm_status import show_cluster_status
-from experiments.slurm_submit import resume, submit
-from experiments.slurm_worker import work
-from experiments.status import show_plan, show_status
-from experiments.study import Settings, run
+from experiments.plan import question, site
+from experiments.plan.question import load_questions
+from experiments.plan.scale import SCALES
+from experiments.plan.site import load_site
+from experiments.results.collect import collect
+from experiments.run.status import show_plan, show_status
+from experiments.run.study import Settings, run
+from experiments.slurm.jobs import folders
+from experiments.slurm.status import show_cluster_status
+from experiments.slurm.submit import resume, submit
+from experiments.slurm.task import work
+from experiments.support.errors import InputError, Interrupted, cannot
 
 # Slurm sends SIGUSR1 ahead of a task's time limit.
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)
