@@ -10,8 +10,8 @@ import pandas as pd
 
 from analysis.claims import curves, machines, ratios
 from analysis.claims.outcome import Outcome
-from analysis.published import Published
-from analysis.studies import Study
+from analysis.records.published import Published
+from analysis.records.studies import Study
 
 CLAIMS_FILE = Path(__file__).parent / "claims.toml"
 TESTS: dict[str, Callable[..., Outcome]] = {

@@ -7,11 +7,11 @@ from typing import Any
 import pandas as pd
 
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Outcome, both, no_records
+from analysis.records.studies import Study
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.trends import growth, linearity, turn
 from analysis.statistics.verdicts import ERROR, MARGIN, holm, judge_one
-from analysis.studies import Study
-from analysis.wording import blocks, change, exact, interval
+from analysis.support.wording import blocks, change, exact, interval
 
 ONE_POINT = "needs at least two values of the swept parameter"
 FOUR_POINTS = "needs four values measured in the same block"

@@ -8,11 +8,11 @@ from itertools import pairwise
 import pandas as pd
 
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Outcome, no_records
-from analysis.published import Published
+from analysis.records.published import Published
+from analysis.records.studies import Study
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.unpaired import judge_unpaired
-from analysis.studies import Study
-from analysis.wording import number
+from analysis.support.wording import number
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Outcome, both, no_records
+from analysis.records.studies import Study
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge, judge_one, not_faster
-from analysis.studies import Study
-from analysis.wording import blocks, change, count, exact, number, share
+from analysis.support.wording import blocks, change, count, exact, number, share
 
 
 def pair(

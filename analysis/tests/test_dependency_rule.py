@@ -133,7 +133,12 @@ BROKEN: list[tuple[Rule, str, str, str]] = [
         "def f():\n    from experiments import plan",
         "analysis/tests/a.py",
     ),
-    (wrong_imports, "experiments/a.py", "from analysis.records import load", "experiments/a.py: imports"),
+    (
+        wrong_imports,
+        "experiments/a.py",
+        "from analysis.records.reading import load",
+        "experiments/a.py: imports",
+    ),
     (wrong_imports, "experiments/a.py", "importlib.import_module('analysis')", "experiments/a.py: imports"),
     (stray_pragmas, "kernels/move.hpp", "#pragma omp parallel", "kernels/move.hpp: has an OpenMP pragma"),
     (stray_pragmas, "harness/a.cpp", '_Pragma("omp simd")', "harness/a.cpp: has an OpenMP pragma"),
