@@ -8,9 +8,9 @@
 #include "harness/accuracy/momentum_balance.hpp"
 #include "harness/accuracy/penetration.hpp"
 #include "harness/measure/measure.hpp"
-#include "harness/records/record.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/format.hpp"
+#include "harness/support/json.hpp"
 #include "harness/verify/checker.hpp"
 #include "kernels/exact/event_driven.hpp"
 
@@ -142,8 +142,6 @@ class Watch {
     std::vector<Disc> before_;
     std::int64_t pair_resolves_ = 0;
 };
-
-Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 } // namespace
 

@@ -13,6 +13,7 @@
 #include "harness/machine/provenance.hpp"
 #include "harness/machine/threads.hpp"
 #include "harness/measure/bench_case.hpp"
+#include "harness/records/record.hpp"
 #include "harness/support/errors.hpp"
 
 namespace carom {

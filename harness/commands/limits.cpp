@@ -12,8 +12,8 @@
 #include "harness/machine/machine.hpp"
 #include "harness/machine/provenance.hpp"
 #include "harness/machine/threads.hpp"
-#include "harness/records/policies_json.hpp"
 #include "harness/records/record.hpp"
+#include "harness/support/json.hpp"
 
 namespace carom {
 namespace {

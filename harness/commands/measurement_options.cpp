@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <map>
 
+#include "harness/records/record.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/input_file.hpp"
 #include "harness/support/process_clock.hpp"
 #include "harness/support/sha256.hpp"
 

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "harness/measure/measure.hpp"
-#include "harness/records/record.hpp"
+#include "harness/measure/measurement.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {

@@ -10,6 +10,7 @@
 #include "harness/measure/measure.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/format.hpp"
+#include "harness/support/json.hpp"
 
 namespace carom {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "harness/measure/measurement.hpp"
 #include "harness/records/profile_json.hpp"
-#include "harness/records/record.hpp"
 
 namespace carom {
 

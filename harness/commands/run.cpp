@@ -16,6 +16,7 @@
 #include "harness/records/policies_json.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/json.hpp"
 #include "harness/support/output_file.hpp"
 #include "harness/support/process_clock.hpp"
 #include "harness/support/progress_bar.hpp"

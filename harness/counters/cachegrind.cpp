@@ -11,6 +11,7 @@
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/child_process.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
 
 namespace carom {

@@ -16,17 +16,12 @@
 #include "harness/machine/provenance.hpp"
 #include "harness/machine/topology.hpp"
 #include "harness/support/child_process.hpp"
+#include "harness/support/json.hpp"
 
 namespace carom {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class Value> Json or_null(const std::optional<Value>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-
-Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 /// A field of /proc/meminfo in bytes.
 std::optional<std::int64_t> memory_bytes(const std::string& field) {

@@ -1,7 +1,6 @@
 #include "harness/machine/provenance.hpp"
 
 #include <array>
-#include <optional>
 #include <string>
 
 #include <dlfcn.h>
@@ -9,19 +8,14 @@
 
 #include "harness/machine/build_info.hpp"
 #include "harness/machine/machine.hpp"
-#include "harness/scenes/scene_file.hpp"
+#include "harness/support/input_file.hpp"
+#include "harness/support/json.hpp"
 #include "harness/support/sha256.hpp"
 
 namespace carom {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class Value> Json or_null(const std::optional<Value>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-
-Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 /// LLVM's runtime also answers to GNU's entry points, so it is asked for first.
 std::string openmp_runtime() {

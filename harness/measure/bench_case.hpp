@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "harness/records/record.hpp"
+#include "harness/measure/measurement.hpp"
 
 namespace carom {
 

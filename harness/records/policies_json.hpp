@@ -1,18 +1,11 @@
 #pragma once
 
-#include <string>
-
 #include <nlohmann/json.hpp>
 
 #include "kernels/policies.hpp"
 #include "variants/name.hpp"
 
 namespace carom {
-
-/// JSON as text; bytes that are no UTF-8, as a file's name may hold, become the replacement character.
-inline std::string json_text(const nlohmann::ordered_json& json, int indent) {
-    return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
 
 /// Every policy as a field of its own; null where it has no meaning for the variant.
 inline nlohmann::ordered_json policies_json(const Policies& policies) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "harness/measure/timeline.hpp"
+#include "harness/support/json.hpp"
 
 namespace carom {
 namespace {
@@ -10,12 +11,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json counter_json(const CounterValue& counter) {
-    const auto text_or_null = [](const std::string& text) {
-        return text.empty() ? Json(nullptr) : Json(text);
-    };
     return {{"name", counter.name},
-            {"thread", counter.thread ? Json(*counter.thread) : Json(nullptr)},
-            {"value", counter.value ? Json(*counter.value) : Json(nullptr)},
+            {"thread", or_null(counter.thread)},
+            {"value", or_null(counter.value)},
             {"source", counter.source},
             {"reason", text_or_null(counter.reason)},
             {"remedy", text_or_null(counter.remedy)}};

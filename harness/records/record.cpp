@@ -2,12 +2,12 @@
 
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <ctime>
 
 #include "harness/machine/provenance.hpp"
 #include "harness/records/policies_json.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/json.hpp"
 #include "harness/support/output_file.hpp"
 #include "harness/support/process_clock.hpp"
 #include "harness/support/text.hpp"
@@ -85,10 +85,6 @@ Json scene_json(const Scene& scene, const std::string& name, const std::string& 
             {"area_fraction", area_fraction(scene)}};
 }
 
-Json number_or_null(const std::optional<double>& value) {
-    return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
-}
-
 Json record_json(const Measurement& measurement) {
     const Run& last = measurement.repetitions.back();
     Json repetitions = Json::array();
@@ -112,7 +108,7 @@ Json record_json(const Measurement& measurement) {
             {"check",
              {{"verdict", measurement.violation ? "failed" : "passed"},
               {"scope", word(measurement.scope)},
-              {"reason", measurement.violation ? Json(*measurement.violation) : Json(nullptr)}}},
+              {"reason", or_null(measurement.violation)}}},
             {"state_hash", state_hash(last.discs)},
             {"provenance", provenance_json(measurement.tuning.threads)}};
 }

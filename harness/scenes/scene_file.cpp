@@ -1,12 +1,11 @@
 #include "harness/scenes/scene_file.hpp"
 
-#include <array>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <vector>
 
 #include "harness/support/errors.hpp"
+#include "harness/support/input_file.hpp"
 #include "harness/support/text.hpp"
 
 namespace carom {
@@ -141,22 +140,6 @@ void read_discs(LineReader& reader, std::vector<Disc>& discs) {
 }
 
 } // namespace
-
-std::string read_file(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path)) {
-        throw InputError(path.string() + ": cannot be read, expected a readable file");
-    }
-    std::string text;
-    std::array<char, 1 << 16> buffer;
-    while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0) {
-        text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
-    }
-    if (file.bad()) {
-        throw InputError(path.string() + ": reading broke off, expected a readable file");
-    }
-    return text;
-}
 
 void require_radius(double radius, const std::string& where) {
     if (!(radius >= smallest_radius && radius <= largest_number)) {

@@ -16,9 +16,6 @@ inline constexpr double smallest_radius = 1e-60;
 /// Most discs a scene may have.
 inline constexpr int most_discs = 100'000'000;
 
-/// The bytes of a file. Throws InputError if it cannot be read.
-std::string read_file(const std::filesystem::path& path);
-
 /// Parses the published text format: N, L, r and S, one a line, then N lines `i x y vx vy`, in any order of
 /// i. `name` stands for the file in errors. Throws InputError with file, line, what was found and what was
 /// expected; nothing is allocated for discs that the text is too short to hold.

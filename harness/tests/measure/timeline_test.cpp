@@ -11,7 +11,7 @@
 #include "harness/measure/profiler.hpp"
 #include "harness/measure/timeline.hpp"
 #include "harness/scenes/generate.hpp"
-#include "harness/scenes/scene_file.hpp"
+#include "harness/support/input_file.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {
