@@ -2,13 +2,27 @@
 
 import math
 from collections.abc import Hashable, Mapping
-from typing import Any
+from typing import Any, Protocol
 
 import pandas as pd
 
-from analysis.statistics.intervals import Interval
-
 NO_BREAK = "\u00a0"
+
+
+class Estimated(Protocol):
+    """An estimate between two ends, as `statistics.intervals.Interval` is."""
+
+    @property
+    def estimate(self) -> float:
+        """The middle."""
+
+    @property
+    def low(self) -> float:
+        """The lower end."""
+
+    @property
+    def high(self) -> float:
+        """The upper end."""
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -39,14 +53,18 @@ def share(fraction: float, digits: int = 0) -> str:
     return f"{fraction * 100:.{digits}f}{NO_BREAK}%"
 
 
-def interval(value: Interval, digits: int = 3) -> str:
+def interval(value: Estimated, digits: int = 3) -> str:
     """Return an estimate with its 95 % interval, e.g. `0.98 [0.95, 1.01]`."""
-    return f"{number(value.estimate, digits)} [{number(value.low, digits)}, {number(value.high, digits)}]"
+    return _between(value.estimate, value.low, value.high, digits)
 
 
 def interval_of(row: Mapping[Hashable, Any] | pd.Series, value: str = "median") -> str:
     """Return the columns `value`, `low`, `high` of a row as an estimate with its interval."""
-    return interval(Interval(row[value], row["low"], row["high"]))
+    return _between(row[value], row["low"], row["high"], 3)
+
+
+def _between(estimate: float, low: float, high: float, digits: int) -> str:
+    return f"{number(estimate, digits)} [{number(low, digits)}, {number(high, digits)}]"
 
 
 def change(row: Mapping[str, Any]) -> str:
