@@ -12,16 +12,13 @@
 
 #include "harness/machine/threads.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/stopwatch.hpp"
 #include "kernels/parallel_for.hpp"
 
 namespace carom {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 #if defined(__AVX512F__)
 constexpr int native_lanes = 8;

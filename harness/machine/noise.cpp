@@ -9,15 +9,12 @@
 #include <string>
 
 #include "harness/machine/machine.hpp"
+#include "harness/support/stopwatch.hpp"
 
 namespace carom {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// The same instructions every time, each waiting for the one before: xorshift64 (Marsaglia 2003).
 std::uint64_t spin(int turns) {

@@ -1,5 +1,7 @@
 #include "harness/measure/profiler.hpp"
 
+#include "harness/support/stopwatch.hpp"
+
 namespace carom {
 namespace {
 
@@ -26,9 +28,7 @@ Profiler::Profiler(const Policies& policies, const Tuning& tuning, TimelineOptio
         fixed_chunk(policies.resolve_schedule, tuning.resolve_chunk);
 }
 
-double Profiler::now() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
+double Profiler::now() const { return seconds_since(start_); }
 
 const ThreadWork& Profiler::work(Phase phase, int thread) const {
     return tracks_[static_cast<std::size_t>(thread)].work[static_cast<std::size_t>(phase)];

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "harness/support/stopwatch.hpp"
+
 namespace carom {
 namespace {
 
@@ -9,8 +11,6 @@ const auto process_start = std::chrono::steady_clock::now();
 
 } // namespace
 
-double process_seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - process_start).count();
-}
+double process_seconds() { return seconds_since(process_start); }
 
 } // namespace carom

@@ -7,6 +7,11 @@
 
 namespace carom {
 
+/// Wall time that has passed since then.
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 /// Adds up wall and process CPU time between starts and stops. Whoever keeps a clock of their own beside it
 /// is told of each, just outside the time that counts.
 class Stopwatch {
