@@ -11,6 +11,7 @@ from types import FrameType
 from typing import NoReturn
 
 from experiments.plan import question, site
+from experiments.plan.program import GENERATOR
 from experiments.plan.question import load_questions
 from experiments.plan.scale import SCALES
 from experiments.plan.site import load_site
@@ -60,6 +61,14 @@ def _check(options: argparse.Namespace) -> int:
     questions = load_questions(options.questions, options.study)
     sites = [load_site(str(path)) for path in sorted(site.FOLDER.glob("*.toml"))]
     print(f"{len(questions)} questions and {len(sites)} sites are valid")
+    return 0
+
+
+def _builds(options: argparse.Namespace) -> int:
+    """The one that makes the scenes, and what the questions ask for."""
+    questions = load_questions(options.questions, options.study)
+    asked = {GENERATOR, *(series.program for one in questions for series in one.series)}
+    print(*(name for name in load_site(options.site).programs if name in asked))
     return 0
 
 
@@ -157,6 +166,7 @@ _VERBS = {
     ),
     "status": _Verb("say what is done, missing and failed", _status),
     "check": _Verb("read every question and site file", _check),
+    "builds": _Verb("say which builds of the program the questions need", _builds),
     "submit": _Verb(
         "hand what is missing to a Slurm cluster",
         lambda options: submit(_settings(options), dry_run=options.dry_run),

@@ -12,6 +12,9 @@ from experiments.support.errors import InputError
 
 CHECK_FAILED = 2
 
+GENERATOR = "gcc"
+"""The build that makes the scenes, whichever is measured."""
+
 
 @dataclass(frozen=True)
 class Program:

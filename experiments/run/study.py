@@ -10,7 +10,7 @@ from pathlib import Path
 from experiments.plan import question, site
 from experiments.plan.plan import SEED, Experiment, Surroundings, plan
 from experiments.plan.point import Point
-from experiments.plan.program import Program, find_programs
+from experiments.plan.program import GENERATOR, Program, find_programs
 from experiments.plan.question import load_questions, with_blocks
 from experiments.plan.scale import find_scale
 from experiments.plan.scenes import SceneFolder
@@ -70,7 +70,7 @@ class Study:
             raise InputError(f"site {self.site.name}: is a cluster; use `make submit SITE={settings.site}`")
         machine = settings.machine or site.this_machine()
         programs = find_programs(self.site, settings.build)
-        self.generator: Program = programs["gcc"]
+        self.generator: Program = programs[GENERATOR]
         if self.generator.sha256 is None:
             raise InputError(self.generator.remedy)
         around = Surroundings(self.site, machine, programs, self.scale, settings.seed)
