@@ -11,6 +11,7 @@ from experiments.support import process
 from experiments.support.errors import InputError
 
 CHECK_FAILED = 2
+NOT_BUILT_IN = 3
 
 GENERATOR = "gcc"
 """The build that makes the scenes, whichever is measured."""

@@ -1,16 +1,12 @@
 """What the machine can do at most, measured once before anything is compared with it."""
 
-import hashlib
-import json
 from dataclasses import asdict
 
 from experiments.plan.point import Point
 from experiments.plan.program import tag_arguments
 from experiments.results.store import Store
-from experiments.run.turn import run_in_turn
-from experiments.support.files import move, read_json
+from experiments.run import beside
 from experiments.support.process import Completed
-from experiments.support.schema import is_record
 
 FIGURE = "limits"
 """The kind of figure that compares with them."""
@@ -38,16 +34,11 @@ class Limits:
         command = (*words, *tag_arguments({"experiment": FOLDER, "site": point.site}))
         if point.figure != FIGURE or self._store.holds(path, "limits"):
             return Completed(command, 0, "", "")
-        scratch.unlink(missing_ok=True)
-        done = run_in_turn(command, point.openmp, self._time_limit)
+        done = beside.record(command, point.openmp, self._time_limit, scratch, path)
         if done.exit_code != 0:
             return Completed(command, done.exit_code, "", f"limits of the machine: {done.reason}")
-        if not is_record(read_json(scratch)):
-            return Completed(command, 1, "", "limits of the machine: no record that can be used")
-        move(scratch, path)
         return done
 
 
 def _name(point: Point) -> str:
-    content = [point.program.sha256, asdict(point.machine), point.threads, point.openmp]
-    return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:16]
+    return beside.name_of([point.program.sha256, asdict(point.machine), point.threads, point.openmp])

@@ -18,7 +18,7 @@ struct ChipmunkRun {
 };
 
 /// Runs S * substeps steps of 1 / substeps, on one thread, with so many iterations of its solver a step.
-/// Throws InputError if the program was built without Chipmunk.
+/// Throws NotBuiltIn if the program was built without Chipmunk.
 ChipmunkRun run_chipmunk(const Scene& scene, int substeps, int iterations);
 
 } // namespace carom

@@ -6,7 +6,7 @@
 namespace carom {
 
 ChipmunkRun run_chipmunk(const Scene& /*scene*/, int /*substeps*/, int /*iterations*/) {
-    throw InputError(
+    throw NotBuiltIn(
         "built without Chipmunk; install libchipmunk-dev and configure with -DCAROM_CHIPMUNK=ON");
 }
 
