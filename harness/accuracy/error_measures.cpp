@@ -7,6 +7,7 @@
 
 #include "harness/accuracy/momentum_balance.hpp"
 #include "harness/accuracy/penetration.hpp"
+#include "harness/measure/energy_drift.hpp"
 #include "harness/measure/measure.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/format.hpp"

@@ -5,6 +5,7 @@
 #include "harness/commands/commands.hpp"
 #include "harness/commands/simulation_options.hpp"
 #include "harness/machine/threads.hpp"
+#include "harness/measure/energy_drift.hpp"
 #include "harness/measure/measure.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"

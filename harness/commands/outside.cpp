@@ -7,6 +7,7 @@
 #include "harness/commands/measurement_options.hpp"
 #include "harness/machine/provenance.hpp"
 #include "harness/measure/chipmunk.hpp"
+#include "harness/measure/energy_drift.hpp"
 #include "harness/measure/measure.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/format.hpp"

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "harness/counters/access.hpp"
+#include "harness/counters/default_counters.hpp"
 #include "harness/counters/groups.hpp"
 #include "harness/counters/on_threads.hpp"
 #include "harness/counters/papi.hpp"
@@ -13,20 +14,6 @@
 
 namespace carom {
 namespace {
-
-/// Presets where PAPI has them for this CPU; otherwise the kernel's own generic events.
-const std::vector<Alternatives> usual_events{{"PAPI_TOT_CYC", "perf::CYCLES"},
-                                             {"PAPI_TOT_INS", "perf::INSTRUCTIONS"},
-                                             {"PAPI_L1_DCM", "perf::L1-DCACHE-LOAD-MISSES"},
-                                             {"PAPI_L2_TCM", "PAPI_L2_DCM"},
-                                             {"PAPI_L3_TCM", "perf::CACHE-MISSES"},
-                                             {"PAPI_BR_MSP", "perf::BRANCH-MISSES"},
-                                             {"PAPI_TLB_DM", "perf::DTLB-LOAD-MISSES"},
-                                             {"PAPI_RES_STL", "perf::STALLED-CYCLES-BACKEND"},
-                                             {"perf::TASK-CLOCK"},
-                                             {"perf::CONTEXT-SWITCHES"},
-                                             {"perf::CPU-MIGRATIONS"},
-                                             {"perf::PAGE-FAULTS"}};
 
 std::vector<std::string> events_of_environment() {
     std::vector<std::string> events;
@@ -46,7 +33,7 @@ std::vector<Alternatives> wanted_events(std::vector<std::string> events) {
         events = events_of_environment();
     }
     if (events.empty()) {
-        return usual_events;
+        return default_counters();
     }
     std::vector<Alternatives> wanted;
     for (const std::string& event : events) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "harness/measure/energy_drift.hpp"
+
 namespace carom {
 
 std::string BenchCase::name() const {

@@ -1,6 +1,5 @@
 #include "harness/measure/measure.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cstdio>
 
@@ -64,21 +63,6 @@ Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, 
     run.cpu_seconds = stopwatch.cpu_seconds();
     run.discs = simulation.discs();
     return run;
-}
-
-std::optional<double> energy_drift(const Scene& scene, const std::vector<Disc>& discs) {
-    const double start = kinetic_energy(scene.discs);
-    if (start == 0) {
-        return std::nullopt;
-    }
-    return (kinetic_energy(discs) - start) / start;
-}
-
-int discs_outside(const Scene& scene, const std::vector<Disc>& discs) {
-    const auto outside = [&scene](const Disc& disc) {
-        return !(disc.x >= 0 && disc.y >= 0 && disc.x <= scene.side && disc.y <= scene.side);
-    };
-    return static_cast<int>(std::count_if(discs.begin(), discs.end(), outside));
 }
 
 std::string state_hash(const std::vector<Disc>& discs) {

@@ -44,12 +44,6 @@ using OnStep = std::function<void(int step, const std::vector<Disc>& discs)>;
 Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, const Check& check,
               const OnStep& on_step = nullptr, Stopwatch stopwatch = {});
 
-/// (E_end - E_start) / E_start; empty if nothing moves at the start.
-std::optional<double> energy_drift(const Scene& scene, const std::vector<Disc>& discs);
-
-/// How many centres lie outside [0, L]^2.
-int discs_outside(const Scene& scene, const std::vector<Disc>& discs);
-
 /// FNV-1a (Fowler, Noll, Vo) over the bits of all positions and velocities, as 16 hexadecimal digits.
 std::string state_hash(const std::vector<Disc>& discs);
 

@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "harness/machine/provenance.hpp"
+#include "harness/measure/energy_drift.hpp"
 #include "harness/records/policies_json.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/json.hpp"

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/measure/energy_drift.hpp"
 #include "harness/measure/measure.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/tests/program.hpp"

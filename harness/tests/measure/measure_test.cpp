@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/measure/energy_drift.hpp"
 #include "harness/measure/measure.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "kernels/tests/simulate.hpp"

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/measure/energy_drift.hpp"
 #include "harness/support/format.hpp"
 #include "harness/tests/verify/hard_cases.hpp"
 #include "kernels/tests/simulate.hpp"

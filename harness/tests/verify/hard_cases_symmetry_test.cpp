@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/measure/energy_drift.hpp"
 #include "harness/scenes/changed_scenes.hpp"
 #include "harness/tests/verify/hard_cases.hpp"
 #include "harness/verify/overlapping_pairs.hpp"

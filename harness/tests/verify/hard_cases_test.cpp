@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/measure/energy_drift.hpp"
 #include "harness/tests/verify/hard_cases.hpp"
 #include "kernels/tests/simulate.hpp"
 #include "variants/tests/each_variant.hpp"
