@@ -5,7 +5,7 @@
 # Goals and prerequisites run one after another in the order given, also in `make -j2 setup test`.
 .NOTPARALLEL:
 .SILENT:
-.PHONY: help setup environment build build-gcc build-clang build-gcc-libomp test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files movie \
+.PHONY: help setup environment build build-gcc build-clang build-gcc-libomp tests-gcc tests-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files movie \
         experiments status submit resume collect figures report compare lint lint-quick format clean distclean
 
 export COMPILER ?= gcc
@@ -15,6 +15,7 @@ CXX_clang := clang++
 python := .venv/bin/python -m
 jobs := --parallel "$${JOBS:-$$(nproc)}"
 generator := CMAKE_GENERATOR="$${CMAKE_GENERATOR:-$$(command -v ninja >/dev/null && echo Ninja || echo Unix Makefiles)}"
+configure = CXX=$(CXX_$*) $(generator) cmake --preset release -B build/$* -DCAROM_WARNINGS_AS_ERRORS="$${WERROR:+ON}"
 sources := find kernels variants harness -name '*.[ch]pp'
 study := $${STUDY:+--study "$$STUDY"} $${SCALE:+--scale "$$SCALE"} $${SITE:+--site "$$SITE"}
 results := $${RESULTS:+--results "$$RESULTS"}
@@ -30,8 +31,13 @@ build: ## build build/$COMPILER/carom (COMPILER=gcc|clang|gcc-libomp; JOBS=; WER
 	case "$$COMPILER" in gcc|clang|gcc-libomp) ;; *) echo "COMPILER=$$COMPILER: expected gcc, clang or gcc-libomp" >&2; exit 1;; esac
 	$(MAKE) --no-print-directory "build-$$COMPILER"
 
+# The program alone: what the study and the verbs need. The tests are built for the tests.
 build-gcc build-clang: build-%:
-	CXX=$(CXX_$*) $(generator) cmake --preset release -B build/$* -DCAROM_WARNINGS_AS_ERRORS="$${WERROR:+ON}"
+	$(configure)
+	cmake --build build/$* --target carom $(jobs)
+
+tests-gcc tests-clang: tests-%:
+	$(configure)
 	cmake --build build/$* $(jobs)
 
 # g++'s code with the OpenMP runtime of clang++, which has g++'s entry points too: to compare the compilers' code alone.
@@ -41,7 +47,7 @@ build-gcc-libomp:
 		-DOpenMP_omp_LIBRARY="$$(dirname "$$(readlink -f "$$(command -v clang++)")")/../lib/libomp.so"
 	cmake --build build/gcc-libomp $(jobs) --target carom
 
-test: lint-quick build-gcc build-clang ## build with both compilers and run every quick test
+test: lint-quick tests-gcc tests-clang ## build with both compilers and run every quick test
 	ctest --test-dir build/gcc --output-on-failure --no-tests=error -LE slow $(jobs)
 	ctest --test-dir build/clang --output-on-failure --no-tests=error -LE slow $(jobs)
 	$(python) pytest
@@ -63,9 +69,9 @@ fuzz-scenes: environment
 	$(generator) cmake --preset fuzz
 	cmake --build build/fuzz $(jobs)
 	mkdir -p build/fuzz/corpus
-	build/fuzz/harness/tests/fuzz/scene_seeds build/fuzz/seeds
-	build/fuzz/harness/tests/fuzz/scene_reader_fuzz -max_total_time="$${TIME:-60}" -timeout=10 -print_final_stats=1 \
-		-dict=harness/tests/fuzz/scene.dict -artifact_prefix=build/fuzz/ build/fuzz/corpus build/fuzz/seeds
+	build/fuzz/harness/tests/scenes/fuzz/scene_seeds build/fuzz/seeds
+	build/fuzz/harness/tests/scenes/fuzz/scene_reader_fuzz -max_total_time="$${TIME:-60}" -timeout=10 -print_final_stats=1 \
+		-dict=harness/tests/scenes/fuzz/scene.dict -artifact_prefix=build/fuzz/ build/fuzz/corpus build/fuzz/seeds
 
 fuzz-files: environment
 	CAROM_FUZZ_SECONDS="$${TIME:-60}" $(python) pytest -m fuzz -s
@@ -79,7 +85,9 @@ test-slurm: environment ## the tests that need Slurm, which they unpack themselv
 	$(python) pytest -m slurm
 
 # A point that failed (2) belongs in the report and still fails the goal.
-experiments: environment build-gcc build-clang ## run the study, then report (STUDY= SCALE=quick|paper SITE= RESULTS= BUDGET=minutes)
+experiments: environment ## run the study, then report (STUDY= SCALE=quick|paper SITE= RESULTS= BUDGET=minutes)
+	builds=$$($(python) experiments builds $(study)) && for build in $$builds; do \
+		case $$build in gcc|clang) $(MAKE) --no-print-directory "build-$$build" || exit;; esac; done
 	code=0; $(python) experiments run $(study) $(results) $${BUDGET:+--budget "$$BUDGET"} || code=$$?; \
 	case $$code in 0|2) $(python) analysis report $(results) && exit $$code;; *) exit $$code;; esac
 
@@ -114,8 +122,10 @@ compare: environment ## compare two result folders (A= B=)
 	: "$${A:?one result folder}" "$${B:?the other result folder}"
 	$(python) analysis compare "$$A" "$$B"
 
-lint: lint-quick build-clang ## every static check of C++ and Python (clang-tidy from the package of that name)
-	run-clang-tidy -quiet -p build/clang -j "$${JOBS:-$$(nproc)}"
+lint: lint-quick ## every static check of C++ and Python (clang-tidy from the package of that name)
+	CXX=clang++ $(generator) cmake --preset release -B build/lint -DCAROM_UNITY=OFF
+	cmake --build build/lint --target carom_build_info
+	run-clang-tidy -quiet -p build/lint -j "$${JOBS:-$$(nproc)}"
 
 lint-quick: environment
 	$(sources) -exec .venv/bin/clang-format --dry-run --Werror {} +

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from analysis.records import InputError
+from analysis.records.reading import InputError
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -78,7 +78,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _figures(options: argparse.Namespace) -> int:
-    from analysis.study_figures import draw_all
+    from analysis.figures.studies import draw_all
 
     if options.follow:
         for line in sys.stdin:
@@ -101,9 +101,10 @@ def _report(options: argparse.Namespace) -> int:
 
 
 def _claims(options: argparse.Namespace) -> int:
-    from analysis import claims, published
-    from analysis.records import load
-    from analysis.studies import split
+    from analysis import claims
+    from analysis.records import published
+    from analysis.records.reading import load
+    from analysis.records.studies import split
 
     studies = split(load(options.results))
     if not studies:
@@ -117,9 +118,9 @@ def _claims(options: argparse.Namespace) -> int:
 
 
 def _performance(options: argparse.Namespace) -> int:
-    from analysis.performance import markdown
-    from analysis.records import load
-    from analysis.studies import split
+    from analysis.commands.performance import markdown
+    from analysis.records.reading import load
+    from analysis.records.studies import split
 
     texts = [(study.name, markdown(study)) for study in split(load(options.results))]
     if not any(text for _, text in texts):
@@ -129,8 +130,8 @@ def _performance(options: argparse.Namespace) -> int:
 
 
 def _compare(options: argparse.Namespace) -> int:
-    from analysis import comparison
-    from analysis.wording import change
+    from analysis.commands import comparison
+    from analysis.support.wording import change
 
     table = comparison.compare(options.first, options.second, options.experiment)
     shown = table.assign(
@@ -148,7 +149,7 @@ def _compare(options: argparse.Namespace) -> int:
 
 
 def _movie(options: argparse.Namespace) -> int:
-    from analysis import movie
+    from analysis.commands import movie
 
     print(movie.draw(options.scene, options.trajectory, options.output, options.step))
     return 0

@@ -10,18 +10,19 @@ from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
-from experiments import question, site
-from experiments.collect import collect
-from experiments.errors import InputError, Interrupted, cannot
-from experiments.question import load_questions
-from experiments.scale import SCALES
-from experiments.site import load_site
-from experiments.slurm_jobs import folders
-from experiments.slurm_status import show_cluster_status
-from experiments.slurm_submit import resume, submit
-from experiments.slurm_worker import work
-from experiments.status import show_plan, show_status
-from experiments.study import Settings, run
+from experiments.plan import question, site
+from experiments.plan.program import GENERATOR
+from experiments.plan.question import load_questions
+from experiments.plan.scale import SCALES
+from experiments.plan.site import load_site
+from experiments.results.collect import collect
+from experiments.run.status import show_plan, show_status
+from experiments.run.study import Settings, run
+from experiments.slurm.jobs import folders
+from experiments.slurm.status import show_cluster_status
+from experiments.slurm.submit import resume, submit
+from experiments.slurm.task import work
+from experiments.support.errors import InputError, Interrupted, cannot
 
 # Slurm sends SIGUSR1 ahead of a task's time limit.
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)
@@ -60,6 +61,14 @@ def _check(options: argparse.Namespace) -> int:
     questions = load_questions(options.questions, options.study)
     sites = [load_site(str(path)) for path in sorted(site.FOLDER.glob("*.toml"))]
     print(f"{len(questions)} questions and {len(sites)} sites are valid")
+    return 0
+
+
+def _builds(options: argparse.Namespace) -> int:
+    """The one that makes the scenes, and what the questions ask for."""
+    questions = load_questions(options.questions, options.study)
+    asked = {GENERATOR, *(series.program for one in questions for series in one.series)}
+    print(*(name for name in load_site(options.site).programs if name in asked))
     return 0
 
 
@@ -157,6 +166,7 @@ _VERBS = {
     ),
     "status": _Verb("say what is done, missing and failed", _status),
     "check": _Verb("read every question and site file", _check),
+    "builds": _Verb("say which builds of the program the questions need", _builds),
     "submit": _Verb(
         "hand what is missing to a Slurm cluster",
         lambda options: submit(_settings(options), dry_run=options.dry_run),

@@ -8,9 +8,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "harness/commands.hpp"
-#include "harness/errors.hpp"
-#include "harness/help.hpp"
+#include "harness/commands/commands.hpp"
+#include "harness/commands/help.hpp"
+#include "harness/support/errors.hpp"
 
 namespace {
 
@@ -63,6 +63,8 @@ int main(int count, char** arguments) {
         return fail(1, error.what());
     } catch (const carom::CheckError& error) {
         return fail(2, error.what());
+    } catch (const carom::NotBuiltIn& error) {
+        return fail(3, error.what());
     } catch (const std::bad_alloc&) {
         return fail(1, "out of memory: expected a machine with room for the scene and its boxes");
     } catch (const std::exception& error) {

@@ -5,64 +5,34 @@
 #include <cstddef>
 #include <utility>
 
-#include "kernels/step.hpp"
-#include "variants/name.hpp"
+#include "variants/parts.hpp"
 #include "variants/table.hpp"
 
 namespace carom {
 namespace {
 
-template <Policies policies, class SomeProbe> class SimulationOf final : public Simulation {
-  public:
-    SimulationOf(const Scene& scene, const Tuning& tuning, SomeProbe& probe)
-        : state_(scene), tuning_(tuning), probe_(probe) {}
-
-    Tally step() override { return carom::step(state_, tuning_, probe_); }
-
-    const std::vector<Disc>& discs() const override {
-        if constexpr (policies.storage == Storage::numbered && policies.precision == Precision::double_) {
-            return state_.discs;
-        } else {
-            by_number_ = discs_by_number(state_);
-            return by_number_;
+template <std::size_t... part> auto in_the_order_of_the_table(std::index_sequence<part...>) {
+    std::array<Variant, table.size()> all{};
+    const auto place = [&all](std::size_t row, std::span<const Variant> every_so_many) {
+        for (const Variant& variant : every_so_many) {
+            all[row] = variant;
+            row += parts;
         }
-    }
-
-  private:
-    State<policies> state_;
-    mutable std::vector<Disc> by_number_; ///< a copy, made when asked for
-    Tuning tuning_;
-    SomeProbe& probe_;
-};
-
-template <Policies policies> std::unique_ptr<Simulation> simulate(const Scene& scene, const Tuning& tuning) {
-    static NoProbe probe;
-    return std::make_unique<SimulationOf<policies, NoProbe>>(scene, tuning, probe);
+    };
+    (place(part, variants_of_part<part>()), ...);
+    return all;
 }
-
-template <Policies policies>
-std::unique_ptr<Simulation> simulate_observed(const Scene& scene, const Tuning& tuning, Probe& probe) {
-    return std::make_unique<SimulationOf<policies, Probe>>(scene, tuning, probe);
-}
-
-template <std::size_t row> constexpr Name name_of_row = name_of(table[row]);
-
-template <std::size_t... row> constexpr auto all_rows(std::index_sequence<row...>) {
-    return std::array{Variant{.name = name_of_row<row>.view(),
-                              .policies = table[row],
-                              .simulate = simulate<table[row]>,
-                              .simulate_observed = simulate_observed<table[row]>}...};
-}
-
-constexpr auto all_variants = all_rows(std::make_index_sequence<table.size()>{});
 
 } // namespace
 
-std::span<const Variant> variants() { return all_variants; }
+std::span<const Variant> variants() {
+    static const auto all = in_the_order_of_the_table(std::make_index_sequence<parts>{});
+    return all;
+}
 
 const Variant* find_variant(std::string_view name) {
-    const auto found = std::ranges::find(all_variants, name, &Variant::name);
-    return found == all_variants.end() ? nullptr : &*found;
+    const auto found = std::ranges::find(variants(), name, &Variant::name);
+    return found == variants().end() ? nullptr : &*found;
 }
 
 } // namespace carom

@@ -8,9 +8,9 @@ import pandas as pd
 from analysis.claims import compilers, counts, curves, machines, phases, ratios, scaling, schedules
 from analysis.claims.entry import Claim, Evidence, load
 from analysis.claims.outcome import ELSEWHERE, OPEN, Compared, Outcome, Verdict
-from analysis.published import Published
-from analysis.studies import Study
-from analysis.wording import count, listed
+from analysis.records.published import Published
+from analysis.records.studies import Study
+from analysis.support.wording import count, listed
 
 __all__ = ["TESTS", "Claim", "evaluate", "load"]
 

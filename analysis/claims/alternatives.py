@@ -7,7 +7,7 @@ import pandas as pd
 
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Outcome
 from analysis.statistics.verdicts import ERROR, MARGIN, holm, judge_one, not_faster
-from analysis.wording import share
+from analysis.support.wording import share
 
 
 @dataclass(frozen=True)

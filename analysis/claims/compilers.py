@@ -7,7 +7,7 @@ from analysis.claims.outcome import Compared, Outcome, both, no_records
 from analysis.claims.ratios import judged
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
-from analysis.wording import blocks, change
+from analysis.support.wording import blocks, change
 
 NOT_TOLD_APART = (
     "each compiler's code ran with its own OpenMP runtime: what is the code's and what is the runtime's is "

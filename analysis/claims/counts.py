@@ -7,7 +7,7 @@ from analysis.claims.entry import Evidence
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, no_records
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
-from analysis.wording import blocks, change, count
+from analysis.support.wording import blocks, change, count
 
 OF_COUNTS = {"faster": "fewer", "slower": "more"}
 """The verdicts on a ratio in words for a number of things; the others are the same."""

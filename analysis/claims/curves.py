@@ -8,10 +8,10 @@ from analysis.claims import published_curves
 from analysis.claims.alternatives import alternatives
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
+from analysis.records.studies import Study
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.trends import growth, linearity, turn
-from analysis.studies import Study
-from analysis.wording import blocks, change, exact, factor, interval, listed, number
+from analysis.support.wording import blocks, change, exact, factor, interval, listed, number
 
 ONE_POINT = "needs at least two values of the swept parameter"
 FOUR_POINTS = "needs four values measured in the same block"

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from analysis.published import Published
-from analysis.studies import Study
+from analysis.records.published import Published
+from analysis.records.studies import Study
 
 CLAIMS_FILE = Path(__file__).parent / "claims.toml"
 

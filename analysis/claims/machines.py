@@ -8,11 +8,11 @@ import pandas as pd
 
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, no_records
-from analysis.published import Published
+from analysis.records.published import Published
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.unpaired import judge_unpaired
 from analysis.statistics.verdicts import corrected
-from analysis.wording import listed, number
+from analysis.support.wording import listed, number
 
 
 @dataclass(frozen=True)

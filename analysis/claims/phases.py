@@ -7,7 +7,7 @@ from analysis.claims.entry import Evidence
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, no_records
 from analysis.statistics.pairs import PAIR
 from analysis.statistics.verdicts import judge_one
-from analysis.wording import count, number, share
+from analysis.support.wording import count, number, share
 
 VARIANTS = ["published", "self_contained_off"]
 

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from analysis.published import Published
+from analysis.records.published import Published
 from analysis.statistics.pairs import log_ratios
 from analysis.statistics.verdicts import judge_one
 

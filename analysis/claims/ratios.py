@@ -14,7 +14,7 @@ from analysis.claims.entry import Evidence
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
-from analysis.wording import blocks, change, exact, percent
+from analysis.support.wording import blocks, change, exact, percent
 
 
 def pair(

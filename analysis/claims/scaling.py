@@ -11,7 +11,7 @@ from analysis.claims.entry import Evidence
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
 from analysis.statistics.pairs import log_ratios
 from analysis.statistics.verdicts import ERROR, MARGIN, holm, judge_one
-from analysis.wording import blocks, change, exact, factor
+from analysis.support.wording import blocks, change, exact, factor
 
 ANOTHER_BINDING = "threads are bound at one end and not at the other: the binding changes with their number"
 

@@ -8,10 +8,10 @@ import pandas as pd
 from analysis.claims.alternatives import alternatives
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
-from analysis.published import Published
+from analysis.records.published import Published
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import ERROR, judge_one
-from analysis.wording import blocks, change, count, exact, number, percent
+from analysis.support.wording import blocks, change, count, exact, number, percent
 
 ONE_THREAD = "on a single thread a schedule shares nothing out: needs 2 hardware threads"
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from analysis.accuracy import MEASURES
+from analysis.derived.accuracy import MEASURES
 from analysis.figures import (
     comparisons,
     counters,
@@ -30,8 +30,8 @@ from analysis.figures import (
     timeline,
 )
 from analysis.figures.style import Data, Drawing, Table, mark_partial, partial, save, styled
-from analysis.parallel import in_parallel
-from analysis.studies import Study
+from analysis.records.studies import Study
+from analysis.support.parallel import in_parallel
 
 
 @dataclass(frozen=True)

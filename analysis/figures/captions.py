@@ -5,7 +5,7 @@ import pandas as pd
 from analysis.statistics.intervals import Interval
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.trends import growth, linearity, turn
-from analysis.wording import change, count, exact, interval, number
+from analysis.support.wording import change, count, exact, interval, number
 
 MEDIANS = "Dots are medians, bars their 95 % bootstrap intervals"
 PROCESSES = "A dot is the median of one process"

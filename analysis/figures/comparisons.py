@@ -14,7 +14,7 @@ from analysis.figures.style import BAND, BLUE, FAINT, INK, Data, Drawing, new_fi
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge
-from analysis.wording import change, exact
+from analysis.support.wording import change, exact
 
 PUBLISHED = "published"
 

@@ -5,9 +5,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analysis.counters import derived
+from analysis.derived.counters import derived
 from analysis.figures.style import BLUE, WIDTH, Data, Drawing
-from analysis.wording import count, number
+from analysis.support.wording import count, number
 
 COLUMNS = 3
 

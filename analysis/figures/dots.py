@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from analysis.figures.style import BLUE, lighten
-from analysis.wording import interval_of
+from analysis.support.wording import interval_of
 
 
 def dots(axes: Axes, summary: pd.DataFrame, name: str, colour: str = BLUE) -> None:

@@ -5,16 +5,16 @@ not.
 import pandas as pd
 from matplotlib.axes import Axes
 
+from analysis.derived.ladder import per_disc_step, speed_up
 from analysis.figures.captions import opening, turn_sentence
 from analysis.figures.curves import colours, curve, published_curve
 from analysis.figures.labels import label_ends
 from analysis.figures.style import Data, Drawing, lighten, logarithmic_ticks, new_figure, plain_ticks
 from analysis.figures.sweeps import ranges_agree, trend
-from analysis.ladder import per_disc_step, speed_up
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
-from analysis.wording import exact, interval_of, number
+from analysis.support.wording import exact, interval_of, number
 
 EXPERIMENT = "grid_length"
 SUBJECT = "Time over the side length"

@@ -7,11 +7,11 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter
 
-from analysis import hard_cases as cases
+from analysis.derived import hard_cases as cases
+from analysis.derived.hard_cases import FAILS, HOLDS, LIMIT, UNMEASURED
 from analysis.figures.speed_against_error import power_of_ten
 from analysis.figures.style import BLUE, FAINT, INK, VERMILLION, Cell, Data, Drawing, Table, key, new_figure
-from analysis.hard_cases import FAILS, HOLDS, LIMIT, UNMEASURED
-from analysis.wording import count
+from analysis.support.wording import count
 
 COLOURS = {"double": BLUE, "float": VERMILLION}
 MARKS = {HOLDS: "holds", FAILS: "fails", LIMIT: "open", UNMEASURED: "open"}

@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from analysis.derived.ladder import claims, factors, named, rungs, scene_title, speed_up, totals
 from analysis.figures.style import (
     FAINT,
     GREEN,
@@ -19,9 +20,8 @@ from analysis.figures.style import (
     lighten,
     logarithmic_ticks,
 )
-from analysis.ladder import claims, factors, named, rungs, scene_title, speed_up, totals
 from analysis.statistics.verdicts import MARGIN
-from analysis.wording import count, number, share
+from analysis.support.wording import count, number, share
 
 Row = Mapping[Hashable, Any]
 

@@ -7,11 +7,11 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from analysis.derived.ladder import named, scene_title
+from analysis.derived.limits import ARITHMETIC, COPY, against_limits
+from analysis.derived.unavoidable import PHASES
 from analysis.figures.style import BLUE, FAINT, INK, ORANGE, WIDTH, Data, Drawing, key, lighten, plain_ticks
-from analysis.ladder import named, scene_title
-from analysis.limits import ARITHMETIC, COPY, against_limits
-from analysis.unavoidable import PHASES
-from analysis.wording import count, number, share
+from analysis.support.wording import count, number, share
 
 LIMITS = {COPY: (BLUE, "<"), ARITHMETIC: (ORANGE, "d")}
 KEY = [

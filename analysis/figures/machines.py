@@ -8,7 +8,7 @@ from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.unpaired import judge_unpaired
 from analysis.statistics.verdicts import corrected
-from analysis.wording import change, count, exact
+from analysis.support.wording import change, count, exact
 
 
 def machine(data: Data) -> Drawing | None:

@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from analysis.derived.ladder import per_disc_step
 from analysis.figures.captions import opening
 from analysis.figures.comparisons import differences, differences_sentence, reference
 from analysis.figures.curves import curve
@@ -19,11 +20,10 @@ from analysis.figures.style import (
     new_figure,
     plain_ticks,
 )
-from analysis.ladder import per_disc_step
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge
-from analysis.wording import change, exact
+from analysis.support.wording import change, exact
 
 COLOURS = {"checkered": BLUE, "row": VERMILLION}
 

@@ -24,7 +24,7 @@ from analysis.figures.style import (
 from analysis.statistics.intervals import RANKS_FROM
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge_one
-from analysis.wording import blocks, change, exact
+from analysis.support.wording import blocks, change, exact
 
 
 @dataclass(frozen=True)

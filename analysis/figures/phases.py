@@ -14,7 +14,7 @@ from analysis.figures.style import (
     lighten,
     new_figure,
 )
-from analysis.wording import count, number, share
+from analysis.support.wording import count, number, share
 
 PHASES = {"move": ORANGE, "bin": GREEN, "find": BLUE, "resolve": VERMILLION}
 

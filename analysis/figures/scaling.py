@@ -20,13 +20,13 @@ from analysis.figures.style import (
     new_figure,
     plain_ticks,
 )
+from analysis.records.studies import Study
 from analysis.statistics import scalability
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.scalability import ScalabilityLaw
 from analysis.statistics.verdicts import judge
-from analysis.studies import Study
-from analysis.wording import change, count, exact, interval, number
+from analysis.support.wording import change, count, exact, interval, number
 
 
 def threads(data: Data) -> Drawing | None:

@@ -20,7 +20,7 @@ from analysis.figures.style import (
     plain_ticks,
 )
 from analysis.statistics.bootstrap import summarise
-from analysis.wording import exact, interval_of, number
+from analysis.support.wording import exact, interval_of, number
 
 Choice = tuple[str, int]
 

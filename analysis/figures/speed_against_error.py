@@ -8,8 +8,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from analysis import accuracy
-from analysis.accuracy import SMALL, Choice, Measure
+from analysis.derived import accuracy
+from analysis.derived.accuracy import SMALL, Choice, Measure
 from analysis.figures.captions import opening
 from analysis.figures.style import (
     FAINT,
@@ -24,7 +24,7 @@ from analysis.figures.style import (
     new_figure,
 )
 from analysis.statistics.intervals import Interval
-from analysis.wording import NO_BREAK, exact, interval, number
+from analysis.support.wording import NO_BREAK, exact, interval, number
 
 MILLI = 1e3
 OTHERS = 2

@@ -17,10 +17,10 @@ from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
-from analysis.files import replacing
-from analysis.published import Published
-from analysis.studies import Study
-from analysis.wording import exact
+from analysis.records.published import Published
+from analysis.records.studies import Study
+from analysis.support.files import replacing
+from analysis.support.wording import exact
 
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = (
     "#0072B2",

@@ -7,10 +7,10 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analysis import traces
 from analysis.figures.phases import PHASES
 from analysis.figures.style import FAINT, INK, WIDTH, Data, Drawing, key, lighten
-from analysis.wording import count, number, share
+from analysis.records import timelines
+from analysis.support.wording import count, number, share
 
 MOST = 6
 MANY = 400
@@ -23,10 +23,10 @@ def timeline(data: Data) -> Drawing | None:
     axis. They do not say whose they are: they stand with the first study that has profiled runs.
     """
     profiled = (one for one in data.studies if not one.phases.empty)
-    found = traces.load(data.folder)[:MOST] if data.study is next(profiled, data.studies[0]) else []
+    found = timelines.load(data.folder)[:MOST] if data.study is next(profiled, data.studies[0]) else []
     if not found:
         return None
-    steps = [traces.one_step(one.spans) for one in found]
+    steps = [timelines.one_step(one.spans) for one in found]
     longest = 1e3 * max(step["end"].max() for step in steps)
     rows = [int(step["thread"].nunique()) for step in steps]
     figure = Figure(figsize=(WIDTH, 0.6 + sum(0.45 + 0.22 * count for count in rows)))

@@ -8,9 +8,9 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from analysis.files import replacing
-from analysis.records import load
+from analysis.records.reading import load
 from analysis.report.content import content
+from analysis.support.files import replacing
 
 TEMPLATE = "report.html.jinja"
 REMEDY = "apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"

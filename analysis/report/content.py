@@ -8,20 +8,21 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup
 
-from analysis import claims, published
-from analysis.accuracy import MEASURES, errors
+from analysis import claims
+from analysis.derived.accuracy import MEASURES, errors
+from analysis.derived.ladder import headlines
 from analysis.figures import FIGURES, HARD_CASES, SPEED_AGAINST_ERROR, Drawn, experiments
-from analysis.ladder import headlines
-from analysis.records import Records
+from analysis.figures.studies import draw_study
+from analysis.records import published
+from analysis.records.reading import Records
+from analysis.records.studies import Study, split
 from analysis.report import provenance
 from analysis.report.horizons import horizons
 from analysis.statistics.intervals import RANKS_FROM
 from analysis.statistics.noise import process_noise, warning
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import ERROR, MARGIN, judge_one
-from analysis.studies import Study, split
-from analysis.study_figures import draw_study
-from analysis.wording import blocks, change, count, share
+from analysis.support.wording import blocks, change, count, share
 
 STYLE = Path(__file__).parent / "report.css"
 CONTROL = "control"

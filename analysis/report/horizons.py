@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from analysis import accuracy
-from analysis.studies import Study
-from analysis.wording import count, exact, number
+from analysis.derived import accuracy
+from analysis.records.studies import Study
+from analysis.support.wording import count, exact, number
 
 
 def horizons(study: Study, experiment: str) -> str:

@@ -5,8 +5,8 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.studies import Study
-from analysis.wording import count, exact, number
+from analysis.records.studies import Study
+from analysis.support.wording import count, exact, number
 
 UNTOLD = "not told by the system"
 

@@ -10,7 +10,7 @@ from scipy import stats
 from analysis.statistics.intervals import RANKS_FROM
 from analysis.statistics.pairs import PAIR, process_medians
 from analysis.statistics.verdicts import ERROR, MARGIN
-from analysis.wording import count, share
+from analysis.support.wording import count, share
 
 Floats = NDArray[np.float64]
 

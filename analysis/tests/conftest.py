@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from analysis import published
 from analysis.figures.style import Data
-from analysis.records import load
-from analysis.studies import split
+from analysis.records import published
+from analysis.records.reading import load
+from analysis.records.studies import split
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_study import failures, study, trace

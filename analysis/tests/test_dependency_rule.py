@@ -1,4 +1,6 @@
-"""Who may know whom: the rule of README.md's table of folders, checked over the whole tree.
+"""Who may know whom: the rule of README.md's table of folders, and of each folder's own table of rooms.
+
+All of it is checked over the whole tree.
 
 Each rule is also shown to fail: on a tree of a few files in which it is broken.
 """
@@ -18,8 +20,11 @@ MAY_INCLUDE = {
     "harness": {"kernels", "variants", "harness"},
 }
 MUST_NOT_IMPORT = {"experiments": "analysis", "analysis": "experiments"}
-GENERATED = {"harness/build_info.hpp"}
+GENERATED = {"harness/machine/build_info.hpp"}
 PRAGMAS = "kernels/parallel_for.hpp"
+FOLDERS_WITH_ROOMS = ("kernels", "harness", "experiments", "analysis")
+MOST_FILES = 25
+"""Source files in one room: more are a wall."""
 
 NO_HEADER_OF_A_KERNEL = {
     "chrono", "cstdio", "cstdlib", "ctime", "filesystem", "fstream", "iostream", "mutex", "print",
@@ -42,6 +47,19 @@ def test_experiments_and_analysis_never_import_each_other() -> None:
     assert list(wrong_imports(ROOT)) == []
 
 
+def test_rooms_use_those_above_them() -> None:
+    assert list(wrong_rooms(ROOT)) == []
+
+
+@pytest.mark.parametrize("folder", FOLDERS_WITH_ROOMS)
+def test_a_folder_names_its_rooms_where_it_begins(folder: str) -> None:
+    assert len(rooms(ROOT / folder)) > 1
+
+
+def test_no_room_is_a_wall_and_each_says_what_is_in_it() -> None:
+    assert list(walls(ROOT)) == []
+
+
 def test_every_openmp_pragma_stands_in_one_file() -> None:
     assert list(stray_pragmas(ROOT)) == []
     assert len(re.findall(r"#pragma omp", (ROOT / PRAGMAS).read_text(encoding="utf-8"))) > 5
@@ -58,13 +76,82 @@ def wrong_includes(root: Path) -> Iterator[str]:
     """Quoted includes that point to a folder that may not be known, or to no file."""
     for name, text in cpp_files(root):
         folder = name.split("/")[0]
-        for included in re.findall(r'^\s*#\s*include\s*"([^"]+)"', text, re.MULTILINE):
-            beside = (root / name).parent / included
-            target = f"{Path(name).parent.as_posix()}/{included}" if beside.is_file() else included
+        for target in includes(root, name, text):
             if target.split("/")[0] not in MAY_INCLUDE[folder] or ".." in target:
-                yield f"{name}: includes {included}"
+                yield f"{name}: includes {target}"
             elif not (root / target).is_file() and target not in GENERATED:
-                yield f"{name}: includes {included}, which there is not"
+                yield f"{name}: includes {target}, which there is not"
+
+
+def includes(root: Path, name: str, text: str) -> Iterator[str]:
+    """What a C++ file includes in quotes, from the root."""
+    for included in re.findall(r'^\s*#\s*include\s*"([^"]+)"', text, re.MULTILINE):
+        beside = (root / name).parent / included
+        yield f"{Path(name).parent.as_posix()}/{included}" if beside.is_file() else included
+
+
+def wrong_rooms(root: Path) -> Iterator[str]:
+    """Files in rooms that their folder's README does not name, uses of rooms further down in its table."""
+    order = {folder: rooms(root / folder) for folder in FOLDERS_WITH_ROOMS}
+    for name, used in uses(root):
+        folder = name.split("/")[0]
+        if not order.get(folder) or "/tests/" in name:
+            continue
+        here = room_of(name)
+        if here != "." and here not in order[folder]:
+            yield f"{name}: stands in a room that {folder}/README.md does not name"
+            continue
+        # What stands beside the rooms, outside the table, is where the program starts: it may use all.
+        reach = order[folder].index(here) if here in order[folder] else len(order[folder])
+        for target in used:
+            there = room_of(target)
+            if target.split("/")[0] == folder and there != here and there not in order[folder][:reach]:
+                yield f"{name}: uses {target}"
+
+
+def rooms(folder: Path) -> list[str]:
+    """A folder's rooms as the table in its README has them: each may use those before it."""
+    readme = folder / "README.md"
+    text = readme.read_text(encoding="utf-8") if readme.is_file() else ""
+    table = re.search(r"^\| room \|.*\n\|[-|]+\|\n((?:\|.*\n)+)", text, re.MULTILINE)
+    return re.findall(r"^\| `([\w.]+)/?` \|", table[1], re.MULTILINE) if table else []
+
+
+def room_of(name: str) -> str:
+    """The room in which a file stands; a dot for what stands in none."""
+    parts = name.split("/")
+    return parts[1] if len(parts) > 2 else "."
+
+
+def uses(root: Path) -> Iterator[tuple[str, list[str]]]:
+    """Every source file with the paths, from the root, of what it includes or imports."""
+    for name, text in cpp_files(root):
+        yield name, list(includes(root, name, text))
+    for folder in MUST_NOT_IMPORT:
+        for path in sorted((root / folder).rglob("*.py")):
+            imported = imports(ast.parse(path.read_text(encoding="utf-8")))
+            places = ("/".join(one.split(".")[:2]) for one in imported)
+            found = [
+                f"{place}{end}"
+                for place in places
+                for end in ("/", ".py")
+                if (root / f"{place}{end}").exists()
+            ]
+            yield path.relative_to(root).as_posix(), found
+
+
+def walls(root: Path) -> Iterator[str]:
+    """Rooms with too many source files, and rooms of more than a handful that do not say what is in them."""
+    for folder in FOLDERS_WITH_ROOMS:
+        for room in {path.parent for path in (root / folder).rglob("*.*") if "tests" not in path.parts}:
+            files = [path for path in room.iterdir() if path.suffix in (".hpp", ".cpp", ".py")]
+            name = room.relative_to(root).as_posix()
+            if len(files) > MOST_FILES:
+                yield f"{name}: has {len(files)} source files"
+            said = room / "__init__.py"
+            header = said.is_file() and ast.get_docstring(ast.parse(said.read_text(encoding="utf-8")))
+            if len(files) > 6 and not header and not (room / "README.md").is_file():
+                yield f"{name}: does not say what is in it"
 
 
 def wrong_imports(root: Path) -> Iterator[str]:
@@ -82,7 +169,7 @@ def imports(tree: ast.AST) -> Iterator[str]:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            yield node.module or ""
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
         elif isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
             called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
             if called in ("import_module", "importorskip", "__import__"):
@@ -133,8 +220,30 @@ BROKEN: list[tuple[Rule, str, str, str]] = [
         "def f():\n    from experiments import plan",
         "analysis/tests/a.py",
     ),
-    (wrong_imports, "experiments/a.py", "from analysis.records import load", "experiments/a.py: imports"),
+    (
+        wrong_imports,
+        "experiments/a.py",
+        "from analysis.records.reading import load",
+        "experiments/a.py: imports",
+    ),
     (wrong_imports, "experiments/a.py", "importlib.import_module('analysis')", "experiments/a.py: imports"),
+    (
+        wrong_rooms,
+        "harness/support/a.hpp",
+        '#include "harness/scenes/b.hpp"',
+        "a.hpp: uses harness/scenes/b.hpp",
+    ),
+    (wrong_rooms, "harness/scenes/a.hpp", '#include "harness/main.hpp"', "scenes/a.hpp: uses harness/main"),
+    (wrong_rooms, "harness/attic/a.hpp", "", "harness/attic/a.hpp: stands in a room that harness/README.md"),
+    (
+        wrong_rooms,
+        "kernels/a.hpp",
+        '#include "kernels/exact/b.hpp"',
+        "a.hpp: uses kernels/exact/b",
+    ),
+    (wrong_rooms, "analysis/support/a.py", "from analysis import figures", "analysis/support/a.py: uses"),
+    (wrong_rooms, "analysis/support/a.py", "import analysis.figures.b", "analysis/support/a.py: uses"),
+    (wrong_rooms, "analysis/support/a.py", "from analysis.cli import main", "a.py: uses analysis/cli.py"),
     (stray_pragmas, "kernels/move.hpp", "#pragma omp parallel", "kernels/move.hpp: has an OpenMP pragma"),
     (stray_pragmas, "harness/a.cpp", '_Pragma("omp simd")', "harness/a.cpp: has an OpenMP pragma"),
     (unclean_kernels, "kernels/a.hpp", "#include <iostream>", "kernels/a.hpp: includes <iostream>"),
@@ -146,16 +255,45 @@ BROKEN: list[tuple[Rule, str, str, str]] = [
 ]
 
 
+def small_house(root: Path) -> None:
+    """Two rooms in three of the folders; one is as full as it may be."""
+    for folder, first, second in [("harness", "support", "scenes"), ("analysis", "support", "figures")]:
+        for room in (first, second):
+            (root / folder / room).mkdir(parents=True)
+        table = f"| room | what |\n|---|---|\n| `{first}/` | |\n| `{second}/` | |\n"
+        (root / folder / "README.md").write_text(table, encoding="utf-8")
+    (root / "analysis" / "cli.py").touch()
+    (root / "harness" / "scenes" / "b.hpp").touch()
+    (root / "kernels" / "exact").mkdir(parents=True)
+    (root / "kernels" / "exact" / "b.hpp").touch()
+    table = "| room | what |\n|---|---|\n| `.` | |\n| `exact/` | |\n"
+    (root / "kernels" / "README.md").write_text(table, encoding="utf-8")
+
+
 @pytest.mark.parametrize(("rule", "name", "text", "said"), BROKEN)
 def test_a_broken_rule_is_found(tmp_path: Path, rule: Rule, name: str, text: str, said: str) -> None:
+    small_house(tmp_path)
     path = tmp_path / name
-    path.parent.mkdir(parents=True)
+    path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text + "\n", encoding="utf-8")
     (found,) = rule(tmp_path)
     assert said in found
 
 
-@pytest.mark.parametrize("rule", [wrong_includes, wrong_imports, stray_pragmas, unclean_kernels])
+def test_a_wall_is_found(tmp_path: Path) -> None:
+    small_house(tmp_path)
+    room = tmp_path / "harness" / "support"
+    for number in range(7):
+        (room / f"{number}.hpp").touch()
+    assert list(walls(tmp_path)) == ["harness/support: does not say what is in it"]
+    (room / "README.md").touch()
+    assert list(walls(tmp_path)) == []
+    for number in range(7, MOST_FILES + 1):
+        (room / f"{number}.cpp").touch()
+    assert list(walls(tmp_path)) == [f"harness/support: has {MOST_FILES + 1} source files"]
+
+
+@pytest.mark.parametrize("rule", [wrong_includes, wrong_imports, wrong_rooms, stray_pragmas, unclean_kernels])
 def test_what_a_comment_says_breaks_no_rule(tmp_path: Path, rule: Rule) -> None:
     (tmp_path / "kernels").mkdir()
     text = '// #include "harness/text.hpp"\n/* #pragma omp parallel\n std::exit(1) */\n'

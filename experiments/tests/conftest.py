@@ -12,10 +12,10 @@ from typing import Any
 
 import pytest
 
-from experiments import status
-from experiments.point import Point
-from experiments.scenes import Scene
-from experiments.study import Settings, Study
+from experiments.plan.point import Point
+from experiments.plan.scenes import Scene
+from experiments.run import status
+from experiments.run.study import Settings, Study
 
 ROOT = Path(__file__).parents[2]
 FAKE = Path(__file__).with_name("fake_carom.py")

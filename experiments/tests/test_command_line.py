@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from experiments.__main__ import main
 from experiments.tests.conftest import Workplace, no_child_is_left
 
 
@@ -51,6 +52,14 @@ def test_status_after_a_run(workplace: Workplace) -> None:
     _, output, _ = finish(workplace.start("status"))
     assert re.search(r"^chunks +3 +2 +6 +0 +0 +0$", output, re.MULTILINE)
     assert re.search(r"^all +7 +16 +0 +0 +0$", output, re.MULTILINE)
+
+
+@pytest.mark.parametrize(("study", "builds"), [("threads", "gcc\n"), ("threads,compiler", "gcc clang\n")])
+def test_only_what_the_questions_ask_for_is_built(
+    capsys: pytest.CaptureFixture[str], study: str, builds: str
+) -> None:
+    assert main(["builds", "--study", study]) == 0
+    assert capsys.readouterr().out == builds
 
 
 MISTAKES = {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kernels/all_pairs.hpp"
+#include "kernels/exact/all_pairs.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/scene.hpp"

@@ -1,1 +1,0 @@
-"""A real Slurm for the tests, and the tests that need it."""

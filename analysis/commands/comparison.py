@@ -1,0 +1,85 @@
+"""Two results folders against each other: two commits, two compilers, two machines."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from analysis.records.reading import InputError, load
+from analysis.records.studies import Study, split
+from analysis.statistics.pairs import process_medians
+from analysis.statistics.unpaired import judge_unpaired
+from analysis.statistics.verdicts import COLUMNS, corrected
+
+POINT = [
+    "scale", "experiment", "series", "x", "label", "scene_name", "scene_sha256", "threads", "find_chunk",
+    "resolve_chunk", "substeps", "tolerance",
+]  # fmt: skip
+SHOWN = ["experiment", "series", "x", "label", "scene_name"]
+SLOWER, UNDECIDED = 3, 4
+
+Point = tuple[Any, ...]
+"""The values of the columns `POINT`."""
+
+
+def compare(first: Path, second: Path, experiment: str | None = None) -> pd.DataFrame:
+    """Return a row a point: its place, and `second` / `first` as `verdicts.judge`.
+
+    Points match by figure, scene, threads and tunings. The folders were not interleaved, so processes are
+    compared unpaired; the p-values are Holm-corrected within each experiment. A point that only one of the
+    folders measured, as where it fails in the other, is inconclusive; of an experiment that only one of them
+    has, nothing is said. Raises InputError if a folder mixes several machines, revisions or scales, or if
+    nothing matches.
+    """
+    sides = [_processes(folder, experiment) for folder in (first, second)]
+    groups = [dict(list(side.groupby(POINT)["steps_seconds"])) for side in sides]
+    shared = [point for point in groups[0] if point in groups[1]]
+    if not shared:
+        raise InputError(f"{first} and {second}: no point in common to compare")
+    names = set(sides[0]["experiment"]) & set(sides[1]["experiment"])
+    place = POINT.index("experiment")
+    lone = [point for point in groups[0].keys() ^ groups[1].keys() if point[place] in names]
+    table = _judged(groups, shared)
+    parts = [corrected(part) for _, part in table.groupby("experiment")]
+    return pd.concat([*parts, *([_judged(groups, sorted(lone))] if lone else [])])[[*SHOWN, *COLUMNS]]
+
+
+def _judged(groups: Sequence[Mapping[Point, pd.Series]], points: Sequence[Point]) -> pd.DataFrame:
+    rows = [
+        {
+            **dict(zip(POINT, point, strict=True)),
+            **judge_unpaired(*(group.get(point, ()) for group in groups)),
+        }
+        for point in points
+    ]
+    return pd.DataFrame(rows)
+
+
+def _processes(folder: Path, experiment: str | None) -> pd.DataFrame:
+    study = only(split(load(folder)), folder)
+    times = study.times if experiment is None else study.times_of(experiment)
+    processes = process_medians(times)
+    return processes.assign(
+        label=processes["label"].fillna("").astype(str),
+        scene_name=processes["scene_name"].fillna(""),
+        find_chunk=processes["find_chunk"].fillna(0),
+        resolve_chunk=processes["resolve_chunk"].fillna(0),
+    )
+
+
+def only(studies: Sequence[Study], folder: Path) -> Study:
+    """Return the single study of a folder; raises InputError if there is none, or more than one."""
+    if not studies:
+        raise InputError(f"{folder}: no records to compare")
+    if len(studies) > 1:
+        names = "; ".join(study.name for study in studies)
+        raise InputError(f"{folder}: found {len(studies)} studies, expected one to compare ({names})")
+    return studies[0]
+
+
+def exit_code(table: pd.DataFrame) -> int:
+    """Return 3 if anything is slower, 4 if anything is undecided, else 0."""
+    if (table["verdict"] == "slower").any():
+        return SLOWER
+    return UNDECIDED if (table["verdict"] == "inconclusive").any() else 0

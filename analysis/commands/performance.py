@@ -1,0 +1,98 @@
+"""The ladder and the limits as Markdown tables, for documents."""
+
+from collections.abc import Hashable, Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+
+from analysis.derived.ladder import claims, factors, named, rungs, scene_title, speed_up
+from analysis.derived.limits import against_limits
+from analysis.records.studies import Study
+from analysis.support.wording import number, share
+
+Row = Mapping[Hashable, Any]
+
+
+def markdown(study: Study) -> str:
+    """Return every table that the study has records for, empty if there is none."""
+    parts = [_ladder(study, "ladder"), _limits(study), _phases(study, "limits")]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _ladder(study: Study, experiment: str) -> str:
+    runs = named(study.runs[study.runs["experiment"] == experiment])
+    times = named(study.times_of(experiment))
+    if times.empty or times["series_number"].isna().any():
+        return ""
+    place = ["scene_name", "series_number"]
+    judged = factors(times)[[*place, "ratio", "low", "high"]]
+    table = (
+        rungs(runs, times, study.counters).drop(columns=["low", "high"]).merge(judged, on=place, how="left")
+    )
+    lines = [f"- {sentence}" for sentence in claims(runs, times)]
+    for scene, rows in table.groupby("scene_name", sort=False):
+        body = [_rung(row) for row in rows.sort_values("series_number").to_dict("records")]
+        head = [
+            "rung",
+            "ns per disc and step",
+            "factor",
+            "resolves per disc and step",
+            "sweeps per step",
+            "checks passed",
+        ]
+        lines += ["", f"{scene_title(runs, str(scene))}:", "", _table(head, body)]
+    return "\n".join(lines)
+
+
+def _rung(row: Row) -> list[str]:
+    factor = speed_up(row) if pd.notna(row["ratio"]) else ""
+    counts = [number(row[name]) for name in ("resolves", "sweeps")]
+    return [
+        row["change"],
+        number(row["nanoseconds"]),
+        factor,
+        *counts,
+        f"{row['passed']} of {row['records']}",
+    ]
+
+
+def _limits(study: Study) -> str:
+    keys = ["limit", "working_set_bytes", "lanes", "threads"]
+    # Measured more than once, a limit is the greatest: what the machine did, it can do.
+    greatest = study.limits.groupby(keys, dropna=False)["best"].idxmax()
+    rows = [
+        [_what(row), str(row["threads"]), number(1e-9 * row["best"]), number(1e-9 * row["median"])]
+        for row in study.limits.loc[greatest.sort_values()].to_dict("records")
+    ]
+    return _table(["limit", "threads", "best, 1e9/s", "median"], rows) if rows else ""
+
+
+def _what(row: Row) -> str:
+    if row["limit"] == "copy":
+        return f"copy within {number(row['working_set_bytes'] / 2**20)} MiB ({row['level']}), bytes"
+    return f"arithmetic, {row['lanes']:.0f} at once, operations"
+
+
+def _phases(study: Study, experiment: str) -> str:
+    runs, phases, threads = (
+        named(table[table["experiment"] == experiment]) for table in (study.runs, study.phases, study.threads)
+    )
+    table = against_limits(runs, phases, threads, study.limits)
+    body = [
+        [
+            scene_title(runs, row["scene_name"]),
+            row["series"],
+            row["phase"],
+            *(number(row[name]) for name in ("bytes", "operations", "copy", "arithmetic", "wall")),
+            share(row["reached"]),
+            share(1 - row["busy"] / row["wall"]),
+        ]
+        for row in table.to_dict("records")
+    ]
+    head = ["scene", "variant", "phase", "bytes", "operations", "least by copying, ns", "by arithmetic, ns"]
+    return _table([*head, "measured, ns", "reached", "waiting"], body) if body else ""
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)

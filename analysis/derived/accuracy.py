@@ -1,0 +1,245 @@
+"""Error measures beside the time that they cost: from the tables of a study to one row a point.
+
+A point is a series at a number of substeps on one scene. Its time is over all of its processes; its errors
+come from the one that measured them, since every run of a point ends in the same bits.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from analysis.records.studies import Study
+from analysis.statistics.bootstrap import summarise
+from analysis.statistics.convergence import order
+from analysis.statistics.intervals import Interval
+from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pareto import front
+from analysis.statistics.verdicts import judge_one
+
+POINT = ["scene_name", "series", "x"]
+Entrant = tuple[str, float]
+"""A point of one scene: its series and its x."""
+
+SMALL = 0.1
+"""Errors below this follow their leading term in dt: a tenth of a radius, or of the reference's value."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """An error measure: its name, the axis it is drawn on, what it means; `converges` if it falls with dt."""
+
+    key: str
+    title: str
+    label: str
+    meaning: str
+    value: Callable[[pd.DataFrame], pd.Series]
+    converges: bool
+
+
+def _column(name: str) -> Callable[[pd.DataFrame], pd.Series]:
+    return lambda runs: runs[name].abs()
+
+
+def _against_reference(name: str) -> Callable[[pd.DataFrame], pd.Series]:
+    def error(runs: pd.DataFrame) -> pd.Series:
+        reference = runs[f"{name}_reference"]
+        # Relative to 0, as where the exact run meets no wall, there is no error.
+        return (runs[name] / reference.where(reference != 0) - 1).abs()
+
+    return error
+
+
+def _parting(runs: pd.DataFrame) -> pd.Series:
+    """1 / time; 0 where the paths never part, NaN where there was no reference to part from."""
+    never = runs["path"].notna() & runs["time_to_tenth_radius"].isna()
+    return (1 / runs["time_to_tenth_radius"]).mask(never, 0.0)
+
+
+MEASURES = [
+    Measure(
+        "path", "distance of the paths from the exact ones",
+        "RMS distance from the exact paths at time 1, radii",
+        "the root mean square over all discs of the distance to the event-driven reference at time 1",
+        _column("path"), converges=True,
+    ),
+    Measure(
+        "parting", "when the paths part from the exact ones",
+        "1 / time until the paths are 0.1 radii off",
+        "one over the first time at which that distance passes a tenth of a radius; 0 if it never does",
+        _parting, converges=False,
+    ),
+    Measure(
+        "penetration_worst", "worst penetration", "worst penetration, radii",
+        "the deepest overlap of any pair that was apart at the start",
+        _column("penetration_worst"), converges=True,
+    ),
+    Measure(
+        "penetration_mean", "mean penetration", "mean penetration, radii",
+        "the mean depth over all overlaps of pairs that were apart at the start",
+        _column("penetration_mean"), converges=True,
+    ),
+    Measure(
+        "collision_rate", "collision rate", "relative error of the collision rate",
+        "collisions of pairs per disc and unit of time against those of the reference",
+        _against_reference("collision_rate"), converges=True,
+    ),
+    Measure(
+        "pressure", "pressure", "relative error of the pressure",
+        "the impulse on the walls per length and time against that of the reference",
+        _against_reference("pressure"), converges=True,
+    ),
+    Measure(
+        "speeds", "distribution of speeds", "greatest distance of the speeds' distributions",
+        "the Kolmogorov-Smirnov distance between the distributions of speeds of run and reference at the end",
+        _column("speed_distance"), converges=False,
+    ),
+    Measure(
+        "energy", "drift of energy", "relative drift of energy",
+        "the change of kinetic energy from start to end; collisions conserve it, so that this is rounding",
+        _column("energy_drift"), converges=False,
+    ),
+    Measure(
+        "momentum", "unexplained momentum", "momentum that no wall explains, relative",
+        "the change of momentum that the walls' impulses do not account for, over the sum of all speeds",
+        _column("momentum_drift"), converges=False,
+    ),
+    Measure(
+        "unresolved", "unresolved collisions", "collisions left unresolved",
+        "pairs and walls left colliding at the ends of units of time",
+        _column("unresolved_pairs"), converges=False,
+    ),
+]  # fmt: skip
+
+
+def errors(study: Study, experiment: str) -> pd.DataFrame:
+    """Return the records of an experiment that measured errors, a column a measure; NaN where it has none."""
+    runs = study.runs_of(experiment)
+    runs = runs[runs["has_errors"].astype(bool)]
+    at_one = study.trajectory[study.trajectory["time"] == 1].set_index("file")["rms_distance"]
+    runs = runs.assign(path=runs["file"].map(at_one), scene_name=runs["scene_name"].fillna(""))
+    return runs.assign(**{measure.key: measure.value(runs) for measure in MEASURES})
+
+
+def times(study: Study, experiment: str) -> pd.DataFrame:
+    """Return the timed repetitions with `seconds`, the time of one unit of simulated time."""
+    table = study.times_of(experiment)
+    return table.assign(
+        seconds=table["steps_seconds"] / table["steps"], scene_name=table["scene_name"].fillna("")
+    )
+
+
+def points(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
+    """Return a row a point with both a time and an error: `median`, `low`, `high` of the seconds for a unit
+    of simulated time, and `error`, `error_low`, `error_high`.
+
+    The error has an interval, its range, where several processes measured different ones. `on_front` tells
+    which points of each scene are on its Pareto front.
+    """
+    measured = errors(study, experiment).dropna(subset=[measure.key])
+    timed = times(study, experiment)
+    if measured.empty or timed.empty:
+        return pd.DataFrame()
+    grouped = measured.groupby(POINT, sort=True)
+    error = grouped[measure.key].agg(error="median", error_low="min", error_high="max")
+    first = grouped[["variant", "precision", "area_fraction", "particles", "substeps"]].first()
+    table = summarise(timed, POINT, "seconds").merge(first.join(error).reset_index(), on=POINT)
+    parts = [
+        part.assign(on_front=front(part["error"], part["median"])) for _, part in table.groupby("scene_name")
+    ]
+    return pd.concat(parts).sort_values(["area_fraction", "series", "x"], ignore_index=True)
+
+
+def outside(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
+    """Return a row for each scene and number of substeps of a general engine: `engine`, `median`, `low`,
+    `high` of the seconds for a unit of simulated time, and `error`, on the scenes of its runs. Empty but
+    for the drift of energy.
+    """
+    table = study.outside[study.outside["experiment"] == experiment].dropna(subset=["energy_drift"])
+    table = table[table["scene_sha256"].isin(study.runs_of(experiment)["scene_sha256"])]
+    if table.empty or measure.key != "energy":
+        return pd.DataFrame()
+    place = ["scene_name", "substeps", "engine"]
+    errors = table.groupby(place)["energy_drift"].median().rename("error").reset_index()
+    return summarise(table, place, "seconds").merge(errors, on=place)
+
+
+def orders(table: pd.DataFrame) -> pd.DataFrame:
+    """Return per scene and series of `points` the fitted `order` of the error in dt, an Interval."""
+    keys = ["scene_name", "series"]
+    rows = [
+        {**dict(zip(keys, key, strict=True)), "order": order(1 / part["substeps"], part["error"], SMALL)}
+        for key, part in table.groupby(keys, sort=False)
+    ]
+    return pd.DataFrame(rows, columns=[*keys, "order"])
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The cheapest point below a bound, its seconds for a unit of time, and those that may be as cheap."""
+
+    series: str
+    substeps: float
+    seconds: Interval
+    others: list[tuple[str, float]]
+
+
+def advice(table: pd.DataFrame, timed: pd.DataFrame) -> list[tuple[float, dict[str, Choice | None]]]:
+    """Return, for bounds in powers of ten from the loosest, the cheapest choice in each scene of `points`.
+
+    Of bounds with the same choices only the tightest is kept: whoever needs less gets it for the same price.
+    """
+    found: list[tuple[float, dict[str, Choice | None]]] = []
+    parts = {str(scene): part for scene, part in table.groupby("scene_name", sort=False)}
+    races = {scene: Race(timed[timed["scene_name"] == scene]) for scene in parts}
+    for bound in _bounds(table["error"]):
+        choices = {
+            scene: cheapest(part[part["error"] <= bound], races[scene]) for scene, part in parts.items()
+        }
+        if found and found[-1][1] == choices:
+            found.pop()
+        found.append((bound, choices))
+    return found
+
+
+class Race:
+    """The times of one scene's points; whom it has compared it remembers."""
+
+    def __init__(self, timed: pd.DataFrame) -> None:
+        processes = process_medians(timed, "seconds")
+        self._processes = dict(iter(processes.groupby(["series", "x"])))
+        self._slower: dict[tuple[Entrant, Entrant], bool] = {}
+
+    def is_slower(self, candidate: Entrant, reference: Entrant) -> bool:
+        """Whether the candidate was found slower, from ratios within blocks."""
+        key = candidate, reference
+        if key not in self._slower:
+            sides = self._processes[reference], self._processes[candidate]
+            self._slower[key] = (
+                judge_one(log_ratios(*sides, value="seconds")["log_ratio"])["verdict"] == "slower"
+            )
+        return self._slower[key]
+
+
+def cheapest(candidates: pd.DataFrame, race: Race) -> Choice | None:
+    """Return the candidate with the least median time, None if there is no candidate.
+
+    `others` are the candidates that were not found slower than it.
+    """
+    if candidates.empty:
+        return None
+    first, *rest = candidates.sort_values("median", kind="stable").to_dict("records")
+    best, *entrants = ((str(row["series"]), float(row["x"])) for row in (first, *rest))
+    others = [entrant for entrant in entrants if not race.is_slower(entrant, best)]
+    return Choice(*best, Interval(first["median"], first["low"], first["high"]), others)
+
+
+def _bounds(values: Sequence[float] | pd.Series) -> list[float]:
+    """Return the powers of ten that some but not all of the positive values exceed, and one above all."""
+    found = np.asarray(values, dtype=float)
+    found = found[found > 0]
+    if len(found) == 0:
+        return []
+    low, high = np.floor(np.log10(found.min())) + 1, np.ceil(np.log10(found.max()))
+    return [float(f"1e{power:.0f}") for power in np.arange(max(low, high), low - 1, -1)]

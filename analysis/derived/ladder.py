@@ -1,0 +1,167 @@
+"""A ladder: series in the order of their question, each of which changes one choice of the one before, on
+one or more scenes. What each rung costs and gains, from the records alone.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+
+import numpy as np
+import pandas as pd
+
+from analysis.derived.counters import derived
+from analysis.records.studies import Study
+from analysis.records.tables import COLUMN_OF, LATER_AXES
+from analysis.statistics.bootstrap import summarise
+from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.verdicts import COLUMNS, judge
+from analysis.support.wording import exact, number
+
+PLACE = ["scene_name", "series_number"]
+POLICIES = [
+    "neighbourhood", "order", "self_contained", "direction", "find_schedule", "resolve_schedule", *LATER_AXES,
+]  # fmt: skip
+INSTRUCTIONS = "instructions per disc and step"
+SOURCES = ("papi-hardware", "cachegrind")
+
+PairsOf = Callable[[list[float]], list[tuple[float, float]]]
+
+
+def named(table: pd.DataFrame) -> pd.DataFrame:
+    """Give the only scene of a question a name too, so that rows can be grouped by it."""
+    return table.assign(scene_name=table["scene_name"].fillna("").astype(str))
+
+
+def per_disc_step(times: pd.DataFrame) -> pd.DataFrame:
+    """Return the times with `nanoseconds`: of the steps, per disc and step."""
+    work = times["particles"] * times["steps"] * times["substeps"]
+    return times.assign(nanoseconds=1e9 * times["steps_seconds"] / work)
+
+
+def rungs(runs: pd.DataFrame, times: pd.DataFrame, counters: pd.DataFrame) -> pd.DataFrame:
+    """Return one row a scene and rung, in order.
+
+    Takes the tables of one experiment, and the counters of every profiled run. Columns: `scene_name`,
+    `series_number`, `series`, `variant`, `change` (what it changes of the rung before); `nanoseconds` per
+    disc and step with `low`, `high`; `resolves` per disc and step, `sweeps` per step; `passed` of `records`
+    checks; `instructions` per disc and step with their `source`, NaN where nobody counted them.
+    """
+    passed = runs[runs["check_verdict"] == "passed"]
+    steps = passed["steps"] * passed["substeps"]
+    work = passed.assign(
+        resolves=passed["pair_resolves"] / (steps * passed["particles"]), sweeps=passed["sweeps"] / steps
+    )
+    table = runs.groupby(PLACE).agg(
+        series=("series", "first"),
+        variant=("variant", "first"),
+        particles=("particles", "first"),
+        side=("side", "first"),
+        radius=("radius", "first"),
+        passed=("check_verdict", lambda verdicts: int((verdicts == "passed").sum())),
+        records=("check_verdict", "size"),
+    )
+    table = table.join(work.groupby(PLACE)[["resolves", "sweeps"]].median())
+    summary = summarise(per_disc_step(times), PLACE, value="nanoseconds").set_index(PLACE)
+    table = table.join(summary[["median", "low", "high"]].rename(columns={"median": "nanoseconds"}))
+    table = table.reset_index()
+    return table.assign(change=_changes(runs, table), **_instructions(table, counters))
+
+
+def factors(times: pd.DataFrame) -> pd.DataFrame:
+    """Return a row of `verdicts.judge` for every rung but the first of each scene, against the rung below
+    it.
+    """
+    return _judged(times, lambda numbers: list(pairwise(numbers)), PLACE)
+
+
+def totals(times: pd.DataFrame) -> pd.DataFrame:
+    """Return a row of `verdicts.judge` for each scene: its last rung against its first."""
+    return _judged(times, lambda numbers: [(numbers[0], numbers[-1])] if len(numbers) > 1 else [], PLACE[:1])
+
+
+def speed_up(row: pd.Series | dict[str, float], digits: int = 3) -> str:
+    """Return a row of `verdicts.judge` as the factor by which it is faster, e.g. `9.87 × [9.52, 10.2]`."""
+    ends = (row[end] for end in ("ratio", "high", "low"))
+    factor, low, high = (number(1 / end if end > 0 else math.inf, digits) for end in ends)
+    return f"{factor} × [{low}, {high}]"
+
+
+def claims(runs: pd.DataFrame, times: pd.DataFrame) -> list[str]:
+    """Return a sentence a scene: by how much the last rung is faster than the first, with the 95 %
+    interval.
+    """
+    first = _name(runs, runs["series_number"].min())
+    return [
+        f"{scene_title(runs, str(row['scene_name']))}: {speed_up(row)} faster than {first} ({row['verdict']})"
+        for row in totals(times).to_dict("records")
+    ]
+
+
+def headlines(study: Study, experiment: str = "ladder") -> list[str]:
+    """Return the claims of a study's ladder; none without records of it."""
+    runs, times = (named(table[table["experiment"] == experiment]) for table in (study.runs, study.times))
+    return claims(runs, times) if len(times) and times["series_number"].notna().all() else []
+
+
+def scene_title(runs: pd.DataFrame, scene: str) -> str:
+    """Return what tells a scene from the others: discs and area fraction."""
+    one = runs[runs["scene_name"] == scene].iloc[0]
+    return f"{exact(one['particles'])} discs at area fraction {one['area_fraction']:.2f}"
+
+
+def _name(runs: pd.DataFrame, rung: float) -> str:
+    variant = str(runs.loc[runs["series_number"] == rung, "variant"].iloc[0])
+    return "the published best" if variant == "published" else variant
+
+
+def _judged(times: pd.DataFrame, pairs_of: PairsOf, by: list[str]) -> pd.DataFrame:
+    processes = process_medians(times)
+    # The rungs of all scenes, so that one that a scene lacks has no ratio there, not that of its neighbour.
+    rungs_of_all = sorted(processes["series_number"].unique())
+    pairs = []
+    for scene, group in processes.groupby("scene_name"):
+        for before, after in pairs_of(rungs_of_all):
+            sides = (group[group["series_number"] == rung] for rung in (before, after))
+            pairs.append(log_ratios(*sides).assign(scene_name=scene, series_number=after))
+    found = [part for part in pairs if len(part)]
+    return judge(pd.concat(found), by) if found else pd.DataFrame(columns=[*by, *COLUMNS])
+
+
+def _changes(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:
+    """Return for each row of the table the policies that differ from the rung below; the first has its
+    name.
+    """
+    columns = {COLUMN_OF.get(name, name): name for name in POLICIES}
+    first = runs.drop_duplicates("series_number").set_index("series_number").sort_index()
+    policies = first[list(columns)].rename(columns=columns)
+    rows = [(float(str(rung)), row) for rung, row in policies.iterrows()]
+    said = {rung: "" for rung, _ in rows[:1]}
+    for (_, before), (rung, row) in pairwise(rows):
+        differs = [name for name in POLICIES if _differ(before[name], row[name])]
+        said[rung] = ", ".join(f"{name} {row[name]}".replace("_", " ") for name in differs)
+    return [
+        said[rung] or series for rung, series in zip(table["series_number"], table["series"], strict=True)
+    ]
+
+
+def _differ(one: object, other: object) -> bool:
+    """Tell whether a choice changed; one that means nothing to a variant has no value, and did not."""
+    return not pd.isna(one) and not pd.isna(other) and one != other
+
+
+def _instructions(table: pd.DataFrame, counters: pd.DataFrame) -> dict[str, Sequence[object]]:
+    """Return `instructions` and `source`, from profiled runs of the same variant on a scene of the same
+    size.
+    """
+    known = counters[counters["source"].isin(SOURCES) & counters["name"].notna()]
+    keys = ["variant", "particles", "side", "radius"]
+    found: dict[tuple[object, ...], tuple[float, str]] = {}
+    for key, group in known.groupby(keys):
+        rows = derived(group)
+        for source in reversed(SOURCES):
+            values = rows.loc[(rows["quantity"] == INSTRUCTIONS) & (rows["source"] == source), "value"]
+            if len(values):
+                found[tuple(key)] = (float(values.median()), source)
+    places = table[keys].itertuples(index=False, name=None)
+    pairs = [found.get(tuple(place), (np.nan, "")) for place in places]
+    return {"instructions": [value for value, _ in pairs], "source": [source for _, source in pairs]}

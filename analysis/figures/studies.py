@@ -1,0 +1,40 @@
+"""Draws the figures of every study in a results folder."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from analysis.figures import Drawn, draw, experiments
+from analysis.figures.style import Data
+from analysis.records import published
+from analysis.records.reading import InputError, load
+from analysis.records.studies import Study, split
+
+
+def draw_all(results: Path, wanted: Sequence[str] = ()) -> list[Drawn]:
+    """Load a results folder and draw into its `figures/`, all experiments or those wanted; return what was
+    drawn.
+
+    Raises InputError for an experiment that is neither one of the published questions nor in the records.
+    """
+    records = load(results)
+    names = list(dict.fromkeys([*experiments(), *sorted(records.runs["experiment"])]))
+    for name in wanted:
+        if name not in names:
+            raise InputError(f"--experiment: found {name!r}, expected one of {', '.join(names)}")
+    studies = split(records)
+    return [figure for study in studies for figure in draw_study(study, studies, results, wanted)]
+
+
+def draw_study(
+    study: Study, studies: Sequence[Study], results: Path, wanted: Sequence[str] = ()
+) -> list[Drawn]:
+    """Draw one study; the files of any but the first carry its name."""
+    prefix = "" if study is studies[0] else f"{slug(study.name)}-"
+    data = Data(study, studies, published.load(), results)
+    return list(draw(data, results / "figures", prefix, wanted))
+
+
+def slug(name: str) -> str:
+    """Return the name as part of a file name."""
+    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")

@@ -1,0 +1,174 @@
+"""Reads a results folder: every record validated, unreadable ones named and left out, the rest as tables."""
+
+import hashlib
+import json
+import math
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from jsonschema import Draft202012Validator
+from jsonschema.exceptions import best_match
+
+from analysis.records import tables
+
+SCHEMA_FILE = Path(__file__).parents[2] / "harness" / "record.schema.json"
+NEEDED_TAGS = ["experiment", "series", "x_name", "x", "block"]
+NUMERIC_TAGS = ["x", "block"]
+TEXT_TAGS = ["experiment"]
+
+
+class InputError(Exception):
+    """Bad input, as one line for the user; the program ends with exit code 1."""
+
+
+@dataclass(frozen=True)
+class Records:
+    """One results folder as tables; `analysis.records.tables` names the columns of each.
+
+    `runs` has a row per record, `times` per repetition of a timed run, `trajectory` per comparison with the
+    reference, `phases` per phase and `threads` per phase and thread of a profiled run, `counters` per counter
+    and thread, `limits` per rate that a machine reached at most, `outside` per run of a general engine
+    beside the variants, `failures` per failed point.
+    `skipped` holds one line for every file that could not be counted.
+    """
+
+    runs: pd.DataFrame
+    times: pd.DataFrame
+    trajectory: pd.DataFrame
+    phases: pd.DataFrame
+    threads: pd.DataFrame
+    counters: pd.DataFrame
+    limits: pd.DataFrame
+    outside: pd.DataFrame
+    failures: pd.DataFrame
+    skipped: list[str] = field(default_factory=list)
+
+
+def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
+    """Read `results/records/**.json` and `results/failures/**.json`.
+
+    A file that is torn, foreign or of another schema version is passed to `warn` (default: standard error)
+    as one line and is not counted. Raises InputError if `results` is not a folder.
+    """
+    if not results.is_dir():
+        raise InputError(f"{results}: no such folder (records are made by `make experiments`)")
+    skipped: list[str] = []
+    records = [
+        record
+        for folder in ("records", "failures")
+        for record in _readable(results, results / folder, folder == "failures", skipped)
+    ]
+    for line in skipped:
+        (warn or _warn_on_standard_error)(line)
+    measured, limits, outside, failed = (
+        [(path, record) for path, record in records if record["kind"] in kinds]
+        for kinds in (("bench", "profile"), ("limits",), ("outside",), ("failure",))
+    )
+    return Records(
+        runs=tables.runs(measured),
+        times=tables.times(measured),
+        trajectory=tables.trajectory(measured),
+        phases=tables.phases(measured),
+        threads=tables.threads(measured),
+        counters=tables.counters(measured),
+        limits=tables.limits(limits),
+        outside=tables.outside(outside),
+        failures=tables.failures(failed),
+        skipped=skipped,
+    )
+
+
+def _warn_on_standard_error(line: str) -> None:
+    print(line, file=sys.stderr)
+
+
+def _readable(
+    results: Path, folder: Path, failures: bool, skipped: list[str]
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    seen: dict[str, str] = {}
+    for path in sorted(folder.rglob("*.json")):
+        name = path.relative_to(results).as_posix()
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            skipped.append(f"{path}: skipped: {error.strerror}")
+            continue
+        problem, record = _parse(content, failures)
+        digest = hashlib.sha256(content).hexdigest()
+        if problem is None and digest in seen:
+            problem = f"the same record as {seen[digest]}"
+        if problem is not None:
+            skipped.append(f"{path}: skipped: {problem}")
+            continue
+        seen[digest] = name
+        yield name, record
+
+
+@cache
+def _validator() -> Draft202012Validator:
+    return Draft202012Validator(json.loads(SCHEMA_FILE.read_text(encoding="utf-8")))
+
+
+@cache
+def _parse(content: bytes, failures: bool) -> tuple[str | None, dict[str, Any]]:
+    """Return what is wrong with a file's content, or None and the record, which is not to be changed.
+
+    Remembered by content: whoever loads a growing folder again and again pays for what is new.
+    """
+    try:
+        return _checked(json.loads(content, parse_float=_finite, parse_constant=_finite), failures)
+    except UnicodeDecodeError:
+        return "not UTF-8 text", {}
+    except json.JSONDecodeError as error:
+        return f"not JSON (line {error.lineno}, column {error.colno}: {error.msg})", {}
+    except ValueError as error:
+        return f"not JSON ({error})", {}
+    except RecursionError:
+        return "not a Carom record (nested too deeply)", {}
+
+
+def _checked(record: Any, failures: bool) -> tuple[str | None, dict[str, Any]]:  # noqa: ANN401 - any JSON
+    validator = _validator()
+    if not isinstance(record, dict) or "schema_version" not in record:
+        return "not a Carom record (no schema_version)", {}
+    expected = validator.schema["properties"]["schema_version"]["const"]  # type: ignore[index]
+    if record["schema_version"] != expected:
+        return f"schema version {record['schema_version']!r}, expected {expected}", {}
+    violation = best_match(validator.iter_errors(record))
+    if violation is not None:
+        return f"{violation.json_path}: {_shortened(violation.message)}", {}
+    return _wrong_tag(record, failures), record
+
+
+def _finite(text: str) -> float:
+    """Return the number; JSON knows no NaN and no infinity, whatever Python makes of them."""
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(f"found {text}, expected a finite number")
+    return number
+
+
+def _shortened(message: str, limit: int = 160) -> str:
+    line = " ".join(message.split())
+    return line if len(line) <= limit else f"{line[: limit // 2]} ... {line[-limit // 2 :]}"
+
+
+def _wrong_tag(record: dict[str, Any], failures: bool) -> str | None:
+    if failures != (record["kind"] == "failure"):
+        return f"a record of kind {record['kind']!r} in the wrong folder"
+    tags = record["tags"]
+    if record["kind"] == "limits":
+        return None
+    for name in NEEDED_TAGS[:1] if failures else NEEDED_TAGS:
+        if name not in tags:
+            return f"$.tags.{name}: missing"
+        if name in NUMERIC_TAGS and isinstance(tags[name], str):
+            return f"$.tags.{name}: found {tags[name]!r}, expected a number"
+        if name in TEXT_TAGS and not isinstance(tags[name], str):
+            return f"$.tags.{name}: found {tags[name]!r}, expected a text"
+    return None

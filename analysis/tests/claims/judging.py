@@ -1,0 +1,35 @@
+"""One claim judged on given records, for the tests of claims."""
+
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from analysis import claims
+from analysis.records import published
+from analysis.records.reading import load
+from analysis.records.studies import split
+from analysis.tests.synthetic import write
+
+Records = list[dict[str, Any]]
+
+
+def row_of(folder: Path, records: Records, claim: str) -> pd.Series:
+    """Return the claim's row, of the records and of what the folder has already."""
+    write(folder, records)
+    studies = split(load(folder))
+    return claims.evaluate(studies[0], studies, published.load()).set_index("id").loc[claim]
+
+
+def slowed(records: Records, factor: float, **tags: object) -> Records:
+    """Return the records with those of some tags made slower by a factor."""
+    for record in records:
+        if all(record["tags"][key] == value for key, value in tags.items()):
+            for repetition in record["repetitions"]:
+                repetition["steps_seconds"] *= factor
+    return records
+
+
+def figures(row: pd.Series) -> dict[str, tuple[str, str]]:
+    """Return the published figure and ours, by what they are of."""
+    return {one.what: (one.published, one.here) for one in row["figures"]}

@@ -1,0 +1,161 @@
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from analysis import claims
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, Verdict
+from analysis.figures.style import Data
+from analysis.records import published
+from analysis.records.reading import load
+from analysis.records.studies import split
+from analysis.tests.synthetic import Machine, write
+from analysis.tests.synthetic_noise import QUIET, Noise
+from analysis.tests.synthetic_points import EXPERIMENTS
+from analysis.tests.synthetic_study import study
+
+IDS = [
+    "threads", "particles", "grid_length", "radius", "steps", "velocity", "machine", "four_boxes",
+    "self_contained_checkered", "self_contained_sequential", "find_schedule", "resolve_schedule",
+    "row_schedule", "row", "reverse", "compiler", "resolve_dominates",
+]  # fmt: skip
+
+
+def verdicts_of(folder: Path) -> pd.DataFrame:
+    studies = split(load(folder))
+    return claims.evaluate(studies[0], studies, published.load()).set_index("id")
+
+
+def test_every_published_claim_has_its_row_and_its_verdict(data: Data) -> None:
+    table = claims.evaluate(data.study, data.studies, data.published).set_index("id")
+    assert list(table.index) == IDS
+    verdicts = table["verdict"].drop("machine")
+    without_threads = [one.id for one in claims.load() if one.published.threads is None]
+    assert without_threads == ["threads", "reverse"]
+    assert verdicts[without_threads].eq(HOLDS).all()
+    assert verdicts.drop(without_threads).eq(Verdict.HOLDS_ELSEWHERE).all()
+    assert table["measured"].drop("machine").str.contains(r"\[").all()
+
+
+def test_one_machine_cannot_decide_about_machines(data: Data) -> None:
+    row = claims.evaluate(data.study, data.studies, data.published).set_index("id").loc["machine"]
+    assert row["verdict"] == OPEN
+    assert "only one is present" in row["why"]
+
+
+@pytest.mark.parametrize("experiment", EXPERIMENTS)
+def test_without_its_records_a_claim_is_open_and_says_so(tmp_path: Path, experiment: str) -> None:
+    other = "compiler" if experiment != "compiler" else "steps"
+    write(tmp_path, study([other], blocks=2, noise=QUIET))
+    table = verdicts_of(tmp_path)
+    bearing = table[[experiment in names for names in table["experiments"]]]
+    assert (bearing["verdict"] == OPEN).all()
+    assert bearing["missing"].all()
+    assert not bearing["figures"].any()
+    assert bearing["why"].str.contains("no records yet").all()
+
+
+def pair_folder(folder: Path, effect: float, noise: Noise = QUIET, threads: int = 20) -> Path:
+    changed = [
+        record | {"repetitions": [{"steps_seconds": r["steps_seconds"] * (1 + effect), "cpu_seconds": 1.0}
+                                  for r in record["repetitions"]]}
+        if record["tags"]["series"] == "four" else record
+        for record in study(["neighbourhood"], blocks=10, noise=noise, threads=threads)
+    ]  # fmt: skip
+    write(folder, changed)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("effect", "noise", "verdict"),
+    [
+        (0.0, QUIET, HOLDS),
+        (1.25 / 1.19 - 1, QUIET, FAILS),
+        (1.35 / 1.19 - 1, QUIET, FAILS),
+        (1.25 / 1.19 - 1, Noise(process=0.05), OPEN),
+    ],
+)
+def test_a_ratio_claim_follows_the_effect(tmp_path: Path, effect: float, noise: Noise, verdict: str) -> None:
+    row = verdicts_of(pair_folder(tmp_path, effect, noise)).loc["four_boxes"]
+    assert row["verdict"] == verdict
+    assert "10 blocks" in row["measured"].replace("\u00a0", " ")
+    assert verdict != OPEN or "more blocks" in row["why"]
+
+
+@pytest.mark.parametrize(
+    ("faster", "verdict", "said"), [(0.9, FAILS, "dynamic 10"), (1.0, HOLDS, "none of 17 others")]
+)
+def test_a_schedule_claim_falls_when_another_is_faster(
+    tmp_path: Path, faster: float, verdict: str, said: str
+) -> None:
+    records = study(["schedule_find"], blocks=8, noise=QUIET, threads=8)
+    for record in records:
+        if (record["tags"]["series"], record["tags"]["x"]) == ("dynamic", 10):
+            for repetition in record["repetitions"]:
+                repetition["steps_seconds"] *= 0.736 / 0.79 * faster
+    write(tmp_path, records)
+    row = verdicts_of(tmp_path).loc["find_schedule"]
+    assert row["verdict"] == verdict
+    assert said in row["why"]
+
+
+@pytest.mark.parametrize(
+    ("machine", "verdict", "said"),
+    [
+        (Machine(cores=2, hardware_threads=4), HOLDS, ""),
+        (Machine(cores=2, hardware_threads=2), OPEN, "more hardware threads than cores"),
+        (Machine(cores=8, hardware_threads=16), FAILS, "expected faster"),
+    ],
+)
+def test_the_thread_claim_needs_the_machine_to_have_its_stretches(
+    tmp_path: Path, machine: Machine, verdict: str, said: str
+) -> None:
+    write(tmp_path, study(["threads"], machine=machine, noise=QUIET))
+    if machine.cores == 8:
+        for path in tmp_path.rglob("*.json"):
+            if '"x": 1,' in (text := path.read_text()):
+                path.write_text(text.replace('"steps_seconds": 6.', '"steps_seconds": 2.'))
+    row = verdicts_of(tmp_path).loc["threads"]
+    assert row["verdict"] == verdict
+    assert said in row["why"]
+
+
+@pytest.mark.parametrize(("speed", "verdict"), [(1.5, HOLDS), (1.0, FAILS), (0.8, FAILS)])
+def test_the_machine_claim_orders_machines_by_clock(tmp_path: Path, speed: float, verdict: str) -> None:
+    slow = Machine(host="a", cpu_model="Intel Xeon Silver 4114 CPU @ 2.20GHz")
+    fast = Machine(host="b", cpu_model="13th Gen Intel(R) Core(TM) i7-13700")
+    write(tmp_path, study(["machine"], machine=slow, noise=QUIET, threads=16))
+    write(tmp_path, study(["machine"], machine=fast, noise=QUIET, speed=speed, threads=16))
+    row = verdicts_of(tmp_path).loc["machine"]
+    assert row["verdict"] == verdict
+    assert "3.0 GHz" in row["measured"]
+    assert "5.1 GHz" in row["measured"]
+
+
+def test_a_machine_speaks_with_the_records_of_the_revision_that_is_judged(tmp_path: Path) -> None:
+    slow, fast = "Intel Xeon Silver 4114 CPU @ 2.20GHz", "13th Gen Intel(R) Core(TM) i7-13700"
+    for machine, speed in (
+        (Machine(host="a", cpu_model=slow, commit="0" * 40), 4.0),
+        (Machine(host="a", cpu_model=slow, commit="1" * 40), 1.0),
+        (Machine(host="b", cpu_model=fast), 2.0),
+    ):
+        folder = tmp_path / "records" / f"{machine.host}{machine.commit[0]}"
+        write(folder, study(["machine"], machine=machine, noise=QUIET, speed=speed, threads=16))
+    studies = split(load(tmp_path))
+    verdicts = {}
+    for one in studies:
+        table = claims.evaluate(one, studies, published.load()).set_index("id")
+        verdicts[one.machine[0], one.revision[0]] = table.loc["machine", "verdict"]
+    assert (verdicts["a", "0"], verdicts["a", "1"]) == (FAILS, HOLDS)
+
+
+def test_a_ratio_claim_needs_both_sides_at_the_same_x(tmp_path: Path) -> None:
+    records = [
+        record
+        for record in study(["row"], blocks=8, noise=QUIET)
+        if (record["tags"]["x"] > 50_000) == (record["tags"]["series"] == "row")
+    ]
+    write(tmp_path, records)
+    row = verdicts_of(tmp_path).loc["row"]
+    assert row["verdict"] == OPEN
+    assert "of row and checkered at the same particles" in row["why"]

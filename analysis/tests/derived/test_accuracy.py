@@ -1,0 +1,282 @@
+"""Speed against error, on records with a known order of convergence and a known Pareto front."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from analysis import report
+from analysis.derived import accuracy
+from analysis.derived.accuracy import MEASURES, Measure
+from analysis.figures import further
+from analysis.figures.speed_against_error import draw, front_in_words, place, power_of_ten
+from analysis.figures.studies import draw_all
+from analysis.figures.style import Data, Drawing
+from analysis.records import published
+from analysis.records.reading import load
+from analysis.records.studies import Study, split
+from analysis.report.horizons import horizons
+from analysis.tests.report.test_report import Page, text_of
+from analysis.tests.synthetic import Machine, outside, write
+from analysis.tests.synthetic_noise import QUIET
+from analysis.tests.synthetic_points import SUBSTEPS
+from analysis.tests.synthetic_study import study
+
+NAME = "speed_against_error"
+BY_KEY = {measure.key: measure for measure in MEASURES}
+
+
+def records(**more: Any) -> list[dict[str, Any]]:  # noqa: ANN401
+    return study([NAME], blocks=5, noise=QUIET, seed=4, **more)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("accuracy")
+    write(path, records())
+    return path
+
+
+@pytest.fixture(scope="module")
+def measured(folder: Path) -> Study:
+    return split(load(folder))[0]
+
+
+def drawing(study: Study, key: str, folder: Path) -> Drawing:
+    drawn = draw(Data(study, [study], published.load(), folder), NAME, "Speed against error", BY_KEY[key])
+    assert drawn is not None
+    return drawn
+
+
+def on_scene(records: list[dict[str, Any]], name: str) -> dict[str, Any]:
+    return next(record for record in records if record["tags"]["scene_name"] == name)
+
+
+def points(measured: Study, measure: Measure) -> Any:  # noqa: ANN401
+    return accuracy.points(measured, NAME, measure)
+
+
+def test_a_point_has_its_time_for_a_unit_of_time_and_its_error(measured: Study) -> None:
+    table = points(measured, BY_KEY["path"]).set_index(["scene_name", "series", "x"])
+    assert len(table) == 3 * 3 * len(SUBSTEPS)
+    row = table.loc["medium", "checkered", 4]
+    assert row["median"] == pytest.approx(4e-3 * 1.4, rel=0.05)
+    assert row["low"] < row["median"] < row["high"]
+    assert row["error"] == row["error_low"] == row["error_high"] == pytest.approx(0.2 * 0.4 / 4)
+    assert list(dict.fromkeys(table.index.get_level_values("scene_name"))) == ["dilute", "medium", "dense"]
+
+
+def test_measures_against_the_reference_are_relative(measured: Study) -> None:
+    rate = points(measured, BY_KEY["collision_rate"]).set_index(["scene_name", "series", "x"])["error"]
+    assert rate["dense", "row", 2] == pytest.approx(0.025)
+    parting = points(measured, BY_KEY["parting"]).set_index(["scene_name", "series", "x"])["error"]
+    assert (parting["dense", "row", 4], parting["dense", "row", 8]) == (1 / 2, 1 / 4)
+
+
+def test_paths_that_never_part_are_better_than_any_that_do(tmp_path: Path) -> None:
+    changed = records()
+    for record in changed:
+        if "time_to_tenth_radius" in record["errors"] and record["tags"]["x"] == 64:
+            record["errors"]["time_to_tenth_radius"] = None
+    write(tmp_path, changed)
+    table = points(split(load(tmp_path))[0], BY_KEY["parting"])
+    assert (table.loc[table["x"] == 64, "error"] == 0).all()
+    assert (table.loc[table["x"] < 64, "error"] > 0).all()
+
+
+def test_the_known_order_is_found_and_float_has_less(measured: Study) -> None:
+    found = accuracy.orders(points(measured, BY_KEY["path"])).set_index(["scene_name", "series"])["order"]
+    assert found["dilute", "checkered"].estimate == pytest.approx(1)
+    assert found["dense", "row"].estimate == pytest.approx(1)
+    assert found["dilute", "float"].estimate < 0.8
+
+
+def test_the_known_front_is_found(measured: Study) -> None:
+    table = points(measured, BY_KEY["path"])
+    for scene, part in table.groupby("scene_name"):
+        on_front = part[part["on_front"]]
+        floats = on_front[on_front["series"] == "float"]["x"]
+        exact_enough = {step for step in SUBSTEPS if 0.2 * part["area_fraction"].iloc[0] / step > 1e-3}
+        assert set(floats) - {min(set(SUBSTEPS) - exact_enough, default=0)} == exact_enough, scene
+        assert "row" not in set(on_front["series"])
+
+
+def test_the_front_is_named_from_the_cheapest(measured: Study) -> None:
+    table = points(measured, BY_KEY["path"])
+    said = front_in_words(table[table["scene_name"] == "dilute"])
+    assert said == "float with 1, 2, 4, 8, 16 and 32 substeps, then checkered with 32 and 64 substeps"
+
+
+def test_advice_is_the_cheapest_below_each_bound(measured: Study) -> None:
+    table = points(measured, BY_KEY["path"])
+    advice = dict(accuracy.advice(table, accuracy.times(measured, NAME)))
+    assert list(advice) == sorted(advice, reverse=True)
+    choice = advice[0.01]["dense"]
+    assert choice is not None
+    assert (choice.series, choice.substeps) == ("float", 16)
+    assert choice.seconds.estimate == pytest.approx(16 * 0.5e-3 * 1.65, rel=0.05)
+    assert choice.others == [], "everything else is slower by more than the margin"
+    tightest = advice[0.001]["dilute"]
+    assert tightest is not None
+    assert tightest.series == "float", "1e-3 is the floor of float, and not above the bound"
+
+
+def test_a_bound_that_nothing_meets_has_no_choice(measured: Study) -> None:
+    table = points(measured, BY_KEY["path"])
+    assert (
+        accuracy.cheapest(table[table["error"] < 1e-9], accuracy.Race(accuracy.times(measured, NAME))) is None
+    )
+
+
+def test_equal_choices_are_both_named(tmp_path: Path) -> None:
+    changed = records()
+    for record in changed:
+        if record["tags"]["series"] == "row":
+            for repetition in record["repetitions"]:
+                repetition["steps_seconds"] /= 1.2
+    write(tmp_path, changed)
+    measured = split(load(tmp_path))[0]
+    table = points(measured, BY_KEY["path"])
+    double = table[
+        (table["precision"] == "double") & (table["scene_name"] == "dense") & (table["error"] < 0.01)
+    ]
+    timed = accuracy.times(measured, NAME)
+    choice = accuracy.cheapest(double, accuracy.Race(timed[timed["scene_name"] == "dense"]))
+    assert choice is not None
+    assert {choice.series, *(series for series, _ in choice.others)} == {"checkered", "row"}
+    assert {x for _, x in choice.others} == {16}
+
+
+def test_bounds_with_the_same_choices_are_one(measured: Study) -> None:
+    table = points(measured, BY_KEY["energy"])
+    advice = accuracy.advice(table, accuracy.times(measured, NAME))
+    assert [bound for bound, _ in advice] == [1e-6, 1e-13]
+
+
+@pytest.mark.parametrize("key", sorted(set(BY_KEY) - {"unresolved"}))
+def test_every_measure_has_a_figure_from_the_same_records(measured: Study, key: str, folder: Path) -> None:
+    drawn = drawing(measured, key, folder)
+    assert len(drawn.figure.axes) == 3
+    assert BY_KEY[key].meaning in drawn.caption
+    assert "the same in every run, to the last bit, and has no interval" in drawn.caption
+    assert "315 timed runs" in drawn.caption.replace("\u00a0", " ")
+    assert any("Order of convergence" in table.title for table in drawn.tables) == BY_KEY[key].converges
+
+
+def test_the_fitted_orders_are_stated(measured: Study, folder: Path) -> None:
+    (orders,) = (table for table in drawing(measured, "path", folder).tables if "Order" in table.title)
+    cells = {row[0].text: [cell.text for cell in row[1:]] for row in orders.rows}
+    assert [cell.split()[0] for cell in cells["checkered"]] == ["1.00"] * 3
+
+
+def test_errors_that_differ_between_runs_have_a_range(tmp_path: Path) -> None:
+    changed = records()
+    for record in changed:
+        if record["tags"]["block"] == 1:
+            first = next(one for one in changed if one["tags"]["point"] == record["tags"]["point"])
+            record["errors"] = first["errors"] | {"energy_drift": 2 * first["errors"]["energy_drift"]}
+    write(tmp_path, changed)
+    measured = split(load(tmp_path))[0]
+    assert "Bars across are the range of the errors" in drawing(measured, "energy", tmp_path).caption
+    row = points(measured, BY_KEY["energy"]).iloc[0]
+    assert row["error_high"] == 2 * row["error_low"]
+
+
+def test_zero_has_a_place_on_the_axis(tmp_path: Path) -> None:
+    changed = records()
+    for record in changed:
+        if record["tags"]["series"] == "checkered":
+            record["errors"] |= {"energy_drift": 0.0}
+    write(tmp_path, changed)
+    drawn = drawing(split(load(tmp_path))[0], "energy", tmp_path)
+    drawn.figure.draw_without_rendering()
+    assert "Errors of exactly 0 stand at the left edge" in drawn.caption
+    assert drawn.figure.axes[0].get_xticklabels()[0].get_text() == "0"
+
+
+def test_the_report_says_how_far_paths_go_and_what_to_use(folder: Path) -> None:
+    page = report.render(folder)
+    text = text_of(page)
+    assert "Hard discs are chaotic" in text
+    assert "dense by time 2 with 1 and by time 4 with 64 substeps (0.40 collisions per disc" in text
+    assert "Zero in every run, and so without a figure: unresolved collisions." in text
+    assert re.search(r"0\.01 float, dt.=.1/4: 2\.\d+.ms \[2\.\d+, 2\.\d+\]", text)
+    assert len(Page(page).ids) == len(set(Page(page).ids))
+
+
+def test_an_experiment_of_another_name_is_drawn_alike(tmp_path: Path) -> None:
+    for record in records():
+        record["tags"] |= {"experiment": "my_errors", "title": "Mine", "figure": NAME}
+        write(tmp_path, [record])
+    entries = further(split(load(tmp_path))[0])
+    assert [entry.name for entry in entries] == [f"my_errors-{key}" for key in BY_KEY]
+    assert {entry.experiment for entry in entries} == {"my_errors"}
+    assert "Mine: pressure" in [entry.title for entry in entries]
+
+
+def test_records_without_errors_draw_nothing(tmp_path: Path, data: Data) -> None:
+    write(tmp_path, [record for record in records() if record["tags"]["block"] > 0])
+    assert draw_all(tmp_path) == []
+    assert horizons(split(load(tmp_path))[0], NAME) == ""
+    assert horizons(data.study, "steps") == ""
+
+
+def test_numbers_read_well() -> None:
+    assert [power_of_ten(value) for value in (1e-2, 1.0, 1e-13, 1e4)] == ["0.01", "1", "10⁻¹³", "10⁴"]
+    assert place("row", 8) == "row, dt\u00a0=\u00a01/8"
+    assert place("row", 1) == "row, dt\u00a0=\u00a01"
+
+
+def test_a_general_engine_stands_outside_where_energy_is_measured_and_nowhere_else(tmp_path: Path) -> None:
+    variants = records()
+    beside = on_scene(variants, "medium")
+    engine = [
+        outside(Machine(), beside, substeps, block, 0.02 * substeps, -3e-3 / substeps)
+        for substeps in (1, 4)
+        for block in range(3)
+    ]
+    another = beside | {"scene": beside["scene"] | {"sha256": "0" * 64}}
+    old = [outside(Machine(), another, 1, block, 5.0, -1.0) for block in range(3, 8)]
+    write(tmp_path, [*variants, *engine, *old, outside(Machine(), beside, 8, 0, 1.0, None)])
+    found = split(load(tmp_path))[0]
+    table = accuracy.outside(found, NAME, BY_KEY["energy"])
+    assert table[["scene_name", "substeps", "engine"]].to_numpy().tolist() == [
+        ["medium", 1, "Chipmunk 7.0.3"],
+        ["medium", 4, "Chipmunk 7.0.3"],
+    ]
+    assert table["median"].tolist() == pytest.approx([0.02, 0.08])
+    assert table["error"].tolist() == pytest.approx([3e-3, 7.5e-4])
+    cheapest = points(found, BY_KEY["energy"]).query("scene_name == 'medium'")["median"].min()
+    caption = drawing(found, "energy", tmp_path).caption
+    assert "Chipmunk 7.0.3, a general engine on one thread, stands outside" in caption
+    assert re.search(r"medium: 20\.0\sms with a drift of 0\.003 in steps of 1/1, [\d.]+ times", caption)
+    assert cheapest < 0.02
+    assert accuracy.outside(found, NAME, BY_KEY["path"]).empty
+    assert "Chipmunk" not in drawing(found, "path", tmp_path).caption
+
+
+def test_a_scene_on_which_no_variant_has_an_error_is_left_out_with_its_engine(tmp_path: Path) -> None:
+    variants = records()
+    for record in variants:
+        if record["tags"]["scene_name"] == "dense":
+            record.pop("errors", None)
+    engine = [outside(Machine(), on_scene(variants, "dense"), 1, block, 0.02, -3e-3) for block in range(3)]
+    write(tmp_path, [*variants, *engine])
+    assert "Chipmunk" not in drawing(split(load(tmp_path))[0], "energy", tmp_path).caption
+
+
+def test_where_the_reference_is_0_there_is_no_relative_error(tmp_path: Path) -> None:
+    variants = records()
+    for record in variants:
+        if record["tags"]["scene_name"] == "dense" and "pressure_reference" in record.get("errors", {}):
+            record["errors"]["pressure_reference"] = 0.0
+    write(tmp_path, variants)
+    found = split(load(tmp_path))[0]
+    assert set(points(found, BY_KEY["pressure"])["scene_name"]) == {"dilute", "medium"}
+    assert "dense" not in drawing(found, "pressure", tmp_path).caption
+
+
+def test_without_a_general_engine_nothing_is_said_of_one(measured: Study, folder: Path) -> None:
+    assert accuracy.outside(measured, NAME, BY_KEY["energy"]).empty
+    assert "outside" not in drawing(measured, "energy", folder).caption

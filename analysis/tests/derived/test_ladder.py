@@ -1,0 +1,172 @@
+"""The ladder's table, figure and sentences, from synthetic records whose factors are known."""
+
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from analysis import report
+from analysis.derived.ladder import claims, factors, headlines, named, rungs, totals
+from analysis.figures.ladder import waterfall
+from analysis.figures.style import Data, Drawing, styled
+from analysis.records.reading import load
+from analysis.records.studies import Study, split
+from analysis.tests.synthetic import Machine, failure, profile, write
+from analysis.tests.synthetic_noise import QUIET, Noise
+from analysis.tests.synthetic_points import LADDER
+from analysis.tests.synthetic_study import SHARES, study
+
+FACTORS = [factor for factor, _ in LADDER.values()]
+
+
+def ladder_records(noise: Noise = QUIET) -> list[dict[str, Any]]:
+    return study(["ladder"], blocks=6, noise=noise)
+
+
+def study_of(folder: Path, records: list[dict[str, Any]]) -> Study:
+    write(folder, records)
+    return split(load(folder))[0]
+
+
+def tables(one: Study) -> tuple[pd.DataFrame, pd.DataFrame]:
+    return named(one.runs_of("ladder")), named(one.times_of("ladder"))
+
+
+def drawn(one: Study, folder: Path) -> Drawing:
+    from analysis.records import published
+
+    with styled("ladder"):
+        drawing = waterfall(Data(one, [one], published.load(), folder), "ladder", "the ladder")
+    assert drawing is not None
+    return drawing
+
+
+def texts(drawing: Drawing) -> list[str]:
+    return [text.get_text() for axes in drawing.figure.axes for text in axes.texts]
+
+
+def test_each_rung_is_judged_against_the_one_before_on_its_scene(tmp_path: Path) -> None:
+    _, times = tables(study_of(tmp_path, ladder_records()))
+    table = factors(times)
+    assert len(table) == 2 * (len(LADDER) - 1)
+    for row in table.to_dict("records"):
+        truth = FACTORS[int(row["series_number"]) - 1]
+        assert 1 / row["ratio"] == pytest.approx(truth, rel=0.01)
+        assert row["verdict"] == ("faster" if truth > 1 else "equivalent")
+        assert row["blocks"] == 6
+
+
+def test_the_total_is_the_product_of_the_factors(tmp_path: Path) -> None:
+    runs, times = tables(study_of(tmp_path, ladder_records()))
+    table = totals(times).set_index("scene_name")
+    assert list(table.index) == ["dense", "sparse"]
+    for row in table.to_dict("records"):
+        assert 1 / row["ratio"] == pytest.approx(2.5, rel=0.01)
+        assert row["low"] < 1 / 2.5 < row["high"]
+    said = claims(runs, times)
+    assert len(said) == 2
+    for sentence in said:
+        assert "2.5" in sentence
+        assert "faster than the published best (faster)" in sentence
+        assert "[" in sentence
+
+
+def test_the_report_says_the_totals_where_there_are_any(tmp_path: Path) -> None:
+    one = study_of(tmp_path / "whole", ladder_records())
+    assert headlines(one) == claims(*tables(one))
+    text = " ".join(report.render(tmp_path / "whole").split())
+    assert all(" ".join(sentence.split()) in text for sentence in headlines(one))
+    assert headlines(study_of(tmp_path / "other", study(["steps"], blocks=2))) == []
+
+
+def test_a_rung_shows_its_time_its_work_and_the_policy_that_it_changes(tmp_path: Path) -> None:
+    one = study_of(tmp_path, ladder_records())
+    runs, times = tables(one)
+    table = rungs(runs, times, one.counters)
+    sparse = table[table["scene_name"] == "sparse"].sort_values("series_number")
+    assert list(sparse["change"]) == ["published", "storage sorted", "order strips", "overlaps contacts"]
+    assert list(sparse["passed"]) == list(sparse["records"]) == [6] * 4
+    assert sparse["nanoseconds"].iloc[0] == pytest.approx(1e9 / (100_000 * 100), rel=0.05)
+    assert (sparse["low"] <= sparse["nanoseconds"]).all()
+    assert (sparse["resolves"] == 1.2).all()
+    assert (sparse["sweeps"] == 4).all()
+    assert sparse["instructions"].isna().all()
+
+
+def test_instructions_are_those_of_profiled_runs_of_the_variant_on_such_a_scene(tmp_path: Path) -> None:
+    records = ladder_records()
+    counted = {"name": "instructions", "thread": None, "source": "cachegrind", "reason": None, "remedy": None}
+    first = next(record for record in records if record["axes"]["variant"] == "sorted")
+    elsewhere = first | {"tags": first["tags"] | {"experiment": "profiled", "point": "p1"}}
+    records.append(profile(elsewhere, SHARES, [counted | {"value": 7 * 100_000 * 100}]))
+    one = study_of(tmp_path, records)
+    runs, times = tables(one)
+    table = rungs(runs, times, one.counters).set_index(["scene_name", "variant"])["instructions"]
+    assert table["sparse", "sorted"] == 7
+    assert table.drop(("sparse", "sorted")).isna().all()
+    assert "Instructions per disc and step (cachegrind): storage sorted 7" in drawn(one, tmp_path).caption
+
+
+def test_the_figure_says_every_factor_and_the_caption_the_totals(tmp_path: Path) -> None:
+    drawing = drawn(study_of(tmp_path, ladder_records()), tmp_path)
+    said = texts(drawing)
+    assert sum(text.startswith("× 1.2") or text.startswith("× 1.25") for text in said) == 2
+    assert said.count("✓") == 2 * len(LADDER) + 2, "a mark for each rung, and the headings"
+    assert "✗" not in said
+    assert "100\u00a0000 discs at area fraction 0.80: 2.5" in drawing.caption
+    assert "all 48\u00a0results passed" in drawing.caption
+    assert "were not counted" in drawing.caption
+    assert drawing.verdicts is not None
+    assert list(drawing.verdicts["name"].str.contains("storage sorted")).count(True) == 2
+
+
+def test_a_rung_that_fails_its_check_is_shown_as_wrong_and_has_no_time(tmp_path: Path) -> None:
+    records = ladder_records()
+    for record in records:
+        if record["axes"]["variant"] == "strips-sorted":
+            record["repetitions"] = []
+            record["check"] |= {"verdict": "failed", "reason": "step 3: two discs left colliding"}
+    drawing = drawn(study_of(tmp_path, records), tmp_path)
+    assert texts(drawing).count("✗") == 2
+    assert texts(drawing).count("none") == 2
+    assert "12 of 48\N{NO-BREAK SPACE}results failed" in drawing.caption
+
+
+def test_a_rung_without_a_result_is_named_and_lends_its_place_to_no_other(tmp_path: Path) -> None:
+    records = ladder_records()
+    first, third = (list(LADDER)[place] for place in (0, 2))
+    lacking = {"dense": first, "sparse": third}
+    kept = [
+        record for record in records if lacking[str(record["tags"]["scene_name"])] != record["tags"]["series"]
+    ]
+    assert len(kept) == len(records) - 12
+    failed = failure("ladder", third, "step 3: two discs left colliding", scene_name="sparse")
+    one = study_of(tmp_path, [*kept, failed])
+    runs, times = tables(one)
+    assert list(totals(times)["scene_name"]) == ["sparse"], "without its first rung a scene has no total"
+    steps = factors(times).groupby("scene_name")["series_number"].agg(set)
+    assert steps["dense"] == set(range(3, len(LADDER) + 1))
+    assert steps["sparse"] == set(range(2, len(LADDER) + 1)) - {3, 4}
+    drawing = drawn(one, tmp_path)
+    assert texts(drawing).count("no result") == 2
+    assert sum("faster than the published best" in sentence for sentence in claims(runs, times)) == 1
+    assert "1 of 37\N{NO-BREAK SPACE}results failed" in drawing.caption
+
+
+def test_noise_leaves_a_small_factor_inconclusive(tmp_path: Path) -> None:
+    _, times = tables(study_of(tmp_path, ladder_records(Noise(process=0.1))))
+    equal = factors(times).query("series_number == 3")
+    assert set(equal["verdict"]) == {"inconclusive"}
+
+
+def test_records_of_several_machines_do_not_meet(tmp_path: Path) -> None:
+    write(tmp_path, ladder_records())
+    write(tmp_path, [moved_to("other", record) for record in ladder_records()])
+    for one in split(load(tmp_path)):
+        assert (totals(named(one.times_of("ladder")))["blocks"] == 6).all()
+
+
+def moved_to(host: str, record: dict[str, Any]) -> dict[str, Any]:
+    tags = record["tags"] | {"point": f"{record['tags']['point']}-{host}"}
+    return record | {"tags": tags, "provenance": Machine(host=host).provenance("g++ 12.2.0", 2)}

@@ -1,0 +1,138 @@
+"""The unavoidable work of a step, and phases against the machine's limits, from records with known rates."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from analysis.derived.ladder import named
+from analysis.derived.limits import against_limits
+from analysis.derived.unavoidable import PHASES, unavoidable
+from analysis.figures.limits import phases_against_limits
+from analysis.figures.style import Data, styled
+from analysis.records import published
+from analysis.records.reading import load
+from analysis.records.studies import Study, split
+from analysis.tests.synthetic import write
+from analysis.tests.synthetic_noise import QUIET
+from analysis.tests.synthetic_study import ARITHMETIC, COPY, SHARES, study
+
+DISCS, OVERLAPS, RESOLVES = 100_000, 100_000, 120_000
+"""Of a step of the synthetic sparse scene."""
+
+
+def study_of(folder: Path, **changes: Any) -> Study:  # noqa: ANN401
+    records = study(["limits"], blocks=3, noise=QUIET)
+    for record in records:
+        record.get("axes", {}).update(changes)
+    write(folder, records)
+    return split(load(folder))[0]
+
+
+def table_of(one: Study) -> pd.DataFrame:
+    runs, phases, threads = (named(table) for table in (one.runs, one.phases, one.threads))
+    return against_limits(runs, phases, threads, one.limits)
+
+
+def work_of(one: Study) -> pd.DataFrame:
+    sparse = one.runs[one.runs["scene_name"] == "sparse"].head(1)
+    return unavoidable(sparse).set_index("phase")
+
+
+def test_every_phase_reads_and_writes_what_its_formula_says(tmp_path: Path) -> None:
+    work = work_of(study_of(tmp_path))
+    touched = DISCS * (1 - np.exp(-2 * OVERLAPS / DISCS))
+    assert list(work.index) == list(PHASES)
+    assert work.loc["move", "bytes"] == 48 * DISCS
+    assert work.loc["bin", "bytes"] == 20 * DISCS
+    assert work.loc["find", "bytes"] == 16 * DISCS + 8 * OVERLAPS
+    assert work.loc["resolve", "bytes"] == pytest.approx(8 * OVERLAPS + 48 * touched)
+    assert work.loc["resolve", "operations"] == 7 * OVERLAPS + 10 * RESOLVES
+    assert work.loc["find", "operations"] == 5 * OVERLAPS
+
+
+def test_float_halves_the_bytes_of_numbers_and_no_operation(tmp_path: Path) -> None:
+    work = work_of(study_of(tmp_path, precision="float"))
+    assert work.loc["move", "bytes"] == 24 * DISCS
+    assert work.loc["bin", "bytes"] == 12 * DISCS
+    assert work.loc["move", "operations"] == 4 * DISCS
+
+
+def test_without_overlaps_there_is_nothing_to_resolve(tmp_path: Path) -> None:
+    runs = study_of(tmp_path).runs.assign(overlaps=0, pair_resolves=0)
+    work = unavoidable(runs).set_index("phase").loc["resolve"]
+    assert (work["bytes"] == 0).all()
+    assert (work["operations"] == 0).all()
+
+
+def test_the_least_time_is_that_of_the_largest_copy_within_the_scene(tmp_path: Path) -> None:
+    table = table_of(study_of(tmp_path)).set_index(["scene_name", "series", "phase"]).sort_index()
+    assert table.loc["sparse", "level"].eq("L3").all(), "4.4 MB are more than 4 MiB"
+    assert table.loc["dense", "level"].eq("L2").all(), "1.2 MB are more than 1 MiB"
+    move = table.loc[("sparse", "published", "move")]
+    assert move["copy"] == pytest.approx(1e9 * 48 / (2 * COPY["L3"][1]))
+    assert move["arithmetic"] == pytest.approx(1e9 * 4 / (2 * 2 * ARITHMETIC))
+    assert (move["bound"], move["least"]) == ("copy", move["copy"])
+    assert move["wall"] == pytest.approx(1e9 * SHARES["move"] / (DISCS * 100), rel=0.05)
+    assert move["reached"] == pytest.approx(move["copy"] / move["wall"], rel=0.02)
+    assert move["wall"] * 0.8 < move["busy"] < move["wall"] * 0.9
+
+
+def test_a_faster_variant_reaches_more_of_the_same_limit(tmp_path: Path) -> None:
+    table = table_of(study_of(tmp_path)).set_index(["scene_name", "series", "phase"]).sort_index()
+    slow, fast = (table.loc[("sparse", name, "find")] for name in ("published", "strips-sorted-contacts"))
+    assert fast["least"] == slow["least"]
+    assert fast["reached"] / slow["reached"] == pytest.approx(2.5, rel=0.05)
+
+
+def test_arithmetic_bounds_where_it_takes_longer(tmp_path: Path) -> None:
+    one = study_of(tmp_path)
+    slow = one.limits.assign(best=one.limits["best"].where(one.limits["limit"] == "copy", 1e6))
+    table = table_of(replace(one, limits=slow))
+    assert set(table["bound"]) == {"arithmetic"}
+    assert (table["least"] == table["arithmetic"]).all()
+
+
+def test_limits_of_as_many_threads_are_taken_or_of_fewer(tmp_path: Path) -> None:
+    one = study_of(tmp_path)
+    alone = table_of(replace(one, limits=one.limits[one.limits["threads"] == 1]))
+    assert alone["copy_rate"].max() == COPY["L2"][1], "the dense scene's"
+    assert alone["copy_rate"].min() == COPY["L3"][1], "the sparse scene's"
+    more = one.limits.assign(threads=one.limits["threads"] + 2)
+    assert table_of(replace(one, limits=more)).empty
+
+
+def test_a_scene_smaller_than_any_copy_is_compared_with_the_smallest(tmp_path: Path) -> None:
+    one = study_of(tmp_path)
+    larger = one.limits.assign(working_set_bytes=one.limits["working_set_bytes"] * 2**10)
+    assert set(table_of(replace(one, limits=larger))["level"]) == {"L2"}
+
+
+def test_the_limits_are_those_of_the_machine(tmp_path: Path) -> None:
+    one = study_of(tmp_path)
+    assert set(one.limits["machine"]) == {one.machine}
+    records = load(tmp_path)
+    elsewhere = records.limits.assign(machine="another: CPU")
+    (other,) = split(replace(records, limits=elsewhere))
+    assert other.limits.empty
+
+
+def test_the_figure_names_the_limits_and_what_is_reached(tmp_path: Path) -> None:
+    one = study_of(tmp_path)
+    with styled("limits"):
+        drawing = phases_against_limits(Data(one, [one], published.load(), tmp_path), "limits", "limits")
+    assert drawing is not None
+    assert "40.0 GB/s within 4.00 MiB (L3)" in drawing.caption
+    assert "12.0 Gflop/s" in drawing.caption
+    assert "longest is resolve" in drawing.caption
+    said = [text.get_text() for axes in drawing.figure.axes for text in axes.texts]
+    assert sum("%" in text for text in said) == 2 * (2 * 2 * len(PHASES)), "reached, and waiting"
+
+
+def test_without_limits_nothing_is_drawn(tmp_path: Path) -> None:
+    one = study_of(tmp_path)
+    without = replace(one, limits=one.limits.iloc[:0])
+    assert phases_against_limits(Data(without, [one], published.load(), tmp_path), "limits", "limits") is None

@@ -1,0 +1,124 @@
+import re
+from itertools import pairwise
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from matplotlib import image
+
+from analysis import figures
+from analysis.figures import FIGURES, Entry
+from analysis.figures.labels import spread
+from analysis.figures.studies import draw_all
+from analysis.figures.style import Data, styled
+from analysis.records import published
+from analysis.records.reading import load
+from analysis.records.studies import split
+from analysis.tests.synthetic import Machine, write
+from analysis.tests.synthetic_noise import Noise
+from analysis.tests.synthetic_points import EXPERIMENTS
+from analysis.tests.synthetic_study import study
+
+UNCOUNTED = ["counters_hardware", "counters_simulated", "speed_against_error-unresolved"]
+DRAWN = [entry for entry in FIGURES if entry.name not in UNCOUNTED]
+
+
+@pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.name)
+def test_every_figure_is_drawn_with_labels_units_and_a_caption(data: Data, entry: Entry) -> None:
+    with styled(entry.name):
+        drawing = entry.draw(data)
+    assert drawing is not None
+    axes = drawing.figure.axes
+    labels = [label for one in axes for label in (one.get_xlabel(), one.get_ylabel(), one.get_title("left"))]
+    assert any(re.search(r", [nm]?s$|%$|relative| per |radii$", label) for label in labels)
+    assert re.search(r"\d", drawing.caption)
+    assert "nan" not in drawing.caption.lower()
+
+
+@pytest.mark.parametrize("name", UNCOUNTED)
+def test_what_was_not_counted_is_not_drawn(data: Data, name: str) -> None:
+    (entry,) = (entry for entry in FIGURES if entry.name == name)
+    assert entry.draw(data) is None
+
+
+def test_every_experiment_has_a_figure() -> None:
+    assert set(figures.experiments()) == set(EXPERIMENTS)
+
+
+@pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.name)
+@pytest.mark.parametrize("kept", ["one block", "one point", "half"])
+def test_partial_data_are_drawn_or_left_out_but_never_fail(tmp_path: Path, entry: Entry, kept: str) -> None:
+    records = study([entry.experiment], blocks=3, noise=Noise(), seed=3)
+    if kept == "one block":
+        records = [record for record in records if record["tags"]["block"] == 0]
+    elif kept == "one point":
+        records = [record for record in records if record["tags"]["point"] == records[0]["tags"]["point"]]
+    else:
+        records = records[::2]
+    write(tmp_path, records)
+    studies = split(load(tmp_path))
+    with styled(entry.name):
+        drawing = entry.draw(Data(studies[0], studies, published.load(), tmp_path))
+        if drawing is not None:
+            drawing.figure.draw_without_rendering()
+
+
+def test_partial_data_are_marked_in_figure_and_caption(tmp_path: Path) -> None:
+    write(tmp_path, [record for record in study(["steps"], blocks=4) if record["tags"]["block"] != 2])
+    (drawn,) = draw_all(tmp_path)
+    assert drawn.caption.endswith("Partial: 30 of 40 runs.")
+
+
+def test_svg_png_and_pdf_are_written_whole(tmp_path: Path) -> None:
+    write(tmp_path, study(["neighbourhood"], blocks=3))
+    (drawn,) = draw_all(tmp_path, ["neighbourhood"])
+    assert [path.suffix for path in drawn.files] == [".svg", ".png", ".pdf"]
+    svg, png, pdf = drawn.files
+    assert ElementTree.parse(svg).getroot().tag.endswith("svg")
+    assert image.imread(png).shape[1] == 1400
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert not list((tmp_path / "figures").glob("*.part*"))
+
+
+def test_the_same_records_give_the_same_svg(tmp_path: Path) -> None:
+    write(tmp_path, study(["steps"], blocks=2))
+    first = draw_all(tmp_path)[0].files[0].read_bytes()
+    assert draw_all(tmp_path)[0].files[0].read_bytes() == first
+
+
+def test_a_second_machine_has_files_of_its_own(tmp_path: Path) -> None:
+    write(tmp_path, study(["steps"], blocks=3))
+    write(tmp_path, study(["steps"], blocks=2, machine=Machine(host="bench-2")))
+    names = [drawn.files[0].stem for drawn in draw_all(tmp_path)]
+    assert names[0] == "steps"
+    assert names[1].startswith("bench-2-example-cpu")
+
+
+def test_several_machines_are_in_one_machine_figure(tmp_path: Path) -> None:
+    for host in ("bench-1", "bench-2"):
+        write(tmp_path, study(["machine"], blocks=6, machine=Machine(host=host)))
+    caption = draw_all(tmp_path)[0].caption
+    assert "bench-1: Example CPU" in caption
+    assert "bench-2: Example CPU" in caption
+
+
+@pytest.mark.parametrize("speed", [0.1, 10.0])
+def test_the_order_that_others_are_compared_with_does_not_depend_on_the_times(
+    tmp_path: Path, speed: float
+) -> None:
+    fast = study(["sequential_orders"], blocks=4, speed=speed)
+    slow = study(["sequential_orders"], blocks=4)
+    write(tmp_path, [one for one in fast if one["tags"]["series"] == "once"])
+    write(tmp_path, [one for one in slow if one["tags"]["series"] != "once"])
+    (drawn,) = draw_all(tmp_path)
+    assert "Against once: repeat" in drawn.caption
+
+
+def test_labels_are_moved_apart_as_little_as_needed() -> None:
+    assert spread([0, 100, 200], 9) == [0, 100, 200]
+    assert spread([50, 50], 10) == [45, 55]
+    moved = spread([10, 12, 11, 40], 10)
+    ordered = sorted(moved)
+    assert all(upper - lower >= 10 - 1e-9 for lower, upper in pairwise(ordered))
+    assert moved[3] == 40
+    assert moved[0] < moved[2] < moved[1]

@@ -1,0 +1,146 @@
+"""Experiments that this package has never heard of: drawn and reported by the tags of their records."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analysis import report
+from analysis.cli import main
+from analysis.figures import KINDS, Drawn
+from analysis.figures.comparisons import differences, reference
+from analysis.figures.studies import draw_all
+from analysis.records.reading import load
+from analysis.tests.report.test_report import Page, text_of
+from analysis.tests.synthetic import write
+from analysis.tests.synthetic_noise import QUIET
+from analysis.tests.synthetic_study import study
+
+LIKE = [
+    ("scaling", "threads"),
+    ("trend", "radius"),
+    ("trend", "row"),
+    ("comparison", "neighbourhood"),
+    ("comparison", "sequential_orders"),
+    ("comparison", "row"),
+    ("control", "control"),
+    ("schedule", "schedule_find"),
+    ("machine", "machine"),
+    ("phases", "phases"),
+    ("ladder", "ladder"),
+    ("limits", "limits"),
+]
+
+NAMING = ("ladder", "limits")
+"""The kinds that name the published variant, which is a series of their synthetic records."""
+
+
+def unknown(known: str, kind: str, name: str = "small_chunks", **tags: str) -> list[dict[str, Any]]:
+    """Return the records of a known experiment under a name that nothing in this package knows."""
+    changed = {"experiment": name, "figure": kind, **tags}
+    return [
+        record | {"tags": record["tags"] | changed}
+        for record in study([known], blocks=6, noise=QUIET, seed=2)
+    ]
+
+
+def drawn_of(folder: Path, records: list[dict[str, Any]]) -> Drawn:
+    write(folder, records)
+    (drawn,) = draw_all(folder, [records[0]["tags"]["experiment"]])
+    return drawn
+
+
+def test_every_kind_is_tried() -> None:
+    assert {kind for kind, _ in LIKE} == set(KINDS)
+
+
+@pytest.mark.parametrize(("kind", "known"), LIKE)
+def test_every_kind_is_drawn_without_a_published_series(tmp_path: Path, kind: str, known: str) -> None:
+    drawn = drawn_of(tmp_path, unknown(known, kind))
+    assert drawn.entry.title == "small_chunks"
+    assert [path.name for path in drawn.files] == [
+        f"small_chunks.{suffix}" for suffix in ("svg", "png", "pdf")
+    ]
+    assert drawn.caption.startswith(
+        "Small_chunks" if kind != "machine" and kind != "phases" else "small_chunks"
+    )
+    assert "nan" not in drawn.caption
+    if kind not in NAMING:
+        assert "ublished" not in drawn.caption
+        assert "<!-- published" not in drawn.files[0].read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("kind", "known"), LIKE)
+@pytest.mark.parametrize("kept", [slice(0, 1), slice(None, None, 3)])
+def test_partial_data_never_fail(tmp_path: Path, kind: str, known: str, kept: slice) -> None:
+    write(tmp_path, unknown(known, kind)[kept])
+    draw_all(tmp_path)
+
+
+def test_the_title_is_that_of_the_question(tmp_path: Path) -> None:
+    drawn = drawn_of(tmp_path, unknown("radius", "trend", title="Chunks of one box"))
+    assert drawn.entry.title == "Chunks of one box"
+    assert drawn.caption.startswith("Chunks of one box (N = ")
+
+
+def test_a_trend_has_a_curve_and_a_sentence_a_series(tmp_path: Path) -> None:
+    drawn = drawn_of(tmp_path, unknown("row", "trend"))
+    assert "checkered: The time grows" in drawn.caption
+    assert "row: The time grows" in drawn.caption
+
+
+def test_scaling_draws_several_series(tmp_path: Path) -> None:
+    one, other = (unknown("threads", "scaling", series=name) for name in ("one", "other"))
+    for record in other:
+        record["tags"]["point"] += "-other"
+    drawn = drawn_of(tmp_path, [*one, *other])
+    assert "Greatest speed-up of one" in drawn.caption
+    assert "Greatest speed-up of other" in drawn.caption
+    assert "scalability" not in drawn.caption
+
+
+def test_a_name_that_is_a_file_of_another_figure_takes_nothing_away(tmp_path: Path) -> None:
+    write(tmp_path, study(["phases"], blocks=2))
+    drawn = drawn_of(tmp_path, unknown("radius", "trend", name="counters_software"))
+    assert drawn.files[0].name == "experiment-counters_software.svg"
+    assert drawn_of(tmp_path, unknown("radius", "trend", name="a b")).files[0].name == "a_b.svg"
+
+
+def test_the_reference_does_not_depend_on_the_times(tmp_path: Path) -> None:
+    write(tmp_path, unknown("sequential_orders", "comparison"))
+    times = load(tmp_path).times
+    assert reference(times) == "once"
+    variants = times["series"].map({"once": "once", "repeat": "published", "track": "track"})
+    assert reference(times.assign(variant=variants)) == "repeat"
+
+
+def test_differences_are_those_within_the_same_x(tmp_path: Path) -> None:
+    write(tmp_path, unknown("row", "comparison"))
+    table = differences(load(tmp_path).times, "checkered").set_index("x")
+    for x, row in table.iterrows():
+        assert row["series"] == "row"
+        assert row["ratio"] == pytest.approx(1.1 - 0.08 * np.log10(float(str(x)) / 1000), rel=0.01)
+    assert table.loc[1_000, "verdict"] == "slower"
+    assert table.loc[200_000, "verdict"] == "faster"
+
+
+def test_the_report_has_it_last_with_a_table_of_verdicts(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(tmp_path, study(["steps"], blocks=3))
+    write(tmp_path, unknown("sequential_orders", "comparison", title="Three orders"))
+    page = report.render(tmp_path)
+    assert Page(page).ids.index("steps") < Page(page).ids.index("small_chunks")
+    text = text_of(page)
+    assert "Three orders" in text
+    assert "repeat against once" in text
+    assert "slower" in text[text.index("repeat against once") :][:80]
+    assert "faster" in text[text.index("track against once") :][:80]
+    assert capsys.readouterr().err == ""
+
+
+def test_the_command_draws_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(tmp_path, unknown("schedule_find", "schedule"))
+    assert main(["figures", "--results", str(tmp_path), "--experiment", "small_chunks"]) == 0
+    assert capsys.readouterr().out == f"{tmp_path / 'figures' / 'small_chunks.svg'}\n"

@@ -1,0 +1,170 @@
+import re
+import sys
+from html.parser import HTMLParser
+from importlib.abc import MetaPathFinder
+from pathlib import Path
+
+import pytest
+
+from analysis import claims, report
+from analysis.cli import main
+from analysis.records.reading import InputError, load
+from analysis.report.provenance import commands
+from analysis.tests.figures.test_figures import DRAWN
+from analysis.tests.synthetic import Machine, failure, write
+from analysis.tests.synthetic_noise import QUIET
+from analysis.tests.synthetic_study import study
+
+
+class Page(HTMLParser):
+    """Collects identifiers, local links and everything that a page would fetch."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.ids: list[str] = []
+        self.links: set[str] = set()
+        self.fetched: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        values = {name: value or "" for name, value in attrs}
+        if "id" in values:
+            self.ids.append(values["id"])
+        target = values.get("href", values.get("xlink:href", ""))
+        if target.startswith("#"):
+            self.links.add(target[1:])
+        elif target:
+            self.fetched.append(target)
+        if "src" in values or tag in ("script", "link", "iframe"):
+            self.fetched.append(tag)
+
+
+@pytest.fixture(scope="module")
+def page(results: Path) -> str:
+    return report.render(results)
+
+
+def text_of(page: str) -> str:
+    without_figures = re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL)
+    return " ".join(re.sub(r"<[^>]+>", " ", without_figures).replace("&#39;", "'").split())
+
+
+def test_the_commands_measure_what_the_records_hold(tmp_path: Path) -> None:
+    write(tmp_path, study(["speed_against_error", "phases"], blocks=2))
+    found = {row["experiment"]: row["commands"] for row in commands(load(tmp_path).runs)}
+    assert all(" --errors --record " in command for command in found["speed_against_error"])
+    assert all(command.endswith("--warm-up 1") for command in found["phases"])
+
+
+def test_it_holds_every_claim_every_figure_and_its_caption(page: str) -> None:
+    text = text_of(page)
+    for claim in claims.load():
+        assert claim.claim in text
+        assert claim.published.effect in text
+    parsed = Page(page)
+    for entry in DRAWN:
+        assert entry.name in parsed.ids
+    assert page.count("<svg") == page.count("<figcaption>") == len(DRAWN)
+
+
+def test_it_needs_nothing_but_itself(page: str) -> None:
+    parsed = Page(page)
+    assert parsed.fetched == []
+    assert parsed.links <= set(parsed.ids)
+    assert len(parsed.ids) == len(set(parsed.ids))
+    assert "url(http" not in page
+    assert "@import" not in page
+
+
+def test_it_says_machine_control_noise_gaps_failures_and_commands(page: str) -> None:
+    text = text_of(page)
+    for said in (
+        "Example CPU @ 2.50GHz",
+        "The control came out equivalent",
+        "Blocks for equivalence",
+        "virtual machine without a PMU",
+        "run on bare metal",
+        "step 3: discs 1 and 2 are still colliding",
+        "make experiments SCALE=paper",
+        "build/clang/carom bench scene.in --variant published",
+        "OMP_PROC_BIND=close",
+    ):
+        assert said in text
+
+
+def test_html_and_pdf_of_partial_data(tmp_path: Path) -> None:
+    write(tmp_path, study(["neighbourhood"], blocks=2))
+    html, pdf = report.write(tmp_path)
+    assert pdf.read_bytes().startswith(b"%PDF")
+    text = text_of(html.read_text(encoding="utf-8"))
+    assert "no records yet (experiment 'radius')" in text
+    assert "make experiments STUDY=radius" in text
+    assert "nothing vouches for the rest" in text
+    assert not list(tmp_path.glob("*.part*"))
+
+
+def test_without_pango_only_the_pdf_is_missing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(tmp_path, study(["neighbourhood"], blocks=2))
+    (tmp_path / "report.pdf").write_text("of earlier records")
+
+    class WithoutPango(MetaPathFinder):
+        def find_spec(self, name: str, *_: object) -> None:
+            if name == "weasyprint":
+                print("WeasyPrint could not import some external libraries.")
+                raise OSError("cannot load library 'libpango-1.0-0':\nno such file")
+
+    for name in [name for name in sys.modules if name.partition(".")[0] == "weasyprint"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setattr(sys, "meta_path", [WithoutPango(), *sys.meta_path])
+    assert main(["report", "--results", str(tmp_path)]) == 0
+    said = capsys.readouterr()
+    assert said.out == f"{tmp_path / 'report.html'}\n"
+    (line,) = said.err.splitlines()
+    assert line.startswith(f"{tmp_path / 'report.pdf'}: not written, only the HTML: cannot load library")
+    assert "apt install libpango-1.0-0" in line
+    assert (tmp_path / "report.html").exists()
+    assert not (tmp_path / "report.pdf").exists()
+
+
+def test_no_records_at_all_still_make_a_report(tmp_path: Path) -> None:
+    assert "There are no records yet" in text_of(report.render(tmp_path))
+
+
+def test_sessions_without_a_control_and_results_that_failed_are_counted(tmp_path: Path) -> None:
+    records = study(["control", "threads"], blocks=6, noise=QUIET)
+    for record in records:
+        if record["tags"]["experiment"] == "threads":
+            record["tags"]["session"] = "another"
+    write(tmp_path, [*records, failure("threads", "checkered", "step 3: discs 1 and 2 are still colliding")])
+    said = text_of(report.render(tmp_path))
+    assert "measured under two labels over 1 of 2 sessions" in said
+    assert "1 result failed the program's own check" in said
+
+
+def test_a_failed_control_is_shouted(tmp_path: Path) -> None:
+    records = study(["control"], blocks=6, noise=QUIET)
+    for record in records:
+        if record["tags"]["label"] == "A-again":
+            record["repetitions"][0]["steps_seconds"] *= 1.1
+    write(tmp_path, records)
+    assert "The control FAILED" in text_of(report.render(tmp_path))
+
+
+def test_several_machines_have_a_part_each(tmp_path: Path) -> None:
+    for host in ("bench-1", "bench-2"):
+        write(tmp_path, study(["machine"], blocks=3, machine=Machine(host=host)))
+    parsed = Page(report.render(tmp_path))
+    assert {"study-1", "study-2"} <= set(parsed.ids)
+    assert len(parsed.ids) == len(set(parsed.ids))
+
+
+def test_text_from_records_is_escaped(tmp_path: Path) -> None:
+    write(tmp_path, study(["machine"], blocks=2, machine=Machine(cpu_model="<script>alert(1)</script>")))
+    assert "<script>" not in re.sub(r"<svg.*?</svg>", "", report.render(tmp_path), flags=re.DOTALL)
+
+
+def test_no_folder_is_bad_input(tmp_path: Path) -> None:
+    with pytest.raises(InputError):
+        report.write(tmp_path / "absent")

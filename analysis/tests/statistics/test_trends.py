@@ -1,0 +1,100 @@
+import numpy as np
+import pandas as pd
+import pytest
+
+from analysis.records import published
+from analysis.statistics import scalability
+from analysis.statistics.pairs import process_medians
+from analysis.statistics.trends import growth, linearity, turn
+from analysis.tests.synthetic_noise import Noise, times_table
+
+VM = Noise(burst_rate=0.01)
+
+
+def curve(times: dict[float, float], blocks: int = 6, noise: Noise = VM, seed: int = 1) -> pd.DataFrame:
+    table = times_table({f"{x:g}": seconds for x, seconds in times.items()}, blocks, 1, noise, seed)
+    return process_medians(table.assign(x=table["series"].astype(float), series="a"))
+
+
+def of_published(experiment: str) -> pd.DataFrame:
+    rows = published.load().experiment(experiment)
+    return rows.assign(steps_seconds=rows["seconds"], node="", block=0, session="")
+
+
+@pytest.mark.parametrize("exponent", [-0.5, 0.3, 1.0])
+def test_the_exponent_of_a_power_law_is_found(exponent: float) -> None:
+    quiet = Noise(process=0.01, repetition=0.005, burst_rate=0, drift=0)
+    trend = growth(curve({x: x**exponent for x in (1.0, 2.0, 4.0, 8.0, 16.0)}, noise=quiet))
+    assert trend.verdict == ("grows" if exponent > 0 else "falls")
+    assert trend.exponent.low - 0.01 <= exponent <= trend.exponent.high + 0.01
+
+
+def test_an_interrupted_block_does_not_move_the_exponent() -> None:
+    bent = curve({10.0: 1.0, 100.0: 1.5, 1000.0: 40.0}, blocks=5)
+    cut = bent[~((bent["block"] == 4) & (bent["x"] == 1000.0))]
+    assert growth(cut).exponent == growth(bent[bent["block"] < 4]).exponent
+
+
+def test_a_constant_time_is_flat_or_undecided_and_never_a_trend() -> None:
+    verdicts = [
+        growth(curve(dict.fromkeys((1.0, 2.0, 4.0), 1.0), 12, seed=seed)).verdict for seed in range(40)
+    ]
+    assert set(verdicts) <= {"flat", "inconclusive"}
+    assert verdicts.count("flat") >= 20
+
+
+@pytest.mark.parametrize(("power", "verdict"), [(1.0, "linear"), (0.6, "not linear"), (1.5, "not linear")])
+def test_linear_with_a_fixed_cost_is_told_from_curved(power: float, verdict: str) -> None:
+    times = {float(x): 0.3 + 1.5 * (x / 200) ** power for x in range(20, 201, 20)}
+    quiet = Noise(process=0.007, repetition=0.005, burst_rate=0, drift=0)
+    assert [linearity(curve(times, noise=quiet, seed=seed)).verdict for seed in range(20)].count(
+        verdict
+    ) >= 18
+
+
+def test_the_published_steps_are_linear_and_the_sides_nearly() -> None:
+    steps, sides = of_published("steps"), of_published("grid_length")
+    assert linearity(steps).exponent.estimate == pytest.approx(1.0, abs=0.05)
+    assert linearity(sides[sides["x"] >= 20_000]).exponent.estimate == pytest.approx(1.0, abs=0.1)
+
+
+def test_too_few_points_leave_linearity_open() -> None:
+    line = linearity(curve({1.0: 1.0, 2.0: 2.0, 3.0: 3.0}))
+    assert np.isnan(line.exponent.estimate)
+    assert line.verdict == "inconclusive"
+
+
+def test_the_turn_is_found_with_its_break_point() -> None:
+    times = {float(r): 0.14 * np.exp(abs(np.log(r / 35)) * (0.5 if r < 35 else 1.5)) for r in range(5, 51, 5)}
+    turning = turn(curve(times))
+    assert turning.verdict == "falls then rises"
+    assert turning.lowest == 35
+    assert turning.break_point.low <= 35.5
+    assert turning.break_point.high >= 34.5
+    assert turning.break_point.high - turning.break_point.low < 10
+
+
+@pytest.mark.parametrize(("power", "verdict"), [(1.0, "rises only"), (-1.0, "falls only")])
+def test_a_monotone_curve_has_no_turn(power: float, verdict: str) -> None:
+    assert turn(curve({float(x): float(x) ** power for x in (1, 2, 4, 8)})).verdict == verdict
+
+
+def test_the_law_gives_back_its_coefficients() -> None:
+    def seconds(n: float) -> float:
+        return 4.0 / n * (1 + 0.06 * (n - 1) + 0.004 * n * (n - 1))
+
+    quiet = Noise(process=0.005, repetition=0.002, burst_rate=0, drift=0)
+    law = scalability.fit(curve({float(n): seconds(n) for n in (1, 2, 3, 4, 6, 8)}, noise=quiet), 8)
+    assert law is not None
+    assert law.points == 6
+    assert law.seconds == pytest.approx(4.0, rel=0.02)
+    assert law.contention.low <= 0.065
+    assert law.contention.high >= 0.055
+    assert law.coherency.estimate == pytest.approx(0.004, abs=0.002)
+    assert law.speed_up(np.array([1.0]))[0] == 1
+
+
+def test_the_law_needs_four_thread_counts_that_the_machine_has() -> None:
+    processes = curve({float(n): 1.0 / n for n in (1, 2, 3, 4)})
+    assert scalability.fit(processes, 2) is None
+    assert scalability.fit(processes, 4) is not None

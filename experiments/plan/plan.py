@@ -1,0 +1,188 @@
+"""From questions to points: what would be measured, on which machine, at which scale."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from experiments.plan.blocks import orders
+from experiments.plan.point import Point
+from experiments.plan.program import Program, variants
+from experiments.plan.question import Place, Question, Series, Threads
+from experiments.plan.scale import Scale
+from experiments.plan.scenes import Scene
+from experiments.plan.site import Machine, Site
+from experiments.support.errors import InputError, nearest
+
+SEED = 1
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What a question does not say itself."""
+
+    site: Site
+    machine: Machine
+    programs: Mapping[str, Program]
+    scale: Scale
+    seed: int = SEED
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A question with its points; `order_seed` decides the order within blocks."""
+
+    question: Question
+    points: tuple[Point, ...]
+    order_seed: str
+
+    @property
+    def name(self) -> str:
+        """The question's name."""
+        return self.question.name
+
+    def block(self, block: int) -> tuple[Point, ...]:
+        """The points in the order in which block number `block` runs them."""
+        order = orders(len(self.points), block + 1, self.order_seed)[block]
+        return tuple(self.points[index] for index in order)
+
+
+def plan(question: Question, around: Surroundings) -> Experiment:
+    """All points of a question.
+
+    Raises InputError with one line for a program or variant that does not exist, and for two points that
+    would measure the same thing twice.
+    """
+    points = [
+        _point(question, number, series, place, value, around)
+        for place in around.scale.places(question)
+        for number, series in enumerate(question.series, start=1)
+        if not _left_out(series, around)
+        for value in _values(question, _known(question, number, series, around), around)
+    ]
+    if not points:
+        raise InputError(
+            f"{question.file}: sweep.limit: found {question.sweep.limit}, which leaves no value on a machine "
+            f"with {around.machine.hardware_threads} hardware threads"
+        )
+    seen: dict[str, Point] = {}
+    for point in points:
+        other = seen.setdefault(point.id, point)
+        if other is not point:
+            raise InputError(
+                f'{question.file}: series: "{point.series}" at {point.x:g} measures what "{other.series}" at '
+                f"{other.x:g} measures; expected different points, or a label for one of them"
+            )
+    return Experiment(question, tuple(points), f"{around.seed} {question.name}")
+
+
+def _left_out(series: Series, around: Surroundings) -> bool:
+    """Whether the series may be missing and its program is."""
+    program = around.programs.get(series.program)
+    return series.optional and (program is None or program.sha256 is None)
+
+
+def _known(question: Question, number: int, series: Series, around: Surroundings) -> Series:
+    """The series, once its program and its variant are known to exist."""
+    key = f"{question.file}: series[{number}]"
+    if series.program not in around.programs:
+        names = list(around.programs)
+        raise InputError(
+            f'{key}.program: found "{series.program}", expected one of {", ".join(names)}'
+            f"{nearest(series.program, names)}"
+        )
+    program = around.programs[series.program]
+    if program.sha256 is not None and series.variant not in variants(program):
+        raise InputError(
+            f'{key}.variant: found "{series.variant}", expected a name out of `carom list --names`'
+            f"{nearest(series.variant, variants(program))}"
+        )
+    return series
+
+
+def _values(question: Question, series: Series, around: Surroundings) -> Sequence[float | None]:
+    sweep = question.sweep
+    if sweep.parameter is None:
+        return [None]
+    values = around.scale.values(series)
+    if sweep.unit:
+        values = tuple(value * around.machine.hardware_threads for value in values)
+    if sweep.limit is not None:
+        most = sweep.limit * around.machine.hardware_threads
+        values = tuple(value for value in values if value <= most)
+    return values
+
+
+def _point(
+    question: Question, number: int, series: Series, place: Place, value: float | None, around: Surroundings
+) -> Point:
+    parameter = question.sweep.parameter
+    threads, substeps = _threads(question.threads, around.machine), question.substeps
+    chunks = {"find_chunk": series.find_chunk, "resolve_chunk": series.resolve_chunk}
+    scene = around.scale.scene(place.scene)
+    if parameter == "threads" and value is not None:
+        threads = max(1, round(value))
+        value = threads
+    elif parameter in chunks and value is not None:
+        chunks[parameter] = int(value)
+    elif parameter == "substeps" and value is not None:
+        substeps = int(value)
+    elif isinstance(scene, Scene) and parameter is not None and value is not None:
+        scene = _swept(question, scene, parameter, value)
+    return Point(
+        experiment=question.name,
+        figure=question.figure,
+        claim=question.claim,
+        series=series.name,
+        series_number=number,
+        label=series.label,
+        scene_name=place.name,
+        x_name=question.sweep.x_name,
+        x=0 if value is None else value,
+        scale=around.scale.name,
+        site=around.site.name,
+        machine=around.machine,
+        verb=question.verb,
+        program=around.programs[series.program],
+        scene=scene,
+        variant=series.variant,
+        threads=threads,
+        substeps=substeps,
+        tolerance=question.tolerance,
+        warm_up=question.warm_up,
+        repetitions=question.repetitions,
+        errors=question.errors,
+        simulated=around.scale.simulated(question),
+        openmp=_openmp(question, threads, around),
+        **chunks,
+    )
+
+
+def _openmp(question: Question, threads: int, around: Surroundings) -> tuple[tuple[str, str], ...]:
+    variables = around.site.binding.environment(threads, around.machine, bound=question.bound)
+    return tuple(sorted(variables.items()))
+
+
+def _swept(question: Question, scene: Scene, parameter: str, value: float) -> Scene:
+    """The scene with one parameter changed; the side follows where the question keeps the area fraction."""
+    if parameter == "area_fraction":
+        return scene.with_area_fraction(value)
+    whole = parameter in ("particles", "steps", "seed")
+    changed: dict[str, Any] = {parameter: int(value) if whole else value}
+    swept = replace(scene, **changed)
+    if question.sweep.constant == "area_fraction":
+        swept = swept.with_area_fraction(scene.area_fraction)
+    if swept.max_velocity < swept.min_velocity:
+        raise InputError(
+            f"{question.file}: sweep.values: found {parameter} {value:g}, which makes max_velocity "
+            f"{swept.max_velocity:g} less than min_velocity {swept.min_velocity:g}"
+        )
+    return swept
+
+
+def _threads(threads: Threads, machine: Machine) -> int:
+    """A number asked for is cut to what the machine has: only a sweep of threads goes beyond."""
+    if threads == "cores":
+        return machine.cores
+    if threads == "hardware_threads":
+        return machine.hardware_threads
+    return min(threads, machine.hardware_threads)

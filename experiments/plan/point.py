@@ -1,0 +1,142 @@
+"""One point of a figure: everything that decides what is measured, and the id made from it."""
+
+import hashlib
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+
+from experiments.plan.program import Program, tag_arguments
+from experiments.plan.scenes import AnyScene
+from experiments.plan.site import Machine
+
+Tags = dict[str, str | int | float]
+
+
+@dataclass(frozen=True)
+class Point:
+    """One combination of program, scene, variant, tunings and threads, and its place in a figure."""
+
+    experiment: str
+    figure: str
+    claim: str | None
+    series: str
+    series_number: int
+    label: str | None
+    scene_name: str | None
+    x_name: str
+    x: float
+    scale: str
+    site: str
+    machine: Machine
+    verb: str
+    program: Program
+    scene: AnyScene
+    variant: str
+    find_chunk: int | None
+    resolve_chunk: int | None
+    threads: int
+    substeps: int
+    tolerance: str
+    warm_up: int
+    repetitions: int
+    errors: bool
+    simulated: int
+    openmp: tuple[tuple[str, str], ...]
+
+    @cached_property
+    def id(self) -> str:
+        """`p` and 16 hexadecimal digits over the content; equal ids are the same measurement in any figure.
+
+        The label is part of the content: the control measures one content under two labels.
+        """
+        content = {
+            "label": self.label,
+            "site": self.site,
+            "machine": asdict(self.machine),
+            "verb": self.verb,
+            "program": (self.program.name, self.program.sha256),
+            "scene": self.scene.arguments,
+            "openmp": self.openmp,
+            **self.axes,
+            "warm_up": self.warm_up,
+            "repetitions": self.repetitions,
+            "errors": self.errors,
+            "simulated": self.simulated,
+        }
+        # The letter keeps the id a text: the program takes a tag that reads as a number for one.
+        return "p" + hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+
+    @property
+    def axes(self) -> dict[str, str | int | None]:
+        """What the program is told to do with the scene."""
+        return {
+            "variant": self.variant,
+            "find_chunk": self.find_chunk,
+            "resolve_chunk": self.resolve_chunk,
+            "threads": self.threads,
+            "substeps": self.substeps,
+            "tolerance": self.tolerance,
+        }
+
+    @property
+    def place(self) -> Tags:
+        """The tags that say where in which figure the point stands."""
+        place: Tags = {
+            "experiment": self.experiment,
+            "figure": self.figure,
+            "series": self.series,
+            "series_number": self.series_number,
+            "x_name": self.x_name,
+            "x": self.x,
+            "scale": self.scale,
+            "site": self.site,
+            "program": self.program.name,
+            "point": self.id,
+        }
+        optional = {"claim": self.claim, "label": self.label, "scene_name": self.scene_name}
+        return place | {key: value for key, value in optional.items() if value is not None}
+
+    @property
+    def timeline(self) -> str:
+        """The name of the file that shows a profiled run of the point, thread by thread."""
+        swept = f"-{self.x:g}" if self.x else ""
+        on = f"-{self.scene_name}" if self.scene_name else ""
+        return re.sub(r"[^\w.+-]", "_", f"{self.experiment}-{self.series}{on}{swept}.json")
+
+    def measures_errors(self, block: int) -> bool:
+        """Whether the process of that block measures errors too: every run of a point ends in the same bits,
+        so one is enough.
+        """
+        return self.errors and block == 0
+
+    def besides(self, block: int) -> tuple[str, ...]:
+        """The options for what the process of that block does besides: what comes out the same in every one
+        is done in the first alone.
+        """
+        words = ["--errors"] if self.measures_errors(block) else []
+        if self.simulated and block == 0:
+            words += ["--simulated", "--simulated-steps", str(self.simulated)]
+        return tuple(words)
+
+    def command(
+        self, scene: Path, record: Path, tags: Tags, timeline: Path | None = None, besides: Sequence[str] = ()
+    ) -> tuple[str, ...]:
+        """The command that measures the point once, does what else it is told to, and writes its record, and
+        the timeline of a profile.
+        """
+        words = [str(self.program.path), self.verb, str(scene)]
+        words += ["--variant", self.variant, "--threads", str(self.threads)]
+        words += ["--substeps", str(self.substeps), "--tolerance", self.tolerance]
+        for option, chunk in (("--find-chunk", self.find_chunk), ("--resolve-chunk", self.resolve_chunk)):
+            if chunk is not None:
+                words += [option, str(chunk)]
+        words += ["--warm-up", str(self.warm_up)]
+        if self.verb == "bench":
+            words += ["--repetitions", str(self.repetitions)]
+        words += besides
+        if timeline is not None:
+            words += ["--timeline", str(timeline), "--timeline-chunks"]
+        return (*words, "--record", str(record), *tag_arguments(tags))

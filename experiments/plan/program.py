@@ -1,0 +1,74 @@
+"""The carom program as this package knows it: its command line and its exit codes, nothing else."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from experiments.plan.scenes import AnyScene, sha256_of
+from experiments.plan.site import Site
+from experiments.support import process
+from experiments.support.errors import InputError
+
+CHECK_FAILED = 2
+NOT_BUILT_IN = 3
+
+GENERATOR = "gcc"
+"""The build that makes the scenes, whichever is measured."""
+
+
+@dataclass(frozen=True)
+class Program:
+    """One build of the program; without a SHA-256 where it is not built."""
+
+    name: str
+    path: Path
+    sha256: str | None
+
+    @property
+    def remedy(self) -> str:
+        """What to say of a program that is not built."""
+        compiler = "" if self.name == "gcc" else f" COMPILER={self.name}"
+        return f"{self.path}: is not built; build it with `make build{compiler}`"
+
+
+def find_programs(site: Site, build: Path) -> dict[str, Program]:
+    """The site's programs by name; those below `build` that are not built have no SHA-256."""
+    found = {}
+    for name, relative in site.programs.items():
+        path = build.resolve() / relative
+        found[name] = Program(name, path, sha256_of(path) if path.is_file() else None)
+    return found
+
+
+@cache
+def variants(program: Program) -> tuple[str, ...]:
+    """The names of the program's variants. Raises InputError if it is not built or does not answer."""
+    if program.sha256 is None:
+        raise InputError(program.remedy)
+    done = process.run([str(program.path), "list", "--names"], time_limit=60)
+    names = tuple(done.output.split())
+    if done.exit_code != 0 or not names:
+        raise InputError(f"{program.path}: `list --names` gave no names: {done.reason}")
+    return names
+
+
+def generate(program: Program, scene: AnyScene, path: Path) -> None:
+    """Write a scene file. Raises InputError with the program's own words if it refuses."""
+    command = [str(program.path), "generate", *scene.arguments, "--output", str(path)]
+    done = process.run(command, time_limit=600)
+    if done.exit_code != 0:
+        raise InputError(f"scene {' '.join(scene.arguments)}: {done.reason}")
+
+
+def check_command(
+    program: Program, scene: Path, variant: str, threads: int, tolerance: str
+) -> tuple[str, ...]:
+    """The command that verifies every step of a variant on a scene."""
+    words = (str(program.path), "check", str(scene), str(threads), "--variant", variant)
+    return (*words, "--tolerance", tolerance)
+
+
+def tag_arguments(tags: Mapping[str, str | int | float]) -> tuple[str, ...]:
+    """What the record is to remember, as `--tag KEY=VALUE`."""
+    return tuple(word for key, value in tags.items() for word in ("--tag", f"{key}={value}"))

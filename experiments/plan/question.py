@@ -1,0 +1,263 @@
+"""A question of the study: one TOML file, read, checked and frozen."""
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+from experiments.plan.scenes import AnyScene, HardCase, Scene
+from experiments.support.errors import InputError, nearest
+from experiments.support.schema import read_toml
+
+FOLDER = Path(__file__).parents[1] / "questions"
+CONTROL = "control"
+
+_NUMBER = re.compile(r"\s*-?(0|[1-9]\d*)(\.\d+)?([eE][+-]?\d+)?\s*")
+_OF_THE_RUN = ("threads", "find_chunk", "resolve_chunk", "substeps")
+_OF_ERRORS = ("speed_against_error", "hard_cases")
+_OF_SCENES = (*_OF_ERRORS, "ladder", "limits")
+_WHOLE_NUMBERS = (*_OF_THE_RUN, "particles", "steps", "seed")
+
+Threads = int | Literal["cores", "hardware_threads"]
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """How often the question is asked: at least `minimum` times, up to `wanted` where the budget allows."""
+
+    minimum: int = 3
+    wanted: int = 5
+
+
+@dataclass(frozen=True)
+class Place:
+    """A scene, its name where the question has several, and whether it is left out at quick scale."""
+
+    scene: AnyScene
+    name: str | None = None
+    paper_only: bool = False
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What changes along a curve. Without a parameter the curve is one point."""
+
+    parameter: str | None = None
+    x_name: str = "repetition"
+    unit: Literal["hardware_threads"] | None = None
+    limit: float | None = None
+    constant: Literal["area_fraction"] | None = None
+
+
+@dataclass(frozen=True)
+class Series:
+    """One curve: a variant, a build of the program, fixed chunks, and the swept values at both scales."""
+
+    name: str
+    variant: str
+    program: str = "gcc"
+    label: str | None = None
+    find_chunk: int | None = None
+    resolve_chunk: int | None = None
+    optional: bool = False
+    values: tuple[float, ...] = ()
+    quick_values: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Question:
+    """One question: its name is that of its file, and that of the experiment in the records."""
+
+    name: str
+    file: Path
+    title: str
+    figure: str
+    scenes: tuple[Place, ...]
+    series: tuple[Series, ...]
+    sweep: Sweep = Sweep()
+    claim: str | None = None
+    verb: Literal["bench", "profile"] = "bench"
+    threads: Threads = "hardware_threads"
+    bound: bool = True
+    tolerance: Literal["relative", "published"] = "relative"
+    tolerance_reason: str | None = None
+    substeps: int = 1
+    warm_up: int = 0
+    repetitions: int = 1
+    errors: bool = False
+    simulated: int = 0
+    blocks: Blocks = Blocks()
+
+
+def load_question(path: Path) -> Question:
+    """Read one question. Raises InputError with one line if the file is not a valid question."""
+    document = read_toml(path, FOLDER / "question.schema.json")
+    sweep_table = document.pop("sweep", {})
+    values = {key: tuple(sweep_table.pop(key, ())) for key in ("values", "quick_values")}
+    question = Question(
+        name=path.stem,
+        file=path,
+        scenes=_scenes(path, document.pop("scene", None), document.pop("scenes", None)),
+        sweep=Sweep(**{"x_name": sweep_table.get("parameter", Sweep.x_name), **sweep_table}),
+        series=tuple(_series(table, values) for table in document.pop("series")),
+        blocks=Blocks(**document.pop("blocks", {})),
+        **document,
+    )
+    _check(question)
+    return question
+
+
+def load_questions(folder: Path, names: Iterable[str] = ()) -> tuple[Question, ...]:
+    """All questions of a folder, or those named; the control is always among them, if the folder has one.
+
+    Raises InputError for a name that the folder does not have, and for a file that is not a valid question.
+    """
+    files = {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    if not files:
+        raise InputError(f"{folder}: has no question in it; expected files *.toml")
+    chosen = list(dict.fromkeys(names)) or list(files)
+    for name in chosen:
+        if name not in files:
+            raise InputError(
+                f'study: found "{name}", expected names out of {", ".join(files)}{nearest(name, files)}'
+            )
+    if CONTROL in files and CONTROL not in chosen:
+        chosen.append(CONTROL)
+    return tuple(load_question(files[name]) for name in chosen)
+
+
+def _scenes(
+    path: Path, one: dict[str, Any] | None, several: list[dict[str, Any]] | None
+) -> tuple[Place, ...]:
+    if one is not None and several is not None:
+        raise InputError(f"{path}: scene: found beside scenes, expected either")
+    if one is not None:
+        return (_place(one),)
+    if several is None:
+        raise InputError(f"{path}: scene: missing; expected a table, or a list scenes of several")
+    places: dict[str, Place] = {}
+    for number, table in enumerate(several, start=1):
+        key = f"scenes[{number}]"
+        place = _place({"name": table.get("case"), **table})
+        if place.name is None:
+            raise InputError(f"{path}: {key}.name: missing; expected a text, which tells the scenes apart")
+        if place.name in places:
+            raise InputError(f'{path}: {key}.name: found "{place.name}" twice, expected each once')
+        places[place.name] = place
+    return tuple(places.values())
+
+
+def _place(table: dict[str, Any]) -> Place:
+    of_place = {key: table.pop(key) for key in ("name", "paper_only") if key in table}
+    return Place(HardCase(**table) if "case" in table else Scene(**table), **of_place)
+
+
+def _series(table: Mapping[str, Any], of_sweep: Mapping[str, tuple[float, ...]]) -> Series:
+    """A series has the sweep's values unless it has its own; quick values default to the values."""
+    if "values" not in table:
+        return Series(**{**of_sweep, "quick_values": of_sweep["quick_values"] or of_sweep["values"], **table})
+    own = {key: tuple(table.get(key, table["values"])) for key in ("values", "quick_values")}
+    return Series(**{**table, **own})
+
+
+def _check(question: Question) -> None:
+    """What a schema cannot say."""
+    file, sweep, blocks = question.file, question.sweep, question.blocks
+    if blocks.wanted < blocks.minimum:
+        raise InputError(f"{file}: blocks.wanted: found {blocks.wanted}, expected at least {blocks.minimum}")
+    _check_names(question)
+    _check_scenes(question)
+    _check_errors(question)
+    _check_tolerance(question)
+    if sweep.parameter == "substeps" and question.substeps != 1:
+        raise InputError(f"{file}: substeps: found beside a sweep of it, expected either")
+    for key, only in (("unit", "threads"), ("limit", "threads"), ("constant", "particles")):
+        if getattr(sweep, key) is not None and sweep.parameter != only:
+            raise InputError(f"{file}: sweep.{key}: found for {sweep.parameter}, expected for {only} only")
+    for number, series in enumerate(question.series, start=1):
+        _check_values(question, f"series[{number}]", series)
+
+
+def _check_names(question: Question) -> None:
+    """A tag that reads as a number is one in a record, and no longer the name that it was."""
+    named = {"file name": question.name}
+    for number, series in enumerate(question.series, start=1):
+        named |= {f"series[{number}].name": series.name, f"series[{number}].label": series.label or ""}
+    for number, place in enumerate(question.scenes, start=1):
+        named[f"scenes[{number}].name"] = place.name or ""
+    for key, name in named.items():
+        if _NUMBER.fullmatch(name):
+            raise InputError(f'{question.file}: {key}: found "{name}", expected a name that is no number')
+
+
+def _check_scenes(question: Question) -> None:
+    parameter = question.sweep.parameter
+    for number, place in enumerate(question.scenes, start=1):
+        scene, key = place.scene, "scene" if len(question.scenes) == 1 else f"scenes[{number}]"
+        if isinstance(scene, HardCase):
+            if parameter is not None and parameter not in _OF_THE_RUN:
+                raise InputError(
+                    f"{question.file}: sweep.parameter: found {parameter} over the hard case {scene.case}, "
+                    f"which is as it is; expected one of {', '.join(_OF_THE_RUN)}"
+                )
+        elif scene.max_velocity < scene.min_velocity and parameter is None:
+            raise InputError(
+                f"{question.file}: {key}.max_velocity: found {scene.max_velocity}, "
+                f"expected at least {scene.min_velocity}"
+            )
+
+
+def _check_errors(question: Question) -> None:
+    """What the figures about errors need, and what only they can draw."""
+    file, figure = question.file, question.figure
+    if question.errors and question.verb != "bench":
+        raise InputError(f"{file}: errors: found for verb {question.verb}, expected for bench only")
+    if question.simulated and question.verb != "profile":
+        raise InputError(f"{file}: simulated: found for verb {question.verb}, expected for profile only")
+    if figure in _OF_ERRORS and not question.errors:
+        raise InputError(f"{file}: errors: missing; expected true for figure {figure}")
+    if figure == "speed_against_error" and question.sweep.parameter != "substeps":
+        raise InputError(f"{file}: sweep.parameter: expected substeps for figure {figure}")
+    if figure not in _OF_SCENES and len(question.scenes) > 1:
+        raise InputError(
+            f"{file}: scenes: found several for figure {figure}, expected one, or one of the figures "
+            f"{', '.join(_OF_SCENES)}"
+        )
+
+
+def _check_tolerance(question: Question) -> None:
+    """A published claim is about the published program, and so about its tolerance, unless that cannot be."""
+    if question.claim and question.tolerance != "published" and question.tolerance_reason is None:
+        raise InputError(
+            f"{question.file}: tolerance: found {question.tolerance} for a published claim, expected "
+            '"published", or a tolerance_reason'
+        )
+    if question.tolerance == "published" and question.tolerance_reason is not None:
+        raise InputError(
+            f"{question.file}: tolerance_reason: found beside the published tolerance, which needs none"
+        )
+
+
+def _check_values(question: Question, key: str, series: Series) -> None:
+    parameter = question.sweep.parameter
+    if parameter in ("particles", "side") and series.quick_values == series.values:
+        raise InputError(
+            f"{question.file}: {key}.quick_values: missing; expected the values of {parameter} at quick scale"
+        )
+    if parameter is None and series.values:
+        raise InputError(f"{question.file}: {key}.values: found values, expected none without a sweep")
+    if parameter is not None and not series.values:
+        raise InputError(f"{question.file}: {key}.values: missing; expected the values of {parameter}")
+    if parameter in ("find_chunk", "resolve_chunk") and getattr(series, parameter) is not None:
+        raise InputError(f"{question.file}: {key}.{parameter}: found beside a sweep of it, expected either")
+    if question.sweep.unit or parameter not in _WHOLE_NUMBERS:
+        return
+    for value in (*series.values, *series.quick_values):
+        if value != int(value):
+            raise InputError(f"{question.file}: {key}.values: found {value}, expected whole numbers")
+
+
+def with_blocks(question: Question, blocks: int | None) -> Question:
+    """The question asked exactly `blocks` times; unchanged for None."""
+    return question if blocks is None else replace(question, blocks=Blocks(blocks, blocks))

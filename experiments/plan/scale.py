@@ -1,0 +1,67 @@
+"""The two sizes of the study."""
+
+from dataclasses import dataclass, replace
+
+from experiments.plan.question import Place, Question, Series
+from experiments.plan.scenes import AnyScene, HardCase
+from experiments.support.errors import InputError, nearest
+
+FEWEST_BLOCKS = 2
+"""An interval needs two."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How large the scenes are, which of a question's values are taken, and how long it all may last.
+
+    `divisor` divides discs and area, `steps_divisor` the steps, `blocks_divisor` the least number of blocks;
+    the budget covers the report too.
+    """
+
+    name: str
+    divisor: int
+    steps_divisor: int
+    blocks_divisor: int
+    budget_seconds: float
+
+    def scene(self, scene: AnyScene) -> AnyScene:
+        """A question's scene at this scale; a hard case has one size only."""
+        if isinstance(scene, HardCase):
+            return scene
+        return replace(scene.shrunk(self.divisor), steps=max(1, scene.steps // self.steps_divisor))
+
+    def question(self, question: Question) -> Question:
+        """A question at this scale: a smaller least number of blocks leaves more to the budget.
+
+        One that leaves no choice to the budget, such as the control, stays as it is.
+        """
+        asked = question.blocks
+        if asked.minimum == asked.wanted:
+            return question
+        least = min(asked.minimum, max(FEWEST_BLOCKS, asked.minimum // self.blocks_divisor))
+        return replace(question, blocks=replace(asked, minimum=least))
+
+    def simulated(self, question: Question) -> int:
+        """How many steps of a profile are simulated at this scale, 0 for none."""
+        return max(1, question.simulated // self.steps_divisor) if question.simulated else 0
+
+    def places(self, question: Question) -> tuple[Place, ...]:
+        """A question's scenes at this scale."""
+        return tuple(place for place in question.scenes if self.divisor == 1 or not place.paper_only)
+
+    def values(self, series: Series) -> tuple[float, ...]:
+        """A series' values at this scale."""
+        return series.values if self.divisor == 1 else series.quick_values
+
+
+SCALES = {
+    "paper": Scale("paper", divisor=1, steps_divisor=1, blocks_divisor=1, budget_seconds=38 * 60),
+    "quick": Scale("quick", divisor=10, steps_divisor=2, blocks_divisor=2, budget_seconds=2.5 * 60),
+}
+
+
+def find_scale(name: str) -> Scale:
+    """The scale of that name. Raises InputError with the nearest name."""
+    if name not in SCALES:
+        raise InputError(f'scale: found "{name}", expected one of {", ".join(SCALES)}{nearest(name, SCALES)}')
+    return SCALES[name]

@@ -1,0 +1,122 @@
+"""Where the study runs: the site's file, the machine found there, and how threads are bound to it."""
+
+import os
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from experiments.plan.cluster import Cluster, read_cluster
+from experiments.support.errors import InputError, nearest
+from experiments.support.schema import read_toml
+
+FOLDER = Path(__file__).parents[1] / "sites"
+
+_OPENMP_VARIABLES = ("OMP_", "GOMP_", "KMP_")
+
+
+@dataclass(frozen=True)
+class Machine:
+    """One kind of machine: what the threads of a point are chosen by."""
+
+    name: str
+    cores: int
+    hardware_threads: int
+
+
+@dataclass(frozen=True)
+class Binding:
+    """OMP_PLACES and OMP_PROC_BIND, the latter also for more threads than cores."""
+
+    places: str
+    proc_bind: str
+    proc_bind_oversubscribed: str
+
+    def environment(self, threads: int, machine: Machine, *, bound: bool = True) -> dict[str, str]:
+        """The OpenMP variables of a process; not `bound`: those of more threads than cores, however few."""
+        oversubscribed = threads > machine.cores or not bound
+        return {
+            "OMP_DYNAMIC": "false",
+            "OMP_NUM_THREADS": str(threads),
+            "OMP_PLACES": self.places,
+            "OMP_PROC_BIND": self.proc_bind_oversubscribed if oversubscribed else self.proc_bind,
+        }
+
+
+@dataclass(frozen=True)
+class Site:
+    """A site file: its name is that of the file."""
+
+    name: str
+    kind: str
+    programs: Mapping[str, str]
+    binding: Binding
+    time_limit_seconds: float
+    cluster: Cluster | None = None
+
+
+def load_site(name_or_path: str) -> Site:
+    """The site of a file, or of a name in `experiments/sites`. Raises InputError with one line."""
+    path = Path(name_or_path)
+    if path.suffix != ".toml":
+        path = FOLDER / f"{name_or_path}.toml"
+        names = sorted(file.stem for file in FOLDER.glob("*.toml"))
+        if path.stem not in names:
+            raise InputError(
+                f'site: found "{name_or_path}", expected one of {", ".join(names)} or a file *.toml'
+                f"{nearest(name_or_path, names)}"
+            )
+    document = read_toml(path, FOLDER / "site.schema.json")
+    return Site(
+        name=path.stem,
+        kind=document["kind"],
+        programs=document["programs"],
+        binding=Binding(**document["openmp"]),
+        time_limit_seconds=document.get("time_limit_seconds", 600.0),
+        cluster=_cluster(path, document),
+    )
+
+
+def _cluster(path: Path, document: Mapping[str, Any]) -> Cluster | None:
+    """The table `slurm`, with what a schema cannot say: each partition is named once."""
+    if document["kind"] != "slurm":
+        return None
+    cluster = read_cluster(document["slurm"])
+    names = [partition.name for partition in cluster.partitions]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f'{path}: slurm.partitions: found "{name}" twice, expected each name once')
+    if cluster.results is not None and not cluster.results.is_absolute():
+        raise InputError(
+            f'{path}: slurm.results: found "{cluster.results}", expected a path that begins with /'
+        )
+    return cluster
+
+
+def this_machine() -> Machine:
+    """The machine that this process runs on, as far as its affinity mask lets it."""
+    processors = os.sched_getaffinity(0)
+    siblings = (
+        Path(f"/sys/devices/system/cpu/cpu{number}/topology/thread_siblings_list") for number in processors
+    )
+    cores = {path.read_text(encoding="ascii") if path.exists() else str(path) for path in siblings}
+    return Machine(_cpu_model(), len(cores), len(processors))
+
+
+def clean_environment(openmp: Mapping[str, str]) -> dict[str, str]:
+    """This process's environment with no OpenMP variable in it but those given.
+
+    A stray OMP_SCHEDULE of the user's shell would otherwise decide what is measured.
+    """
+    inherited = {key: value for key, value in os.environ.items() if not key.startswith(_OPENMP_VARIABLES)}
+    return {**inherited, **openmp}
+
+
+def _cpu_model() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        lines = []
+    models = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+    return next(models, platform.machine())

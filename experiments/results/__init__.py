@@ -1,0 +1,4 @@
+"""What a results folder holds, and how several become one.
+
+Uses `plan` and `support`.
+"""

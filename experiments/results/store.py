@@ -1,0 +1,197 @@
+"""The results folder: what is done, missing, failed or stale, decided by the files alone."""
+
+import contextlib
+import os
+import re
+import shutil
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from experiments.plan.plan import Experiment
+from experiments.plan.point import Point, Tags
+from experiments.support.files import locked, move, read_json, write_json
+from experiments.support.process import Completed
+from experiments.support.schema import is_record
+
+Key = tuple[str, int]
+"""A point's id and a block's number: one process, one record."""
+
+
+@dataclass
+class Found:
+    """What a results folder holds of one experiment."""
+
+    seconds: dict[Key, float] = field(default_factory=dict)
+    """Whole-process wall time of each finished process."""
+    failures: dict[Key, str] = field(default_factory=dict)
+    """Reason of each failed process that has not been measured since."""
+    stale: list[Path] = field(default_factory=list)
+    """Files that no longer belong to the plan."""
+
+
+class Store:
+    """One results folder. Records come into `records/` whole and checked, by a rename."""
+
+    def __init__(self, root: Path, session: str) -> None:
+        self.root = root
+        self.session = session
+        self.temporary = root / ".running" / session
+
+    @contextmanager
+    def opened(self) -> Iterator[None]:
+        """Hold the folder and clear away what a killed run left half-written."""
+        with locked(self.root):
+            shutil.rmtree(self.root / ".running", ignore_errors=True)
+            self.temporary.mkdir(parents=True)
+            try:
+                yield
+            finally:
+                shutil.rmtree(self.root / ".running", ignore_errors=True)
+
+    @contextmanager
+    def shared(self) -> Iterator[None]:
+        """Work in the folder beside others that do so: only what is this session's own is cleared away."""
+        self.temporary.mkdir(parents=True)
+        try:
+            yield
+        finally:
+            shutil.rmtree(self.temporary, ignore_errors=True)
+
+    def record_path(self, point: Point, block: int) -> Path:
+        """Where the record of one process belongs."""
+        return self.root / "records" / point.experiment / f"{point.id}-b{block}.json"
+
+    def failure_path(self, point: Point, block: int) -> Path:
+        """Where the failure of one process belongs."""
+        return self.root / "failures" / point.experiment / f"{point.id}-b{block}.json"
+
+    def find(self, experiment: Experiment) -> Found:
+        """What is there of an experiment; reads only."""
+        points = {point.id: point for point in experiment.points}
+        found = Found()
+        for path in sorted((self.root / "records" / experiment.name).glob("*.json")):
+            record, key = read_json(path), _key(path)
+            point = points.get(key[0]) if key else None
+            if key is None or point is None or unusable(record, point, key[1]):
+                found.stale.append(path)
+            else:
+                found.seconds[key] = float(record["process_seconds"])
+        for path in sorted((self.root / "failures" / experiment.name).glob("*.json")):
+            failure, key = read_json(path), _key(path)
+            is_failure = is_record(failure) and failure["kind"] == "failure"
+            if key is None or key[0] not in points or key in found.seconds or not is_failure:
+                found.stale.append(path)
+            else:
+                found.failures[key] = failure["reason"]
+        return found
+
+    def has(self, point: Point, block: int) -> bool:
+        """Whether one process has been measured by now, perhaps by someone else."""
+        return unusable(read_json(self.record_path(point, block)), point, block) is None
+
+    def settle(self, experiment: Experiment) -> Found:
+        """Move what is stale out of the way and bring back what fits the plan again; say what is there then.
+
+        Nothing is deleted: going from one scale to the other and back measures nothing twice.
+        """
+        for path in self.find(experiment).stale:
+            self.retire(path)
+        for point in experiment.points:
+            folder = self.root / "stale" / "records" / experiment.name
+            for path in folder.glob(f"{point.id}-b*.json"):
+                key = _key(path)
+                if key and not unusable(read_json(path), point, key[1]):
+                    target = self.record_path(point, key[1])
+                    if not target.exists():
+                        move(path, target)
+        return self.find(experiment)
+
+    def retire(self, path: Path) -> None:
+        """Move a file below `stale/`, beside any earlier one of the same name."""
+        target = self.root / "stale" / path.relative_to(self.root)
+        number = 0
+        while os.path.lexists(target):
+            number += 1
+            target = target.with_name(f"{path.stem}.{number}.json")
+        # Whoever else settles the same folder may have been faster.
+        with contextlib.suppress(FileNotFoundError):
+            move(path, target)
+
+    def holds(self, path: Path, kind: str) -> bool:
+        """Whether a record of that kind is there; whatever else stands in its place is put aside."""
+        record = read_json(path)
+        if is_record(record) and record["kind"] == kind:
+            return True
+        if os.path.lexists(path):
+            self.retire(path)
+        return False
+
+    def keep_record(self, point: Point, block: int, scratch: Path) -> None:
+        """Take in a finished record; an earlier failure of the same process is history then."""
+        move(scratch, self.record_path(point, block))
+        if self.failure_path(point, block).exists():
+            self.retire(self.failure_path(point, block))
+
+    def keep_failure(self, point: Point, block: int, done: Completed, tags: Tags) -> None:
+        """Record that a process failed, and why."""
+        failure = {
+            "schema_version": 1,
+            "kind": "failure",
+            "tags": tags,
+            "axes": point.axes,
+            "command": list(done.command),
+            "exit_code": done.exit_code,
+            "reason": done.reason,
+            "recorded_at": datetime.now(UTC).isoformat(timespec="seconds"),
+        }
+        write_json(self.failure_path(point, block), failure, self.temporary)
+
+    def keep_note(self, name: str, content: object) -> None:
+        """Write `name`, a JSON file of the runner's own."""
+        write_json(self.root / name, content, self.temporary)
+
+    def note(self, name: str) -> Any:  # noqa: ANN401 - JSON is any value
+        """The content of a file of the runner's own, or None."""
+        return read_json(self.root / name)
+
+
+def new_session() -> str:
+    """An id for one invocation of the runner: the time in UTC, and the process."""
+    return f"{datetime.now(UTC):%Y%m%dT%H%M%S}-{os.uname().nodename}-{os.getpid()}"
+
+
+def unusable(record: Any, point: Point, block: int) -> str | None:  # noqa: ANN401 - read from a file
+    """Why a record does not stand for this process of this point; None if it does."""
+    if not is_record(record):
+        return "it does not match the record schema"
+    if record["kind"] not in ("bench", "profile"):
+        return f"it is of the kind {record['kind']}"
+    if record["check"]["verdict"] != "passed":
+        return "its result failed the check"
+    if record["provenance"]["binary_sha256"] != point.program.sha256:
+        return "it was measured with another program"
+    if point.measures_errors(block) and "trajectory" not in (record["errors"] or {}):
+        return "it lacks the error measures"
+    tags = record["tags"]
+    for key, value in (point.place | {"block": block}).items():
+        if tags.get(key) != value:
+            return f"its tag {key} is {tags.get(key)!r}, not {value!r}"
+    return None
+
+
+def seconds_by_point(found: Iterable[Found]) -> dict[str, list[float]]:
+    """Whole-process wall times by point id, over all experiments: equal ids are the same measurement."""
+    seconds: dict[str, list[float]] = {}
+    for one in found:
+        for (point, _), value in one.seconds.items():
+            seconds.setdefault(point, []).append(value)
+    return seconds
+
+
+def _key(path: Path) -> Key | None:
+    name = re.fullmatch(r"(.*?)-b([0-9]{1,9})", path.stem, re.DOTALL)
+    return (name[1], int(name[2])) if name else None

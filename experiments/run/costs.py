@@ -1,0 +1,163 @@
+"""How long a point takes: from its own records, else from a probe of its variant and its scene's size."""
+
+import statistics
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from experiments.plan.point import Point
+from experiments.plan.scenes import AnyScene, HardCase, Scene
+from experiments.run.turn import run_in_turn
+from experiments.support.files import read_json
+
+PROBE = Scene(particles=10000, side=3162, radius=16, steps=10, min_velocity=2, max_velocity=5)
+
+# Rough on purpose: they only foretell, before anything is measured, how long the study takes.
+_BOX_PER_DISC = 0.2
+_GROWTH_BEYOND_CACHES = 0.2
+_RUNS_OF_A_PROFILE = 3
+_PROBED = 3
+_RUNS_OF_A_CHECK = 3
+_RUNS_FOR_ERRORS = 3
+_SLOWED_BY_CACHEGRIND = 60
+_SECONDS_PER_DISC_READ = 6e-7
+_SECONDS_PER_HARD_CASE = 0.01
+_SECONDS_OF_LONG_CASES = {"drift": 3.0}
+
+SECONDS_PER_PROCESS = 0.03
+"""What a process takes beside its own account of its time: its start, its end, the look at its record."""
+
+
+@dataclass(frozen=True)
+class Probe:
+    """What one process of a variant took on the probe scene: seconds a step, and seconds beside the steps."""
+
+    step: float
+    process: float
+
+
+def kept_probes(kept: object) -> dict[str, Probe]:
+    """The probes that were kept; of anything else that stands in their place nothing."""
+    probes = {}
+    for key, value in kept.items() if isinstance(kept, dict) else ():
+        match value:
+            case {"step": float(step), "process": float(seconds)} if step > 0 and seconds >= 0:
+                probes[str(key)] = Probe(step, seconds)
+    return probes
+
+
+class Costs:
+    """Estimates in seconds of wall time."""
+
+    def __init__(self, probes: Mapping[str, Probe], measured: Mapping[str, list[float]]) -> None:
+        self._probes = dict(probes)
+        self._measured = {point: list(seconds) for point, seconds in measured.items()}
+        self._models: dict[str, float] = {}
+        self._ratios: dict[str, list[float]] = {}
+        self._corrections: dict[str, float] = {}
+
+    def point(self, point: Point) -> float:
+        """One process of a point, warm-up included."""
+        if point.program.sha256 is None:
+            return 0.0
+        if seconds := self._measured.get(point.id):
+            return statistics.median(seconds) + SECONDS_PER_PROCESS
+        return self._modelled(point) * self._correction(point.experiment) + SECONDS_PER_PROCESS
+
+    def check(self, point: Point) -> float:
+        """The verification of every step of the point's variant on its scene."""
+        if point.program.sha256 is None:
+            return 0.0
+        probe = self._probe(point)
+        return probe.process + _reading(point.scene) + _RUNS_OF_A_CHECK * _run(point, probe)
+
+    def besides(self, point: Point) -> float:
+        """What one of the point's processes does besides: measuring errors, counting under cachegrind."""
+        if point.program.sha256 is None:
+            return 0.0
+        probe = self._probe(point)
+        seconds = _RUNS_FOR_ERRORS * _run(point, probe) if point.errors else 0.0
+        if point.simulated:
+            scene = point.scene
+            share = 1.0 if isinstance(scene, HardCase) else min(point.simulated / scene.steps, 1.0)
+            seconds += _SLOWED_BY_CACHEGRIND * (_run(point, probe) * share + 2 * _reading(point.scene))
+        return seconds
+
+    def scene(self, scene: AnyScene) -> float:
+        """Generating a scene."""
+        return 2 * _reading(scene)
+
+    def learn(self, point: Point, seconds: float) -> None:
+        """A process of the point took this long."""
+        self._measured.setdefault(point.id, []).append(seconds)
+        self._ratios.setdefault(point.experiment, []).append(seconds / self._modelled(point))
+        self._corrections.clear()
+
+    def _correction(self, experiment: str) -> float:
+        """Measured over modelled: of this experiment if it has any measurement, else of all of them."""
+        if experiment not in self._corrections:
+            own = self._ratios.get(experiment)
+            ratios = own or [ratio for some in self._ratios.values() for ratio in some]
+            self._corrections[experiment] = statistics.median(ratios) if ratios else 1.0
+        return self._corrections[experiment]
+
+    def _modelled(self, point: Point) -> float:
+        if point.id not in self._models:
+            probe = self._probe(point)
+            seconds = probe.process + _reading(point.scene) + _runs(point) * _run(point, probe)
+            self._models[point.id] = seconds
+        return self._models[point.id]
+
+    def _probe(self, point: Point) -> Probe:
+        return self._probes.get(probe_key(point), Probe(step=0.01, process=0.05))
+
+
+def probe_key(point: Point) -> str:
+    """What a probe depends on."""
+    return f"{str(point.program.sha256)[:12]} {point.variant} {point.threads}"
+
+
+def probe(point: Point, scene: Path, record: Path, time_limit: float) -> Probe | None:
+    """Time a short run of the point's variant; None if it fails, which the run proper will explain."""
+    words = [str(point.program.path), "bench", str(scene), "--variant", point.variant]
+    words += ["--threads", str(point.threads), "--record", str(record), "--warm-up", "0"]
+    words += ["--repetitions", str(_PROBED)]
+    done = run_in_turn(words, point.openmp, time_limit)
+    content = read_json(record)
+    if done.exit_code != 0 or content is None:
+        return None
+    # The least of them: a probe is short, and whatever else runs can only lengthen it.
+    steps = min(float(repetition["steps_seconds"]) for repetition in content["repetitions"])
+    return Probe(steps / PROBE.steps, max(0.0, float(content["process_seconds"]) - _PROBED * steps))
+
+
+def to_probe(points: Iterable[Point], known: Mapping[str, object]) -> list[Point]:
+    """One point for each probe that is still to be made."""
+    wanted = {probe_key(point): point for point in points if point.program.sha256 is not None}
+    return [point for key, point in wanted.items() if key not in known]
+
+
+def _runs(point: Point) -> int:
+    return point.warm_up + (_RUNS_OF_A_PROFILE if point.verb == "profile" else point.repetitions)
+
+
+def _run(point: Point, probe: Probe) -> float:
+    """Seconds of one run from the first step to the last."""
+    if isinstance(point.scene, HardCase):
+        return _SECONDS_OF_LONG_CASES.get(point.scene.case, _SECONDS_PER_HARD_CASE)
+    return point.scene.steps * point.substeps * probe.step * _work(point.scene) / _work(PROBE)
+
+
+def _reading(scene: AnyScene) -> float:
+    return 0.0 if isinstance(scene, HardCase) else scene.particles * _SECONDS_PER_DISC_READ
+
+
+def _work(scene: Scene) -> float:
+    """A step's work in discs: empty boxes are looked at too, dense discs resolved again and again, and what
+    outgrows the caches costs more each time.
+    """
+    boxes = (scene.side / (4 * scene.radius + 1)) ** 2
+    crowding = 1 + 42 * scene.area_fraction**16
+    speed = 1 + 0.06 * (scene.min_velocity + scene.max_velocity) / 2
+    beyond = max(1.0, scene.particles / PROBE.particles) ** _GROWTH_BEYOND_CACHES
+    return (scene.particles * crowding * speed + _BOX_PER_DISC * boxes) * beyond

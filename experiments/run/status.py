@@ -1,0 +1,116 @@
+"""What of the study is done, missing or failed, as a table for a terminal."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rich.console import Console
+from rich.table import Table
+
+from experiments.plan.plan import Experiment
+from experiments.results.store import Store
+from experiments.run.schedule import decided_blocks
+from experiments.run.study import Settings, Study, summary
+
+
+@dataclass(frozen=True)
+class Row:
+    """One experiment: its processes, its stale files, the reason of its first failure.
+
+    Every process of a point that failed counts as failed until it is measured: a run does not try it further.
+    """
+
+    name: str
+    points: int
+    blocks: int
+    decided: bool
+    done: int
+    failed: int
+    stale: int
+    reason: str
+
+    @property
+    def missing(self) -> int:
+        """Processes that have neither a record nor a failed point."""
+        return self.points * self.blocks - self.done - self.failed
+
+
+def rows(store: Store, experiments: Sequence[Experiment]) -> list[Row]:
+    """The state of each experiment, read from the files alone."""
+    found = {experiment.name: store.find(experiment) for experiment in experiments}
+    decided = decided_blocks(store, experiments, found)
+    result = []
+    for experiment in experiments:
+        one = found[experiment.name]
+        # A run that was told how many blocks to make may have made more than the question asks for.
+        begun = 1 + max((block for _, block in one.seconds), default=-1)
+        blocks = max(begun, decided.get(experiment.name, experiment.question.blocks.minimum))
+        failed_points = {point for point, _ in one.failures}
+        keys = [(point.id, block) for point in experiment.points for block in range(blocks)]
+        result.append(
+            Row(
+                name=experiment.name,
+                points=len(experiment.points),
+                blocks=blocks,
+                decided=experiment.name in decided,
+                done=sum(key in one.seconds for key in keys),
+                failed=sum(key not in one.seconds and key[0] in failed_points for key in keys),
+                stale=len(one.stale),
+                reason=next(iter(one.failures.values()), ""),
+            )
+        )
+    return result
+
+
+def show_status(settings: Settings) -> int:
+    """Print the state of the study; nothing is written, and a run may be under way."""
+    study = Study(settings)
+    table = new_table("experiment", "points", "blocks", "done", "failed", "missing", "stale")
+    state = rows(study.store, study.experiments)
+    for row in state:
+        blocks = str(row.blocks) if row.decided else f"{row.blocks} or more"
+        counts = (row.points, blocks, row.done, row.failed, row.missing, row.stale)
+        table.add_row(row.name, *map(str, counts))
+    totals = (sum(getattr(row, name) for row in state) for name in ("done", "failed", "missing", "stale"))
+    table.add_row("all", str(sum(row.points for row in state)), "", *map(str, totals))
+    console = new_console()
+    console.print(table)
+    for row in state:
+        if row.failed:
+            console.print(f"{row.name}: failed: {row.reason}")
+    return 0
+
+
+def show_plan(settings: Settings) -> int:
+    """Print what a run would do and about how long it would take; variants are probed, no point is run."""
+    study = Study(settings)
+    with study.store.opened():
+        schedule = study.schedule(study.runner(), settle=False)
+    table = new_table("experiment", "points", "blocks", "to be run", "figure", "claim", "title")
+    for experiment in study.experiments:
+        blocks = schedule.blocks[experiment.name]
+        missing = sum(len(schedule.missing(experiment, block)) for block in range(blocks))
+        question = experiment.question
+        counts = (len(experiment.points), blocks, missing)
+        told = (question.figure, question.claim or "-", question.title)
+        table.add_row(experiment.name, *map(str, counts), *told)
+    console = new_console()
+    console.print(table)
+    console.print(summary(schedule, study.budget_seconds))
+    return 0
+
+
+def new_console() -> Console:
+    """Where tables are printed. Lines are never cut: a terminal wraps them, a file keeps them whole."""
+    console = Console(highlight=False, markup=False, soft_wrap=True)
+    if not console.is_terminal:
+        console.width = 200
+    return console
+
+
+def new_table(*columns: str) -> Table:
+    """A table of these columns; numbers stand to the right."""
+    table = Table(box=None, pad_edge=False)
+    for column in columns:
+        numeric = column not in ("partition", "experiment", "figure", "claim", "title")
+        table.add_column(column, justify="right" if numeric else "left", no_wrap=True)
+    return table

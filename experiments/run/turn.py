@@ -1,0 +1,43 @@
+"""One program that computes at a time on one host: two at once would disturb each other's measurements."""
+
+import contextlib
+import fcntl
+import os
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from experiments.plan.site import clean_environment
+from experiments.support import process
+from experiments.support.errors import InputError
+from experiments.support.process import Completed
+
+
+def run_in_turn(command: Sequence[str], openmp: Iterable[tuple[str, str]], time_limit: float) -> Completed:
+    """Run a program to its end with these OpenMP variables and no others, while no other one computes.
+
+    The time limit, in seconds, counts from when its turn has come. Raises InputError like `turn`.
+    """
+    with turn():
+        return process.run(command, clean_environment(dict(openmp)), time_limit)
+
+
+@contextlib.contextmanager
+def turn() -> Iterator[None]:
+    """Wait until no other runner of this user measures on this host, and keep others waiting meanwhile.
+
+    Runners of other results folders count, and so do tasks of a cluster whose nodes are one host. The kernel
+    ends a turn with its process, however that ends. Raises InputError where the lock cannot be made.
+    """
+    path = Path(tempfile.gettempdir()) / f"carom-{os.getuid()}.turn"
+    try:
+        lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
+    except OSError as error:
+        raise InputError(
+            f"{path}: cannot be opened: {error.strerror}; TMPDIR chooses another folder"
+        ) from error
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(lock)

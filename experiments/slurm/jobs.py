@@ -1,0 +1,173 @@
+"""What was handed to Slurm: for each job array, the blocks that its tasks are to measure.
+
+A job is written down before it is submitted, under the name it will have in the queue. It is never edited:
+whether its blocks are measured is told by the records alone.
+"""
+
+import hashlib
+import os
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from experiments.plan.cluster import Cluster, Partition
+from experiments.plan.plan import Experiment
+from experiments.plan.point import Point
+from experiments.plan.program import find_programs
+from experiments.plan.site import Machine, Site, load_site
+from experiments.run.study import Settings, Study
+from experiments.support.errors import InputError
+from experiments.support.files import read_json
+
+Unit = tuple[str, int]
+"""An experiment and one of its blocks: what is measured within one allocation."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """One job array: its name in the queue, the settings of the study, the units of each task."""
+
+    name: str
+    partition: str
+    settings: Settings
+    tasks: tuple[tuple[Unit, ...], ...]
+    submitted_at: str
+
+    def content(self) -> dict[str, Any]:
+        """As JSON."""
+        chosen = self.settings
+        return {
+            "name": self.name,
+            "partition": self.partition,
+            "tasks": self.tasks,
+            "submitted_at": self.submitted_at,
+            "study": chosen.study,
+            "scale": chosen.scale,
+            "site": chosen.site,
+            "results": os.fspath(chosen.results),
+            "build": os.fspath(chosen.build),
+            "questions": os.fspath(chosen.questions),
+            "blocks": chosen.blocks,
+            "seed": chosen.seed,
+        }
+
+
+def read_job(path: Path) -> Job:
+    """Raises InputError if the file does not hold a job."""
+    content = read_json(path)
+    try:
+        settings = Settings(
+            study=tuple(content["study"]),
+            scale=content["scale"],
+            site=content["site"],
+            results=Path(content["results"]),
+            build=Path(content["build"]),
+            questions=Path(content["questions"]),
+            blocks=content["blocks"],
+            seed=content["seed"],
+            figures=False,
+        )
+        tasks = tuple(tuple((str(name), int(block)) for name, block in task) for task in content["tasks"])
+        return Job(content["name"], content["partition"], settings, tasks, content["submitted_at"])
+    except (TypeError, KeyError, ValueError):
+        raise InputError(f"{path}: is not the list of blocks of a job") from None
+
+
+class PartitionFolder:
+    """The results of one partition: a results folder of its own, and `jobs/` beside the records."""
+
+    def __init__(self, settings: Settings, site: Site, partition: Partition) -> None:
+        self.settings = settings
+        self.partition = partition
+        self.path = results_of(settings, site) / partition.name
+        self.jobs = self.path / "jobs"
+        self._site = site
+
+    @property
+    def build(self) -> Path:
+        """Where the programs of this kind of node are."""
+        return self.path / "build" if self.partition.build else self.settings.build
+
+    def study(self, *, to_be_built: bool = False) -> Study:
+        """The study on this kind of node.
+
+        Before the first job has built its programs there, `to_be_built` plans with those at hand: they know
+        the names of the variants, and nothing has been measured with the ones that are still to come.
+        """
+        build = self.build
+        if to_be_built and find_programs(self._site, build)["gcc"].sha256 is None:
+            build = self.settings.build
+        machine = Machine(self.partition.name, self.partition.cpus, self.partition.hardware_threads)
+        chosen = replace(self.settings, results=self.path, build=build, figures=False, machine=machine)
+        return Study(chosen)
+
+    def known_jobs(self) -> list[Job]:
+        """All jobs ever submitted, the first one first."""
+        return [read_job(path) for path in sorted(self.jobs.glob("*.json"))]
+
+    def next_job(self, tasks: Sequence[Sequence[Unit]]) -> tuple[Job, Path]:
+        """A job of these tasks with a name of its own, and the path to write it to."""
+        numbers = [int(path.stem) for path in self.jobs.glob("*.json") if re.fullmatch(r"\d+", path.stem)]
+        number = f"{max(numbers, default=0) + 1:04d}"
+        # Another study of the same user may have jobs of the same number in the queue.
+        folder = hashlib.sha256(os.fsencode(self.path)).hexdigest()[:8]
+        name = f"carom-{self.partition.name}-{folder}-{number}"
+        units = tuple(tuple(task) for task in tasks)
+        now = datetime.now(UTC).isoformat()
+        return Job(name, self.partition.name, self.settings, units, now), self.jobs / f"{number}.json"
+
+
+def folders(settings: Settings) -> list[PartitionFolder]:
+    """One folder for each of the site's partitions. Raises InputError if the site is no cluster."""
+    site = load_site(settings.site)
+    cluster = cluster_of(site)
+    given = Path(settings.site)
+    chosen = replace(
+        settings,
+        site=os.fspath(given.absolute()) if given.suffix == ".toml" else settings.site,
+        results=settings.results.absolute(),
+        build=settings.build.absolute(),
+        questions=settings.questions.absolute(),
+    )
+    return [PartitionFolder(chosen, site, partition) for partition in cluster.partitions]
+
+
+def submitted(settings: Settings) -> Settings | None:
+    """The settings of the last submission, with the questions of all others that differ in nothing else."""
+    jobs = [job for folder in folders(settings) for job in folder.known_jobs()]
+    if not jobs:
+        return None
+    last = max(jobs, key=lambda job: job.submitted_at).settings
+    same = [job.settings for job in jobs if replace(job.settings, study=()) == replace(last, study=())]
+    names = tuple(dict.fromkeys(name for chosen in same for name in chosen.study))
+    return replace(last, study=names if all(chosen.study for chosen in same) else ())
+
+
+def cluster_of(site: Site) -> Cluster:
+    """Raises InputError if the site has none."""
+    if site.cluster is None:
+        raise InputError(f'site {site.name}: kind: found "{site.kind}", expected slurm')
+    return site.cluster
+
+
+def results_of(settings: Settings, site: Site) -> Path:
+    """The folder of all partitions of a site: the one that it names, else `slurm/SITE` below the results."""
+    return cluster_of(site).results or settings.results.absolute() / "slurm" / site.name
+
+
+def units(study: Study) -> Iterator[tuple[Unit, Experiment, list[tuple[int, Point]]]]:
+    """Every block of the study with position and point of what is not measured yet.
+
+    The first blocks of all experiments come before the second ones, so that the control is spread over all.
+    """
+    found = {one.name: study.store.find(one).seconds for one in study.experiments}
+    most = max(one.question.blocks.minimum for one in study.experiments)
+    for block in range(most):
+        for one in study.experiments:
+            if block < one.question.blocks.minimum:
+                points = enumerate(one.block(block))
+                missing = [(at, point) for at, point in points if (point.id, block) not in found[one.name]]
+                yield (one.name, block), one, missing

@@ -1,0 +1,65 @@
+"""One task of a job array: measures the blocks that are its own, within its allocation."""
+
+from pathlib import Path
+
+from experiments.plan.plan import Experiment
+from experiments.plan.scenes import SceneFolder
+from experiments.run.progress import Report
+from experiments.run.runner import Runner, Task
+from experiments.run.study import POINTS_FAILED, Study
+from experiments.slurm.jobs import PartitionFolder, folders, read_job, units
+from experiments.support.errors import InputError
+
+
+def work(manifest: Path, index: int) -> int:
+    """Measure what is missing of one task. Returns the exit code: 0, or 2 where a point failed.
+
+    Others may work in the same folder, even at the same points: a copy of this task that Slurm started
+    because it had lost sight of this one. So everything half-made is in a folder of this process's own, a
+    record comes to its place whole, by a rename, and the last one stays.
+    """
+    job = read_job(manifest)
+    if not 0 <= index < len(job.tasks):
+        raise InputError(f"{manifest}: task {index}: expected a number from 0 to {len(job.tasks) - 1}")
+    partitions: dict[str, PartitionFolder] = {one.partition.name: one for one in folders(job.settings)}
+    if job.partition not in partitions:
+        raise InputError(f'{job.settings.site}: has no partition "{job.partition}" any more')
+    study = partitions[job.partition].study()
+    with study.store.shared(), Report() as report:
+        return _Worker(study, report).run(set(job.tasks[index]))
+
+
+class _Worker:
+    """What one task knows while it runs."""
+
+    def __init__(self, study: Study, report: Report) -> None:
+        self._study = study
+        self._report = report
+        store = study.store
+        # Scenes of its own, since a task with another program would empty a common folder.
+        scenes = SceneFolder(store.temporary / "scenes", store.temporary, str(study.generator.sha256))
+        self._runner = Runner(store, scenes, study.generator, study.site.time_limit_seconds)
+        self._failed: set[tuple[str, str]] = set()
+
+    def run(self, own: set[tuple[str, int]]) -> int:
+        for (_, block), experiment, missing in units(self._study):
+            if (experiment.name, block) in own:
+                for position, point in missing:
+                    self._measure(Task(experiment, point, block, position, _blocks(experiment)))
+        return POINTS_FAILED if self._failed else 0
+
+    def _measure(self, task: Task) -> None:
+        point = task.point
+        where = f"{point.experiment}, block {task.block + 1}, {point.series}, {point.x_name} {point.x:g}"
+        if (point.experiment, point.id) in self._failed or self._study.store.has(point, task.block):
+            return
+        outcome = self._runner.run(task)
+        if outcome.seconds is None:
+            self._failed.add((point.experiment, point.id))
+            self._report.line(f"{where}: failed: {outcome.reason}")
+        else:
+            self._report.line(f"{where}: measured in {outcome.seconds:.3g} s")
+
+
+def _blocks(experiment: Experiment) -> int:
+    return experiment.question.blocks.minimum

@@ -1,0 +1,83 @@
+"""Files that are whole or not there, and a folder that has one user at a time."""
+
+import contextlib
+import fcntl
+import json
+import math
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from experiments.support.errors import InputError
+
+
+def read_json(path: Path) -> Any:  # noqa: ANN401 - JSON is any value
+    """The content of a JSON file, or None if it is missing or not JSON, which has no NaN and no infinity."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"), parse_float=_finite, parse_constant=_finite)
+    except (OSError, ValueError, RecursionError):
+        return None
+
+
+def _finite(text: str) -> float:
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(text)
+    return number
+
+
+def write_json(path: Path, content: object, temporary: Path) -> None:
+    """Write a JSON file, as `write_text` does."""
+    write_text(path, json.dumps(content, indent=1, sort_keys=True) + "\n", temporary)
+
+
+def write_text(path: Path, text: str, temporary: Path) -> None:
+    """Write a file so that a power failure leaves the old one or the new one, never a part of one.
+
+    Meanwhile it is `.*.part` in `temporary`, a folder on the same disk.
+    """
+    scratch = temporary / f".{path.parent.name}-{path.name}.part"
+    try:
+        with scratch.open("w", encoding="utf-8") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        move(scratch, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            scratch.unlink()
+        raise
+
+
+def move(source: Path, target: Path) -> None:
+    """Rename a finished file into its place, folders made as needed, and make the rename last."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    source.replace(target)
+    folder = os.open(target.parent, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
+
+
+@contextlib.contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Hold the folder for this process; the kernel lets go of it however the process ends.
+
+    Raises InputError if another process holds it.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / ".lock").open("a+", encoding="ascii") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            file.seek(0)
+            holder = file.read().strip() or "another process"
+            told = f"{folder}: is in use by {holder}; wait for it, or give --results FOLDER"
+            raise InputError(told) from None
+        file.seek(0)
+        file.truncate()
+        file.write(f"process {os.getpid()} on {os.uname().nodename}\n")
+        file.flush()
+        yield

@@ -1,0 +1,248 @@
+"""From a question to points: ids stand for content, and for nothing else."""
+
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from experiments.plan.plan import Surroundings, plan
+from experiments.plan.point import Point
+from experiments.plan.program import Program, check_command, find_programs
+from experiments.plan.question import load_question
+from experiments.plan.scale import SCALES
+from experiments.plan.scenes import HardCase, Scene, SceneFile
+from experiments.plan.site import Machine, load_site
+from experiments.run.verify import note_of
+from experiments.support.errors import InputError
+from experiments.tests.conftest import CHUNKS, ERRORS, PAIR, Workplace, generated
+
+CONTENT: dict[str, st.SearchStrategy[Any]] = {
+    "label": st.sampled_from([None, "A", "A-again"]),
+    "site": st.sampled_from(["local", "cluster"]),
+    "machine": st.builds(Machine, st.sampled_from(["a", "b"]), st.integers(1, 4), st.integers(1, 4)),
+    "verb": st.sampled_from(["bench", "profile"]),
+    "program": st.builds(
+        Program, st.just("gcc"), st.just(Path("carom")), st.sampled_from([None, "0" * 64, "1" * 64])
+    ),
+    "scene": st.builds(
+        Scene,
+        particles=st.integers(1, 9),
+        side=st.integers(1, 9),
+        radius=st.integers(1, 3),
+        steps=st.integers(1, 9),
+        min_velocity=st.integers(1, 3),
+        max_velocity=st.integers(3, 5),
+        seed=st.integers(1, 3),
+        placement=st.sampled_from(["overlapping", "random", "lattice"]),
+        isotropic=st.booleans(),
+    )
+    | st.builds(HardCase, st.sampled_from(["cradle", "corner"])),
+    "variant": st.sampled_from(["published", "nine"]),
+    "find_chunk": st.sampled_from([None, 1, 2]),
+    "resolve_chunk": st.sampled_from([None, 1, 2]),
+    "threads": st.integers(1, 4),
+    "substeps": st.integers(1, 2),
+    "tolerance": st.sampled_from(["relative", "published"]),
+    "warm_up": st.integers(0, 2),
+    "repetitions": st.integers(1, 3),
+    "errors": st.booleans(),
+    "simulated": st.integers(0, 2),
+    "openmp": st.sampled_from([(), (("OMP_PLACES", "cores"),)]),
+}
+PLACE: dict[str, st.SearchStrategy[Any]] = {
+    "experiment": st.sampled_from(["threads", "particles"]),
+    "figure": st.sampled_from(["scaling", "trend"]),
+    "claim": st.sampled_from([None, "threads"]),
+    "series": st.sampled_from(["four", "nine"]),
+    "series_number": st.integers(1, 3),
+    "scene_name": st.sampled_from([None, "dilute", "dense"]),
+    "x_name": st.sampled_from(["threads", "chunk"]),
+    "x": st.integers(0, 3),
+    "scale": st.sampled_from(["paper", "quick"]),
+}
+CONTENTS = st.fixed_dictionaries(CONTENT)
+PLACES = st.fixed_dictionaries(PLACE)
+
+
+def test_every_field_of_a_point_is_either_content_or_place() -> None:
+    assert {field.name for field in fields(Point)} == CONTENT.keys() | PLACE.keys()
+
+
+@given(CONTENTS, PLACES, PLACES)
+def test_the_place_in_a_figure_does_not_change_the_id(
+    content: dict[str, Any], place: dict[str, Any], other: dict[str, Any]
+) -> None:
+    assert Point(**content, **place).id == Point(**content, **other).id
+
+
+@given(CONTENTS, PLACES, st.data())
+def test_any_change_of_content_changes_the_id(
+    content: dict[str, Any], place: dict[str, Any], data: st.DataObject
+) -> None:
+    point = Point(**content, **place)
+    name = data.draw(st.sampled_from(sorted(CONTENT)))
+    other = replace(point, **{name: data.draw(CONTENT[name])})
+    assert (other.id == point.id) == (getattr(other, name) == getattr(point, name))
+
+
+@given(CONTENTS, PLACES)
+def test_an_id_never_reads_as_a_number(content: dict[str, Any], place: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match="could not convert"):
+        float(Point(**content, **place).id)
+
+
+def surroundings(workplace: Workplace, scale: str = "paper") -> Surroundings:
+    site = load_site("local")
+    programs = find_programs(site, workplace.root / "build")
+    return Surroundings(site, Machine("test", 2, 2), programs, SCALES[scale])
+
+
+def test_a_plan_is_the_same_each_time(workplace: Workplace) -> None:
+    question = load_question(workplace.root / "questions" / "chunks.toml")
+    first, second = (plan(question, surroundings(workplace)) for _ in range(2))
+    assert [point.id for point in first.points] == [point.id for point in second.points]
+    assert [first.block(block) for block in range(5)] == [second.block(block) for block in range(5)]
+
+
+def test_another_program_is_another_point(workplace: Workplace) -> None:
+    question = load_question(workplace.root / "questions" / "chunks.toml")
+    before = plan(question, surroundings(workplace))
+    workplace.build(extra="# a change")
+    after = plan(question, surroundings(workplace))
+    assert not {point.id for point in before.points} & {point.id for point in after.points}
+
+
+def test_quick_values_are_taken_at_quick_scale(workplace: Workplace) -> None:
+    question = load_question(workplace.root / "questions" / "chunks.toml")
+    points = plan(question, surroundings(workplace, "quick")).points
+    assert [point.find_chunk for point in points] == [1, 2]
+    assert {generated(point).particles for point in points} == {10}
+
+
+def test_a_sweep_of_seeds_makes_a_scene_of_each(workplace: Workplace) -> None:
+    text = CHUNKS.replace('"find_chunk"', '"seed"')
+    points = plan(load_question(workplace.question("seeds", text)), surroundings(workplace)).points
+    assert [generated(point).seed for point in points] == [point.x for point in points] == [1, 2, 3]
+    assert len({point.scene.name for point in points}) == 3
+
+
+def test_an_optional_series_is_left_out_where_its_program_is_not_built(workplace: Workplace) -> None:
+    other = 'variant = "published"\nprogram = "clang"'
+    text = PAIR.replace('variant = "nine"', f"{other}\noptional = true")
+    question = load_question(workplace.question("optional", text))
+    assert [one.series for one in plan(question, surroundings(workplace)).points] == ["four"]
+    asked = load_question(workplace.question("asked", PAIR.replace('variant = "nine"', other)))
+    assert [one.series for one in plan(asked, surroundings(workplace)).points] == ["four", "nine"]
+    program = find_programs(load_site("local"), workplace.root / "build")["gcc"]
+    built = surroundings(workplace)
+    there = replace(
+        built, programs={**built.programs, "clang": replace(program, name="clang", sha256="1" * 64)}
+    )
+    assert [one.program.name for one in plan(question, there).points] == ["gcc", "clang"]
+
+
+def test_a_variant_is_checked_with_the_tolerance_that_it_is_timed_with(workplace: Workplace) -> None:
+    (point, _) = plan(
+        load_question(workplace.root / "questions" / "pair.toml"), surroundings(workplace)
+    ).points
+    assert point.tolerance == "published"
+    command = check_command(point.program, Path("s.in"), point.variant, point.threads, point.tolerance)
+    assert command[-2:] == ("--tolerance", "published")
+    scene = SceneFile(Path("s.in"), "0" * 64)
+    assert note_of(point, scene) != note_of(replace(point, tolerance="relative"), scene)
+
+
+def test_what_is_not_bound_is_bound_at_no_number_of_threads(workplace: Workplace) -> None:
+    text = CHUNKS.replace('"find_chunk"', '"threads"')
+    path = workplace.question(
+        "unbound", text.replace('figure = "schedule"', 'figure = "scaling"\nbound = false')
+    )
+    free = plan(load_question(path), surroundings(workplace)).points
+    kept = plan(load_question(workplace.question("bound", text)), surroundings(workplace)).points
+    assert {dict(point.openmp)["OMP_PROC_BIND"] for point in free} == {"false"}
+    assert [dict(point.openmp)["OMP_PROC_BIND"] for point in kept] == ["close", "close", "false"]
+    assert free[0].id != kept[0].id
+
+
+def test_every_variant_meets_every_scene_at_every_value(workplace: Workplace) -> None:
+    points = plan(load_question(workplace.question("errors", ERRORS)), surroundings(workplace)).points
+    places = [(point.scene_name, point.series, point.x, point.substeps) for point in points]
+    assert places == [
+        (scene, series, substeps, substeps)
+        for scene in ("dilute", "cradle")
+        for series in ("four", "nine")
+        for substeps in (1, 2)
+    ]
+    assert {point.scene_name: point.scene.arguments for point in points} == {
+        "dilute": (
+            "100",
+            "1000",
+            "5",
+            "10",
+            "1",
+            "2",
+            "--seed",
+            "1",
+            "--placement",
+            "lattice",
+            "--isotropic",
+        ),
+        "cradle": ("--case", "cradle"),
+    }
+
+
+def test_a_hard_case_has_one_size(workplace: Workplace) -> None:
+    question = load_question(workplace.question("errors", ERRORS))
+    quick = plan(question, surroundings(workplace, "quick")).points
+    assert {point.scene_name: point.scene.arguments[:4] for point in quick} == {
+        "dilute": ("10", "316", "5", "5"),
+        "cradle": ("--case", "cradle"),
+    }
+
+
+def test_what_takes_too_long_is_left_out_at_quick_scale(workplace: Workplace) -> None:
+    text = ERRORS.replace('case = "cradle"', 'case = "cradle"\npaper_only = true')
+    question = load_question(workplace.question("errors", text))
+    assert {point.scene_name for point in plan(question, surroundings(workplace)).points} == {
+        "dilute",
+        "cradle",
+    }
+    assert {point.scene_name for point in plan(question, surroundings(workplace, "quick")).points} == {
+        "dilute"
+    }
+
+
+MISTAKES = {
+    "variant": (
+        PAIR.replace('variant = "nine"', 'variant = "nien"'),
+        'series[2].variant: found "nien", expected a name out of `carom list --names`; did you mean "nine"?',
+    ),
+    "program": (
+        PAIR.replace('variant = "nine"', 'variant = "nine"\nprogram = "clan"'),
+        'series[2].program: found "clan", expected one of gcc, clang, gcc-libomp; did you mean "clang"?',
+    ),
+    "the same twice": (
+        PAIR.replace('variant = "nine"', 'variant = "published"'),
+        'series: "nine" at 0 measures what "four" at 0 measures',
+    ),
+    "nothing left": (
+        CHUNKS.replace('"find_chunk"', '"threads"').replace("[1, 2, 3]", "[9]\nlimit = 1"),
+        "sweep.limit: found 1, which leaves no value on a machine with 2 hardware threads",
+    ),
+    "impossible velocities": (
+        CHUNKS.replace('"find_chunk"', '"min_velocity"'),
+        "sweep.values: found min_velocity 3, which makes max_velocity 2 less than min_velocity 3",
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "expected"), MISTAKES.values(), ids=MISTAKES.keys())
+def test_one_line_for_a_plan_that_cannot_be(workplace: Workplace, text: str, expected: str) -> None:
+    path = workplace.question("mistaken", text)
+    with pytest.raises(InputError) as error:
+        plan(load_question(path), surroundings(workplace))
+    assert str(error.value).startswith(f"{path}: ")
+    assert expected in str(error.value)

@@ -1,0 +1,270 @@
+"""Every mistake in a TOML file gets one line: file, key, what was found, what was expected, nearest name."""
+
+from pathlib import Path
+
+import pytest
+
+from experiments.plan.question import load_question, load_questions
+from experiments.plan.site import load_site
+from experiments.support.errors import InputError
+from experiments.tests.conftest import CHUNKS, ERRORS, PAIR, SCENE, Workplace
+
+MISTAKES = {
+    "unknown key": (
+        CHUNKS.replace("steps = 10", "steps = 10\nradios = 5"),
+        "scene.radios: unknown key; expected one of name, particles, side, radius, steps, min_velocity, "
+        'max_velocity, seed, placement, isotropic, paper_only, case; did you mean "radius"?',
+    ),
+    "misspelt required key": (
+        CHUNKS.replace("radius", "radios"),
+        'did you mean "radius"?',
+    ),
+    "missing key": (
+        CHUNKS.replace("radius = 5\n", ""),
+        "scene.radius: missing; expected a number above 0",
+    ),
+    "missing table": (
+        'title = "t"\nfigure = "trend"\n[[series]]\nname = "a"\nvariant = "b"\n',
+        "scene: missing; expected a table, or a list scenes of several",
+    ),
+    "wrong type": (
+        CHUNKS.replace("particles = 100", 'particles = "many"'),
+        'scene.particles: found "many", expected a whole number of at least 1',
+    ),
+    "fraction of a disc": (
+        CHUNKS.replace("particles = 100", "particles = 1.5"),
+        "scene.particles: found 1.5, expected a whole number of at least 1",
+    ),
+    "too small": (
+        CHUNKS.replace("radius = 5", "radius = 0"),
+        "scene.radius: found 0, expected a number above 0",
+    ),
+    "unknown figure": (
+        CHUNKS.replace('"schedule"', '"shedule"'),
+        'figure: found "shedule", expected one of scaling, trend, comparison, schedule, machine, phases, '
+        'control, speed_against_error, hard_cases, ladder, limits; did you mean "schedule"?',
+    ),
+    "unknown claim": (
+        PAIR.replace("four_boxes", "for_boxes"),
+        'did you mean "four_boxes"?',
+    ),
+    "name that is a number": (
+        PAIR.replace('name = "four"', 'name = "1e3"'),
+        'series[1].name: found "1e3", expected a name that is no number',
+    ),
+    "unknown parameter": (
+        CHUNKS.replace('"find_chunk"', '"find_chunks"'),
+        'sweep.parameter: found "find_chunks", expected one of threads, find_chunk, resolve_chunk, '
+        "substeps, particles, side, radius, steps, min_velocity, max_velocity, area_fraction, seed; did you "
+        'mean "find_chunk"?',
+    ),
+    "value twice": (
+        CHUNKS.replace("[1, 2, 3]", "[1, 2, 2]"),
+        "sweep.values: found [1, 2, 2], expected a list that is not empty, each value once",
+    ),
+    "bad value": (
+        CHUNKS.replace("[1, 2, 3]", "[1, -2]"),
+        "sweep.values[2]: found -2, expected a number above 0",
+    ),
+    "chunk that is no whole number": (
+        CHUNKS.replace("[1, 2, 3]", "[1.5, 2]"),
+        "series[1].values: found 1.5, expected whole numbers",
+    ),
+    "no series": (
+        PAIR.split("[[series]]")[0],
+        "series: missing; expected a list that is not empty",
+    ),
+    "bad threads": (
+        PAIR.replace("[scene]", 'threads = "all"\n[scene]', 1),
+        'threads: found "all", expected a whole number of at least 1, "cores" or "hardware_threads"',
+    ),
+    "blocks the wrong way round": (
+        PAIR.replace("wanted = 2", "wanted = 1"),
+        "blocks.wanted: found 1, expected at least 2",
+    ),
+    "values without a sweep": (
+        PAIR.replace('variant = "nine"', 'variant = "nine"\nvalues = [1]'),
+        "series[2].values: found values, expected none without a sweep",
+    ),
+    "sweep without values": (
+        CHUNKS.replace("values = [1, 2, 3]\nquick_values = [1, 2]\n", ""),
+        "series[1].values: missing; expected the values of find_chunk",
+    ),
+    "swept and fixed": (
+        CHUNKS.replace('variant = "published"', 'variant = "published"\nfind_chunk = 3'),
+        "series[1].find_chunk: found beside a sweep of it, expected either",
+    ),
+    "limit of something else": (
+        CHUNKS.replace("[1, 2, 3]", "[1, 2, 3]\nlimit = 2"),
+        "sweep.limit: found for find_chunk, expected for threads only",
+    ),
+    "sizes without quick ones": (
+        CHUNKS.replace('"find_chunk"', '"particles"').replace("quick_values = [1, 2]\n", ""),
+        "series[1].quick_values: missing; expected the values of particles at quick scale",
+    ),
+    "velocities the wrong way round": (
+        PAIR.replace("max_velocity = 2", "max_velocity = 0.5"),
+        "scene.max_velocity: found 0.5, expected at least 1",
+    ),
+    "unknown placement": (
+        ERRORS.replace('"lattice"', '"latice"'),
+        'scenes[1].placement: found "latice", expected one of overlapping, random, lattice; '
+        'did you mean "lattice"?',
+    ),
+    "isotropic by a number": (
+        ERRORS.replace("isotropic = true", "isotropic = 1"),
+        "scenes[1].isotropic: found 1, expected true or false",
+    ),
+    "misspelt case": (
+        ERRORS.replace('case = "cradle"', 'cases = "cradle"'),
+        'did you mean "case"?',
+    ),
+    "case with a size": (
+        ERRORS.replace('case = "cradle"', 'case = "cradle"\nparticles = 5'),
+        "scenes[2].particles: unknown key; expected one of case, name, paper_only",
+    ),
+    "scene without a name": (
+        ERRORS.replace('name = "dilute"\n', ""),
+        "scenes[1].name: missing; expected a text, which tells the scenes apart",
+    ),
+    "two scenes of one name": (
+        ERRORS.replace('"dilute"', '"cradle"'),
+        'scenes[2].name: found "cradle" twice, expected each once',
+    ),
+    "one scene and several": (
+        ERRORS.replace("[sweep]", f"{SCENE}[sweep]"),
+        "scene: found beside scenes, expected either",
+    ),
+    "velocities of the second scene": (
+        ERRORS.replace(
+            'case = "cradle"', 'name = "other"' + SCENE.replace("[scene]", "").replace("= 2", "= 0")
+        ).replace('[sweep]\nparameter = "substeps"\nvalues = [1, 2]\n', ""),
+        "scenes[2].max_velocity: found 0, expected at least 1",
+    ),
+    "size of a hard case": (
+        ERRORS.replace('"substeps"', '"radius"'),
+        "sweep.parameter: found radius over the hard case cradle, which is as it is; expected one of threads",
+    ),
+    "substeps swept and fixed": (
+        f"substeps = 2\n{ERRORS}",
+        "substeps: found beside a sweep of it, expected either",
+    ),
+    "figure of errors without errors": (
+        ERRORS.replace("errors = true\n", ""),
+        "errors: missing; expected true for figure speed_against_error",
+    ),
+    "speed against error over threads": (
+        ERRORS.replace('"substeps"', '"threads"'),
+        "sweep.parameter: expected substeps for figure speed_against_error",
+    ),
+    "scenes that no figure tells apart": (
+        ERRORS.replace("speed_against_error", "trend"),
+        "scenes: found several for figure trend, expected one, or one of the figures speed_against_error",
+    ),
+    "errors of a profile": (
+        f'verb = "profile"\n{ERRORS}',
+        "errors: found for verb profile, expected for bench only",
+    ),
+    "claim with another tolerance": (
+        PAIR.replace('tolerance = "published"\n', ""),
+        'tolerance: found relative for a published claim, expected "published", or a tolerance_reason',
+    ),
+    "reason for the published tolerance": (
+        PAIR.replace('tolerance = "published"', 'tolerance = "published"\ntolerance_reason = "none"'),
+        "tolerance_reason: found beside the published tolerance, which needs none",
+    ),
+    "half a seed": (
+        CHUNKS.replace('"find_chunk"', '"seed"').replace("[1, 2, 3]", "[1, 2.5]"),
+        "series[1].values: found 2.5, expected whole numbers",
+    ),
+    "not TOML": (
+        "title = \n",
+        "is not valid TOML: Invalid value (at line 1, column 9)",
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "expected"), MISTAKES.values(), ids=MISTAKES.keys())
+def test_one_line_for_a_mistake_in_a_question(tmp_path: Path, text: str, expected: str) -> None:
+    path = tmp_path / "mistaken.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError) as error:
+        load_question(path)
+    line = str(error.value)
+    assert line.startswith(f"{path}: ")
+    assert expected in line
+    assert "\n" not in line
+
+
+def test_a_claim_may_state_why_it_has_another_tolerance(tmp_path: Path) -> None:
+    path = tmp_path / "sparse.toml"
+    reason = 'tolerance_reason = "its scene does not end under the published one"'
+    path.write_text(PAIR.replace('tolerance = "published"', reason), encoding="utf-8")
+    assert load_question(path).tolerance == "relative"
+
+
+def test_unreadable_files_are_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"none\.toml: cannot be read: No such file or directory"):
+        load_question(tmp_path / "none.toml")
+    (tmp_path / "latin.toml").write_bytes(b'title = "caf\xe9"')
+    with pytest.raises(InputError, match=r"latin\.toml: is not UTF-8 text at byte 12"):
+        load_question(tmp_path / "latin.toml")
+
+
+def test_study_names_are_checked(workplace: Workplace) -> None:
+    with pytest.raises(
+        InputError, match=r'study: found "pear", expected names out of .*; did you mean "pair"\?'
+    ):
+        load_questions(workplace.root / "questions", ["pear"])
+
+
+def test_the_control_is_part_of_every_choice(workplace: Workplace) -> None:
+    folder = workplace.root / "questions"
+    assert [one.name for one in load_questions(folder, ["pair"])] == ["pair", "control"]
+    assert [one.name for one in load_questions(folder, ["control"])] == ["control"]
+    assert [one.name for one in load_questions(folder)] == ["chunks", "control", "pair"]
+
+
+def test_a_folder_without_questions_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="has no question in it"):
+        load_questions(tmp_path)
+
+
+SITE = """
+kind = "local"
+[programs]
+gcc = "gcc/carom"
+[openmp]
+places = "cores"
+proc_bind = "close"
+proc_bind_oversubscribed = "false"
+"""
+
+SITE_MISTAKES = {
+    "unknown kind": (SITE.replace('"local"', '"locale"'), 'kind: found "locale", expected one of local'),
+    "no gcc": (SITE.replace("gcc = ", "icc = "), "programs.gcc: missing; expected a text"),
+    "unknown binding": (
+        SITE.replace('proc_bind = "close"', 'proc_bind = "closed"'),
+        'openmp.proc_bind: found "closed", expected one of false, true, close, spread; did you mean "close"?',
+    ),
+    "no time": (
+        "time_limit_seconds = 0" + SITE,
+        "time_limit_seconds: found 0, expected a number above 0",
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "expected"), SITE_MISTAKES.values(), ids=SITE_MISTAKES.keys())
+def test_one_line_for_a_mistake_in_a_site(tmp_path: Path, text: str, expected: str) -> None:
+    path = tmp_path / "mistaken.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError) as error:
+        load_site(str(path))
+    assert str(error.value).startswith(f"{path}: {expected}")
+
+
+def test_an_unknown_site_is_named() -> None:
+    with pytest.raises(
+        InputError, match=r'site: found "lokal", expected one of example-slurm, local.*did you mean "local"\?'
+    ):
+        load_site("lokal")

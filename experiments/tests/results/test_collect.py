@@ -1,0 +1,144 @@
+"""Merging results folders: by content, never twice, and nothing of another schema."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from experiments.results.collect import collect
+from experiments.run.study import run
+from experiments.support.errors import InputError
+from experiments.tests.conftest import PAIR, Workplace
+
+
+@pytest.fixture
+def source(empty_workplace: Workplace) -> Path:
+    """A results folder with four records of two points."""
+    empty_workplace.question("pair", PAIR)
+    assert run(empty_workplace.settings) == 0
+    return empty_workplace.results
+
+
+def change(file: Path, edit: Callable[[dict[str, Any]], None]) -> None:
+    content = json.loads(file.read_text())
+    edit(content)
+    file.write_text(json.dumps(content))
+
+
+def collected(folder: Path, kind: str = "records") -> list[Path]:
+    return sorted(folder.glob(f"{kind}/collected/*/*/*.json"))
+
+
+def first(source: Path) -> Path:
+    return min(source.glob("records/pair/*.json"))
+
+
+def test_records_come_in_once(source: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    target = tmp_path / "all"
+    collect([source], target)
+    names = [path.name for path in collected(target)]
+    assert names == sorted(path.name for path in source.glob("records/pair/*.json"))
+    assert {path.parent.relative_to(target).as_posix() for path in collected(target)} == {
+        "records/collected/host/pair"
+    }
+    collect([source], target)
+    collect([target], tmp_path / "further")
+    assert [path.name for path in collected(tmp_path / "further")] == names
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-3].startswith("4 of 4 files are new; 0 were here already: ")
+    assert lines[-2].startswith("0 of 4 files are new; 4 were here already: ")
+    assert not list(target.glob(".running/*"))
+
+
+def test_the_same_content_in_other_words_is_the_same(source: Path, tmp_path: Path) -> None:
+    target = tmp_path / "all"
+    collect([source], target)
+    change(first(source), lambda _: None)
+    collect([source], target)
+    assert len(collected(target)) == 4
+    assert not (target / "stale").exists()
+
+
+def test_what_was_measured_here_is_not_taken_in_from_a_copy(source: Path, tmp_path: Path) -> None:
+    collect([source], tmp_path / "copy")
+    collect([tmp_path / "copy"], source)
+    assert not collected(source)
+
+
+def test_machines_of_the_same_kind_stand_side_by_side(source: Path, tmp_path: Path) -> None:
+    target = tmp_path / "all"
+    collect([source], target)
+    for file in source.glob("records/pair/*.json"):
+        change(file, lambda record: record["provenance"].update(host="../other host"))
+    collect([source], target)
+    assert len(collected(target)) == 8
+    assert sorted(path.name for path in (target / "records" / "collected").iterdir()) == [
+        "-other-host",
+        "host",
+    ]
+
+
+@pytest.mark.parametrize("moment", ["2025-01-01T00:00:00Z", "2023-01-01T00:00:00Z"])
+def test_of_two_records_of_one_process_the_later_stays(source: Path, tmp_path: Path, moment: str) -> None:
+    target = tmp_path / "all"
+    collect([source], target)
+    change(first(source), lambda record: record.update(recorded_at=moment))
+    for _ in range(2):
+        collect([source], target)
+    assert len(collected(target)) == 4
+    kept = next(path for path in collected(target) if path.name == first(source).name)
+    assert json.loads(kept.read_text())["recorded_at"] == max(moment, "2024-01-01T00:00:00Z")
+    assert len(list(target.glob("stale/**/*.json"))) == (1 if moment > "2024" else 0)
+
+
+@pytest.mark.parametrize(
+    ("edit", "line"),
+    {
+        "version": (lambda record: record.update(schema_version=2), "schema_version: found 2, expected 1"),
+        "field": (lambda record: record["scene"].pop("sha256"), "does not match record.schema.json"),
+    }.values(),
+)
+def test_another_schema_is_refused_and_nothing_taken_in(
+    source: Path, tmp_path: Path, edit: Callable[[dict[str, Any]], None], line: str
+) -> None:
+    file = max(source.glob("records/pair/*.json"))
+    change(file, edit)
+    with pytest.raises(InputError) as refused:
+        collect([source], tmp_path / "all")
+    assert str(refused.value) == f"{file}: {line}; nothing was collected"
+    assert not (tmp_path / "all").exists()
+
+
+def test_torn_and_missing_sources_are_refused(source: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"nowhere: is not a folder; expected one with records/ in it"):
+        collect([tmp_path / "nowhere"], tmp_path / "all")
+    with pytest.raises(InputError, match="is the folder to collect into; expected another one"):
+        collect([source], source)
+    first(source).write_text("{")
+    with pytest.raises(InputError, match="is not a record; nothing was collected"):
+        collect([source], tmp_path / "all")
+
+
+def test_failures_come_in_until_they_are_answered(workplace: Workplace, tmp_path: Path) -> None:
+    target = tmp_path / "all"
+    workplace.behave(FAKE_BENCH_CRASHES="nine")
+    run(workplace.settings)
+    for _ in range(2):
+        collect([workplace.results], target)
+    (failure,) = collected(target, "failures")
+    assert json.loads(failure.read_text())["reason"] == "killed by SIGABRT: out of memory"
+    workplace.behave(FAKE_BENCH_CRASHES="")
+    run(workplace.settings)
+    collect([workplace.results], target)
+    assert not collected(target, "failures")
+    assert len(collected(target)) == 16
+
+
+def test_a_run_leaves_collected_records_alone(source: Path, tmp_path: Path, workplace: Workplace) -> None:
+    collect([source], tmp_path / "all")
+    (tmp_path / "all" / "records" / "collected").rename(source / "records" / "collected")
+    workplace.build(extra="# another program")
+    run(workplace.settings)
+    assert len(collected(source)) == 4

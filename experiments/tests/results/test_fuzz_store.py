@@ -1,0 +1,109 @@
+"""A results folder with anything in it: what is no record is put aside, what is one still counts."""
+
+import json
+import shutil
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from experiments.run.study import Study, run
+from experiments.support.schema import is_record
+from experiments.tests.conftest import PAIR, Workplace
+
+NAMES = st.one_of(
+    st.sampled_from(["x.json", "x-b0.json", "x-b².json", f"x-b{'9' * 5000}"[:200] + ".json", "-b1.json"]),
+    st.from_regex(r"[a-z²٣ '\"-]{1,20}(-b[0-9²٣]{1,12})?\.json", fullmatch=True),
+)
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=5),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
+    max_leaves=8,
+)
+DEEP = st.sampled_from([300, 990, 3000, 100_000]).map(lambda depth: '{"tags":' * depth + "1" + "}" * depth)
+
+
+@pytest.fixture
+def measured(empty_workplace: Workplace) -> Workplace:
+    empty_workplace.question("pair", PAIR)
+    assert run(empty_workplace.settings) == 0
+    return empty_workplace
+
+
+@st.composite
+def damaged(draw: st.DrawFn, record: dict[str, Any]) -> str:
+    """A record of which one value, at any depth, is another; or anything else."""
+    content = json.loads(json.dumps(record))
+    place = content
+    while isinstance(place, dict) and place:
+        key = draw(st.sampled_from(sorted(place)))
+        if not isinstance(place[key], dict) or draw(st.booleans()):
+            place[key] = draw(JSON)
+            break
+        place = place[key]
+    whole = json.dumps(content)
+    torn = whole[: draw(st.integers(0, len(whole)))]
+    return draw(st.one_of(st.just(torn), st.just(whole), DEEP, st.text()))
+
+
+@given(st.data())
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_anything_in_a_results_folder_is_put_aside_or_counted_once(
+    measured: Workplace, data: st.DataObject
+) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        results = Path(folder, "results")
+        shutil.copytree(measured.results, results)
+        *records, missing = sorted((results / "records" / "pair").iterdir())
+        missing.unlink()  # so that something is left to be verified and measured
+        damage = data.draw(damaged(json.loads(records[0].read_text(encoding="utf-8"))))
+        victim = data.draw(st.sampled_from(["record", "new", "failure", "note"]))
+        target = {
+            "record": records[0],
+            "new": records[0].with_name(data.draw(NAMES)),
+            "failure": results / "failures" / "pair" / data.draw(NAMES),
+            "note": data.draw(st.sampled_from([results / "costs.json", *(results / "checks").iterdir()])),
+        }[victim]
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(damage, encoding="utf-8", errors="surrogatepass")
+        place = replace(measured.settings, results=results)
+        study = Study(place)
+        (experiment,) = study.experiments
+        with study.store.opened():
+            found = study.store.settle(experiment)
+        harmed = victim == "record" and found.seconds.keys() != _keys(records)
+        assert len(found.seconds) == len(records) - harmed
+        assert found.seconds.keys() <= _keys(records)
+        assert found.stale == []
+        assert run(place) == 0
+        assert study.store.find(experiment).seconds.keys() == _keys([*records, missing])
+
+
+def test_a_record_of_another_kind_is_put_aside(measured: Workplace) -> None:
+    first, second = sorted((measured.results / "records" / "pair").iterdir())[:2]
+    bench = json.loads(first.read_text(encoding="utf-8"))
+    outside = {**bench, "kind": "outside", "axes": {"threads": 1, "substeps": 1}}
+    outside["engine"] = {"name": "Chipmunk", "version": "7.0.3", "iterations": 10}
+    first.write_text(json.dumps(outside), encoding="utf-8")
+    wrong = measured.results / "failures" / "pair" / second.name
+    wrong.parent.mkdir(parents=True)
+    second.rename(wrong)
+    assert is_record(json.loads(first.read_text(encoding="utf-8")))
+    study = Study(measured.settings)
+    with study.store.opened():
+        found = study.store.settle(study.experiments[0])
+    assert found.seconds.keys().isdisjoint(_keys([first, second]))
+    assert found.failures == {}
+    assert not first.exists()
+    assert not wrong.exists()
+    assert run(measured.settings) == 0
+    assert first.exists()
+    assert second.exists()
+
+
+def _keys(records: list[Path]) -> set[tuple[str, int]]:
+    return {(point, int(block)) for point, _, block in (path.stem.rpartition("-b") for path in records)}

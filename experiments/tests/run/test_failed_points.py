@@ -1,0 +1,81 @@
+"""A point that fails, crashes, hangs or is not built is recorded with its reason, and the others go on."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from experiments.run.study import POINTS_FAILED, run
+from experiments.support.schema import RECORD_SCHEMA
+from experiments.tests.conftest import PAIR, Workplace
+
+SCHEMA = json.loads(RECORD_SCHEMA.read_text(encoding="utf-8"))
+
+FAILURES = {
+    "check": ("FAKE_CHECK_FAILS", "check of each step: step 3: discs 1 and 2 left colliding", 2),
+    "result": ("FAKE_RESULT_WRONG", "energy changed by 3 %", 2),
+    "crash": ("FAKE_BENCH_CRASHES", "killed by SIGABRT: out of memory", -6),
+    "no record": ("FAKE_NO_RECORD", "left no record", 1),
+}
+
+
+@pytest.mark.parametrize(("behaviour", "reason", "code"), FAILURES.values(), ids=FAILURES.keys())
+def test_a_failed_point_is_recorded_and_the_others_go_on(
+    workplace: Workplace, behaviour: str, reason: str, code: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    workplace.behave(**{behaviour: "nine"})
+    assert run(workplace.settings) == POINTS_FAILED
+    [failure] = workplace.failures()
+    jsonschema.validate(failure, SCHEMA)
+    assert (failure["reason"], failure["exit_code"]) == (reason, code)
+    assert failure["axes"]["variant"] == "nine"
+    assert failure["tags"]["experiment"] == "pair"
+    assert len(workplace.records("pair")) == 2, "the other variant, in both blocks"
+    assert len(workplace.records("chunks")) == 6
+    assert "nine" not in {one["axes"]["variant"] for one in workplace.records().values()}
+    row = workplace.rows()["pair"]
+    assert (row.done, row.failed, row.missing, row.reason) == (2, 2, 0, reason)
+    told = capsys.readouterr()
+    assert "points failed: pair (1)" in told.err
+    assert "16 of 16" not in told.out, "what failed is not done"
+
+
+def test_a_wrong_variant_is_never_timed(workplace: Workplace) -> None:
+    workplace.behave(FAKE_CHECK_FAILS="nine")
+    run(workplace.settings)
+    timed = [call["words"] for call in workplace.calls() if "--tag" in call["words"]]
+    assert not any("nine" in words for words in timed)
+
+
+def test_a_failed_point_is_tried_again_by_the_next_run(workplace: Workplace) -> None:
+    workplace.behave(FAKE_BENCH_CRASHES="nine")
+    run(workplace.settings)
+    workplace.behave(FAKE_BENCH_CRASHES="none")
+    assert run(workplace.settings) == 0
+    assert len(workplace.records("pair")) == 4
+    assert not workplace.failures()
+
+
+def test_a_process_that_hangs_is_stopped(workplace: Workplace) -> None:
+    site = Path(__file__).parents[2] / "sites" / "local.toml"
+    impatient = workplace.root / "impatient.toml"
+    impatient.write_text(site.read_text().replace("time_limit_seconds = 600", "time_limit_seconds = 0.5"))
+    workplace.behave(FAKE_HANGS="nine")
+    assert run(replace(workplace.settings, site=str(impatient))) == POINTS_FAILED
+    [failure] = workplace.failures()
+    assert failure["reason"] == "took longer than 0.5 s and was stopped"
+    assert len(workplace.records("pair")) == 2
+
+
+def test_a_build_that_is_missing_is_a_gap_with_a_remedy(workplace: Workplace) -> None:
+    clang = PAIR.replace('variant = "nine"', 'variant = "published"\nprogram = "clang"')
+    workplace.question("pair", clang)
+    assert run(workplace.settings) == 0
+    [failure] = workplace.failures()
+    assert "is not built; build it with `make build COMPILER=clang`" in failure["reason"]
+    workplace.build("clang")
+    assert run(workplace.settings) == 0
+    assert len(workplace.records("pair")) == 4
+    assert not workplace.failures()

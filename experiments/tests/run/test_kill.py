@@ -1,0 +1,58 @@
+"""Killed with -9 at random moments, again and again: nothing finished is lost, nothing is torn."""
+
+import json
+import os
+import random
+import signal
+import time
+
+import jsonschema
+
+from experiments.run.study import run
+from experiments.support.schema import RECORD_SCHEMA
+from experiments.tests.conftest import CHUNKS, CONTROL, PAIR, Workplace, no_child_is_left
+
+KILLS = 10
+BLOCKS = 6
+
+
+def test_ten_kills_lose_at_most_one_point_each(empty_workplace: Workplace) -> None:
+    workplace = empty_workplace
+    for name, text in (("chunks", CHUNKS), ("pair", PAIR), ("control", CONTROL)):
+        workplace.question(name, more_blocks(text))
+    workplace.behave(FAKE_SECONDS="0.1")
+    moments = random.Random(20240229)
+    before: dict[str, dict[str, object]] = {}
+    for _ in range(KILLS):
+        process = workplace.start("run", "--no-figures")
+        wait_until_it_measures(workplace)
+        time.sleep(moments.uniform(0, 0.3))
+        os.kill(process.pid, signal.SIGKILL)
+        process.communicate()
+        no_child_is_left(workplace)
+        records = workplace.records()
+        assert before.items() <= records.items(), "what was finished is there, unchanged"
+        for record in records.values():
+            jsonschema.validate(record, json.loads(RECORD_SCHEMA.read_text(encoding="utf-8")))
+        before = records
+    assert 0 < len(before) < 7 * BLOCKS, "the kills came while there was something to do"
+    assert run(workplace.settings) == 0
+    assert len(workplace.records()) == 7 * BLOCKS
+    assert before.items() <= workplace.records().items()
+    assert workplace.measured() <= 7 * BLOCKS + KILLS, "each kill cost one process at most"
+    assert not (workplace.results / ".running").exists()
+    assert not workplace.failures()
+
+
+def more_blocks(text: str) -> str:
+    head, _, _ = text.partition("[blocks]")
+    return f"{head}[blocks]\nminimum = {BLOCKS}\nwanted = {BLOCKS}\n"
+
+
+def wait_until_it_measures(workplace: Workplace) -> None:
+    log = workplace.root / "log"
+    size = log.stat().st_size if log.exists() else 0
+    until = time.monotonic() + 20
+    while not log.exists() or "--tag" not in log.read_text()[size:]:
+        assert time.monotonic() < until, "the study does not begin"
+        time.sleep(0.005)

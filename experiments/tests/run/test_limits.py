@@ -1,0 +1,84 @@
+"""The limits of the machine: measured once, before anything is compared with them, and never in vain."""
+
+from dataclasses import replace
+
+import pytest
+
+from experiments.run.limits import FOLDER
+from experiments.run.study import run
+from experiments.tests.conftest import DAMAGES, PAIR, Workplace, damage
+
+LIMITS = PAIR.replace('figure = "comparison"', 'figure = "limits"\nverb = "profile"\nthreads = 1')
+
+
+@pytest.fixture
+def place(empty_workplace: Workplace) -> Workplace:
+    empty_workplace.question("close", LIMITS)
+    return empty_workplace
+
+
+def calls_of(place: Workplace, verb: str) -> list[list[str]]:
+    return [call["words"] for call in place.calls() if call["words"][0] == verb]
+
+
+def test_they_are_measured_once_before_the_first_profile_of_an_experiment_that_needs_them(
+    place: Workplace,
+) -> None:
+    place.question("pair", PAIR)
+    assert run(place.settings) == 0
+    assert run(replace(place.settings, blocks=4)) == 0
+    (words,) = calls_of(place, "limits")
+    assert words[1:3] == ["--threads", "1"]
+    verbs = [call["words"][0] for call in place.calls()]
+    assert verbs.index("limits") < verbs.index("profile")
+    (record,) = place.records(FOLDER).values()
+    assert record["kind"] == "limits"
+    assert record["tags"]["experiment"] == FOLDER
+
+
+def test_they_are_measured_in_the_environment_of_what_is_compared_with_them(place: Workplace) -> None:
+    assert run(place.settings) == 0
+    environments = {
+        call["words"][0]: call["openmp"]
+        for call in place.calls()
+        if call["words"][0] in ("limits", "profile")
+    }
+    assert environments["limits"] == environments["profile"]
+    assert environments["limits"]["OMP_PROC_BIND"] == "close"
+
+
+def test_another_program_has_limits_of_its_own(place: Workplace) -> None:
+    assert run(place.settings) == 0
+    place.build(extra="# another one")
+    assert run(place.settings) == 0
+    assert len(place.records(FOLDER)) == 2
+
+
+def test_other_experiments_do_not_pay_for_them(workplace: Workplace) -> None:
+    assert run(workplace.settings) == 0
+    assert calls_of(workplace, "limits") == []
+
+
+def test_without_limits_nothing_is_profiled_and_the_reason_is_kept(place: Workplace) -> None:
+    place.behave(FAKE_LIMITS_FAIL="1")
+    assert run(place.settings) == 2
+    assert calls_of(place, "profile") == []
+    assert {failure["reason"] for failure in place.failures()} == {
+        "limits of the machine: --threads: found 2, but OpenMP grants 1"
+    }
+
+
+def test_a_profile_against_limits_leaves_no_timeline(place: Workplace) -> None:
+    assert run(place.settings) == 0
+    assert not (place.results / "timelines").exists()
+
+
+@pytest.mark.parametrize("kind", DAMAGES)
+def test_damaged_ones_are_put_aside_and_measured_again(place: Workplace, kind: str) -> None:
+    assert run(place.settings) == 0
+    (path,) = place.results.glob(f"records/{FOLDER}/*.json")
+    damage(path, kind)
+    assert run(replace(place.settings, blocks=4)) == 0
+    (record,) = place.records(FOLDER).values()
+    assert record["kind"] == "limits"
+    assert (place.results / "stale" / "records" / FOLDER / path.name).exists()

@@ -1,0 +1,228 @@
+"""A whole study with a fake program: complete, resumed, stale; what is there is never lost."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from experiments.run.study import Study, run
+from experiments.support.errors import InputError
+from experiments.support.schema import RECORD_SCHEMA
+from experiments.tests.conftest import ERRORS, PAIR, Workplace
+
+SCHEMA = json.loads(RECORD_SCHEMA.read_text(encoding="utf-8"))
+
+
+def test_a_study_leaves_a_record_for_every_point_and_block(workplace: Workplace) -> None:
+    assert run(workplace.settings) == 0
+    assert {name: len(workplace.records(name)) for name in ("chunks", "control", "pair")} == {
+        "chunks": 6,
+        "control": 6,
+        "pair": 4,
+    }
+    for record in workplace.records().values():
+        jsonschema.validate(record, SCHEMA)
+    assert not (workplace.results / ".running").exists()
+    assert not workplace.failures()
+
+
+def test_a_record_remembers_its_place_in_the_plan(workplace: Workplace) -> None:
+    run(workplace.settings)
+    for name, record in workplace.records("chunks").items():
+        tags = record["tags"]
+        assert name == f"{tags['point']}-b{tags['block']}.json"
+        assert (tags["experiment"], tags["x_name"], tags["series"]) == ("chunks", "chunk", "guided")
+        assert record["axes"]["find_chunk"] == tags["x"]
+        assert (tags["points_planned"], tags["blocks_planned"]) == (3, 2)
+        assert tags["scale"] == "paper"
+        assert tags["site"] == "local"
+    places = {(one["tags"]["block"], one["tags"]["position"]) for one in workplace.records("chunks").values()}
+    assert places == {(block, position) for block in range(2) for position in range(3)}
+    labels = [one["tags"]["label"] for one in workplace.records("control").values()]
+    assert sorted(labels) == ["A"] * 3 + ["A-again"] * 3
+    assert {one["tags"]["claim"] for one in workplace.records("pair").values()} == {"four_boxes"}
+
+
+def test_the_control_is_spread_over_the_study(workplace: Workplace) -> None:
+    run(workplace.settings)
+    tags = [call["words"] for call in workplace.calls() if "--tag" in call["words"]]
+    order = [next(word for word in words if word.startswith("experiment=")) for words in tags]
+    places = [place for place, name in enumerate(order) if name == "experiment=control"]
+    assert places[0] < len(order) / 3
+    assert places[-1] > len(order) * 2 / 3
+
+
+def test_openmp_is_told_what_the_site_says_and_nothing_else(workplace: Workplace) -> None:
+    workplace.behave(OMP_SCHEDULE="static,7", OMP_NUM_THREADS="13")
+    run(workplace.settings)
+    for call in workplace.calls():
+        if "--threads" in call["words"]:
+            threads = call["words"][call["words"].index("--threads") + 1]
+            assert call["openmp"]["OMP_NUM_THREADS"] == threads
+            assert call["openmp"].keys() == {"OMP_DYNAMIC", "OMP_NUM_THREADS", "OMP_PLACES", "OMP_PROC_BIND"}
+
+
+def test_a_variant_is_verified_once_before_it_is_timed(workplace: Workplace) -> None:
+    run(workplace.settings)
+    verbs = [(call["words"][0], "--tag" in call["words"]) for call in workplace.calls()]
+    checks = [call["words"] for call in workplace.calls() if call["words"][0] == "check"]
+    checked = [(words[words.index("--variant") + 1], words[-1]) for words in checks]
+    assert sorted(checked) == [("nine", "published"), ("published", "published"), ("published", "relative")]
+    assert verbs.index(("check", False)) < verbs.index(("bench", True))
+
+
+def test_errors_are_measured_once_a_point(workplace: Workplace) -> None:
+    workplace.question("errors", ERRORS)
+    assert run(workplace.settings) == 0
+    records = workplace.records("errors").values()
+    assert len(records) == 16
+    assert all((record["tags"]["block"] == 0) == ("trajectory" in record["errors"]) for record in records)
+    assert {record["tags"]["scene_name"] for record in records} == {"dilute", "cradle"}
+    assert not any("scene_name" in record["tags"] for record in workplace.records("pair").values())
+
+
+def test_cachegrind_counts_once_a_point(workplace: Workplace) -> None:
+    text = PAIR.replace("[scene]", 'verb = "profile"\nsimulated = 3\n\n[scene]', 1)
+    workplace.question("pair", text)
+    assert run(workplace.settings) == 0
+    counted = [call["words"] for call in workplace.calls() if "--simulated" in call["words"]]
+    assert len(counted) == len({point["tags"]["point"] for point in workplace.records("pair").values()})
+    assert all(words[words.index("--simulated-steps") + 1] == "3" for words in counted)
+
+
+def test_only_a_profile_can_be_counted_under_cachegrind(workplace: Workplace) -> None:
+    workplace.question("pair", PAIR.replace("[scene]", "simulated = 3\n\n[scene]", 1))
+    with pytest.raises(InputError, match="simulated: found for verb bench, expected for profile only"):
+        run(workplace.settings)
+
+
+def test_a_record_without_the_errors_asked_for_is_measured_again(workplace: Workplace) -> None:
+    workplace.question("errors", ERRORS)
+    run(workplace.settings)
+    path = next(workplace.results.glob("records/errors/*-b0.json"))
+    record = json.loads(path.read_text())
+    del record["errors"]["trajectory"]
+    path.write_text(json.dumps(record))
+    assert workplace.rows()["errors"].stale == 1
+    assert run(workplace.settings) == 0
+    assert "trajectory" in json.loads(path.read_text())["errors"]
+
+
+def test_a_variant_is_verified_on_every_named_scene(workplace: Workplace) -> None:
+    workplace.question("errors", ERRORS)
+    run(replace(workplace.settings, study=("errors",)))
+    checks = [call["words"] for call in workplace.calls() if call["words"][0] == "check"]
+    scenes = sorted(Path(words[1]).name.split("-")[0] for words in checks if "nine" in words)
+    assert scenes == ["100", "case"]
+
+
+def test_running_again_measures_nothing_twice(workplace: Workplace) -> None:
+    run(workplace.settings)
+    before = workplace.records()
+    assert run(workplace.settings) == 0
+    assert workplace.measured() == len(before)
+    assert workplace.records() == before
+
+
+def test_only_what_is_missing_is_run(workplace: Workplace) -> None:
+    run(workplace.settings)
+    lost = sorted(workplace.results.glob("records/*/*.json"))[::3]
+    for path in lost:
+        path.unlink()
+    done = workplace.measured()
+    assert run(workplace.settings) == 0
+    assert workplace.measured() - done == len(lost)
+    assert all(path.exists() for path in lost)
+
+
+def test_another_program_makes_every_record_stale(workplace: Workplace) -> None:
+    run(workplace.settings)
+    before = workplace.records()
+    workplace.build(extra="# a change")
+    assert workplace.rows()["chunks"].stale == 6
+    assert run(workplace.settings) == 0
+    assert not before.keys() & workplace.records().keys()
+    stale = {path.name for path in workplace.results.glob("stale/records/*/*.json")}
+    assert stale == before.keys()
+
+
+def test_a_changed_scene_is_measured_again_and_the_old_one_found_again(workplace: Workplace) -> None:
+    run(workplace.settings)
+    before = workplace.records("pair")
+    workplace.question("pair", PAIR.replace("steps = 10", "steps = 11"))
+    run(workplace.settings)
+    assert not before.keys() & workplace.records("pair").keys()
+    workplace.question("pair", PAIR)
+    done = workplace.measured()
+    run(workplace.settings)
+    assert workplace.measured() == done
+    assert workplace.records("pair") == before
+
+
+def test_a_renamed_series_is_measured_again(workplace: Workplace) -> None:
+    run(workplace.settings)
+    workplace.question("pair", PAIR.replace('name = "four"', 'name = "4"'.replace("4", "quadrant")))
+    assert workplace.rows()["pair"].stale == 2
+    run(workplace.settings)
+    assert {one["tags"]["series"] for one in workplace.records("pair").values()} == {"quadrant", "nine"}
+
+
+def test_a_damaged_scene_is_generated_again(workplace: Workplace) -> None:
+    run(workplace.settings)
+    scene = next(workplace.results.glob("scenes/100-*.in"))
+    content = scene.read_text()
+    scene.write_text(content + "1\n")
+    for path in workplace.results.glob("records/pair/*.json"):
+        path.unlink()
+    run(workplace.settings)
+    assert scene.read_text() == content
+
+
+def test_more_blocks_keep_those_that_are_there(workplace: Workplace) -> None:
+    run(workplace.settings)
+    before = workplace.records("pair")
+    run(replace(workplace.settings, blocks=4))
+    assert len(workplace.records("pair")) == 8
+    assert before.items() <= workplace.records("pair").items()
+    row = workplace.rows()["pair"]
+    assert (row.blocks, row.done, row.missing) == (4, 8, 0), "more than the question asks for"
+
+
+def test_without_any_program_there_is_one_line(workplace: Workplace) -> None:
+    workplace.program.unlink()
+    with pytest.raises(InputError, match=r"carom: is not built; build it with `make build`$"):
+        run(workplace.settings)
+    assert not workplace.results.exists()
+
+
+def test_a_program_that_changes_under_the_study_stops_it(
+    workplace: Workplace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = Study(workplace.settings)
+    workplace.build(extra="# built anew")
+    monkeypatch.setattr("experiments.run.study.Study", lambda _: study)
+    with pytest.raises(InputError, match="was built anew while the study ran"):
+        run(workplace.settings)
+    assert not workplace.records()
+    assert not workplace.failures()
+
+
+def test_the_scales_do_not_cost_each_other_anything(workplace: Workplace) -> None:
+    run(workplace.settings)
+    paper = workplace.records()
+    run(replace(workplace.settings, scale="quick"))
+    assert {one["tags"]["scale"] for one in workplace.records().values()} == {"quick"}
+    done = workplace.measured()
+    run(workplace.settings)
+    assert workplace.measured() == done
+    assert workplace.records() == paper
+
+
+def test_a_part_of_the_study_leaves_the_rest_alone(workplace: Workplace) -> None:
+    run(workplace.settings)
+    chunks = workplace.records("chunks")
+    workplace.build(extra="# a change")
+    run(replace(workplace.settings, study=("pair",)))
+    assert workplace.records("chunks") == chunks

@@ -1,0 +1,85 @@
+"""Turns: measurements on one host never overlap."""
+
+import itertools
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from experiments.run.turn import turn
+from experiments.support.errors import InputError
+from experiments.tests.conftest import ERRORS, Workplace
+from experiments.tests.run.test_limits import LIMITS
+
+ANOTHER = """
+import sys, time
+from experiments.run.turn import turn
+with turn():
+    print(time.monotonic(), flush=True)
+    time.sleep(float(sys.argv[1]))
+    print(time.monotonic(), flush=True)
+"""
+
+
+def another(seconds: float) -> "subprocess.Popen[str]":
+    command = [sys.executable, "-c", ANOTHER, str(seconds)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+
+
+def times(process: "subprocess.Popen[str]") -> list[float]:
+    return [float(line) for line in process.communicate(timeout=60)[0].split()]
+
+
+@pytest.fixture(autouse=True)
+def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+
+
+def test_turns_of_two_processes_do_not_overlap() -> None:
+    spans = sorted(times(process) for process in [another(0.3), another(0.3), another(0.3)])
+    assert all(len(span) == 2 for span in spans)
+    assert all(before[1] <= after[0] for before, after in itertools.pairwise(spans))
+
+
+def test_what_two_runners_run_does_not_overlap(empty_workplace: Workplace) -> None:
+    place = empty_workplace
+    place.question("close", LIMITS)
+    place.question("errors", ERRORS)
+    spans = place.root / "spans"
+    place.behave(
+        FAKE_SPANS=str(spans), FAKE_SECONDS="0.02", FAKE_CHECK_SECONDS="0.05", FAKE_OUTSIDE="measure"
+    )
+    runners = [place.start("run", "--no-figures", "--results", name) for name in ("one", "two")]
+    for runner in runners:
+        _, error = runner.communicate(timeout=120)
+        assert (runner.returncode, error) == (0, "")
+    lines = [line.split() for line in spans.read_text(encoding="utf-8").splitlines()]
+    assert {verb for verb, _, _ in lines} == {"bench", "check", "limits", "outside", "profile"}
+    times_of = sorted((float(began), float(ended), verb) for verb, began, ended in lines)
+    for before, after in itertools.pairwise(times_of):
+        assert before[1] <= after[0], f"{after[2]} began before {before[2]} had ended"
+
+
+def test_a_killed_process_gives_up_its_turn() -> None:
+    killed = another(600)
+    assert killed.stdout is not None
+    killed.stdout.readline()
+    killed.kill()
+    killed.wait()
+    before = time.monotonic()
+    with turn():
+        assert time.monotonic() - before < 60
+
+
+def test_a_link_in_the_place_of_the_lock_is_refused(tmp_path: Path) -> None:
+    with turn():
+        pass
+    (lock,) = tmp_path.iterdir()
+    lock.unlink()
+    lock.symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(InputError, match="cannot be opened"), turn():
+        pass
+    assert not (tmp_path / "elsewhere").exists()

@@ -1,0 +1,1 @@
+"""A real Slurm for the tests, and the tests that need it."""

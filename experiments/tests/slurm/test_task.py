@@ -1,0 +1,164 @@
+"""One task of a job array without a cluster: twins, gaps, signals; and clients that do not answer."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from experiments.slurm import scheduler
+from experiments.slurm.jobs import PartitionFolder, folders, units
+from experiments.slurm.task import work
+from experiments.support.errors import InputError
+from experiments.support.files import write_json
+from experiments.support.schema import RECORD_SCHEMA
+from experiments.tests.conftest import ROOT, Workplace, hear_every_signal
+from experiments.tests.slurm.test_script import site
+
+
+def folder_of(workplace: Workplace) -> PartitionFolder:
+    return folders(replace(workplace.settings, site=site(workplace.root)))[0]
+
+
+def job_of(workplace: Workplace, tasks: int = 1) -> Path:
+    """Write the list of blocks of a job, dealt out to so many tasks."""
+    folder = folder_of(workplace)
+    wanted = [unit for unit, _, _ in units(folder.study())]
+    job, path = folder.next_job([wanted[first::tasks] for first in range(tasks)])
+    path.parent.mkdir(parents=True)
+    write_json(path, job.content(), path.parent)
+    return path
+
+
+def start(manifest: Path, task: int) -> "subprocess.Popen[str]":
+    return subprocess.Popen(
+        [sys.executable, "-m", "experiments", "work", os.fspath(manifest), str(task)],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=hear_every_signal,
+    )
+
+
+def records(workplace: Workplace) -> dict[str, bytes]:
+    paths = workplace.results.glob("slurm/cluster/xs/records/*/*.json")
+    return {path.name: path.read_bytes() for path in paths}
+
+
+def test_two_tasks_share_a_folder_and_the_work(workplace: Workplace) -> None:
+    workplace.behave(FAKE_SECONDS="0.05")
+    manifest = job_of(workplace, tasks=2)
+    for process in [start(manifest, 0), start(manifest, 1)]:
+        _, error = process.communicate(timeout=60)
+        assert (process.returncode, error) == (0, "")
+    assert len(records(workplace)) == 16
+    assert sum("--tag" in call["words"] for call in workplace.calls()) == 16
+    assert not list(workplace.results.rglob(".running/*"))
+
+
+def test_two_copies_of_one_task_tear_nothing(workplace: Workplace) -> None:
+    workplace.behave(FAKE_SECONDS="0.05")
+    manifest = job_of(workplace)
+    for process in [start(manifest, 0) for _ in range(3)]:
+        _, error = process.communicate(timeout=60)
+        assert (process.returncode, error) == (0, "")
+    assert len(records(workplace)) == 16
+    for content in records(workplace).values():
+        jsonschema.validate(json.loads(content), json.loads(RECORD_SCHEMA.read_text()))
+
+
+def test_what_is_measured_is_not_measured_again(workplace: Workplace) -> None:
+    manifest = job_of(workplace)
+    assert work(manifest, 0) == 0
+    before = records(workplace)
+    assert work(manifest, 0) == 0
+    assert records(workplace) == before
+
+
+def test_the_signal_ahead_of_the_time_limit_keeps_what_is_finished(workplace: Workplace) -> None:
+    workplace.behave(FAKE_SECONDS="0.3")
+    process = start(job_of(workplace), 0)
+    assert process.stdout is not None
+    process.stdout.readline()
+    process.send_signal(signal.SIGUSR1)
+    _, error = process.communicate(timeout=60)
+    assert process.returncode == 128 + signal.SIGUSR1
+    assert error == "\nstopped: what is finished is kept; the same command goes on with the rest\n"
+    assert 1 <= len(records(workplace)) < 16
+    assert not list(workplace.results.rglob(".running/*"))
+
+
+def test_a_failed_point_is_not_tried_again_by_its_task(workplace: Workplace) -> None:
+    workplace.behave(FAKE_BENCH_CRASHES="nine")
+    assert work(job_of(workplace), 0) == 2
+    assert len(records(workplace)) == 14
+    failures = list(workplace.results.glob("slurm/cluster/xs/failures/pair/*.json"))
+    assert len(failures) == 1
+
+
+def test_a_job_of_another_site_is_refused(workplace: Workplace) -> None:
+    manifest = job_of(workplace)
+    site(workplace.root, 'name = "xs"', 'name = "xl"')
+    with pytest.raises(InputError, match=r'cluster.toml: has no partition "xs" any more'):
+        work(manifest, 0)
+    with pytest.raises(InputError, match="is not the list of blocks of a job"):
+        work(workplace.root / "nothing.json", 0)
+
+
+def test_a_task_that_the_job_does_not_have_is_refused(workplace: Workplace) -> None:
+    with pytest.raises(InputError, match="task 7: expected a number from 0 to 0"):
+        work(job_of(workplace), 7)
+
+
+def test_the_control_is_spread_over_the_tasks(workplace: Workplace) -> None:
+    order = [unit for unit, _, _ in units(folder_of(workplace).study())]
+    assert order == [
+        *(("chunks", 0), ("control", 0), ("pair", 0)),
+        *(("chunks", 1), ("control", 1), ("pair", 1)),
+        ("control", 2),
+    ]
+
+
+def answers(workplace: Workplace, **programs: str) -> None:
+    """Put stand-ins for Slurm's commands on the path."""
+    folder = workplace.root / "tools"
+    folder.mkdir()
+    for name, text in programs.items():
+        (folder / name).write_text(f"#!/bin/sh\n{text}\n")
+        (folder / name).chmod(0o755)
+    workplace.behave(PATH=f"{folder}:{os.environ['PATH']}")
+
+
+def test_a_client_that_hangs_is_given_up(workplace: Workplace, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(scheduler, "TIME_LIMIT_SECONDS", 0.2)
+    answers(workplace, squeue="sleep 60", scontrol="echo slurm_load_ctl_conf error: no route >&2; exit 1")
+    with pytest.raises(InputError, match=r"squeue: took longer than 0.2 s and was stopped"):
+        scheduler.queue()
+    with pytest.raises(InputError, match="scontrol: slurm_load_ctl_conf error: no route"):
+        scheduler.max_array_size()
+
+
+def test_a_refused_job_leaves_nothing_to_wait_for(workplace: Workplace) -> None:
+    answers(
+        workplace,
+        squeue="true",
+        scontrol="echo 'MaxArraySize = 1001'",
+        sbatch="echo 'sbatch: error: invalid partition specified: xs' >&2; exit 1",
+    )
+    process = workplace.start("submit", "--site", site(workplace.root))
+    _, error = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert error == "sbatch: error: invalid partition specified: xs\n"
+    assert not list(workplace.results.rglob("jobs/*.*"))
+
+
+def test_variables_of_the_shell_do_not_overrule_the_script(workplace: Workplace) -> None:
+    answers(workplace, sbatch='echo "${SBATCH_PARTITION:-7};cluster"')
+    workplace.behave(SBATCH_PARTITION="another")
+    assert scheduler.submit(Path("script")) == "7"

@@ -1,0 +1,235 @@
+#include "harness/accuracy/error_measures.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+#include "harness/accuracy/momentum_balance.hpp"
+#include "harness/accuracy/penetration.hpp"
+#include "harness/measure/energy_drift.hpp"
+#include "harness/measure/measure.hpp"
+#include "harness/support/errors.hpp"
+#include "harness/support/format.hpp"
+#include "harness/support/json.hpp"
+#include "harness/verify/checker.hpp"
+#include "kernels/exact/event_driven.hpp"
+
+namespace carom {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The event-driven simulation that goes along with a run, as far as its limit lets it.
+class Companion {
+  public:
+    Companion(const Scene& scene, std::int64_t most_events)
+        : scene_(scene), limits_{.in_all = most_events}, reference_(scene) {}
+
+    /// Compares at the end of unit of time `time`.
+    void compare(int time, const std::vector<Disc>& discs) {
+        if (!reason_.empty() || !advance(time)) {
+            return;
+        }
+        const double distance = rms_distance(discs);
+        if (!result_.time_to_tenth_radius && distance > 0.1) {
+            result_.time_to_tenth_radius = time;
+        }
+        if (std::has_single_bit(static_cast<unsigned>(time)) || time == scene_.steps) {
+            result_.trajectory.push_back({.time = time, .rms_distance = distance});
+        }
+    }
+
+    /// Fills in what the reference has to say at the end.
+    void finish(ErrorMeasures& measures) {
+        if (!reason_.empty()) {
+            measures.reference_reason = reason_;
+            return;
+        }
+        const auto time = static_cast<double>(scene_.steps);
+        const auto count = static_cast<double>(scene_.discs.size());
+        result_.collision_rate = static_cast<double>(reference_.pair_collisions()) / (time * count);
+        result_.pressure = reference_.wall_impulse() / (time * 4 * scene_.side);
+        result_.speed_distance =
+            kolmogorov_smirnov_distance(speeds(measures.discs), speeds(reference_.discs()));
+        measures.reference = std::move(result_);
+    }
+
+  private:
+    bool advance(int time) {
+        if (reference_.advance(time, limits_)) {
+            return true;
+        }
+        reason_ = reference_.events() > limits_.in_all
+                      ? format("the reference is given up at time %.6g of %d after %lld events", //
+                               reference_.time(), scene_.steps, static_cast<long long>(limits_.in_all))
+                      : format("the collisions of the reference at time %.6g do not come to an end: a disc "
+                               "is wedged",
+                               reference_.time());
+        return false;
+    }
+
+    double rms_distance(const std::vector<Disc>& discs) const {
+        const auto exact = reference_.discs();
+        double sum = 0;
+        for (std::size_t i = 0; i < discs.size(); ++i) {
+            const double dx = (discs[i].x - exact[i].x) / scene_.radius;
+            const double dy = (discs[i].y - exact[i].y) / scene_.radius;
+            sum += dx * dx + dy * dy;
+        }
+        return discs.empty() ? 0 : std::sqrt(sum / static_cast<double>(discs.size()));
+    }
+
+    template <class SomeDisc> static std::vector<double> speeds(const std::vector<SomeDisc>& discs) {
+        std::vector<double> result;
+        result.reserve(discs.size());
+        for (const SomeDisc& disc : discs) {
+            result.push_back(std::hypot(disc.vx, disc.vy));
+        }
+        return result;
+    }
+
+    const Scene& scene_;
+    EventLimits limits_;
+    EventDriven<double> reference_;
+    AgainstReference result_;
+    std::string reason_;
+};
+
+/// Measures what is seen at every step of a run.
+class Watch {
+  public:
+    Watch(const Scene& scene, const Rounding& rounding, const std::vector<Disc>& start)
+        : walls_{.side = rounding(scene.side), .radius = rounding(scene.radius), .rounding = rounding},
+          balance_(walls_), penetration_(overlapping_pairs(start, walls_.radius, rounding), walls_.radius),
+          before_(start) {}
+
+    void step(const std::vector<Disc>& discs, const Tally& tally) {
+        const auto pairs = overlapping_pairs(discs, walls_.radius, walls_.rounding);
+        balance_.add(before_, discs, pairs);
+        penetration_.add(discs, pairs);
+        pair_resolves_ += tally.pair_resolves;
+        before_ = discs;
+    }
+
+    void finish(const Scene& scene, ErrorMeasures& measures) const {
+        double speed_sum = 0;
+        for (const Disc& disc : scene.discs) {
+            speed_sum += std::hypot(disc.vx, disc.vy);
+        }
+        if (speed_sum > 0) {
+            measures.momentum_drift = balance_.unexplained() / speed_sum;
+        }
+        measures.penetration_worst = penetration_.worst();
+        measures.penetration_mean = penetration_.mean();
+        if (scene.steps > 0 && !scene.discs.empty()) {
+            measures.collision_rate =
+                static_cast<double>(pair_resolves_) /
+                (static_cast<double>(scene.steps) * static_cast<double>(scene.discs.size()));
+        }
+        if (balance_.from_wall_to_wall()) {
+            measures.pressure_reason = "a group of overlapping discs reached from wall to wall";
+        } else if (scene.steps > 0) {
+            measures.pressure = balance_.wall_impulse() / (scene.steps * 4.0 * scene.side);
+        } else {
+            measures.pressure_reason = "the scene has no steps";
+        }
+    }
+
+  private:
+    Walls walls_;
+    MomentumBalance balance_;
+    Penetration penetration_;
+    std::vector<Disc> before_;
+    std::int64_t pair_resolves_ = 0;
+};
+
+} // namespace
+
+double kolmogorov_smirnov_distance(std::vector<double> one, std::vector<double> two) {
+    if (one.empty() || two.empty()) {
+        return 0;
+    }
+    std::ranges::sort(one);
+    std::ranges::sort(two);
+    const double slack = 1e-6 * std::max(one.back(), two.back());
+    double largest = 0;
+    std::size_t below_one = 0;
+    std::size_t below_two = 0;
+    while (below_one < one.size() && below_two < two.size()) {
+        const double value = std::min(one[below_one], two[below_two]) + slack;
+        while (below_one < one.size() && one[below_one] <= value) {
+            ++below_one;
+        }
+        while (below_two < two.size() && two[below_two] <= value) {
+            ++below_two;
+        }
+        largest =
+            std::max(largest, std::abs(static_cast<double>(below_one) / static_cast<double>(one.size()) -
+                                       static_cast<double>(below_two) / static_cast<double>(two.size())));
+    }
+    return largest;
+}
+
+ErrorMeasures measure_errors(const Scene& scene, const Variant& variant, const Tuning& tuning,
+                             std::int64_t most_events) {
+    const auto simulation = variant.simulate(scene, tuning);
+    const Rounding rounding = rounding_of(variant.policies);
+    const Checker checker(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, rounding);
+    Companion companion(scene, most_events);
+    Watch watch(scene, rounding, simulation->discs());
+    ErrorMeasures measures;
+    for (int time = 1; time <= scene.steps; ++time) {
+        for (int substep = 1; substep <= tuning.substeps; ++substep) {
+            const Tally tally = simulation->step();
+            if (!tally.settled) {
+                throw CheckError(
+                    format("step %d: the resolve did not end within %d sweeps", time, tuning.sweep_limit));
+            }
+            watch.step(simulation->discs(), tally);
+        }
+        measures.unresolved_pairs += checker.count_colliding(simulation->discs());
+        companion.compare(time, simulation->discs());
+    }
+    measures.discs = simulation->discs();
+    measures.energy_drift = energy_drift(scene, measures.discs);
+    measures.discs_outside = discs_outside(scene, measures.discs);
+    watch.finish(scene, measures);
+    companion.finish(measures);
+    return measures;
+}
+
+Json error_measures_json(const ErrorMeasures& measures) {
+    Json json{{"energy_drift", number_or_null(measures.energy_drift)},
+              {"discs_outside", measures.discs_outside},
+              {"unresolved_pairs", measures.unresolved_pairs},
+              {"momentum_drift", number_or_null(measures.momentum_drift)},
+              {"penetration_worst", measures.penetration_worst},
+              {"penetration_mean", measures.penetration_mean},
+              {"collision_rate", number_or_null(measures.collision_rate)},
+              {"pressure", number_or_null(measures.pressure)},
+              {"pressure_reason", text_or_null(measures.pressure_reason)},
+              {"trajectory", nullptr},
+              {"time_to_tenth_radius", nullptr},
+              {"collision_rate_reference", nullptr},
+              {"pressure_reference", nullptr},
+              {"speed_distance", nullptr},
+              {"reference_reason", text_or_null(measures.reference_reason)}};
+    if (measures.reference) {
+        const AgainstReference& reference = *measures.reference;
+        json["trajectory"] = Json::array();
+        for (const DistanceAt& at : reference.trajectory) {
+            json["trajectory"].push_back(
+                {{"time", at.time}, {"rms_distance", number_or_null(at.rms_distance)}});
+        }
+        if (reference.time_to_tenth_radius) {
+            json["time_to_tenth_radius"] = *reference.time_to_tenth_radius;
+        }
+        json["collision_rate_reference"] = number_or_null(reference.collision_rate);
+        json["pressure_reference"] = number_or_null(reference.pressure);
+        json["speed_distance"] = number_or_null(reference.speed_distance);
+    }
+    return json;
+}
+
+} // namespace carom

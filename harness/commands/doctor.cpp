@@ -1,0 +1,24 @@
+#include "harness/doctor/doctor.hpp"
+
+#include <iostream>
+#include <memory>
+
+#include "harness/commands/commands.hpp"
+
+namespace carom {
+
+void add_doctor_command(CLI::App& program) {
+    auto json = std::make_shared<bool>(false);
+    CLI::App* command = program.add_subcommand(
+        "doctor", "Tell what this machine can and cannot measure, and why; changes nothing");
+    command->add_flag("--json", *json, "Print the findings as one JSON object");
+    command->callback([json] {
+        constexpr double noise_seconds = 2;
+        const auto findings = doctor_json(noise_seconds);
+        std::cout << (*json ? findings.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
+                                  "\n"
+                            : doctor_text(findings));
+    });
+}
+
+} // namespace carom

@@ -1,0 +1,73 @@
+#include "harness/machine/limits.hpp"
+
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/commands/commands.hpp"
+#include "harness/commands/simulation_options.hpp"
+#include "harness/machine/machine.hpp"
+#include "harness/machine/provenance.hpp"
+#include "harness/machine/threads.hpp"
+#include "harness/records/record.hpp"
+#include "harness/support/json.hpp"
+
+namespace carom {
+namespace {
+
+constexpr std::int64_t mebibyte = 1 << 20;
+
+struct LimitsOptions {
+    int threads = default_threads();
+    double seconds = 0.1;
+    std::optional<std::int64_t> memory_mebibytes;
+    bool json = false;
+    std::string record;
+    std::vector<std::string> tags;
+};
+
+void limits(const LimitsOptions& options) {
+    using Json = nlohmann::ordered_json;
+    const Json tags = tags_json(options.tags);
+    const std::int64_t most_bytes =
+        options.memory_mebibytes ? *options.memory_mebibytes * mebibyte : read_machine().memory_bytes / 4;
+    const Json found = limits_json(options.threads, options.seconds, most_bytes);
+    std::cout << (options.json ? json_text(found, 2) + "\n" : limits_text(found));
+    if (!options.record.empty()) {
+        write_record(options.record, {{"schema_version", 1},
+                                      {"kind", "limits"},
+                                      {"recorded_at", utc_now()},
+                                      {"tags", tags},
+                                      {"limits", found},
+                                      {"provenance", provenance_json(options.threads)}});
+    }
+}
+
+} // namespace
+
+void add_limits_command(CLI::App& program) {
+    auto options = std::make_shared<LimitsOptions>();
+    CLI::App* command = program.add_subcommand(
+        "limits",
+        "Measure what this machine can do at most: copy bandwidth and arithmetic, on 1 to T threads");
+    command->add_option("--threads", options->threads, "The greatest number of OpenMP threads")
+        ->check(CLI::Range(1, most_threads))
+        ->capture_default_str();
+    command->add_option("--seconds", options->seconds, "About how long each rate is measured")
+        ->check(CLI::Range(0.0, 60.0))
+        ->capture_default_str();
+    command
+        ->add_option("--memory", options->memory_mebibytes,
+                     "The most that a copy may take, in MiB; by itself a quarter of the machine's memory")
+        ->check(CLI::Range(1, 1 << 30));
+    command->add_flag("--json", options->json, "Print the rates as one JSON object");
+    command->add_option("--record", options->record, "File for the record of the rates");
+    command->add_option("--tag", options->tags, "KEY=VALUE to keep in the record; may be repeated")
+        ->allow_extra_args(false);
+    command->callback([options] { limits(*options); });
+}
+
+} // namespace carom

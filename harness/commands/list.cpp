@@ -1,0 +1,93 @@
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/commands/commands.hpp"
+#include "harness/records/policies_json.hpp"
+#include "harness/verify/determinism.hpp"
+#include "variants/name.hpp"
+#include "variants/registry.hpp"
+
+namespace carom {
+namespace {
+
+void print_json() {
+    auto list = nlohmann::ordered_json::array();
+    for (const Variant& variant : variants()) {
+        const Determinism same_bits = promised(variant.policies);
+        list.push_back({{"name", variant.name},
+                        {"policies", policies_json(variant.policies)},
+                        {"same_bits", {{"threads", same_bits.threads}, {"compilers", same_bits.compilers}}}});
+    }
+    std::cout << list.dump(2) << '\n';
+}
+
+void print_names() {
+    for (const Variant& variant : variants()) {
+        std::cout << variant.name << '\n';
+    }
+}
+
+std::string word_of(const nlohmann::ordered_json& choice) {
+    return choice.is_null() ? "-" : choice.get<std::string>();
+}
+
+/// The policies of the published best, and then the names, which say in what each variant differs.
+void print_table() {
+    const auto policies = policies_json(variants().front().policies);
+    for (const Variant& variant : variants()) {
+        std::printf("%s\n", std::string(variant.name).c_str());
+        if (&variant == &variants().front()) {
+            for (const auto& [policy, choice] : policies.items()) {
+                std::printf("    %-16s  %s\n", policy.c_str(), word_of(choice).c_str());
+            }
+            std::printf("every other one differs from it in what its name says:\n");
+        }
+    }
+}
+
+/// "all of them", or "all but" those that do not hold a promise.
+std::string held_by(bool Determinism::* promise) {
+    std::string others;
+    for (const Variant& variant : variants()) {
+        if (!(promised(variant.policies).*promise)) {
+            others += (others.empty() ? " " : ", ") + std::string(variant.name);
+        }
+    }
+    return others.empty() ? "all of them" : "all but" + others;
+}
+
+void print_promises() {
+    std::printf("\nThe final state is the same, to the last bit,\n"
+                "  for any number of threads, any schedule and any chunk: %s\n"
+                "  with every compiler, contraction off:                  %s\n",
+                held_by(&Determinism::threads).c_str(), held_by(&Determinism::compilers).c_str());
+}
+
+} // namespace
+
+void add_list_command(CLI::App& program) {
+    struct Choice {
+        bool names = false;
+        bool json = false;
+    };
+    auto choice = std::make_shared<Choice>();
+    CLI::App* command = program.add_subcommand("list", "List the variants, the published best first");
+    auto* names = command->add_flag("--names", choice->names, "One name a line");
+    command->add_flag("--json", choice->json, "Names and policies as JSON")->excludes(names);
+    command->callback([choice] {
+        if (choice->json) {
+            print_json();
+        } else if (choice->names) {
+            print_names();
+        } else {
+            print_table();
+            print_promises();
+        }
+    });
+}
+
+} // namespace carom

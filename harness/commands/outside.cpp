@@ -1,0 +1,79 @@
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/commands/commands.hpp"
+#include "harness/commands/measurement_options.hpp"
+#include "harness/machine/provenance.hpp"
+#include "harness/measure/chipmunk.hpp"
+#include "harness/measure/energy_drift.hpp"
+#include "harness/measure/measure.hpp"
+#include "harness/records/record.hpp"
+#include "harness/support/format.hpp"
+#include "harness/support/json.hpp"
+
+namespace carom {
+namespace {
+
+struct OutsideOptions {
+    std::string scene;
+    int substeps = 1;
+    int iterations = 10;
+    std::string record;
+    std::vector<std::string> tags;
+};
+
+nlohmann::ordered_json outside_json(const OutsideOptions& options, const LoadedScene& loaded,
+                                    const ChipmunkRun& run) {
+    const auto drift = energy_drift(loaded.scene, run.discs);
+    return {{"schema_version", 1},
+            {"kind", "outside"},
+            {"recorded_at", utc_now()},
+            {"tags", tags_json(options.tags)},
+            {"engine", {{"name", "Chipmunk"}, {"version", run.version}, {"iterations", options.iterations}}},
+            {"axes", {{"threads", 1}, {"substeps", options.substeps}}},
+            {"scene", scene_json(loaded.scene, loaded.name, loaded.sha256)},
+            {"repetitions", {{{"steps_seconds", run.steps_seconds}, {"cpu_seconds", run.cpu_seconds}}}},
+            {"errors",
+             {{"energy_drift", number_or_null(drift)},
+              {"discs_outside", discs_outside(loaded.scene, run.discs)}}},
+            {"provenance", provenance_json(1)}};
+}
+
+void outside(const OutsideOptions& options) {
+    tags_json(options.tags);
+    const LoadedScene loaded = load_scene(options.scene);
+    const ChipmunkRun run = run_chipmunk(loaded.scene, options.substeps, options.iterations);
+    std::cout << format("%s: %zu discs, %d steps, Chipmunk %s, 1 thread\n", loaded.name.c_str(),
+                        loaded.scene.discs.size(), loaded.scene.steps, run.version.c_str());
+    std::cout << format("  steps            %10.6g s\n", run.steps_seconds);
+    if (const auto drift = energy_drift(loaded.scene, run.discs)) {
+        std::cout << format("  energy drift     %10.3g relative\n", *drift);
+    }
+    std::cout << format("  discs outside    %10d\n", discs_outside(loaded.scene, run.discs));
+    if (!options.record.empty()) {
+        write_record(options.record, outside_json(options, loaded, run));
+    }
+}
+
+} // namespace
+
+void add_outside_command(CLI::App& program) {
+    auto options = std::make_shared<OutsideOptions>();
+    CLI::App* command = program.add_subcommand(
+        "outside", "Simulate by Chipmunk, a general engine, to stand beside; only where built with it");
+    command->add_option("SCENE", options->scene, "Scene file")->required();
+    command->add_option("--substeps", options->substeps, "Steps per unit of time, dt = 1/K")
+        ->check(CLI::Range(1, 1'000'000'000))
+        ->capture_default_str();
+    command->add_option("--iterations", options->iterations, "Iterations of its solver in each step")
+        ->check(CLI::Range(1, 1'000'000))
+        ->capture_default_str();
+    command->add_option("--record", options->record, "File for the record of this process");
+    command->add_option("--tag", options->tags, "KEY=VALUE to keep in the record; may be repeated")
+        ->allow_extra_args(false);
+    command->callback([options] { outside(*options); });
+}
+
+} // namespace carom

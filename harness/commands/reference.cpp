@@ -1,0 +1,110 @@
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/commands/commands.hpp"
+#include "harness/scenes/scene_file.hpp"
+#include "harness/support/errors.hpp"
+#include "harness/support/text.hpp"
+#include "kernels/exact/event_driven.hpp"
+
+namespace carom {
+namespace {
+
+struct ReferenceOptions {
+    std::string scene;
+    double time = 0;
+    bool extended = false;
+    bool json = false;
+};
+
+template <class Real> std::string disc_lines(const std::vector<ExactDisc<Real>>& discs) {
+    std::string text;
+    for (std::size_t i = 0; i < discs.size(); ++i) {
+        append_number(text, i);
+        for (const Real value : {discs[i].x, discs[i].y, discs[i].vx, discs[i].vy}) {
+            text += ' ';
+            append_number(text, value);
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+template <class Real> Real speeds_squared(const std::vector<ExactDisc<Real>>& discs) {
+    Real sum = 0;
+    for (const auto& disc : discs) {
+        sum += disc.vx * disc.vx + disc.vy * disc.vy;
+    }
+    return sum;
+}
+
+/// Pressure on the walls: momentum taken up per time and length of wall.
+template <class Real>
+nlohmann::ordered_json counts_json(const EventDriven<Real>& reference, const Scene& scene, Real start) {
+    const Real end = speeds_squared(reference.discs());
+    const auto time = static_cast<double>(reference.time());
+    const auto impulse = static_cast<double>(reference.wall_impulse());
+    nlohmann::ordered_json json{{"time", time},
+                                {"particles", scene.discs.size()},
+                                {"pair_collisions", reference.pair_collisions()},
+                                {"wall_collisions", reference.wall_collisions()},
+                                {"wall_impulse", impulse},
+                                {"pressure", nullptr},
+                                {"energy_drift", nullptr}};
+    if (time > 0) {
+        json["pressure"] = impulse / (time * 4 * scene.side);
+    }
+    if (start > 0) {
+        json["energy_drift"] = static_cast<double>((end - start) / start);
+    }
+    return json;
+}
+
+template <class Real> void simulate(const ReferenceOptions& options, const Scene& scene) {
+    EventDriven<Real> reference(scene);
+    const Real start = speeds_squared(reference.discs());
+    if (!reference.advance(static_cast<Real>(options.time))) {
+        throw CheckError(options.scene + ": the collisions at time " +
+                         number_text(static_cast<double>(reference.time())) +
+                         " do not come to an end: a disc is wedged");
+    }
+    if (options.json) {
+        std::cout << counts_json(reference, scene, start).dump(2) << '\n';
+    } else {
+        std::cout << disc_lines(reference.discs());
+    }
+}
+
+void reference(const ReferenceOptions& options) {
+    if (!(options.time >= 0 && std::isfinite(options.time))) {
+        throw InputError("--time: found " + number_text(options.time) +
+                         ", expected a finite time of at least 0");
+    }
+    const Scene scene = read_scene(options.scene);
+    if (options.extended) {
+        simulate<long double>(options, scene);
+    } else {
+        simulate<double>(options, scene);
+    }
+}
+
+} // namespace
+
+void add_reference_command(CLI::App& program) {
+    auto options = std::make_shared<ReferenceOptions>();
+    CLI::App* command = program.add_subcommand(
+        "reference", "Simulate exactly, event by event, and print `i x y vx vy` for every disc");
+    command->add_option("SCENE", options->scene, "Scene file")->required();
+    command->add_option("--time", options->time, "Time at which to print the state")->required();
+    command->add_flag("--extended", options->extended, "Compute in long double instead of double");
+    command->add_flag("--json", options->json, "Print collision counts, wall impulse and pressure instead");
+    command->callback([options] { reference(*options); });
+}
+
+} // namespace carom

@@ -1,0 +1,161 @@
+#include "harness/counters/cachegrind.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <future>
+#include <string>
+#include <utility>
+
+#include "harness/counters/cachegrind_output.hpp"
+#include "harness/scenes/scene_file.hpp"
+#include "harness/support/child_process.hpp"
+#include "harness/support/errors.hpp"
+#include "harness/support/input_file.hpp"
+#include "harness/support/output_file.hpp"
+
+namespace carom {
+namespace {
+
+/// Why nothing can be simulated, and what to do about it.
+class Obstacle : public CounterError {
+  public:
+    explicit Obstacle(const Explanation& why) : CounterError(why.reason), remedy_(why.remedy) {}
+    const std::string& remedy() const { return remedy_; }
+
+  private:
+    std::string remedy_;
+};
+
+/// A folder for temporary files, gone with all that is in it when this is.
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "carom-XXXXXX").string();
+        if (mkdtemp(name.data()) == nullptr) {
+            throw InputError(name +
+                             ": cannot be made, expected a writable folder for temporary files (TMPDIR)");
+        }
+        path_ = name;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    std::string file(const char* name) const { return (path_ / name).string(); }
+
+  private:
+    std::filesystem::path path_;
+};
+
+void require_success(const ChildEnd& end) {
+    if (!end.started) {
+        throw Obstacle(no_valgrind());
+    }
+    if (end.signal == SIGILL) {
+        throw Obstacle(
+            {"valgrind " + valgrind_version() + " does not know an instruction of this program (SIGILL)",
+             "a build for the compiler's default architecture (CAROM_ARCH empty), or a newer valgrind"});
+    }
+    if (end.signal != 0) {
+        throw Obstacle({"cachegrind was killed by signal " + std::to_string(end.signal), "run it again"});
+    }
+    if (end.exit_code != 0) {
+        throw Obstacle({"cachegrind ended with exit code " + std::to_string(end.exit_code) + ": " +
+                            last_line(end.output),
+                        "`valgrind --tool=cachegrind carom run` shows more"});
+    }
+}
+
+/// What cachegrind counts in the whole of a run.
+std::map<std::string_view, double> simulate_run(const Scene& scene, std::string_view variant,
+                                                const Tuning& tuning, const std::filesystem::path& program) {
+    const TemporaryFolder folder;
+    OutputFile file(folder.file("scene.in"));
+    file.write(scene_text(scene));
+    file.finish();
+    require_success(run_child({"valgrind",
+                               "--quiet",
+                               "--tool=cachegrind",
+                               "--cache-sim=yes",
+                               "--branch-sim=yes",
+                               "--cachegrind-out-file=" + folder.file("cachegrind.out"),
+                               program.string(),
+                               "run",
+                               folder.file("scene.in"),
+                               "1",
+                               "--variant",
+                               std::string(variant),
+                               "--find-chunk",
+                               std::to_string(tuning.find_chunk),
+                               "--resolve-chunk",
+                               std::to_string(tuning.resolve_chunk),
+                               "--substeps",
+                               std::to_string(tuning.substeps),
+                               "--sweep-limit",
+                               std::to_string(tuning.sweep_limit),
+                               "--tolerance",
+                               tuning.tolerance == Tolerance::relative ? "relative" : "published"}));
+    try {
+        return parse_cachegrind(read_file(folder.file("cachegrind.out")));
+    } catch (const CounterError& error) {
+        throw Obstacle({error.what(), "a valgrind whose output carom reads, such as 3.19"});
+    }
+}
+
+CounterValue row(std::string_view name, std::optional<double> value) {
+    return {.name = std::string(name),
+            .thread = {},
+            .value = value,
+            .source = "cachegrind",
+            .reason = {},
+            .remedy = {}};
+}
+
+} // namespace
+
+std::vector<CounterValue> simulate_counters(const Scene& scene, std::string_view variant,
+                                            const Tuning& tuning, int units,
+                                            const std::filesystem::path& program) {
+    const auto carom = program.empty() ? std::filesystem::read_symlink("/proc/self/exe") : program;
+    std::vector<CounterValue> rows;
+    Scene beginning = scene;
+    beginning.steps = 0;
+    Scene shortened = scene;
+    shortened.steps = std::min(units, scene.steps);
+    try {
+        // At once: counts do not depend on what else runs, and valgrind takes long to start.
+        auto other =
+            std::async(std::launch::async, [&] { return simulate_run(beginning, variant, tuning, carom); });
+        auto with_steps = simulate_run(shortened, variant, tuning, carom);
+        auto without_steps = other.get();
+        for (const SimulatedName& name : simulated_counts()) {
+            rows.push_back(row(name.counter, with_steps[name.counter] - without_steps[name.counter]));
+        }
+        for (const SimulatedName& name : simulated_sizes()) {
+            rows.push_back(row(name.counter, with_steps[name.counter]));
+        }
+        rows.push_back(row("steps", static_cast<double>(shortened.steps) * tuning.substeps));
+    } catch (const Obstacle& obstacle) {
+        for (const SimulatedName& name : simulated_counts()) {
+            rows.push_back(row(name.counter, {}));
+            rows.back().reason = obstacle.what();
+            rows.back().remedy = obstacle.remedy();
+        }
+    }
+    return rows;
+}
+
+std::string valgrind_version() {
+    const ChildEnd end = run_child({"valgrind", "--version"});
+    const std::string line = last_line(end.output);
+    constexpr std::string_view prefix = "valgrind-";
+    return end.succeeded() && line.starts_with(prefix) ? line.substr(prefix.size()) : "";
+}
+
+Explanation no_valgrind() { return {"valgrind is not on PATH", "install the package valgrind"}; }
+
+} // namespace carom

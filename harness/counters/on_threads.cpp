@@ -1,0 +1,104 @@
+#include "harness/counters/on_threads.hpp"
+
+#include <exception>
+#include <utility>
+
+#include <pthread.h>
+
+#include "harness/counters/groups.hpp"
+#include "harness/support/errors.hpp"
+#include "kernels/parallel_for.hpp"
+
+namespace carom {
+namespace {
+
+std::string place(std::size_t thread, std::size_t threads) {
+    return "counters, thread " + std::to_string(thread) + " of " + std::to_string(threads) + ": ";
+}
+
+} // namespace
+
+ThreadCounters::ThreadCounters(std::vector<std::string> events, MakeEventSet make, int threads)
+    : events_(std::move(events)), make_(std::move(make)), threads_(static_cast<std::size_t>(threads)) {
+    on_each(&ThreadCounters::prepare_here);
+}
+
+ThreadCounters::~ThreadCounters() {
+    on_each_thread(static_cast<int>(threads_.size()),
+                   [this](int thread) { threads_[static_cast<std::size_t>(thread)].set.reset(); });
+}
+
+void ThreadCounters::start() { on_each(&ThreadCounters::start_here); }
+
+void ThreadCounters::stop() { on_each(&ThreadCounters::stop_here); }
+
+std::vector<std::vector<double>> ThreadCounters::counts() const {
+    std::vector<std::vector<double>> counts;
+    for (std::size_t i = 0; i < threads_.size(); ++i) {
+        require_counts(threads_[i], place(i, threads_.size()));
+        counts.push_back(threads_[i].counts);
+    }
+    return counts;
+}
+
+/// Exceptions must not leave the parallel region: an error is thrown after it.
+void ThreadCounters::on_each(void (ThreadCounters::*body)(Thread&) const) {
+    on_each_thread(static_cast<int>(threads_.size()), [this, body](int number) {
+        Thread& thread = threads_[static_cast<std::size_t>(number)];
+        try {
+            (this->*body)(thread);
+        } catch (const std::exception& error) {
+            thread.error = error.what();
+        }
+    });
+    for (std::size_t i = 0; i < threads_.size(); ++i) {
+        const Thread& thread = threads_[i];
+        if (!thread.error.empty()) {
+            throw CheckError(place(i, threads_.size()) + thread.error);
+        }
+        if (!thread.identity) {
+            throw CheckError(place(i, threads_.size()) + "OpenMP gave fewer threads than were asked for");
+        }
+    }
+}
+
+void ThreadCounters::prepare_here(Thread& thread) const {
+    thread.set = make_();
+    for (const std::string& event : events_) {
+        thread.set->add(event);
+    }
+    thread.identity = pthread_self();
+}
+
+void ThreadCounters::start_here(Thread& thread) const {
+    require_same(thread);
+    thread.set->start();
+}
+
+void ThreadCounters::stop_here(Thread& thread) const {
+    require_same(thread);
+    const std::vector<double> counts = thread.set->stop();
+    thread.counts.resize(events_.size());
+    for (std::size_t k = 0; k < events_.size(); ++k) {
+        thread.counts[k] += counts.at(k);
+    }
+}
+
+void ThreadCounters::require_same(const Thread& thread) {
+    if (thread.identity != pthread_self()) {
+        throw CounterError("not the thread any more that was prepared to count");
+    }
+}
+
+void ThreadCounters::require_counts(const Thread& thread, const std::string& where) const {
+    if (thread.counts.size() != events_.size()) {
+        throw CheckError(where + "nothing was counted");
+    }
+    for (std::size_t k = 0; k < events_.size(); ++k) {
+        if (must_count(events_[k]) && !(thread.counts[k] > 0)) {
+            throw CheckError(where + "no " + events_[k] + " counted, although it ran");
+        }
+    }
+}
+
+} // namespace carom

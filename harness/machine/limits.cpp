@@ -1,0 +1,188 @@
+#include "harness/machine/limits.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+#include <benchmark/benchmark.h>
+
+#include "harness/machine/threads.hpp"
+#include "harness/support/errors.hpp"
+#include "harness/support/stopwatch.hpp"
+#include "kernels/parallel_for.hpp"
+
+namespace carom {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+#if defined(__AVX512F__)
+constexpr int native_lanes = 8;
+#elif defined(__AVX__)
+constexpr int native_lanes = 4;
+#else
+constexpr int native_lanes = 2;
+#endif
+using Vector [[gnu::vector_size(native_lanes * sizeof(double))]] = double;
+
+/// Keeps the compiler from joining several of these into one register, or from doing them ahead of time.
+template <class Number> void keep_apart(Number& number) {
+#if defined(__x86_64__)
+    __asm__("" : "+x"(number));
+#elif defined(__aarch64__)
+    __asm__("" : "+w"(number));
+#else
+    benchmark::DoNotOptimize(number);
+#endif
+}
+
+/// As many as hide the latency of a multiplication and an addition, and fit the 16 registers of SSE2 with the
+/// two constants.
+constexpr int chain_count = 12;
+
+/// Every chain tends to 1, so that no operand is ever special. Indices that are constants from the start keep
+/// every chain in a register.
+template <class Number, std::size_t... k> void run_chains(std::int64_t turns, std::index_sequence<k...>) {
+    std::array<Number, sizeof...(k)> chains{};
+    const Number factor = Number{} + 0.875;
+    const Number addend = Number{} + 0.125;
+    const auto advance = [factor, addend](Number& chain) {
+        chain = chain * factor + addend;
+        keep_apart(chain);
+    };
+    for (std::int64_t turn = 0; turn < turns; ++turn) {
+        (advance(chains[k]), ...);
+    }
+    Number sum = (chains[k] + ...);
+    benchmark::DoNotOptimize(sum);
+}
+
+/// Seconds in which every thread runs `work(thread, turns)`, from the first to begin to the last to end.
+template <class Work> double timed(int threads, std::int64_t turns, const Work& work) {
+    const auto start = Clock::now();
+    on_each_thread(threads, [&work, turns](int thread) { work(thread, turns); });
+    return seconds_since(start);
+}
+
+/// So many turns that one thread alone works for two milliseconds at the fastest: below that, starting the
+/// threads would count.
+template <class Work> std::int64_t enough_turns(const Work& work) {
+    constexpr double shortest = 2e-3;
+    constexpr int trials = 3;
+    for (std::int64_t turns = 1;; turns *= 2) {
+        double fastest = shortest;
+        for (int trial = 0; trial < trials && fastest >= shortest; ++trial) {
+            const auto start = Clock::now();
+            work(0, turns);
+            const double once = seconds_since(start);
+            fastest = trial == 0 ? once : std::min(fastest, once);
+        }
+        if (fastest >= shortest) {
+            return turns;
+        }
+    }
+}
+
+/// The rate of `amount` a turn.
+template <class Work> Rate measure(int threads, double amount, double seconds, const Work& work) {
+    constexpr std::size_t fewest = 5;
+    constexpr std::size_t most = 10'000;
+    const std::int64_t turns = enough_turns(work);
+    std::vector<double> rates;
+    for (double spent = 0; rates.size() < fewest || (spent < seconds && rates.size() < most);) {
+        const double once = timed(threads, turns, work);
+        rates.push_back(amount * static_cast<double>(turns) / once);
+        spent += once;
+    }
+    std::ranges::sort(rates);
+    return {.best = rates.back(),
+            .median = rates[rates.size() / 2],
+            .repetitions = static_cast<int>(rates.size())};
+}
+
+struct Part {
+    std::unique_ptr<double[]> from;
+    std::unique_ptr<double[]> to;
+};
+
+} // namespace
+
+std::vector<WorkingSet> working_sets(const Topology& topology, std::int64_t most_bytes, int threads) {
+    constexpr std::int64_t smallest = std::int64_t{32} << 10;
+    std::vector<CacheLevel> caches = topology.caches;
+    std::erase_if(caches, [](const CacheLevel& cache) { return cache.name == "L1i" || cache.bytes <= 0; });
+    // Where nobody tells, more than most machines have.
+    const std::int64_t last_level =
+        caches.empty() ? std::int64_t{64} << 20 : caches.back().bytes * caches.back().count;
+    const auto level_of = [&caches, threads](std::int64_t bytes) -> std::string {
+        for (const CacheLevel& cache : caches) {
+            const int sharing = std::max(cache.hardware_threads, 1);
+            if (bytes <= cache.bytes * std::min((threads + sharing - 1) / sharing, cache.count)) {
+                return cache.name;
+            }
+        }
+        return "memory";
+    };
+    // A copy has two arrays.
+    const std::int64_t largest = std::min(2 * (4 * last_level), most_bytes);
+    std::vector<WorkingSet> sets;
+    for (std::int64_t bytes = smallest; bytes <= largest / 2; bytes *= 4) {
+        sets.push_back({level_of(bytes), bytes});
+    }
+    sets.push_back({level_of(largest), largest});
+    return sets;
+}
+
+Rate measure_copy(const WorkingSet& set, int threads, double seconds) {
+    require_threads(threads);
+    const auto count = static_cast<std::size_t>(threads);
+    const auto length =
+        std::max<std::size_t>(static_cast<std::size_t>(set.bytes) / (2 * sizeof(double) * count), 1);
+    std::vector<Part> parts(count);
+    for (Part& part : parts) {
+        part = {std::make_unique_for_overwrite<double[]>(length),
+                std::make_unique_for_overwrite<double[]>(length)};
+    }
+    // A page lies near the thread that touches it first.
+    on_each_thread(threads, [&parts, length](int thread) {
+        Part& part = parts[static_cast<std::size_t>(thread)];
+        std::fill_n(part.from.get(), length, 1.0 + thread);
+        std::fill_n(part.to.get(), length, 0.0);
+    });
+    const double bytes = 2.0 * sizeof(double) * static_cast<double>(length * count);
+    const Rate rate = measure(threads, bytes, seconds, [&parts, length](int thread, std::int64_t turns) {
+        const Part& part = parts[static_cast<std::size_t>(thread)];
+        for (std::int64_t turn = 0; turn < turns; ++turn) {
+            std::copy_n(part.from.get(), length, part.to.get());
+            benchmark::ClobberMemory();
+        }
+    });
+    for (const Part& part : parts) {
+        if (!std::equal(part.from.get(), part.from.get() + length, part.to.get())) {
+            throw CheckError("copy in " + set.level + ": the two arrays differ");
+        }
+    }
+    return rate;
+}
+
+int lanes(Arithmetic arithmetic) { return arithmetic == Arithmetic::scalar ? 1 : native_lanes; }
+
+Rate measure_arithmetic(Arithmetic arithmetic, int threads, double seconds) {
+    require_threads(threads);
+    constexpr std::int64_t turns_at_once = 1000;
+    const double operations = 2.0 * chain_count * turns_at_once * lanes(arithmetic) * threads;
+    if (arithmetic == Arithmetic::scalar) {
+        return measure(threads, operations, seconds, [](int, std::int64_t turns) {
+            run_chains<double>(turns * turns_at_once, std::make_index_sequence<chain_count>());
+        });
+    }
+    return measure(threads, operations, seconds, [](int, std::int64_t turns) {
+        run_chains<Vector>(turns * turns_at_once, std::make_index_sequence<chain_count>());
+    });
+}
+
+} // namespace carom

@@ -1,0 +1,95 @@
+#include "harness/machine/noise.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <sstream>
+#include <string>
+
+#include "harness/machine/machine.hpp"
+#include "harness/support/stopwatch.hpp"
+
+namespace carom {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The same instructions every time, each waiting for the one before: xorshift64 (Marsaglia 2003).
+std::uint64_t spin(int turns) {
+    std::uint64_t state = 88172645463325252;
+    for (int turn = 0; turn < turns; ++turn) {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+    }
+    return state;
+}
+
+double timed_spin(int turns) {
+    const auto start = Clock::now();
+    volatile std::uint64_t result = spin(turns);
+    static_cast<void>(result);
+    return seconds_since(start);
+}
+
+/// As many turns as make a spin of about a millisecond: the fastest of a few trials, since noise only slows.
+int turns_of_a_millisecond() {
+    constexpr int trial = 100'000;
+    double fastest = timed_spin(trial);
+    for (int k = 0; k < 20; ++k) {
+        fastest = std::min(fastest, timed_spin(trial));
+    }
+    return std::max(1, static_cast<int>(trial * 1e-3 / fastest));
+}
+
+std::optional<CpuTime> cpu_time() { return parse_cpu_time(first_line("/proc/stat").value_or("")); }
+
+} // namespace
+
+std::optional<CpuTime> parse_cpu_time(std::string_view line) {
+    std::istringstream fields{std::string(line)};
+    std::string name;
+    fields >> name;
+    CpuTime time;
+    int count = 0;
+    // Guest time, fields 9 and 10, is part of user time already.
+    for (double ticks = 0; count < 8 && fields >> ticks; ++count) {
+        time.total += ticks;
+        time.stolen = ticks;
+    }
+    return name == "cpu" && count == 8 ? std::optional(time) : std::nullopt;
+}
+
+Noise spread(std::vector<double> durations) {
+    std::ranges::sort(durations);
+    const auto quantile = [&durations](double share) {
+        const auto rank = std::ceil(share * static_cast<double>(durations.size()));
+        return durations[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+    };
+    const double median = quantile(0.5);
+    return {.spins = static_cast<int>(durations.size()),
+            .median_seconds = median,
+            .p95_over_median = quantile(0.95) / median,
+            .max_over_median = durations.back() / median,
+            .steal = {}};
+}
+
+Noise measure_noise(double seconds) {
+    const int turns = turns_of_a_millisecond();
+    const auto before = cpu_time();
+    const auto start = Clock::now();
+    std::vector<double> durations;
+    do {
+        durations.push_back(timed_spin(turns));
+    } while (seconds_since(start) < seconds);
+    const auto after = cpu_time();
+    Noise noise = spread(std::move(durations));
+    if (before && after && after->total > before->total) {
+        noise.steal = (after->stolen - before->stolen) / (after->total - before->total);
+    }
+    return noise;
+}
+
+} // namespace carom

@@ -1,0 +1,92 @@
+#include "harness/measure/bench_case.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "harness/measure/energy_drift.hpp"
+
+namespace carom {
+
+std::string BenchCase::name() const {
+    return std::string(measurement_.variant.name) + "/" + measurement_.scene_name +
+           "/threads:" + std::to_string(measurement_.tuning.threads);
+}
+
+void BenchCase::run(benchmark::State& state) {
+    warm_up();
+    for (auto iteration : state) {
+        static_cast<void>(iteration);
+        if (measurement_.violation) {
+            break;
+        }
+        state.PauseTiming();
+        const auto simulation = measurement_.variant.simulate(measurement_.scene, measurement_.tuning);
+        Stopwatch stopwatch([&state] { state.ResumeTiming(); }, [&state] { state.PauseTiming(); });
+        note(run_scene(measurement_.scene, *simulation, measurement_.tuning, check(CheckScope::last_step),
+                       nullptr, std::move(stopwatch)));
+        state.ResumeTiming();
+        state.SetIterationTime(measurement_.repetitions.back().steps_seconds);
+    }
+    if (measurement_.violation) {
+        state.SkipWithError(measurement_.violation->c_str());
+    } else {
+        set_counters(state);
+    }
+}
+
+void BenchCase::warm_up() {
+    if (std::exchange(warm_, true)) {
+        return;
+    }
+    const auto untimed = [this](CheckScope scope, const Scene& scene) {
+        const auto simulation = measurement_.variant.simulate(scene, measurement_.tuning);
+        return run_scene(scene, *simulation, measurement_.tuning, check(scope));
+    };
+    if (measurement_.scope == CheckScope::every_step) {
+        Run run = untimed(CheckScope::every_step, measurement_.scene);
+        measurement_.violation = run.violation;
+        if (run.violation) {
+            measurement_.repetitions.push_back(std::move(run));
+        }
+    }
+    for (int k = 0; k < measurement_.warm_ups && !measurement_.violation; ++k) {
+        untimed(CheckScope::nothing, measurement_.scene);
+    }
+    if (measurement_.warm_ups == 0) {
+        Scene beginning = measurement_.scene;
+        beginning.steps = std::min(beginning.steps, warm_up_steps);
+        untimed(CheckScope::nothing, beginning);
+    }
+}
+
+void BenchCase::note(Run run) {
+    if (!measurement_.violation) {
+        measurement_.violation = run.violation;
+    }
+    if (!measurement_.violation && !measurement_.repetitions.empty() &&
+        measurement_.repetitions.back().discs != run.discs) {
+        measurement_.violation = "the final state differs from the one of the run before";
+    }
+    measurement_.repetitions.push_back(std::move(run));
+    if (measurement_.repetitions.size() > 1) {
+        auto& older = measurement_.repetitions[measurement_.repetitions.size() - 2].discs;
+        std::vector<Disc>().swap(older);
+    }
+}
+
+void BenchCase::set_counters(benchmark::State& state) const {
+    const Scene& scene = measurement_.scene;
+    const Run& run = measurement_.repetitions.back();
+    const double steps = static_cast<double>(scene.steps) * measurement_.tuning.substeps;
+    state.counters["steps"] = steps;
+    state.counters["disc_steps_per_second"] =
+        static_cast<double>(scene.discs.size()) * steps / run.steps_seconds;
+    state.counters["overlaps"] = static_cast<double>(run.work.overlaps);
+    state.counters["pair_resolves"] = static_cast<double>(run.work.pair_resolves);
+    state.counters["wall_resolves"] = static_cast<double>(run.work.wall_resolves);
+    state.counters["sweeps"] = static_cast<double>(run.work.sweeps);
+    state.counters["energy_drift"] = energy_drift(scene, run.discs).value_or(0);
+    state.counters["discs_outside"] = discs_outside(scene, run.discs);
+}
+
+} // namespace carom

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+
+#include <benchmark/benchmark.h>
+
+#include "harness/measure/measurement.hpp"
+
+namespace carom {
+
+/// One variant on one scene with one tuning, as a case of Google Benchmark: an iteration is a whole run of S
+/// steps from the scene's initial state, its manual time the wall time of the steps alone. Each run is
+/// checked (its last step, or before the first of them every step) and must end in the same state, to the
+/// last bit; a case that fails is skipped with its error and has no time.
+class BenchCase {
+  public:
+    explicit BenchCase(Measurement measurement) : measurement_(std::move(measurement)) {}
+
+    /// Variant, scene and threads, as in published/scene.in/threads:2.
+    std::string name() const;
+
+    void run(benchmark::State& state);
+
+    /// Notes a violation found after the runs.
+    void fail(const std::string& violation) { measurement_.violation = violation; }
+
+    const Measurement& measurement() const { return measurement_; }
+
+  private:
+    Check check(CheckScope scope) const { return {scope, rounding_of(measurement_.variant.policies)}; }
+
+    /// What a process runs untimed, once, when no whole runs are asked for: it meets cold memory, sleeping
+    /// threads and a processor at rest.
+    static constexpr int warm_up_steps = 2;
+
+    void warm_up();
+    void note(Run run);
+    void set_counters(benchmark::State& state) const;
+
+    Measurement measurement_;
+    bool warm_ = false;
+};
+
+} // namespace carom

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/support/stopwatch.hpp"
+#include "harness/verify/rounding.hpp"
+#include "kernels/policies.hpp"
+#include "kernels/scene.hpp"
+#include "kernels/state.hpp"
+#include "variants/registry.hpp"
+
+namespace carom {
+
+/// Which steps of a run the checker looks at.
+enum class CheckScope { nothing, last_step, every_step };
+
+/// What the checker looks at, and the precision it expects.
+struct Check {
+    CheckScope scope;
+    Rounding rounding;
+
+    Check(CheckScope some_scope, const Rounding& some_rounding = Rounding()) // NOLINT(*-explicit-*)
+        : scope(some_scope), rounding(some_rounding) {}
+};
+
+/// A run of all S steps of a scene.
+struct Run {
+    double steps_seconds = 0;             ///< wall time of the steps alone
+    double cpu_seconds = 0;               ///< process CPU time of the steps, all threads
+    Tally work;                           ///< summed over the steps
+    std::vector<Disc> discs;              ///< the final state
+    std::optional<std::string> violation; ///< the first one found, with its step, or nothing
+};
+
+/// Called after each unit of time with its number, from 1, and the discs.
+using OnStep = std::function<void(int step, const std::vector<Disc>& discs)>;
+
+/// Runs the scene from its initial state. The stopwatch is stopped while the checker and `on_step` work and
+/// while the checker's copy is made. A resolve given up at the sweep limit ends the run with a violation.
+Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, const Check& check,
+              const OnStep& on_step = nullptr, Stopwatch stopwatch = {});
+
+/// FNV-1a (Fowler, Noll, Vo) over the bits of all positions and velocities, as 16 hexadecimal digits.
+std::string state_hash(const std::vector<Disc>& discs);
+
+} // namespace carom

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/measure/measure.hpp"
+#include "kernels/policies.hpp"
+#include "kernels/scene.hpp"
+#include "variants/registry.hpp"
+
+namespace carom {
+
+/// What of a measured process goes into its record (record.schema.json).
+struct Measurement {
+    const Scene& scene;
+    std::string scene_name;   ///< file name, without folders
+    std::string scene_sha256; ///< of the file's bytes
+    const Variant& variant;
+    Tuning tuning;
+    CheckScope scope = CheckScope::last_step;
+    int warm_ups = 0;
+    double parse_seconds = 0;
+    std::vector<std::string> tags;        ///< KEY=VALUE
+    std::vector<Run> repetitions;         ///< all of them, in the order they ran
+    std::optional<std::string> violation; ///< of the first run that failed its check
+};
+
+} // namespace carom

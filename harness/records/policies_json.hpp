@@ -1,0 +1,33 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "kernels/policies.hpp"
+#include "variants/name.hpp"
+
+namespace carom {
+
+/// Every policy as a field of its own; null where it has no meaning for the variant.
+inline nlohmann::ordered_json policies_json(const Policies& policies) {
+    nlohmann::ordered_json json{{"neighbourhood", word(policies.neighbourhood)},
+                                {"order", word(policies.order)},
+                                {"self_contained", word(policies.self_contained)},
+                                {"direction", nullptr},
+                                {"find_schedule", word(policies.find_schedule)},
+                                {"resolve_schedule", nullptr},
+                                {"storage", word(policies.storage)},
+                                {"box_side", word(policies.box_side)},
+                                {"overlaps", word(policies.overlaps)},
+                                {"search", word(policies.search)},
+                                {"worklist", word(policies.worklist)},
+                                {"precision", word(policies.precision)}};
+    if (policies.overlaps == Overlaps::lists) {
+        json["direction"] = word(policies.direction);
+    }
+    if (!is_sequential(policies.order)) {
+        json["resolve_schedule"] = word(policies.resolve_schedule);
+    }
+    return json;
+}
+
+} // namespace carom

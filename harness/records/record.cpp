@@ -1,0 +1,124 @@
+#include "harness/records/record.hpp"
+
+#include <array>
+#include <chrono>
+#include <ctime>
+
+#include "harness/machine/provenance.hpp"
+#include "harness/measure/energy_drift.hpp"
+#include "harness/records/policies_json.hpp"
+#include "harness/support/errors.hpp"
+#include "harness/support/json.hpp"
+#include "harness/support/output_file.hpp"
+#include "harness/support/process_clock.hpp"
+#include "harness/support/text.hpp"
+#include "harness/verify/checker.hpp"
+
+namespace carom {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json axes_json(const Variant& variant, const Tuning& tuning) {
+    Json axes{{"variant", variant.name}};
+    axes.update(policies_json(variant.policies));
+    const bool resolve_has_chunk =
+        !is_sequential(variant.policies.order) && has_chunk(variant.policies.resolve_schedule);
+    axes["find_chunk"] = has_chunk(variant.policies.find_schedule) ? Json(tuning.find_chunk) : Json(nullptr);
+    axes["resolve_chunk"] = resolve_has_chunk ? Json(tuning.resolve_chunk) : Json(nullptr);
+    axes["threads"] = tuning.threads;
+    axes["substeps"] = tuning.substeps;
+    axes["tolerance"] = tuning.tolerance == Tolerance::relative ? "relative" : "published";
+    return axes;
+}
+
+Json work_json(const Measurement& measurement, const Tally& work) {
+    return {{"steps", std::int64_t{measurement.scene.steps} * measurement.tuning.substeps},
+            {"overlaps", work.overlaps},
+            {"pair_resolves", work.pair_resolves},
+            {"wall_resolves", work.wall_resolves},
+            {"pair_attempts", work.pair_attempts},
+            {"sweeps", work.sweeps}};
+}
+
+Json errors_json(const Measurement& measurement, const Run& last) {
+    const Scene& scene = measurement.scene;
+    const Checker checker(scene.side, scene.radius, 1.0 / measurement.tuning.substeps,
+                          measurement.tuning.tolerance, rounding_of(measurement.variant.policies));
+    return {{"energy_drift", number_or_null(energy_drift(scene, last.discs))},
+            {"discs_outside", discs_outside(scene, last.discs)},
+            {"unresolved_pairs", checker.count_colliding(last.discs)}};
+}
+
+} // namespace
+
+std::string utc_now() {
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm parts{};
+    gmtime_r(&now, &parts);
+    std::array<char, 32> text{};
+    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return text.data();
+}
+
+const char* word(CheckScope scope) { return scope == CheckScope::every_step ? "every-step" : "last-step"; }
+
+Json tags_json(const std::vector<std::string>& tags) {
+    Json object = Json::object();
+    for (const std::string& tag : tags) {
+        const auto equals = tag.find('=');
+        if (equals == std::string::npos || equals == 0) {
+            throw InputError("--tag: found '" + tag + "', expected KEY=VALUE");
+        }
+        const std::string value = tag.substr(equals + 1);
+        const auto number = Json::parse(value, nullptr, false);
+        object[tag.substr(0, equals)] = number.is_number() ? number : Json(value);
+    }
+    return object;
+}
+
+Json scene_json(const Scene& scene, const std::string& name, const std::string& sha256) {
+    return {{"name", name},
+            {"sha256", sha256},
+            {"particles", scene.discs.size()},
+            {"side", scene.side},
+            {"radius", scene.radius},
+            {"steps", scene.steps},
+            {"area_fraction", area_fraction(scene)}};
+}
+
+Json record_json(const Measurement& measurement) {
+    const Run& last = measurement.repetitions.back();
+    Json repetitions = Json::array();
+    if (!measurement.violation) {
+        for (const Run& run : measurement.repetitions) {
+            repetitions.push_back({{"steps_seconds", run.steps_seconds}, {"cpu_seconds", run.cpu_seconds}});
+        }
+    }
+    return {{"schema_version", 1},
+            {"kind", "bench"},
+            {"recorded_at", utc_now()},
+            {"tags", tags_json(measurement.tags)},
+            {"axes", axes_json(measurement.variant, measurement.tuning)},
+            {"scene", scene_json(measurement.scene, measurement.scene_name, measurement.scene_sha256)},
+            {"warm_ups", measurement.warm_ups},
+            {"repetitions", repetitions},
+            {"parse_seconds", measurement.parse_seconds},
+            {"process_seconds", process_seconds()},
+            {"work", work_json(measurement, last.work)},
+            {"errors", errors_json(measurement, last)},
+            {"check",
+             {{"verdict", measurement.violation ? "failed" : "passed"},
+              {"scope", word(measurement.scope)},
+              {"reason", or_null(measurement.violation)}}},
+            {"state_hash", state_hash(last.discs)},
+            {"provenance", provenance_json(measurement.tuning.threads)}};
+}
+
+void write_record(const std::string& path, const Json& record) {
+    OutputFile file(path);
+    file.write(json_text(record, 1) + "\n");
+    file.finish();
+}
+
+} // namespace carom

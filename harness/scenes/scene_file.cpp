@@ -1,0 +1,192 @@
+#include "harness/scenes/scene_file.hpp"
+
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+#include "harness/support/errors.hpp"
+#include "harness/support/input_file.hpp"
+#include "harness/support/text.hpp"
+
+namespace carom {
+namespace {
+
+constexpr std::string_view blank = " \t\r";
+
+/// Reads a text line by line and field by field, and knows where it is.
+class LineReader {
+  public:
+    LineReader(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
+
+    [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
+        throw InputError(name_ + ":" + std::to_string(line_number_) + ": found " + found + ", expected " +
+                         expected);
+    }
+
+    void next_line(std::string_view expected) {
+        ++line_number_;
+        if (rest_.empty()) {
+            fail("the end of the file", std::string(expected));
+        }
+        const auto end = rest_.find('\n');
+        line_ = rest_.substr(0, end);
+        rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    }
+
+    template <class Number> Number field(const char* expected) {
+        const std::string_view text = next_field();
+        const auto value = parse_number<Number>(text);
+        if (!value) {
+            fail(text.empty() ? "the end of the line" : quoted(text), expected);
+        }
+        return *value;
+    }
+
+    double bounded(const char* expected) {
+        const double value = field<double>(expected);
+        if (!(std::abs(value) <= largest_number)) {
+            fail(number_text(value), std::string(expected) + " of magnitude at most 1e60");
+        }
+        return value;
+    }
+
+    void end_line() {
+        if (const std::string_view text = next_field(); !text.empty()) {
+            fail(quoted(text), "the end of the line");
+        }
+    }
+
+    void end_text() {
+        while (!rest_.empty()) {
+            next_line("");
+            if (const std::string_view text = next_field(); !text.empty()) {
+                fail(quoted(text), "the end of the file after the last disc");
+            }
+        }
+    }
+
+    std::size_t bytes_left() const { return rest_.size(); }
+
+  private:
+    static std::string quoted(std::string_view text) {
+        std::string shown = "'";
+        for (const char letter : text.substr(0, 40)) {
+            shown += letter >= ' ' && letter <= '~' ? letter : '?';
+        }
+        return shown + (text.size() > 40 ? "...'" : "'");
+    }
+
+    std::string_view next_field() {
+        const auto start = line_.find_first_not_of(blank);
+        if (start == std::string_view::npos) {
+            line_ = {};
+            return {};
+        }
+        line_.remove_prefix(start);
+        const auto end = std::min(line_.find_first_of(blank), line_.size());
+        const std::string_view text = line_.substr(0, end);
+        line_.remove_prefix(end);
+        return text;
+    }
+
+    std::string_view rest_;
+    std::string_view line_;
+    std::string name_;
+    std::size_t line_number_ = 0;
+};
+
+template <class Number> Number sole_field(LineReader& reader, const char* expected) {
+    reader.next_line(expected);
+    const auto value = reader.field<Number>(expected);
+    reader.end_line();
+    return value;
+}
+
+/// The number of discs; refused, before anything is allocated, if the rest of the text cannot hold so many
+/// lines.
+std::size_t read_count(LineReader& reader) {
+    const auto count = sole_field<long long>(reader, "the number of discs N, an integer");
+    if (count < 0 || count > most_discs) {
+        reader.fail(std::to_string(count), "a number of discs from 0 to " + std::to_string(most_discs));
+    }
+    constexpr std::size_t shortest_line = std::string_view("0 0 0 0 0").size();
+    if (static_cast<std::size_t>(count) * shortest_line > reader.bytes_left()) {
+        reader.fail(std::to_string(count) + " discs in a file too short for so many",
+                    "a line `i x y vx vy` for each");
+    }
+    return static_cast<std::size_t>(count);
+}
+
+void read_discs(LineReader& reader, std::vector<Disc>& discs) {
+    const std::size_t count = discs.size();
+    std::vector<bool> seen(count);
+    for (std::size_t line = 0; line < count; ++line) {
+        reader.next_line("one line `i x y vx vy` for each of the N discs");
+        const auto number = reader.field<long long>("the number of a disc, an integer");
+        if (number < 0 || number >= static_cast<long long>(count)) {
+            reader.fail("disc " + std::to_string(number), "a disc from 0 to " + std::to_string(count - 1));
+        }
+        const auto i = static_cast<std::size_t>(number);
+        if (seen[i]) {
+            reader.fail("disc " + std::to_string(i) + " for the second time", "each disc once");
+        }
+        seen[i] = true;
+        discs[i].x = reader.bounded("a position x");
+        discs[i].y = reader.bounded("a position y");
+        discs[i].vx = reader.bounded("a velocity vx");
+        discs[i].vy = reader.bounded("a velocity vy");
+        reader.end_line();
+    }
+}
+
+} // namespace
+
+void require_radius(double radius, const std::string& where) {
+    if (!(radius >= smallest_radius && radius <= largest_number)) {
+        throw InputError(where + ": found " + number_text(radius) + ", expected a radius from 1e-60 to 1e60");
+    }
+}
+
+void require_side(double side, double radius, const std::string& where) {
+    if (!(side >= 2 * radius && side <= largest_number)) {
+        throw InputError(where + ": found " + number_text(side) +
+                         ", expected a side from 2r = " + number_text(2 * radius) + " to 1e60");
+    }
+}
+
+Scene parse_scene(std::string_view text, const std::string& name) {
+    LineReader reader(text, name);
+    const std::size_t count = read_count(reader);
+    Scene scene;
+    scene.side = sole_field<double>(reader, "the side of the box L, a number");
+    scene.radius = sole_field<double>(reader, "the radius r, a number");
+    require_radius(scene.radius, name + ":3");
+    require_side(scene.side, scene.radius, name + ":2");
+    scene.steps = sole_field<int>(reader, "the number of steps S, an integer");
+    if (scene.steps < 0) {
+        reader.fail(std::to_string(scene.steps), "a number of steps of at least 0");
+    }
+    scene.discs.resize(count);
+    read_discs(reader, scene.discs);
+    reader.end_text();
+    return scene;
+}
+
+Scene read_scene(const std::filesystem::path& path) { return parse_scene(read_file(path), path.string()); }
+
+std::string scene_text(const Scene& scene) {
+    std::string text = std::to_string(scene.discs.size()) + "\n" + number_text(scene.side) + "\n" +
+                       number_text(scene.radius) + "\n" + std::to_string(scene.steps) + "\n";
+    for (std::size_t i = 0; i < scene.discs.size(); ++i) {
+        const Disc& disc = scene.discs[i];
+        append_number(text, i);
+        for (const double value : {disc.x, disc.y, disc.vx, disc.vy}) {
+            text += ' ';
+            append_number(text, value);
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+} // namespace carom

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "kernels/scene.hpp"
+
+namespace carom {
+
+/// Largest magnitude of any length or speed, and the reciprocal of the smallest radius: squares of squares
+/// stay finite.
+inline constexpr double largest_number = 1e60;
+inline constexpr double smallest_radius = 1e-60;
+
+/// Most discs a scene may have.
+inline constexpr int most_discs = 100'000'000;
+
+/// Parses the published text format: N, L, r and S, one a line, then N lines `i x y vx vy`, in any order of
+/// i. `name` stands for the file in errors. Throws InputError with file, line, what was found and what was
+/// expected; nothing is allocated for discs that the text is too short to hold.
+Scene parse_scene(std::string_view text, const std::string& name);
+
+/// Reads and parses a scene file. Throws InputError.
+Scene read_scene(const std::filesystem::path& path);
+
+/// The text that `parse_scene` reads back as the same scene, to the last bit.
+std::string scene_text(const Scene& scene);
+
+/// Throw InputError, with `where` in front, if `parse_scene` would not accept the number.
+void require_radius(double radius, const std::string& where);
+void require_side(double side, double radius, const std::string& where);
+
+} // namespace carom

@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <cstddef>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "harness/scenes/scene_file.hpp"
+#include "harness/tests/program.hpp"
+#include "harness/tests/temporary_directory.hpp"
+#include "kernels/tests/scenes.hpp"
+
+namespace carom {
+namespace {
+
+using tests::ProgramResult;
+using tests::refused;
+using tests::run_carom;
+using tests::TemporaryDirectory;
+
+class CommandLine : public testing::Test {
+  protected:
+    TemporaryDirectory directory;
+    std::string scene = directory.write("scene.in", scene_text(tests::corner()));
+};
+
+/// The length of the longest line.
+std::size_t width(const std::string& text) {
+    std::size_t longest = 0;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        longest = std::max(longest, line.size());
+    }
+    return longest;
+}
+
+TEST_F(CommandLine, WithoutAVerbIsRefused) {
+    EXPECT_TRUE(refused(run_carom({}), 1, {"carom: "}));
+    EXPECT_TRUE(refused(run_carom({"frobnicate"}), 1, {"carom: ", "frobnicate"}));
+}
+
+TEST_F(CommandLine, HelpsWithTheProgramAndEveryVerb) {
+    const ProgramResult help = run_carom({"--help"});
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_EQ(help.error, "");
+    EXPECT_LE(width(help.output), 80);
+    for (const std::string verb : {"list", "run", "check", "bench", "profile", "generate", "reference",
+                                   "doctor", "limits", "outside"}) {
+        EXPECT_NE(help.output.find("\n  " + verb + ' '), std::string::npos) << verb;
+        const ProgramResult verb_help = run_carom({verb, "--help"});
+        EXPECT_EQ(verb_help.exit_code, 0) << verb;
+        EXPECT_EQ(verb_help.error, "") << verb;
+        EXPECT_NE(verb_help.output.find("--help"), std::string::npos) << verb;
+        EXPECT_LE(width(verb_help.output), 80) << verb_help.output;
+    }
+}
+
+TEST_F(CommandLine, TellsItsVersion) {
+    EXPECT_EQ(run_carom({"--version"}).output, "carom " CAROM_VERSION "\n");
+}
+
+TEST_F(CommandLine, HelpShowsTheDefaults) {
+    const std::string help = run_carom({"run", "--help"}).output;
+    for (const char* option :
+         {"SCENE", "THREADS", "--threads", "--variant TEXT=auto", "--substeps", "--tolerance", "relative",
+          "--sweep-limit", "100000", "--trajectory", "--json"}) {
+        EXPECT_NE(help.find(option), std::string::npos) << option;
+    }
+}
+
+TEST_F(CommandLine, RefusesAVariantThatThereIsNotAndNamesTheNearest) {
+    for (const char* verb : {"run", "check"}) {
+        const auto refused_for = [&](const std::string& found, const std::string& nearest) {
+            const ProgramResult result = run_carom({verb, scene, "--variant", found});
+            return refused(result, 1, {found + "', expected a name", nearest + "'"});
+        };
+        EXPECT_TRUE(refused_for("publishd", "published"));
+        EXPECT_TRUE(refused_for("row-resolv_dynamic", "row-resolve_dynamic"));
+        EXPECT_TRUE(refused_for("self-contained-off", "self_contained_off"));
+        EXPECT_TRUE(refused_for("trak", "track"));
+    }
+}
+
+TEST_F(CommandLine, RefusesThreadsThatCannotBe) {
+    for (const char* verb : {"run", "check"}) {
+        for (const char* threads : {"0", "-1", "1025", "two", "1.5", ""}) {
+            EXPECT_TRUE(refused(run_carom({verb, scene, "--threads", threads}), 1, {"threads"})) << threads;
+        }
+        EXPECT_TRUE(refused(run_carom({verb, scene, "0"}), 1, {"threads", "1 to 1024"}));
+        EXPECT_TRUE(refused(run_carom({verb, scene, "two"}), 1, {"threads", "two"}));
+    }
+}
+
+TEST_F(CommandLine, RefusesThreadsThatItDoesNotGet) {
+    for (const char* verb : {"run", "check", "bench", "profile"}) {
+        EXPECT_TRUE(refused(run_carom({verb, scene, "--threads", "2"}, {"OMP_THREAD_LIMIT=1"}), 1,
+                            {"--threads", "found 2", "OpenMP grants 1"}))
+            << verb;
+    }
+}
+
+TEST_F(CommandLine, RefusesTuningsThatCannotBe) {
+    for (const char* option : {"--find-chunk", "--resolve-chunk", "--substeps", "--sweep-limit"}) {
+        for (const char* value : {"0", "-5", "many", "99999999999"}) {
+            EXPECT_TRUE(refused(run_carom({"run", scene, option, value}), 1, {option})) << value;
+        }
+    }
+    EXPECT_TRUE(refused(run_carom({"run", scene, "--tolerance", "strict"}), 1, {"--tolerance", "strict"}));
+}
+
+TEST_F(CommandLine, RefusesOptionsAndArgumentsThatThereAreNot) {
+    EXPECT_TRUE(refused(run_carom({"run", scene, "--speed", "9"}), 1, {"--speed"}));
+    EXPECT_TRUE(refused(run_carom({"run", scene, "2", "extra"}), 1, {"extra"}));
+    EXPECT_TRUE(refused(run_carom({"run"}), 1, {"SCENE"}));
+    EXPECT_TRUE(refused(run_carom({"run", scene, "--variant"}), 1, {"--variant"}));
+}
+
+TEST_F(CommandLine, RefusesABadSceneWithItsLine) {
+    const std::string bad = directory.write("bad.in", "1\n10\n1\n5\n0 5 five 0 0\n");
+    const std::string missing = directory / "missing.in";
+    for (const char* verb : {"run", "check"}) {
+        EXPECT_TRUE(refused(run_carom({verb, bad}), 1, {bad + ":5: found 'five', expected a position y"}));
+        EXPECT_TRUE(refused(run_carom({verb, missing}), 1, {missing + ": cannot be read"}));
+        EXPECT_TRUE(refused(run_carom({verb, directory / "."}), 1, {"cannot be read"}));
+    }
+}
+
+TEST_F(CommandLine, SaysSoIfStandardOutputHasNoRoom) {
+    for (const auto& arguments :
+         std::vector<std::vector<std::string>>{{"list"},
+                                               {"list", "--names"},
+                                               {"list", "--json"},
+                                               {"run", scene},
+                                               {"run", scene, "--json"},
+                                               {"check", scene},
+                                               {"generate", "9", "10", "1", "5", "0", "1"}}) {
+        SCOPED_TRACE(testing::PrintToString(arguments));
+        EXPECT_TRUE(refused(run_carom(arguments, {}, "/dev/full"), 1, {"standard output"}));
+    }
+}
+
+} // namespace
+} // namespace carom

@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/tests/program.hpp"
+#include "harness/verify/determinism.hpp"
+#include "variants/registry.hpp"
+
+namespace carom {
+namespace {
+
+using tests::run_carom;
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) {
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+TEST(ListCommand, NamesEveryVariantOnALineThePublishedBestFirst) {
+    const auto result = run_carom({"list", "--names"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.error, "");
+    std::vector<std::string> expected;
+    for (const Variant& variant : variants()) {
+        expected.emplace_back(variant.name);
+    }
+    EXPECT_EQ(lines_of(result.output), expected);
+    EXPECT_EQ(lines_of(result.output)[0], "published");
+}
+
+TEST(ListCommand, GivesEveryPolicyAsJson) {
+    const auto list = nlohmann::json::parse(run_carom({"list", "--json"}).output);
+    ASSERT_EQ(list.size(), variants().size());
+    EXPECT_EQ(list[0], nlohmann::json::parse(R"({"name": "published", "policies": {
+        "neighbourhood": "four", "order": "checkered", "self_contained": "on", "direction": "reverse",
+        "find_schedule": "guided_chunk", "resolve_schedule": "guided_chunk", "storage": "numbered",
+        "box_side": "wide", "overlaps": "lists", "search": "exact", "worklist": "all", "precision": "double"},
+        "same_bits": {"threads": true, "compilers": true}})"));
+    for (std::size_t i = 0; i < variants().size(); ++i) {
+        EXPECT_EQ(list[i]["name"], variants()[i].name);
+        EXPECT_EQ(list[i]["policies"]["resolve_schedule"].is_null(),
+                  is_sequential(variants()[i].policies.order));
+    }
+}
+
+TEST(ListCommand, ShowsThePublishedPoliciesAndALineForEachVariant) {
+    const auto lines = lines_of(run_carom({"list"}).output);
+    for (const Variant& variant : variants()) {
+        EXPECT_EQ(std::ranges::count(lines, variant.name), 1) << variant.name;
+    }
+    EXPECT_EQ(lines.front(), "published");
+    EXPECT_EQ(std::ranges::count(lines, "    storage           numbered"), 1);
+}
+
+TEST(ListCommand, SaysOfEveryVariantWhatIsPromised) {
+    const std::string output = run_carom({"list"}).output;
+    const auto list = nlohmann::json::parse(run_carom({"list", "--json"}).output);
+    for (std::size_t i = 0; i < variants().size(); ++i) {
+        const Determinism expected = promised(variants()[i].policies);
+        EXPECT_EQ(list[i]["same_bits"]["threads"], expected.threads);
+        EXPECT_EQ(list[i]["same_bits"]["compilers"], expected.compilers);
+    }
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "any number of threads, any schedule and any chunk: all",
+                        output);
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "with every compiler, contraction off: ", output);
+}
+
+TEST(ListCommand, RefusesTwoFormatsAtOnce) {
+    EXPECT_TRUE(tests::refused(run_carom({"list", "--names", "--json"}), 1, {"--json", "--names"}));
+}
+
+} // namespace
+} // namespace carom

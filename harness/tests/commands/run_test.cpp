@@ -1,0 +1,211 @@
+#include <charconv>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/measure/energy_drift.hpp"
+#include "harness/measure/measure.hpp"
+#include "harness/scenes/scene_file.hpp"
+#include "harness/tests/program.hpp"
+#include "harness/tests/temporary_directory.hpp"
+#include "kernels/tests/scenes.hpp"
+#include "kernels/tests/simulate.hpp"
+#include "variants/fastest.hpp"
+#include "variants/registry.hpp"
+
+namespace carom {
+namespace {
+
+using tests::content_of;
+using tests::ProgramResult;
+using tests::refused;
+using tests::run_carom;
+using tests::TemporaryDirectory;
+
+const Scene busy = tests::random_scene(150, 50, 1, 6, 2, 161);
+
+class RunCommand : public testing::Test {
+  protected:
+    /// Runs and returns the summary.
+    static nlohmann::json summary(std::vector<std::string> arguments,
+                                  const std::vector<std::string>& environment = {}) {
+        arguments.insert(arguments.begin(), "run");
+        arguments.emplace_back("--json");
+        const ProgramResult result = run_carom(arguments, environment);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_EQ(result.error, "");
+        return nlohmann::json::parse(result.output);
+    }
+
+    TemporaryDirectory directory;
+    std::string scene = directory.write("scene.in", scene_text(busy));
+    std::string wedged = directory.write("wedged.in", "1\n2\n1\n3\n0 0.5 1 0.5 0\n");
+};
+
+TEST_F(RunCommand, SummarisesTheRunAsJson) {
+    const auto json = summary({scene, "--threads", "2", "--variant", "published"});
+    const tests::Outcome expected = tests::simulate<Policies{}>(busy);
+    EXPECT_EQ(json["scene"], scene);
+    EXPECT_EQ(json["variant"], "published");
+    EXPECT_EQ(json["policies"]["neighbourhood"], "four");
+    EXPECT_EQ(json["threads"], 2);
+    EXPECT_EQ(json["substeps"], 1);
+    EXPECT_EQ(json["particles"], 150);
+    EXPECT_EQ(json["steps"], 6);
+    EXPECT_EQ(json["state_hash"], state_hash(expected.discs));
+    EXPECT_EQ(json["discs_outside"], discs_outside(busy, expected.discs));
+    EXPECT_DOUBLE_EQ(json["overlaps_per_step"], static_cast<double>(expected.work.overlaps) / 6);
+    EXPECT_DOUBLE_EQ(json["pair_resolves_per_step"], static_cast<double>(expected.work.pair_resolves) / 6);
+    EXPECT_DOUBLE_EQ(json["wall_resolves_per_step"], static_cast<double>(expected.work.wall_resolves) / 6);
+    EXPECT_DOUBLE_EQ(json["pair_attempts_per_step"], static_cast<double>(expected.work.pair_attempts) / 6);
+    EXPECT_GE(expected.work.pair_attempts, expected.work.pair_resolves);
+    EXPECT_DOUBLE_EQ(json["sweeps_per_step"], static_cast<double>(expected.work.sweeps) / 6);
+    EXPECT_NEAR(json["energy_drift"], 0, 1e-13);
+    const double seconds = json["steps_seconds"];
+    EXPECT_GT(seconds, 0);
+    EXPECT_GE(json["process_seconds"], seconds);
+    EXPECT_DOUBLE_EQ(json["steps_per_second"], 6 / seconds);
+    EXPECT_DOUBLE_EQ(json["disc_steps_per_second"], 6 * 150 / seconds);
+}
+
+TEST_F(RunCommand, TakesThreadsAsItsSecondArgument) {
+    EXPECT_EQ(summary({scene, "3"})["threads"], 3);
+    EXPECT_EQ(summary({scene}, {"OMP_NUM_THREADS=2"})["threads"], 2);
+    EXPECT_EQ(summary({scene, "1"}, {"OMP_NUM_THREADS=2"})["threads"], 1);
+}
+
+TEST_F(RunCommand, EndsInTheSameStateForAnyThreadsAndChunks) {
+    const auto expected = summary({scene, "1"})["state_hash"];
+    EXPECT_EQ(summary({scene, "2"})["state_hash"], expected);
+    EXPECT_EQ(summary({scene, "8", "--find-chunk", "1", "--resolve-chunk", "9"})["state_hash"], expected);
+}
+
+TEST_F(RunCommand, RunsTheVariantAskedFor) {
+    for (const char* name : {"nine", "row-resolve_dynamic", "once-self_contained_off"}) {
+        const auto simulation = find_variant(name)->simulate(busy, {});
+        const auto expected = run_scene(busy, *simulation, {}, CheckScope::nothing);
+        const auto json = summary({scene, "--variant", name});
+        EXPECT_EQ(json["variant"], name);
+        EXPECT_EQ(json["state_hash"], state_hash(expected.discs)) << name;
+    }
+}
+
+TEST_F(RunCommand, PassesOnSubstepsAndTolerance) {
+    const Tuning tuning{.substeps = 3, .tolerance = Tolerance::published};
+    const auto simulation = find_variant("published")->simulate(busy, tuning);
+    const auto expected = run_scene(busy, *simulation, tuning, CheckScope::nothing);
+    const auto json =
+        summary({scene, "--variant", "published", "--substeps", "3", "--tolerance", "published"});
+    EXPECT_EQ(json["substeps"], 3);
+    EXPECT_EQ(json["state_hash"], state_hash(expected.discs));
+    EXPECT_DOUBLE_EQ(json["sweeps_per_step"], static_cast<double>(expected.work.sweeps) / 18);
+
+    const std::string slow = directory.write("slow.in", "2\n50\n1\n1\n0 20 20 0 0\n1 21 20 -5e-8 0\n");
+    EXPECT_EQ(summary({slow, "--tolerance", "relative"})["pair_resolves_per_step"], 1);
+    EXPECT_EQ(summary({slow, "--tolerance", "published"})["pair_resolves_per_step"], 0);
+    EXPECT_EQ(summary({slow})["pair_resolves_per_step"], 1);
+}
+
+TEST_F(RunCommand, SaysThatADriftIsNotDefinedWhereNothingMoves) {
+    const std::string still = directory.write("still.in", "1\n10\n1\n2\n0 5 5 0 0\n");
+    EXPECT_TRUE(summary({still})["energy_drift"].is_null());
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "not defined", run_carom({"run", still}).output);
+}
+
+TEST_F(RunCommand, RunsScenesWithoutDiscsOrSteps) {
+    EXPECT_EQ(summary({directory.write("empty.in", "0\n10\n1\n5\n")})["particles"], 0);
+    const auto json = summary({directory.write("unmoved.in", "1\n10\n1\n0\n0 5 5 1 0\n")});
+    EXPECT_EQ(json["steps"], 0);
+    EXPECT_EQ(json["sweeps_per_step"], 0);
+}
+
+TEST_F(RunCommand, TakesTheFastestVariantByItself) {
+    const auto json = summary({scene});
+    EXPECT_EQ(json["variant"], fastest_variant(busy).name);
+    EXPECT_EQ(json["variant"], summary({scene, "--variant", "auto"})["variant"]);
+}
+
+TEST_F(RunCommand, PrintsAShortSummary) {
+    const ProgramResult result = run_carom({"run", scene, "2"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.error, "");
+    for (const char* part :
+         {"150 discs", "6 steps", "variant ", "2 threads", "whole process", "steps/s", "disc-steps/s",
+          "overlaps", "pair resolves", "sweeps", "energy drift", "discs outside"}) {
+        EXPECT_PRED_FORMAT2(testing::IsSubstring, part, result.output);
+    }
+}
+
+struct TrajectoryLine {
+    int step;
+    std::size_t disc;
+    Disc state;
+};
+
+/// Reads six columns exactly from every line.
+std::vector<TrajectoryLine> trajectory_in(const std::string& path) {
+    std::vector<TrajectoryLine> lines;
+    std::istringstream text(content_of(path));
+    for (std::string line; std::getline(text, line);) {
+        std::istringstream columns(line);
+        TrajectoryLine read{};
+        std::string rest;
+        columns >> read.step >> read.disc >> read.state.x >> read.state.y >> read.state.vx >> read.state.vy;
+        EXPECT_FALSE(columns.fail()) << line;
+        EXPECT_FALSE(columns >> rest) << line;
+        lines.push_back(read);
+    }
+    return lines;
+}
+
+TEST_F(RunCommand, WritesTheTrajectoryInThePublishedColumns) {
+    const std::string path = directory / "trajectory";
+    EXPECT_EQ(run_carom({"run", scene, "--variant", "published", "--trajectory", path}).exit_code, 0);
+    const auto lines = trajectory_in(path);
+    ASSERT_EQ(lines.size(), 7u * 150u) << "the start and six steps";
+    const auto simulation = find_variant("published")->simulate(busy, {});
+    std::size_t line = 0;
+    for (int step = 0; step <= 6; ++step) {
+        for (std::size_t disc = 0; disc < 150; ++disc, ++line) {
+            ASSERT_EQ(lines[line].step, step);
+            ASSERT_EQ(lines[line].disc, disc);
+            ASSERT_TRUE(tests::same_bits(lines[line].state, simulation->discs()[disc]));
+        }
+        simulation->step();
+    }
+}
+
+TEST_F(RunCommand, WritesTheTrajectoryOncePerUnitOfTime) {
+    const std::string path = directory / "trajectory";
+    EXPECT_EQ(run_carom({"run", scene, "--substeps", "5", "--trajectory", path}).exit_code, 0);
+    EXPECT_EQ(trajectory_in(path).size(), 7u * 150u);
+}
+
+TEST_F(RunCommand, RefusesATrajectoryThatCannotBeWritten) {
+    const std::string path = directory / "missing/trajectory";
+    EXPECT_TRUE(refused(run_carom({"run", scene, "--trajectory", path}), 1, {path, "cannot be written"}));
+}
+
+TEST_F(RunCommand, GivesUpAResolveThatDoesNotEndAndLeavesNoTrajectory) {
+    const std::string path = directory / "trajectory";
+    const ProgramResult result = run_carom({"run", wedged, "--sweep-limit", "50", "--trajectory", path});
+    EXPECT_TRUE(
+        refused(result, 2, {wedged, "step 1: the resolve did not end within 50 sweeps: disc 0 at (1, 1)"}));
+    EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST_F(RunCommand, GivesUpByItself) {
+    EXPECT_TRUE(refused(run_carom({"run", wedged}), 2, {"100000 sweeps"}));
+}
+
+TEST_F(RunCommand, SummarisesASceneWhoseNameIsNoUtf8) {
+    const std::string path = directory.write("\xff.in", scene_text(busy));
+    const auto json = summary({path});
+    EXPECT_EQ(json["particles"], 150);
+}
+
+} // namespace
+} // namespace carom

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "harness/doctor/doctor.hpp"
+#include "harness/machine/noise.hpp"
+#include "harness/tests/program.hpp"
+
+namespace carom {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const Json& findings() {
+    static const Json json = doctor_json(0.05);
+    return json;
+}
+
+/// The text of these findings with every line break and the blanks after it as one blank.
+std::string unwrapped(const Json& json) {
+    std::istringstream words(doctor_text(json));
+    std::string text;
+    for (std::string word; words >> word;) {
+        text += word + " ";
+    }
+    return text;
+}
+
+TEST(Doctor, ThePageFitsOneScreen) {
+    const std::string text = doctor_text(findings());
+    EXPECT_LE(std::ranges::count(text, '\n'), 45);
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        EXPECT_LE(line.size(), 80U) << line;
+    }
+}
+
+TEST(Doctor, EverySourceCountsOrSaysWhyNot) {
+    std::vector<std::string> sources;
+    for (const Json& source : findings()["counters"]) {
+        sources.push_back(source["source"]);
+        EXPECT_GT(source["events"].size() + source["missing"].size(), 0U) << source;
+        for (const Json& missing : source["missing"]) {
+            EXPECT_NE(missing["reason"], "");
+            EXPECT_NE(missing["remedy"], "");
+        }
+    }
+    EXPECT_EQ(sources, (std::vector<std::string>{"papi-hardware", "papi-software", "rusage", "cachegrind"}));
+}
+
+TEST(Doctor, WhatCannotBeCountedIsSaidOnceForEachReason) {
+    Json json = findings();
+    json["counters"] = {{{"source", "papi-hardware"},
+                         {"events", {"PAPI_TOT_CYC", "PAPI_TOT_INS"}},
+                         {"runs", 1},
+                         {"missing",
+                          {{{"event", "PAPI_A"}, {"reason", "unknown"}, {"remedy", "another PAPI"}},
+                           {{"event", "PAPI_B"}, {"reason", "refused"}, {"remedy", "ask"}},
+                           {{"event", "PAPI_C"}, {"reason", "unknown"}, {"remedy", "another PAPI"}}}}}};
+    const std::string text = unwrapped(json);
+    EXPECT_NE(text.find("papi-hardware counts PAPI_TOT_CYC, PAPI_TOT_INS, in 1 run "), std::string::npos)
+        << text;
+    EXPECT_NE(text.find("papi-hardware cannot count PAPI_A, PAPI_C: unknown; remedy: another PAPI "),
+              std::string::npos);
+    EXPECT_NE(text.find("papi-hardware cannot count PAPI_B: refused; remedy: ask "), std::string::npos);
+}
+
+TEST(Doctor, WhatIsNotKnownIsSaid) {
+    Json json = findings();
+    json["topology"] = {{"source", "the operating system"},
+                        {"packages", nullptr},
+                        {"cores", nullptr},
+                        {"hardware_threads", 8},
+                        {"smt", nullptr},
+                        {"numa_nodes", nullptr},
+                        {"caches", Json::array()}};
+    json["frequency"] = {{"governor", nullptr}, {"turbo", nullptr}};
+    json["tools"]["valgrind"] = nullptr;
+    json["slurm"] = {{"version", nullptr}, {"job", nullptr}};
+    json["noise"]["steal"] = nullptr;
+    const std::string text = unwrapped(json);
+    EXPECT_NE(text.find("8 hardware threads, SMT not told"), std::string::npos) << text;
+    EXPECT_NE(text.find("NUMA not told by the operating system; remedy: build with libhwloc-dev"),
+              std::string::npos);
+    EXPECT_NE(text.find("governor not told, turbo not told"), std::string::npos);
+    EXPECT_NE(text.find("valgrind not on PATH; remedy: install the package valgrind"), std::string::npos);
+    EXPECT_NE(text.find("srun not on PATH, not inside a job"), std::string::npos);
+    EXPECT_NE(text.find("steal time not told"), std::string::npos);
+}
+
+TEST(Doctor, WhatTheSystemTellsIsShown) {
+    Json json = findings();
+    json["frequency"] = {{"governor", "performance"}, {"turbo", false}};
+    json["openmp"]["environment"] = {{"OMP_PLACES", "cores"}, {"OMP_SCHEDULE", "guided,4"}};
+    json["slurm"] = {{"version", "slurm 22.05.8"}, {"job", {{"SLURM_JOB_ID", "4711"}}}};
+    const std::string text = unwrapped(json);
+    EXPECT_NE(text.find("governor performance, turbo off"), std::string::npos) << text;
+    EXPECT_NE(text.find("OMP_PLACES=cores OMP_SCHEDULE=guided,4"), std::string::npos);
+    EXPECT_NE(text.find("slurm 22.05.8, inside job 4711"), std::string::npos);
+}
+
+TEST(Doctor, TheProgramPrintsNothingElse) {
+    const auto result = tests::run_carom({"doctor", "--json"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.error, "");
+    const Json json = Json::parse(result.output, nullptr, false);
+    ASSERT_TRUE(json.is_object()) << result.output;
+    for (const auto& [key, value] : findings().items()) {
+        EXPECT_TRUE(json.contains(key)) << key;
+    }
+    EXPECT_GT(json["noise"]["spins"], 10);
+}
+
+TEST(Noise, IsTheSpreadOfTheDurations) {
+    std::vector<double> durations;
+    for (int k = 1; k <= 100; ++k) {
+        durations.push_back(k * 1e-3);
+    }
+    std::ranges::reverse(durations);
+    const Noise noise = spread(durations);
+    EXPECT_EQ(noise.spins, 100);
+    EXPECT_DOUBLE_EQ(noise.median_seconds, 0.050);
+    EXPECT_DOUBLE_EQ(noise.p95_over_median, 95.0 / 50);
+    EXPECT_DOUBLE_EQ(noise.max_over_median, 100.0 / 50);
+}
+
+TEST(Noise, OfOneSpinIsNone) {
+    const Noise noise = spread({0.25});
+    EXPECT_EQ(noise.p95_over_median, 1);
+    EXPECT_EQ(noise.max_over_median, 1);
+}
+
+TEST(Noise, IsMeasuredOnThisMachine) {
+    const Noise noise = measure_noise(0.05);
+    EXPECT_GT(noise.spins, 0);
+    EXPECT_GT(noise.median_seconds, 0);
+    EXPECT_GE(noise.p95_over_median, 1);
+    EXPECT_GE(noise.max_over_median, noise.p95_over_median);
+}
+
+TEST(Noise, StolenTimeIsTheEighthFieldOfTheFirstLine) {
+    const auto time = parse_cpu_time("cpu  10 20 30 40 50 60 70 80 5 6");
+    ASSERT_TRUE(time);
+    EXPECT_EQ(time->total, 360);
+    EXPECT_EQ(time->stolen, 80);
+    EXPECT_FALSE(parse_cpu_time("cpu0 10 20 30 40 50 60 70 80 5 6"));
+    EXPECT_FALSE(parse_cpu_time("cpu 10 20 30"));
+    EXPECT_FALSE(parse_cpu_time(""));
+}
+
+} // namespace
+} // namespace carom

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/verify/overlapping_pairs.hpp"
+#include "harness/verify/rounding.hpp"
+#include "harness/verify/walls.hpp"
+#include "kernels/policies.hpp"
+#include "kernels/scene.hpp"
+
+namespace carom {
+
+/// Verifies single time steps from the state before and after, with its own search for overlaps and its own
+/// physics: nothing of it is shared with the kernel but the disc and the definition of a step.
+class Checker {
+  public:
+    /// `dt` is the step's length in time; `rounding` is that of the precision that the discs are kept in.
+    Checker(double side, double radius, double dt, Tolerance tolerance,
+            const Rounding& rounding = Rounding());
+
+    /// The first violation, named with its discs and numbers, or nothing:
+    ///  - every disc was moved by exactly v dt (v before the step), and its state is finite;
+    ///  - no overlapping pair and no wall is left colliding (with twice the kernel's tolerance for approach);
+    ///  - energy is conserved, to 1e-10 relative (1e-4 in float), in each connected group of overlapping
+    ///  discs, and so overall;
+    ///  - momentum and angular momentum are, likewise, in each group that no wall touches;
+    ///  - a disc that overlaps no other keeps its velocity to the last bit, but for the sign of what a wall
+    ///  turned.
+    std::optional<std::string> step(const std::vector<Disc>& before, const std::vector<Disc>& after) const;
+
+    /// The first pair or wall left colliding, or nothing.
+    std::optional<std::string> colliding(const std::vector<Disc>& discs) const;
+
+    /// How many pairs and walls are left colliding.
+    long count_colliding(const std::vector<Disc>& discs) const;
+
+  private:
+    std::optional<std::string> moved(const std::vector<Disc>& before, const std::vector<Disc>& after) const;
+    std::optional<std::string> pair_colliding(const std::vector<Disc>& discs,
+                                              const OverlappingPair& pair) const;
+    std::optional<std::string> wall_colliding(const std::vector<Disc>& discs, int i) const;
+
+    Walls walls_;
+    double dt_;
+    Tolerance tolerance_;
+    Rounding rounding_;
+};
+
+/// Total kinetic energy, for unit mass: the sum of (vx^2 + vy^2) / 2.
+double kinetic_energy(const std::vector<Disc>& discs);
+
+} // namespace carom

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/verify/overlapping_pairs.hpp"
+#include "harness/verify/walls.hpp"
+#include "kernels/scene.hpp"
+
+namespace carom {
+
+/// The first thing that one step failed to conserve, or nothing; `after` has the positions at which `pairs`
+/// overlap. Energy is to be kept by each connected group of overlapping discs; momentum and angular momentum
+/// by those that no wall touches; and a disc that overlaps no other keeps its velocity, but for the sign of a
+/// component that a wall turned. Relative to 1e-10 in double, where rounding leaves some 1e-16 a resolve, and
+/// to 1e-4 in float, where it leaves some 1e-7.
+std::optional<std::string> conservation_violation(const std::vector<Disc>& before,
+                                                  const std::vector<Disc>& after,
+                                                  const std::vector<OverlappingPair>& pairs,
+                                                  const Walls& walls);
+
+} // namespace carom

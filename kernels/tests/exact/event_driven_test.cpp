@@ -1,0 +1,256 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "kernels/exact/event_driven.hpp"
+#include "kernels/tests/scenes.hpp"
+
+namespace carom::tests {
+namespace {
+
+/// Discs at rest on a square lattice, none touching, with random velocity components in [-1, 1).
+Scene lattice(int per_side, double area_fraction, std::uint64_t seed) {
+    const int count = per_side * per_side;
+    const double side = std::sqrt(count * std::numbers::pi / area_fraction);
+    const double spacing = side / per_side;
+    Random random(seed);
+    Scene scene{.side = side, .radius = 1, .steps = 1, .discs = {}};
+    for (int row = 0; row < per_side; ++row) {
+        for (int column = 0; column < per_side; ++column) {
+            const double vx = random.uniform(-1, 1);
+            scene.discs.push_back(
+                {spacing * (column + 0.5), spacing * (row + 0.5), vx, random.uniform(-1, 1)});
+        }
+    }
+    return scene;
+}
+
+template <class Disc> double twice_energy(const std::vector<Disc>& discs) {
+    double sum = 0;
+    for (const auto& disc : discs) {
+        sum += static_cast<double>(disc.vx * disc.vx + disc.vy * disc.vy);
+    }
+    return sum;
+}
+
+double deepest_overlap(const std::vector<ExactDisc<double>>& discs, double radius) {
+    double deepest = 0;
+    for (std::size_t i = 0; i < discs.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            const double distance = std::hypot(discs[i].x - discs[j].x, discs[i].y - discs[j].y);
+            deepest = std::max(deepest, 2 * radius - distance);
+        }
+    }
+    return deepest;
+}
+
+TEST(EventDriven, HeadOnPairExchangesVelocitiesAtTheExactTime) {
+    EventDriven<double> reference(
+        {.side = 100, .radius = 1, .steps = 0, .discs = {{10, 50, 1, 0}, {20, 50, -1, 0}}});
+    // The surfaces are 8 apart and close in at 2: they meet at t = 4, at x = 14 and 16.
+    ASSERT_TRUE(reference.advance(3.999));
+    EXPECT_EQ(reference.pair_collisions(), 0);
+    ASSERT_TRUE(reference.advance(5));
+    EXPECT_EQ(reference.pair_collisions(), 1);
+    EXPECT_DOUBLE_EQ(reference.discs()[0].x, 13);
+    EXPECT_DOUBLE_EQ(reference.discs()[1].x, 17);
+    EXPECT_EQ(reference.discs()[0].vx, -1);
+    EXPECT_EQ(reference.discs()[1].vx, 1);
+}
+
+TEST(EventDriven, ObliquePairExchangesNormalComponents) {
+    // Impact parameter sqrt(2): the line of centres is at 45 degrees when they touch, at distance 2.
+    const double offset = std::numbers::sqrt2;
+    EventDriven<double> reference(
+        {.side = 100, .radius = 1, .steps = 0, .discs = {{10, 50, 1, 0}, {20, 50 + offset, 0, 0}}});
+    ASSERT_TRUE(reference.advance(20));
+    const auto discs = reference.discs();
+    EXPECT_EQ(reference.pair_collisions(), 1);
+    EXPECT_NEAR(discs[0].vx, 0.5, 1e-14);
+    EXPECT_NEAR(discs[0].vy, -0.5, 1e-14);
+    EXPECT_NEAR(discs[1].vx, 0.5, 1e-14);
+    EXPECT_NEAR(discs[1].vy, 0.5, 1e-14);
+    const double contact = 10 - offset;
+    EXPECT_NEAR(discs[1].x, 20 + 0.5 * (20 - contact), 1e-13);
+}
+
+TEST(EventDriven, CradlePassesTheBlowOnAtExactTimes) {
+    EventDriven<double> reference(cradle());
+    // Gaps: 5.125 - 3 - 2 = 0.125, then 0.0625 each, at speed 0.25: at t = 0.5, 0.75, 1, 1.25.
+    for (int hits = 1; hits <= 4; ++hits) {
+        const double time = 0.5 + 0.25 * (hits - 1);
+        ASSERT_TRUE(reference.advance(time - 1e-9));
+        EXPECT_EQ(reference.pair_collisions(), hits - 1) << time;
+        ASSERT_TRUE(reference.advance(time + 1e-9));
+        EXPECT_EQ(reference.pair_collisions(), hits) << time;
+    }
+    EXPECT_EQ(reference.discs()[0].vx, 0);
+    EXPECT_EQ(reference.discs()[4].vx, 0.25);
+}
+
+TEST(EventDriven, WallsTurnAndTakeUpMomentum) {
+    EventDriven<double> reference({.side = 10, .radius = 1, .steps = 0, .discs = {{5, 5, 2, 0}}});
+    // Between x = 1 and 9, at speed 2: hits at t = 2, 6, 10.
+    ASSERT_TRUE(reference.advance(11));
+    EXPECT_EQ(reference.wall_collisions(), 3);
+    EXPECT_DOUBLE_EQ(reference.wall_impulse(), 12);
+    EXPECT_DOUBLE_EQ(reference.discs()[0].x, 7);
+}
+
+TEST(EventDriven, OverlappingPairsCollideAtOnceIfTheyApproachAndPartOtherwise) {
+    EventDriven<double> approaching(
+        {.side = 100, .radius = 1, .steps = 0, .discs = {{50, 50, 1, 0}, {51, 50, -1, 0}}});
+    ASSERT_TRUE(approaching.advance(0));
+    EXPECT_EQ(approaching.pair_collisions(), 1);
+    EventDriven<double> parting(
+        {.side = 100, .radius = 1, .steps = 0, .discs = {{50, 50, -1, 0}, {51, 50, 1, 0}}});
+    ASSERT_TRUE(parting.advance(10));
+    EXPECT_EQ(parting.pair_collisions(), 0);
+}
+
+TEST(EventDriven, DiscsFromOutsideComeIn) {
+    EventDriven<double> reference(outside());
+    ASSERT_TRUE(reference.advance(9));
+    EXPECT_GT(reference.wall_collisions(), 0);
+    EXPECT_NEAR(twice_energy(reference.discs()) / twice_energy(outside().discs), 1, 1e-13);
+    for (const auto& disc : reference.discs()) {
+        EXPECT_TRUE(std::isfinite(disc.x) && std::isfinite(disc.y));
+    }
+}
+
+TEST(EventDriven, WedgedDiscIsReportedInsteadOfHanging) {
+    EventDriven<double> reference({.side = 2, .radius = 1, .steps = 0, .discs = {{1, 1, 1, 0}}});
+    EXPECT_FALSE(reference.advance(1, {.at_once = 1000}));
+}
+
+TEST(EventDriven, GivesUpAtTheLimitOfEventsItIsGiven) {
+    EventDriven<double> reference(lattice(10, 0.5, 1));
+    EXPECT_FALSE(reference.advance(10, {.in_all = 100}));
+    EXPECT_EQ(reference.events(), 101);
+    EXPECT_LT(reference.time(), 10);
+    EXPECT_TRUE(reference.advance(10)) << "and can go on";
+    EXPECT_EQ(reference.time(), 10);
+}
+
+TEST(EventDriven, CentresTooCloseForANormalDoNotCollide) {
+    for (const double distance : {0.0, 5e-324, 1e-170, 1e-150}) {
+        EventDriven<double> reference(
+            {.side = 10, .radius = 1, .steps = 0, .discs = {{0, 5, 1, 0}, {distance, 5, 0, 0}}});
+        ASSERT_TRUE(reference.advance(1));
+        EXPECT_EQ(reference.pair_collisions(), 0) << distance;
+        EXPECT_EQ(reference.discs()[0].vx, 1) << distance;
+    }
+    EventDriven<double> nearest(
+        {.side = 10, .radius = 1, .steps = 0, .discs = {{0, 5, 1, 0}, {1e-145, 5, 0, 0}}});
+    ASSERT_TRUE(nearest.advance(1));
+    EXPECT_DOUBLE_EQ(nearest.discs()[1].vx, 1);
+}
+
+TEST(EventDriven, NoDiscsAndOneAtRest) {
+    EventDriven<double> none({.side = 10, .radius = 1, .steps = 0, .discs = {}});
+    EXPECT_TRUE(none.advance(5));
+    EventDriven<double> one({.side = 10, .radius = 1, .steps = 0, .discs = {{5, 5, 0, 0}}});
+    EXPECT_TRUE(one.advance(5));
+    EXPECT_EQ(one.discs()[0].x, 5);
+}
+
+TEST(EventDriven, KeepsEnergyAndNeverOverlapsOverManyCollisions) {
+    const Scene scene = lattice(30, 0.6, 7);
+    EventDriven<double> reference(scene);
+    ASSERT_TRUE(reference.advance(60));
+    EXPECT_GT(reference.pair_collisions(), 50'000);
+    EXPECT_NEAR(twice_energy(reference.discs()) / twice_energy(scene.discs), 1, 1e-12);
+    EXPECT_LT(deepest_overlap(reference.discs(), scene.radius), 1e-12);
+}
+
+/// How far, at most, a disc ends from its start, if all go `time` forward, are turned, and go as long again.
+template <class Real> double missed_after(const Scene& scene, double time) {
+    EventDriven<Real> reference(scene);
+    EXPECT_TRUE(reference.advance(static_cast<Real>(time)));
+    reference.turn_back();
+    EXPECT_TRUE(reference.advance(static_cast<Real>(2 * time)));
+    double largest = 0;
+    const auto end = reference.discs();
+    for (std::size_t i = 0; i < scene.discs.size(); ++i) {
+        largest = std::max({largest, std::abs(static_cast<double>(end[i].x) - scene.discs[i].x),
+                            std::abs(static_cast<double>(end[i].y) - scene.discs[i].y)});
+    }
+    return largest;
+}
+
+/// The dynamics is reversible, and a collision multiplies an error by about the free path over the radius.
+/// Here double finds back from 32 units of time away, 25 collisions per disc, and no longer from 40. The
+/// eleven bits more of long double make every error 2^11 times smaller, and so the horizon longer: it is
+/// rounding that sets it, nothing else.
+TEST(EventDriven, FindsItsWayBackWhileRoundingAllows) {
+    const Scene scene = lattice(10, 0.3, 3);
+    EXPECT_LT(missed_after<double>(scene, 5), 1e-9);
+    EXPECT_LT(missed_after<double>(scene, 32), 0.1);
+    EXPECT_GT(missed_after<double>(scene, 40), 0.1);
+    EXPECT_LT(missed_after<long double>(scene, 40), 0.1);
+    const double gained = missed_after<double>(scene, 24) / missed_after<long double>(scene, 24);
+    EXPECT_GT(gained, 0x1p7);
+    EXPECT_LT(gained, 0x1p15);
+    EventDriven<double> count(scene);
+    ASSERT_TRUE(count.advance(32));
+    EXPECT_GT(2 * count.pair_collisions(), 20 * 100);
+}
+
+TEST(EventDriven, LongDoubleKnowsTheErrorOfDouble) {
+    const Scene scene = lattice(10, 0.3, 5);
+    EventDriven<double> coarse(scene);
+    EventDriven<long double> fine(scene);
+    ASSERT_TRUE(coarse.advance(3));
+    ASSERT_TRUE(fine.advance(3));
+    EXPECT_EQ(coarse.pair_collisions(), fine.pair_collisions());
+    double largest = 0;
+    for (std::size_t i = 0; i < scene.discs.size(); ++i) {
+        largest = std::max(largest, std::abs(static_cast<double>(coarse.discs()[i].x - fine.discs()[i].x)));
+    }
+    EXPECT_LT(largest, 1e-9);
+    EXPECT_GT(largest, 0);
+}
+
+/// The area fraction of a scene's inner part, where the walls' layering is no longer felt.
+double inner_area_fraction(const std::vector<ExactDisc<double>>& discs, double side, double margin) {
+    const auto inside = [&](const ExactDisc<double>& disc) {
+        return disc.x > margin && disc.y > margin && disc.x < side - margin && disc.y < side - margin;
+    };
+    const auto count = static_cast<double>(std::count_if(discs.begin(), discs.end(), inside));
+    return count * std::numbers::pi / ((side - 2 * margin) * (side - 2 * margin));
+}
+
+/// Henderson (Mol. Phys. 30, 971, 1975): p A / (N k T) = (1 + eta^2 / 8) / (1 - eta)^2. A wall gathers discs,
+/// so that the bulk it balances is thinner than N / L^2 says: eta is measured, over the same time, ten radii
+/// from the walls.
+TEST(EventDriven, PressureFollowsTheHardDiscEquationOfState) {
+    struct Case {
+        double area_fraction;
+        double time;
+    };
+    for (const auto& [area_fraction, time] :
+         {Case{0.1, 6000}, Case{0.3, 1000}, Case{0.5, 300}, Case{0.6, 200}}) {
+        const Scene scene = lattice(40, area_fraction, 11);
+        const double temperature = twice_energy(scene.discs) / (2 * static_cast<double>(scene.discs.size()));
+        EventDriven<double> reference(scene);
+        ASSERT_TRUE(reference.advance(20));
+        const double warm = reference.wall_impulse();
+        constexpr int samples = 100;
+        double eta = 0;
+        for (int sample = 1; sample <= samples; ++sample) {
+            ASSERT_TRUE(reference.advance(20 + time * sample / samples));
+            eta += inner_area_fraction(reference.discs(), scene.side, 10) / samples;
+        }
+        const double pressure = (reference.wall_impulse() - warm) / (time * 4 * scene.side);
+        const double density = eta / std::numbers::pi;
+        const double henderson = (1 + eta * eta / 8) / ((1 - eta) * (1 - eta));
+        EXPECT_NEAR(pressure / (density * temperature) / henderson, 1, 0.01)
+            << "area fraction " << area_fraction;
+    }
+}
+
+} // namespace
+} // namespace carom::tests
