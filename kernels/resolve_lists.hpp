@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <iterator>
+#include <unordered_set>
 #include <vector>
 
 #include "collide.hpp"
@@ -149,6 +151,20 @@ Changes resolve_strip(State<policies>& state, int strip, const ApproachOf<polici
 struct Remembered {
     std::vector<int> now;
     std::vector<int> next;
+
+    /// What was remembered is what is visited now. Of more than two visits a disc of `discs` (and some more),
+    /// each disc keeps its first: discs wedged between walls would be remembered a hundred times as often
+    /// each time. The published program has no such limit; none of its known states needs more than one visit
+    /// a disc.
+    void begin_round(int discs) {
+        constexpr int some_more = 100;
+        now.swap(next);
+        next.clear();
+        if (std::ssize(now) > 2 * std::ptrdiff_t{discs} + some_more) [[unlikely]] {
+            std::unordered_set<int> seen;
+            std::erase_if(now, [&seen](int i) { return !seen.insert(i).second; });
+        }
+    }
 };
 
 /// Visits each of `discs` in turn and remembers partners before it that it changed.
@@ -177,8 +193,7 @@ template <LookAtWalls walls, Policies policies>
 Changes visit_remembered(State<policies>& state, Remembered& remembered,
                          const ApproachOf<policies>& approaching) {
     Changes total;
-    remembered.now.swap(remembered.next);
-    remembered.next.clear();
+    remembered.begin_round(state.count());
     for (const int i : remembered.now) {
         const Changes changes =
             visit<true, Direction::forward>(state, i, looks_at_wall<walls>(state, i), approaching,

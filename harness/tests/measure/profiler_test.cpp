@@ -110,7 +110,7 @@ TEST(Profiler, PhasesSumToTheWholeAndThreadsToThreadsTimesWall) {
 TEST(Profiler, CountsEveryIterationOnce) {
     const Tuning tuning{.threads = 3};
     const Profiled profiled = profile("published", tuning);
-    const std::int64_t boxes_per_side = 600 / 21 + 1;
+    const std::int64_t boxes_per_side = 600 / 21;
     std::int64_t find = 0;
     std::int64_t resolve = 0;
     for (int thread = 0; thread < 3; ++thread) {

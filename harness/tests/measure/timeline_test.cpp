@@ -99,7 +99,7 @@ TEST(Timeline, ShowsPhasesSweepsLoopsAndWaits) {
     EXPECT_EQ(count_named(tracks.at(0), "sweep"), sweeps);
     for (const int thread : {0, 1}) {
         EXPECT_EQ(count_named(tracks.at(thread), "resolve loop"), 4 * sweeps);
-        EXPECT_EQ(count_named(tracks.at(thread), "wait"), 4 * sweeps + 40);
+        EXPECT_EQ(count_named(tracks.at(thread), "wait"), 4 * sweeps + 20);
         EXPECT_EQ(count_named(tracks.at(thread), "resolve chunk"), 0);
     }
     EXPECT_EQ(timeline["otherData"]["title"], "a \"title\"");
@@ -114,7 +114,7 @@ TEST(Timeline, ShowsChunksIfAskedFor) {
             iterations += event["args"]["count"].get<std::int64_t>();
         }
     }
-    const std::int64_t boxes_per_side = 500 / 21 + 1;
+    const std::int64_t boxes_per_side = 500 / 21;
     EXPECT_EQ(iterations, 20 * boxes_per_side * boxes_per_side);
 }
 
