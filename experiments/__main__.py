@@ -65,9 +65,10 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _builds(options: argparse.Namespace) -> int:
-    """The one that makes the scenes, and what the questions ask for."""
+    """The one that makes the scenes, and what the questions cannot do without."""
     questions = load_questions(options.questions, options.study)
-    asked = {GENERATOR, *(series.program for one in questions for series in one.series)}
+    asked = {GENERATOR}
+    asked.update(series.program for one in questions for series in one.series if not series.optional)
     print(*(name for name in load_site(options.site).programs if name in asked))
     return 0
 
