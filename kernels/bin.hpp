@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -15,17 +16,26 @@
 namespace carom {
 
 /// Puts every disc's number into the list of its box, in the order of the numbers. On one thread, as the
-/// published program does.
+/// published program does. The boxes of some discs are asked for before the first of them is needed.
 template <Policies policies, class SomeProbe>
     requires(policies.storage == Storage::numbered)
 void bin(State<policies>& state, const Tuning& /*tuning*/, SomeProbe& /*probe*/) {
+    constexpr int at_once = 32;
+    std::array<std::vector<int>*, at_once> box_of_disc;
     for (std::vector<int>& box : state.boxes) {
         box.clear();
     }
-    for (int i = 0; i < state.count(); ++i) {
-        const auto& disc = state.discs[static_cast<std::size_t>(i)];
-        const int box = state.grid.box_of(state.grid.coordinate(disc.y), state.grid.coordinate(disc.x));
-        state.boxes[static_cast<std::size_t>(box)].push_back(i);
+    for (int first = 0; first < state.count(); first += at_once) {
+        const int last = std::min(first + at_once, state.count());
+        for (int i = first; i < last; ++i) {
+            const auto& disc = state.discs[static_cast<std::size_t>(i)];
+            const int box = state.grid.box_of(state.grid.coordinate(disc.y), state.grid.coordinate(disc.x));
+            box_of_disc[static_cast<std::size_t>(i - first)] = &state.boxes[static_cast<std::size_t>(box)];
+            __builtin_prefetch(&state.boxes[static_cast<std::size_t>(box)]);
+        }
+        for (int i = first; i < last; ++i) {
+            box_of_disc[static_cast<std::size_t>(i - first)]->push_back(i);
+        }
     }
 }
 

@@ -88,6 +88,19 @@ template <class Real> struct BothComponents {
     }
 };
 
+/// A disc whose collisions with others are being resolved. Its velocity stays in a register until it is
+/// stored.
+template <class Real> struct DiscInRegisters {
+    using Both = BothComponents<Real>;
+    typename Both::Register position;
+    typename Both::Register velocity;
+
+    explicit DiscInRegisters(const BasicDisc<Real>& disc)
+        : position(Both::load_position(disc)), velocity(Both::load_velocity(disc)) {}
+
+    void store_velocity(BasicDisc<Real>& disc) const { Both::store_velocity(velocity, disc); }
+};
+
 /// Resolves an overlapping pair if it collides; returns whether it did.
 ///
 /// Equal masses, elastic, frictionless: the impulse acts along d and conserves momentum, so v1' = v1 + s d
@@ -95,27 +108,38 @@ template <class Real> struct BothComponents {
 /// the normal components are exchanged (Landau and Lifshitz, Mechanics, section 17). Coincident centres have
 /// no normal and are not colliding.
 template <class Real>
-[[gnu::always_inline]] inline bool resolve_pair(BasicDisc<Real>& first, BasicDisc<Real>& second,
+[[gnu::always_inline]] inline bool resolve_pair(DiscInRegisters<Real>& first, BasicDisc<Real>& second,
                                                 const Approach<Real>& approaching) {
     using Both = BothComponents<Real>;
-    const auto distance = Both::load_position(second) - Both::load_position(first);
-    const auto velocity1 = Both::load_velocity(first);
+    const auto distance = Both::load_position(second) - first.position;
     const auto velocity2 = Both::load_velocity(second);
-    const Real approach = Both::sum((velocity2 - velocity1) * distance);
+    const Real approach = Both::sum((velocity2 - first.velocity) * distance);
     if (!(approach < 0)) {
         return false;
     }
     const Real distance_squared = Both::sum(distance * distance);
-    const Real speed_squared = Both::sum(velocity1 * velocity1 + velocity2 * velocity2);
+    const Real speed_squared = Both::sum(first.velocity * first.velocity + velocity2 * velocity2);
     if (distance_squared < coincident_squared<Real> ||
         (!approaching.surely_counts(approach, distance_squared * speed_squared) &&
          !approaching.counts(approach, distance_squared, speed_squared))) {
         return false;
     }
     const auto impulse = approach / distance_squared * distance;
-    Both::store_velocity(velocity1 + impulse, first);
+    first.velocity = first.velocity + impulse;
     Both::store_velocity(velocity2 - impulse, second);
     return true;
+}
+
+/// The same for two discs in memory.
+template <class Real>
+[[gnu::always_inline]] inline bool resolve_pair(BasicDisc<Real>& first, BasicDisc<Real>& second,
+                                                const Approach<Real>& approaching) {
+    DiscInRegisters<Real> in_registers(first);
+    const bool resolved = resolve_pair(in_registers, second, approaching);
+    if (resolved) {
+        in_registers.store_velocity(first);
+    }
+    return resolved;
 }
 
 /// (v2 - v1).n

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collide.hpp"
+#include "look_ahead.hpp"
 #include "parallel_for.hpp"
 #include "policies.hpp"
 #include "resolve_lists.hpp"
@@ -149,6 +150,7 @@ Tally find(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     Tally tally = parallel_for_boxes<policies.find_schedule>(
         tuning.threads, boxes_per_side, boxes_per_side, tuning.find_chunk, probe,
         [&](int row, int column, Tally& sum) {
+            look_ahead_to_find(state, row, column);
             if (!state.is_empty(row, column)) {
                 find_in_box(state, row, column, approaching, sum);
             }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collide.hpp"
+#include "look_ahead.hpp"
 #include "policies.hpp"
 #include "state.hpp"
 #include "tally.hpp"
@@ -20,111 +21,49 @@ template <LookAtWalls walls, Policies policies> bool looks_at_wall(const State<p
     return walls == LookAtWalls::yes && state.overlaps_wall[static_cast<std::size_t>(i)] != 0;
 }
 
-/// A part of a disc's list of partners that is still to be gone through.
-struct Partners {
-    const int* first;
-    const int* last;
-
-    explicit Partners(const std::vector<int>& list) : first(list.data()), last(list.data() + list.size()) {}
-
-    bool empty() const { return first == last; }
-    int size() const { return static_cast<int>(last - first); }
-
-    /// The next one in the given direction.
-    template <Direction direction> int next() const {
-        return direction == Direction::reverse ? last[-1] : *first;
-    }
-    template <Direction direction> void take() {
-        if constexpr (direction == Direction::reverse) {
-            --last;
-        } else {
-            ++first;
-        }
-    }
-};
-
-/// Goes through `partners` up to the next that approaches `disc`, or to their end.
-template <Direction direction, class Real>
-[[gnu::always_inline]] inline void find_approaching(const BasicDisc<Real>& disc, const BasicDisc<Real>* discs,
-                                                    Partners& partners) {
-    using Both = BothComponents<Real>;
-    const auto position = Both::load_position(disc);
-    const auto velocity = Both::load_velocity(disc);
-    for (; !partners.empty(); partners.take<direction>()) {
-        const BasicDisc<Real>& partner = discs[partners.next<direction>()];
-        const auto towards = position - Both::load_position(partner);
-        if (Both::sum((velocity - Both::load_velocity(partner)) * towards) < 0) {
-            break;
-        }
-    }
-}
-
-/// The visit of a disc at a wall or with an approaching partner, the next of `partners`.
-template <bool again, Direction direction, Policies policies, class OnPartner>
-[[gnu::noinline]] Changes visit_from(State<policies>& state, int i, Partners partners, bool at_wall,
-                                     const ApproachOf<policies>& approaching, const OnPartner& on_partner) {
-    Changes changes;
-    auto* const discs = state.discs.data();
-    auto& disc = discs[i];
-    const Partners all(state.overlaps[static_cast<std::size_t>(i)]);
-    for (int pass = 0; pass < (again ? passes_per_visit : 1); ++pass) {
-        const int before = changes.count();
-        changes.attempts += all.size();
-        while (!partners.empty()) {
-            const int j = partners.next<direction>();
-            if (resolve_pair(disc, discs[j], approaching)) {
-                ++changes.pairs;
-                on_partner(j);
-            }
-            partners.take<direction>();
-            find_approaching<direction>(disc, discs, partners);
-        }
-        if (at_wall) {
-            changes.walls += resolve_walls(disc, state.side, state.radius);
-        }
-        if (changes.count() == before) {
-            break;
-        }
-        partners = all;
-        find_approaching<direction>(disc, discs, partners);
-    }
-    return changes;
-}
-
 /// Visits disc i: passes over its list of overlaps, and then its walls if `at_wall`, one pass or, with
-/// `again`, until a pass changes nothing. `on_partner(j)` is called for each partner changed. Most visits
-/// change nothing and end with the first look.
+/// `again`, until a pass changes nothing. `on_partner(j)` is called for each partner changed.
 template <bool again, Direction direction, Policies policies, class OnPartner>
 [[gnu::always_inline]] inline Changes visit(State<policies>& state, int i, bool at_wall,
                                             const ApproachOf<policies>& approaching,
                                             const OnPartner& on_partner) {
-    const auto* const discs = state.discs.data();
-    const Partners all(state.overlaps[static_cast<std::size_t>(i)]);
-    Partners partners = all;
-    find_approaching<direction>(discs[i], discs, partners);
-    if (partners.empty() && !at_wall) [[likely]] {
-        return {.attempts = all.size()};
+    auto* const discs = state.discs.data();
+    constexpr bool reverse = direction == Direction::reverse;
+    const std::vector<int>& partners = state.overlaps[static_cast<std::size_t>(i)];
+    const int* const first = partners.data();
+    const int* const last = first + partners.size();
+    DiscInRegisters<RealOf<policies.precision>> disc(discs[i]);
+    Changes changes;
+    for (int pass = 0; pass < (again ? passes_per_visit : 1); ++pass) {
+        const int before = changes.count();
+        changes.attempts += static_cast<int>(partners.size());
+        const int* next = reverse ? last : first;
+        while (next != (reverse ? first : last)) {
+            const int j = reverse ? *--next : *next++;
+            if (resolve_pair(disc, discs[j], approaching)) {
+                ++changes.pairs;
+                on_partner(j);
+            }
+        }
+        if (changes.count() > before) {
+            disc.store_velocity(discs[i]);
+        }
+        if (at_wall) [[unlikely]] {
+            changes.walls += resolve_walls(discs[i], state.side, state.radius);
+            disc = DiscInRegisters(discs[i]);
+        }
+        if (changes.count() == before) {
+            break;
+        }
     }
-    return visit_from<again, direction>(state, i, partners, at_wall, approaching, on_partner);
+    return changes;
 }
 
 inline constexpr auto ignore_partner = [](int) {};
 
-/// Asks for what the visits of a box will read, so that they do not wait for one cache line after another.
-template <Policies policies> void prefetch_box(const State<policies>& state, int row, int column) {
-    for (const int i : state.discs_in(row, column)) {
-        __builtin_prefetch(&state.overlaps[static_cast<std::size_t>(i)]);
-        __builtin_prefetch(&state.discs[static_cast<std::size_t>(i)]);
-    }
-    for (const int i : state.discs_in(row, column)) {
-        __builtin_prefetch(state.overlaps[static_cast<std::size_t>(i)].data());
-    }
-}
-
 template <Policies policies>
 Changes resolve_box(State<policies>& state, int row, int column, const ApproachOf<policies>& approaching) {
     Changes changes;
-    prefetch_box(state, row, column);
     const bool at_wall = state.grid.at_wall(row, column);
     for (const int i : state.discs_in(row, column)) {
         changes += visit<true, policies.direction>(
@@ -141,6 +80,7 @@ Changes resolve_strip(State<policies>& state, int strip, const ApproachOf<polici
     const BoxRange rows = state.grid.rows_of_strip(strip, strip_height(policies.order));
     for (int row = rows.first; row <= rows.last; ++row) {
         for (int column = 0; column < state.grid.boxes_per_side(); ++column) {
+            look_ahead_to_resolve(state, row, column, 1);
             changes += resolve_box(state, row, column, approaching);
         }
     }

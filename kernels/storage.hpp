@@ -25,9 +25,12 @@ template <class Real> std::vector<BasicDisc<Real>> discs_of(const Scene& scene) 
 template <class Real> struct DiscsOf<Storage::numbered, Real> {
     std::vector<BasicDisc<Real>> discs;
     std::vector<std::vector<int>> boxes;
+    int boxes_ahead; ///< how many boxes hold about eight discs, at most twelve: see look_ahead.hpp
 
     DiscsOf(const Scene& scene, const Grid& grid)
-        : discs(discs_of<Real>(scene)), boxes(static_cast<std::size_t>(grid.box_count())) {}
+        : discs(discs_of<Real>(scene)), boxes(static_cast<std::size_t>(grid.box_count())),
+          boxes_ahead(static_cast<int>(std::clamp(
+              8.0 * grid.box_count() / std::max(static_cast<double>(discs.size()), 1.0), 1.0, 12.0))) {}
 
     const std::vector<int>& discs_in_box(int box) const { return boxes[static_cast<std::size_t>(box)]; }
     int number(int i) const { return i; }

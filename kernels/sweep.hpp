@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <iterator>
 
+#include "look_ahead.hpp"
 #include "parallel_for.hpp"
 #include "policies.hpp"
 #include "resolve_contacts.hpp"
@@ -52,6 +53,7 @@ Swept sweep_checkered(State<policies>& state, const Tuning& tuning, const Approa
                 tuning.resolve_chunk, probe, [&](int k, int l, Tally& sum) {
                     const int row = first_row + 2 * k;
                     const int column = first_column + 2 * l;
+                    look_ahead_to_resolve(state, row, column, 2);
                     if (!state.is_empty(row, column)) {
                         sum += resolve_box(state, row, column, approaching);
                     }
