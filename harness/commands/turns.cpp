@@ -32,6 +32,7 @@ struct TurnsOptions {
 struct ContenderOptions {
     SimulationOptions simulation;
     MeasurementOptions measurement;
+    int repetitions = 1;
 };
 
 /// Parses one contender's words. Throws InputError with `where` in front.
@@ -41,6 +42,7 @@ ContenderOptions parse_contender(const std::vector<std::string>& words, const st
     parser.set_help_flag();
     add_simulation_options(parser, options.simulation);
     add_measurement_options(parser, options.measurement);
+    parser.add_option("--repetitions", options.repetitions)->check(CLI::Range(1, 1));
     try {
         parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::ParseError& error) {
