@@ -54,7 +54,7 @@ def _read(source: Path, results: Path) -> Iterator[_Found]:
         raise InputError(f"{source}: is the folder to collect into; expected another one")
     for file in _files(source):
         content = read_json(file)
-        _refuse_other_schema(file, content)
+        _require_schema(file, content)
         kind = file.relative_to(source).parts[0]
         place = (
             Path(kind) / COLLECTED / _owner(content) / _word(content["tags"].get("experiment")) / file.name
@@ -62,7 +62,7 @@ def _read(source: Path, results: Path) -> Iterator[_Found]:
         yield _Found(file, content, place)
 
 
-def _refuse_other_schema(file: Path, content: Any) -> None:  # noqa: ANN401 - read from a file
+def _require_schema(file: Path, content: Any) -> None:  # noqa: ANN401 - read from a file
     if not isinstance(content, dict):
         raise InputError(f"{file}: is not a record; nothing was collected")
     expected = json.loads(RECORD_SCHEMA.read_text(encoding="utf-8"))["properties"]["schema_version"]["const"]

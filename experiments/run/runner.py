@@ -31,7 +31,7 @@ class Task:
     def tags(self, session: str) -> Tags:
         """Everything that the record remembers of the plan."""
         return {
-            **self.point.place,
+            **self.point.tags,
             "title": self.experiment.question.title,
             "block": self.block,
             "position": self.position,
@@ -116,7 +116,7 @@ class Runner:
 
     def _fail(self, task: Task, done: Completed) -> Outcome:
         if task.point.program.sha256 is not None:
-            _still_the_same(task.point.program)
+            _require_unchanged(task.point.program)
         self._store.keep_failure(task.point, task.block, done, task.tags(self._store.session))
         return Outcome(None, done.reason, done.exit_code)
 
@@ -132,7 +132,7 @@ def _violation(record: object) -> str | None:
     return check.get("reason") if isinstance(check, dict) else None
 
 
-def _still_the_same(program: Program) -> None:
+def _require_unchanged(program: Program) -> None:
     path: Path = program.path
     if sha256_of(path) != program.sha256:
         raise InputError(f"{path}: was built anew while the study ran; run the study again to go on with it")
