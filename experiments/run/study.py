@@ -53,27 +53,25 @@ class Settings:
     budget_seconds: float | None = None
     seed: int = SEED
     figures: bool = True
-    machine: Machine | None = None
-    """The machine to plan for; this one if none is given."""
 
 
 class Study:
-    """The questions chosen, planned for this machine, and the folder that holds their results."""
+    """The questions chosen, planned for a machine, and the folder that holds their results."""
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, machine: Machine | None = None) -> None:
+        """Plan for this machine, or for another one that is named."""
         self.settings = settings
         self.site = site.load_site(settings.site)
         self.scale = find_scale(settings.scale)
         self.budget_seconds = settings.budget_seconds or self.scale.budget_seconds
         self.measuring_seconds = self.budget_seconds - (REPORT_SECONDS if settings.figures else 0.0)
-        if self.site.cluster is not None and settings.machine is None:
+        if self.site.cluster is not None and machine is None:
             raise InputError(f"site {self.site.name}: is a cluster; use `make submit SITE={settings.site}`")
-        machine = settings.machine or site.this_machine()
         programs = find_programs(self.site, settings.build)
         self.generator: Program = programs[GENERATOR]
         if self.generator.sha256 is None:
             raise InputError(self.generator.remedy)
-        around = Surroundings(self.site, machine, programs, self.scale, settings.seed)
+        around = Surroundings(self.site, machine or site.this_machine(), programs, self.scale, settings.seed)
         questions = load_questions(settings.questions, settings.study)
         self.experiments: tuple[Experiment, ...] = tuple(
             plan(with_blocks(self.scale.question(one), settings.blocks), around) for one in questions
