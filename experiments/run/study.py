@@ -21,7 +21,7 @@ from experiments.run.progress import Report, about, warn
 from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.schedule import Schedule, split
 from experiments.support.errors import InputError
-from experiments.support.process import NOT_FOUND, Companion
+from experiments.support.process import NOT_FOUND, Coprocess
 
 COSTS = "costs.json"
 POINTS_FAILED = 2
@@ -125,7 +125,7 @@ def run(settings: Settings) -> int:
         runner = study.runner()
         schedule = study.schedule(runner, settle=True)
         report.line(summary(schedule, study.budget_seconds))
-        with Companion(study.drawing_command()) as painter:
+        with Coprocess(study.drawing_command()) as painter:
             return _Session(study, runner, schedule, report, painter).run()
 
 
@@ -149,7 +149,7 @@ class _Session:
     """One invocation: a first block of every experiment, then one after the other, the control in between."""
 
     def __init__(
-        self, study: Study, runner: Runner, schedule: Schedule, report: Report, painter: Companion
+        self, study: Study, runner: Runner, schedule: Schedule, report: Report, painter: Coprocess
     ) -> None:
         self._study = study
         self._runner = runner
