@@ -55,7 +55,7 @@ def draw(scene: Path, trajectory: Path, output: Path | None = None, step: int | 
     OSError where the file cannot be written.
     """
     target = output or Path("results", "movies", scene.stem).with_suffix(".mp4" if _has_ffmpeg() else ".gif")
-    _refuse_format(target)
+    _require_format(target)
     box, run = read_box(scene), read_trajectory(trajectory)
     if step is not None and not 0 <= step <= run.steps:
         raise InputError(f"--step: found {step}, expected a step from 0 to {run.steps}")
@@ -92,7 +92,7 @@ def _has_ffmpeg() -> bool:
     return shutil.which("ffmpeg") is not None
 
 
-def _refuse_format(target: Path) -> None:
+def _require_format(target: Path) -> None:
     if target.suffix not in SUFFIXES:
         raise InputError(
             f"{target}: found the suffix '{target.suffix}', expected one of {', '.join(SUFFIXES)}"

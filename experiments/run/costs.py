@@ -7,7 +7,7 @@ from pathlib import Path
 
 from experiments.plan.point import Point
 from experiments.plan.scenes import AnyScene, HardCase, Scene
-from experiments.run.turn import run_in_turn
+from experiments.run.host_lock import run_alone
 from experiments.support.files import read_json
 
 PROBE = Scene(particles=10000, side=3162, radius=16, steps=10, min_velocity=2, max_velocity=5)
@@ -122,7 +122,7 @@ def probe(point: Point, scene: Path, record: Path, time_limit: float) -> Probe |
     words = [str(point.program.path), "bench", str(scene), "--variant", point.variant]
     words += ["--threads", str(point.threads), "--record", str(record), "--warm-up", "0"]
     words += ["--repetitions", str(_PROBED)]
-    done = run_in_turn(words, point.openmp, time_limit)
+    done = run_alone(words, point.openmp, time_limit)
     content = read_json(record)
     if done.exit_code != 0 or content is None:
         return None

@@ -9,9 +9,10 @@ from experiments.plan.point import Point, Tags
 from experiments.plan.program import CHECK_FAILED, Program, generate
 from experiments.plan.scenes import AnyScene, SceneFile, SceneFolder, sha256_of
 from experiments.results.store import Store, unusable
-from experiments.run.limits import Limits
+from experiments.run.host_lock import run_alone
+from experiments.run.kept_records import KeptRecords
+from experiments.run.limits import measure_limits
 from experiments.run.outside import Outside
-from experiments.run.turn import run_in_turn
 from experiments.run.verify import Verifier, representative
 from experiments.support.errors import InputError
 from experiments.support.files import move, read_json
@@ -31,7 +32,7 @@ class Task:
     def tags(self, session: str) -> Tags:
         """Everything that the record remembers of the plan."""
         return {
-            **self.point.place,
+            **self.point.tags,
             "title": self.experiment.question.title,
             "block": self.block,
             "position": self.position,
@@ -60,8 +61,8 @@ class Runner:
         self._generator = generator
         self._time_limit = time_limit
         self._verifier = Verifier(store, time_limit)
-        self._limits = Limits(store, time_limit)
-        self._outside = Outside(store, time_limit)
+        self._records = KeptRecords(store, time_limit)
+        self._outside = Outside(self._records)
 
     def run(self, task: Task) -> Outcome:
         """Verify the point's variant if that is still to be done, then measure it.
@@ -80,8 +81,8 @@ class Runner:
         verdict = self._verifier.check(representative(task.experiment, point), checked)
         if verdict.exit_code != 0:
             return self._fail(task, verdict)
-        limits = self._limits.measure(point)
-        if limits.exit_code != 0:
+        limits = measure_limits(point, self._records)
+        if limits is not None and limits.exit_code != 0:
             return self._fail(task, limits)
         failed = self._outside.measure(point, task.block, scene, task.tags(self._store.session))
         if failed is not None and failed.exit_code != 0:
@@ -99,7 +100,7 @@ class Runner:
         tags = task.tags(self._store.session)
         timeline = self._store.temporary / "timeline.json" if _is_drawn(task) else None
         command = point.command(scene.path, scratch, tags, timeline, point.besides(task.block))
-        done = run_in_turn(command, point.openmp, self._time_limit)
+        done = run_alone(command, point.openmp, self._time_limit)
         record = read_json(scratch)
         if done.exit_code == 0:
             wrong = unusable(record, point, task.block)
@@ -116,7 +117,7 @@ class Runner:
 
     def _fail(self, task: Task, done: Completed) -> Outcome:
         if task.point.program.sha256 is not None:
-            _still_the_same(task.point.program)
+            _require_unchanged(task.point.program)
         self._store.keep_failure(task.point, task.block, done, task.tags(self._store.session))
         return Outcome(None, done.reason, done.exit_code)
 
@@ -132,7 +133,7 @@ def _violation(record: object) -> str | None:
     return check.get("reason") if isinstance(check, dict) else None
 
 
-def _still_the_same(program: Program) -> None:
+def _require_unchanged(program: Program) -> None:
     path: Path = program.path
     if sha256_of(path) != program.sha256:
         raise InputError(f"{path}: was built anew while the study ran; run the study again to go on with it")

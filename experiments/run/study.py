@@ -21,7 +21,7 @@ from experiments.run.progress import Report, about, warn
 from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.schedule import Schedule, split
 from experiments.support.errors import InputError
-from experiments.support.process import NOT_FOUND, Companion
+from experiments.support.process import NOT_FOUND, Coprocess
 
 COSTS = "costs.json"
 POINTS_FAILED = 2
@@ -53,27 +53,25 @@ class Settings:
     budget_seconds: float | None = None
     seed: int = SEED
     figures: bool = True
-    machine: Machine | None = None
-    """The machine to plan for; this one if none is given."""
 
 
 class Study:
-    """The questions chosen, planned for this machine, and the folder that holds their results."""
+    """The questions chosen, planned for a machine, and the folder that holds their results."""
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, machine: Machine | None = None) -> None:
+        """Plan for this machine, or for another one that is named."""
         self.settings = settings
         self.site = site.load_site(settings.site)
         self.scale = find_scale(settings.scale)
         self.budget_seconds = settings.budget_seconds or self.scale.budget_seconds
         self.measuring_seconds = self.budget_seconds - (REPORT_SECONDS if settings.figures else 0.0)
-        if self.site.cluster is not None and settings.machine is None:
+        if self.site.cluster is not None and machine is None:
             raise InputError(f"site {self.site.name}: is a cluster; use `make submit SITE={settings.site}`")
-        machine = settings.machine or site.this_machine()
         programs = find_programs(self.site, settings.build)
         self.generator: Program = programs[GENERATOR]
         if self.generator.sha256 is None:
             raise InputError(self.generator.remedy)
-        around = Surroundings(self.site, machine, programs, self.scale, settings.seed)
+        around = Surroundings(self.site, machine or site.this_machine(), programs, self.scale, settings.seed)
         questions = load_questions(settings.questions, settings.study)
         self.experiments: tuple[Experiment, ...] = tuple(
             plan(with_blocks(self.scale.question(one), settings.blocks), around) for one in questions
@@ -127,7 +125,7 @@ def run(settings: Settings) -> int:
         runner = study.runner()
         schedule = study.schedule(runner, settle=True)
         report.line(summary(schedule, study.budget_seconds))
-        with Companion(study.drawing_command()) as painter:
+        with Coprocess(study.drawing_command()) as painter:
             return _Session(study, runner, schedule, report, painter).run()
 
 
@@ -151,7 +149,7 @@ class _Session:
     """One invocation: a first block of every experiment, then one after the other, the control in between."""
 
     def __init__(
-        self, study: Study, runner: Runner, schedule: Schedule, report: Report, painter: Companion
+        self, study: Study, runner: Runner, schedule: Schedule, report: Report, painter: Coprocess
     ) -> None:
         self._study = study
         self._runner = runner

@@ -8,7 +8,7 @@ import hashlib
 import os
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import Field, asdict, dataclass, fields, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,9 @@ from experiments.support.files import read_json
 Unit = tuple[str, int]
 """An experiment and one of its blocks: what is measured within one allocation."""
 
+_OF_ONE_RUN: dict[str, Any] = {"budget_seconds": None, "figures": False}
+"""Settings that no job keeps: its tasks draw nothing, and Slurm limits their time."""
+
 
 @dataclass(frozen=True)
 class Job:
@@ -38,20 +41,13 @@ class Job:
 
     def content(self) -> dict[str, Any]:
         """As JSON."""
-        chosen = self.settings
+        kept = {key: value for key, value in asdict(self.settings).items() if key not in _OF_ONE_RUN}
         return {
             "name": self.name,
             "partition": self.partition,
             "tasks": self.tasks,
             "submitted_at": self.submitted_at,
-            "study": chosen.study,
-            "scale": chosen.scale,
-            "site": chosen.site,
-            "results": os.fspath(chosen.results),
-            "build": os.fspath(chosen.build),
-            "questions": os.fspath(chosen.questions),
-            "blocks": chosen.blocks,
-            "seed": chosen.seed,
+            **{key: os.fspath(value) if isinstance(value, Path) else value for key, value in kept.items()},
         }
 
 
@@ -59,21 +55,21 @@ def read_job(path: Path) -> Job:
     """Raises InputError if the file does not hold a job."""
     content = read_json(path)
     try:
-        settings = Settings(
-            study=tuple(content["study"]),
-            scale=content["scale"],
-            site=content["site"],
-            results=Path(content["results"]),
-            build=Path(content["build"]),
-            questions=Path(content["questions"]),
-            blocks=content["blocks"],
-            seed=content["seed"],
-            figures=False,
-        )
+        kept = {
+            one.name: _typed(one, content[one.name])
+            for one in fields(Settings)
+            if one.name not in _OF_ONE_RUN
+        }
         tasks = tuple(tuple((str(name), int(block)) for name, block in task) for task in content["tasks"])
+        settings = Settings(**_OF_ONE_RUN, **kept)
         return Job(content["name"], content["partition"], settings, tasks, content["submitted_at"])
     except (TypeError, KeyError, ValueError):
         raise InputError(f"{path}: is not the list of blocks of a job") from None
+
+
+def _typed(field: Field[Any], value: Any) -> Any:  # noqa: ANN401 - read from a file
+    """What JSON made of a setting, as its default is: a path of a text, a tuple of a list."""
+    return value if field.default is None else type(field.default)(value)
 
 
 class PartitionFolder:
@@ -101,8 +97,7 @@ class PartitionFolder:
         if to_be_built and find_programs(self._site, build)["gcc"].sha256 is None:
             build = self.settings.build
         machine = Machine(self.partition.name, self.partition.cpus, self.partition.hardware_threads)
-        chosen = replace(self.settings, results=self.path, build=build, figures=False, machine=machine)
-        return Study(chosen)
+        return Study(replace(self.settings, results=self.path, build=build, figures=False), machine)
 
     def known_jobs(self) -> list[Job]:
         """All jobs ever submitted, the first one first."""
