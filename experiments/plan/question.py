@@ -80,6 +80,7 @@ class Question:
     verb: Literal["bench", "profile"] = "bench"
     threads: Threads = "hardware_threads"
     bound: bool = True
+    turns: bool = True
     tolerance: Literal["relative", "published"] = "relative"
     tolerance_reason: str | None = None
     substeps: int = 1

@@ -20,6 +20,7 @@ from experiments.run.costs import PROBE, Costs, Probe, kept_probes, probe, probe
 from experiments.run.progress import Report, about, warn
 from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.schedule import Schedule, split
+from experiments.run.together import together
 from experiments.support.errors import InputError
 from experiments.support.process import NOT_FOUND, Coprocess
 
@@ -205,12 +206,13 @@ class _Session:
         missing = self._schedule.missing(experiment, block)
         blocks = self._schedule.promised(experiment)
         what = f"{experiment.name}, block {block + 1} of {blocks}"
-        for position, point in missing:
+        for group in together(experiment, block, missing):
             self._report.now(what, self._schedule.status)
-            outcome = self._runner.run(Task(experiment, point, block, position, blocks))
-            self._schedule.finish(experiment, point, block, outcome.seconds)
-            if outcome.seconds is None:
-                self._tell(point, outcome)
+            tasks = [Task(experiment, point, block, position, blocks) for position, point in group]
+            for (_, point), outcome in zip(group, self._runner.run(tasks), strict=True):
+                self._schedule.finish(experiment, point, block, outcome.seconds)
+                if outcome.seconds is None:
+                    self._tell(point, outcome)
         if missing:
             self._report.block(what, self._schedule.status)
 

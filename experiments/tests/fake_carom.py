@@ -30,11 +30,15 @@ def main(words: list[str]) -> int:
 
 
 def answer(words: list[str]) -> int:
-    verb, rest = words[0], words[1:]
-    if verb == "list":
+    if words[0] == "turns":
+        return max(answer(said) for said in contenders(words))
+    if words[0] == "list":
         print("\n".join(VARIANTS))
         return 0
-    options, positional = split(rest)
+    return answer_with(words[0], *split(words[1:]))
+
+
+def answer_with(verb: str, options: Options, positional: list[str]) -> int:
     if verb == "generate":
         words = [*positional, options["seed"]] if positional else ["3", "100", "5", "10", options["case"]]
         write(options["output"], "".join(f"{word}\n" for word in words))
@@ -116,7 +120,15 @@ def note(words: list[str]) -> None:
     if "FAKE_LOG" in os.environ:
         with Path(os.environ["FAKE_LOG"]).open("a", encoding="utf-8") as file:
             openmp = {key: value for key, value in os.environ.items() if key.startswith("OMP_")}
-            file.write(json.dumps({"pid": os.getpid(), "words": words, "openmp": openmp}) + "\n")
+            for call in [words, *contenders(words)]:
+                file.write(json.dumps({"pid": os.getpid(), "words": call, "openmp": openmp}) + "\n")
+
+
+def contenders(words: list[str]) -> list[list[str]]:
+    """What those who take turns would be told alone."""
+    if words[0] != "turns":
+        return []
+    return [["bench", *said] for said in json.loads(Path(words[1]).read_text(encoding="utf-8"))]
 
 
 def write(path: str, text: str) -> None:

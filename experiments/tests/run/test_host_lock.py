@@ -57,7 +57,7 @@ def test_what_two_runners_run_does_not_overlap(empty_workplace: Workplace) -> No
         _, error = runner.communicate(timeout=120)
         assert (runner.returncode, error) == (0, "")
     lines = [line.split() for line in spans.read_text(encoding="utf-8").splitlines()]
-    assert {verb for verb, _, _ in lines} == {"bench", "check", "limits", "outside", "profile"}
+    assert {verb for verb, _, _ in lines} == {"bench", "check", "limits", "outside", "profile", "turns"}
     times_of = sorted((float(began), float(ended), verb) for verb, began, ended in lines)
     for before, after in itertools.pairwise(times_of):
         assert before[1] <= after[0], f"{after[2]} began before {before[2]} had ended"

@@ -110,9 +110,9 @@ TEST(VariantContender, EndsAsIfItHadRunAlone) {
         const Measurement& measurement = one->measurement();
         ASSERT_EQ(measurement.repetitions.size(), 1);
         EXPECT_FALSE(measurement.violation);
-        const Run& run = measurement.repetitions.back();
+        const auto& run = measurement.repetitions.back();
         const auto alone = measurement.variant.simulate(scene, measurement.tuning);
-        const Run whole = run_scene(scene, *alone, measurement.tuning, CheckScope::nothing);
+        const auto whole = run_scene(scene, *alone, measurement.tuning, CheckScope::nothing);
         EXPECT_EQ(run.discs, whole.discs);
         EXPECT_EQ(run.work, whole.work);
         EXPECT_NEAR(std::accumulate(turns.begin(), turns.end(), 0.0), run.steps_seconds, 1e-9);

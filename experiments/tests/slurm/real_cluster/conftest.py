@@ -17,6 +17,7 @@ MACHINE = f"""
 title = "Machine"
 figure = "machine"
 claim = "machine"
+tolerance = "published"
 threads = 16
 {SCENE}
 [[series]]
