@@ -63,7 +63,7 @@ def _has(table: pd.DataFrame, series: str, phase: str) -> bool:
 def _heights(rows: list[tuple[str, str]]) -> dict[tuple[str, str], float]:
     """Return the height of each row, from above, with a gap between the series."""
     series = list(dict.fromkeys(name for name, _ in rows))
-    return {row: -(place + 0.6 * series.index(row[0])) for place, row in enumerate(rows)}
+    return {row: -(line + 0.6 * series.index(row[0])) for line, row in enumerate(rows)}
 
 
 def _panel(axes: Axes, table: pd.DataFrame, rows: list[tuple[str, str]]) -> None:

@@ -128,10 +128,10 @@ def _by_block(axes: Axes, curves: dict[str, pd.DataFrame]) -> None:
     labels = []
     both = pd.concat(curves)
     # Nodes number their blocks alike: they stand one after another.
-    both["place"] = 1 + both.groupby(PAIR).ngroup()
+    both["position"] = 1 + both.groupby(PAIR).ngroup()
     for name, colour in zip(curves, (BLUE, VERMILLION), strict=True):
-        ordered = both.loc[name].sort_values("place")
-        axes.plot(ordered["place"], ordered["steps_seconds"], color=colour, marker="o", linewidth=0.8)
+        ordered = both.loc[name].sort_values("position")
+        axes.plot(ordered["position"], ordered["steps_seconds"], color=colour, marker="o", linewidth=0.8)
         labels.append((name, ordered["steps_seconds"].iloc[-1], colour))
     axes.margins(y=0.15)
     label_ends(axes, labels)

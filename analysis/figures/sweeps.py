@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pandas as pd
 from matplotlib.axes import Axes
 
-from analysis.figures.captions import growth_sentence, linear_sentence, opening, turn_sentence
+from analysis.figures.captions import growth_sentence, linear_sentence, minimum_sentence, opening
 from analysis.figures.curves import colours, curve, published_curve
 from analysis.figures.style import (
     BLUE,
@@ -33,7 +33,7 @@ def particles(data: Data) -> Drawing | None:
 
 def radius(data: Data) -> Drawing | None:
     """Draw time over the radius of the discs."""
-    return _over(data, "radius", "radius of a disc", turn_sentence)
+    return _over(data, "radius", "radius of a disc", minimum_sentence)
 
 
 def steps(data: Data) -> Drawing | None:
