@@ -29,7 +29,7 @@ def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
     table["name"] = [f"{_label(row, table)} against {against}" for row in table.to_dict("records")]
     names = sorted(times["series"].unique(), key=lambda name: name == against)
     if len(names) == 2 and times["x"].nunique() == 1:
-        drawing = pair_drawing(data, Sides(experiment, names[0], names[1], (names[0], names[1]), subject))
+        drawing = pair_drawing(data, Sides(experiment, names[0], names[1], subject, (names[0], names[1])))
         return drawing and replace(drawing, verdicts=table)
     summary = summarise(times, ["series", "x"]).iloc[::-1]
     summary["name"] = [_label(row, summary) for row in summary.to_dict("records")]

@@ -30,11 +30,6 @@ ROW_HEIGHT = 0.2
 COLOURS = {"faster": GREEN, "slower": VERMILLION}
 
 
-def ladder(data: Data) -> Drawing | None:
-    """Draw the way from the published best to the fastest variant."""
-    return waterfall(data, "ladder", "From the published best to the fastest variant")
-
-
 def waterfall(data: Data, experiment: str, subject: str) -> Drawing | None:
     """Draw an experiment's series in the order of its question, each against the one before, on every
     scene.

@@ -22,11 +22,6 @@ KEY = [
 ]
 
 
-def limits(data: Data) -> Drawing | None:
-    """Draw how close the phases come to what this machine can do."""
-    return phases_against_limits(data, "limits", "Phases of a step against the limits of this machine")
-
-
 def phases_against_limits(data: Data, experiment: str, subject: str) -> Drawing | None:
     """Draw a row a series and phase, a panel a scene; None without profiled runs or without measured
     limits.
