@@ -10,7 +10,7 @@ from analysis.claims.entry import Evidence
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
 from analysis.records.studies import Study
 from analysis.statistics.pairs import log_ratios, process_medians
-from analysis.statistics.trends import growth, linearity, turn
+from analysis.statistics.trends import growth, linearity, minimum
 from analysis.support.wording import blocks, change, exact, factor, interval, listed, number
 
 ONE_POINT = "needs at least two values of the swept parameter"
@@ -113,23 +113,23 @@ def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = 
 
 
 def _shape(processes: pd.DataFrame, published: pd.DataFrame) -> Outcome:
-    turning = turn(processes)
+    ours = minimum(processes)
     name = processes["x_name"].iloc[0]
-    where = "" if pd.isna(turning.break_point.estimate) else f", break point {interval(turning.break_point)}"
+    where = "" if pd.isna(ours.break_point.estimate) else f", break point {interval(ours.break_point)}"
     measured = (
-        f"least at {name} = {exact(turning.lowest)}{where}; against it {change(turning.fall)} at the "
-        f"smallest and {change(turning.rise)} at the largest {name}, {blocks(turning.fall)}"
+        f"least at {name} = {exact(ours.lowest)}{where}; against it {change(ours.fall)} at the "
+        f"smallest and {change(ours.rise)} at the largest {name}, {blocks(ours.fall)}"
     )
-    theirs = turn(published)
+    theirs = minimum(published)
     figures = (
-        Compared(f"least time at {name}", exact(theirs.lowest), exact(turning.lowest)),
-        Compared(f"smallest {name} against it", factor(theirs.fall["ratio"]), factor(turning.fall["ratio"])),
-        Compared(f"largest {name} against it", factor(theirs.rise["ratio"]), factor(turning.rise["ratio"])),
+        Compared(f"least time at {name}", exact(theirs.lowest), exact(ours.lowest)),
+        Compared(f"smallest {name} against it", factor(theirs.fall["ratio"]), factor(ours.fall["ratio"])),
+        Compared(f"largest {name} against it", factor(theirs.rise["ratio"]), factor(ours.rise["ratio"])),
     )
-    if turning.verdict == "inconclusive":
+    if ours.verdict == "inconclusive":
         return Outcome(OPEN, measured, TOO_FEW, figures)
-    held = turning.verdict == "falls then rises"
-    return Outcome(HOLDS if held else FAILS, measured, turning.verdict, figures)
+    held = ours.verdict == "falls then rises"
+    return Outcome(HOLDS if held else FAILS, measured, ours.verdict, figures)
 
 
 def _least_at(processes: pd.DataFrame, least: float) -> Outcome:

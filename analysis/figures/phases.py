@@ -19,11 +19,6 @@ from analysis.support.wording import count, number, share
 PHASES = {"move": ORANGE, "bin": GREEN, "find": BLUE, "resolve": VERMILLION}
 
 
-def phases(data: Data) -> Drawing | None:
-    """Draw the phases of the published variants."""
-    return profile(data, "phases", "Where the time of a step goes")
-
-
 def profile(data: Data, experiment: str, subject: str) -> Drawing | None:
     """Draw each phase's share of a step's wall time, and how much of it the threads are busy."""
     table = data.study.phases[data.study.phases["experiment"] == experiment]

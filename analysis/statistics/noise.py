@@ -92,8 +92,8 @@ def blocks_needed(noise: float, margin: float = MARGIN, rate: float = 0.95, most
     `most`. `noise` is per process.
     """
     counts = range(3, most + 1)
-    place = bisect_left(counts, rate, key=lambda blocks: equivalence_rate(noise, blocks, margin))
-    return counts[min(place, len(counts) - 1)]
+    index = bisect_left(counts, rate, key=lambda blocks: equivalence_rate(noise, blocks, margin))
+    return counts[min(index, len(counts) - 1)]
 
 
 def equivalence_rate(noise: float, blocks: int, margin: float = MARGIN) -> float:
@@ -118,12 +118,10 @@ def warning(noise: pd.DataFrame) -> str | None:
     if short.empty:
         return None
     worst = short.loc[short["needed"].idxmax()]
-    place = (
-        f"The worst is {worst['experiment']!r}: the time of a process varies by {share(worst['noise'], 1)}"
-    )
+    said = f"The worst is {worst['experiment']!r}: the time of a process varies by {share(worst['noise'], 1)}"
     return (
         f"The machine was too noisy to settle differences of {share(MARGIN)} in {len(short)} of {len(asked)} "
-        f"experiments about small ones. {place}, with {count(worst['bursts'], 'burst')}, which needs about "
+        f"experiments about small ones. {said}, with {count(worst['bursts'], 'burst')}, which needs about "
         f"{worst['needed']} blocks; {worst['blocks']} were run. Expect verdicts of 'inconclusive'. To do "
         f"better: {ADVICE}."
     )

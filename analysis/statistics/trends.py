@@ -45,7 +45,7 @@ class Linearity:
 
 
 @dataclass(frozen=True)
-class Turn:
+class Minimum:
     """A fall to a break point and a rise from it; `fall` and `rise` are rows of `judge_one` against the
     lowest x.
     """
@@ -98,7 +98,7 @@ def linearity(processes: pd.DataFrame, within: tuple[float, float] = LINEAR_WITH
     return Linearity(exponent, verdict)
 
 
-def turn(processes: pd.DataFrame, margin: float = MARGIN) -> Turn:
+def minimum(processes: pd.DataFrame, margin: float = MARGIN) -> Minimum:
     """Tell whether the time falls to some x and rises from there.
 
     The break point is that of a continuous line of two pieces through ln(time) over ln(x) (Muggeo, Stat.
@@ -122,7 +122,7 @@ def turn(processes: pd.DataFrame, margin: float = MARGIN) -> Turn:
         verdict = "inconclusive"
     else:
         verdict = "falls only" if legs[0] == "slower" else "rises only" if legs[1] == "slower" else "flat"
-    return Turn(_break_point(processes), lowest, fall, rise, verdict)
+    return Minimum(_break_point(processes), lowest, fall, rise, verdict)
 
 
 def _ratio(processes: pd.DataFrame, reference: float, candidate: float) -> Floats:

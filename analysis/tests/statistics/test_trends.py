@@ -5,7 +5,7 @@ import pytest
 from analysis.records import published
 from analysis.statistics import scalability
 from analysis.statistics.pairs import process_medians
-from analysis.statistics.trends import growth, linearity, turn
+from analysis.statistics.trends import growth, linearity, minimum
 from analysis.tests.synthetic_noise import Noise, times_table
 
 VM = Noise(burst_rate=0.01)
@@ -66,17 +66,17 @@ def test_too_few_points_leave_linearity_open() -> None:
 
 def test_the_turn_is_found_with_its_break_point() -> None:
     times = {float(r): 0.14 * np.exp(abs(np.log(r / 35)) * (0.5 if r < 35 else 1.5)) for r in range(5, 51, 5)}
-    turning = turn(curve(times))
-    assert turning.verdict == "falls then rises"
-    assert turning.lowest == 35
-    assert turning.break_point.low <= 35.5
-    assert turning.break_point.high >= 34.5
-    assert turning.break_point.high - turning.break_point.low < 10
+    least = minimum(curve(times))
+    assert least.verdict == "falls then rises"
+    assert least.lowest == 35
+    assert least.break_point.low <= 35.5
+    assert least.break_point.high >= 34.5
+    assert least.break_point.high - least.break_point.low < 10
 
 
 @pytest.mark.parametrize(("power", "verdict"), [(1.0, "rises only"), (-1.0, "falls only")])
-def test_a_monotone_curve_has_no_turn(power: float, verdict: str) -> None:
-    assert turn(curve({float(x): float(x) ** power for x in (1, 2, 4, 8)})).verdict == verdict
+def test_a_monotone_curve_has_no_minimum_inside(power: float, verdict: str) -> None:
+    assert minimum(curve({float(x): float(x) ** power for x in (1, 2, 4, 8)})).verdict == verdict
 
 
 def test_the_law_gives_back_its_coefficients() -> None:
