@@ -24,7 +24,7 @@ namespace {
 
 struct TurnsOptions {
     std::string file;
-    double turn_seconds = 0.05;
+    double turn_seconds = 0.02;
     std::uint64_t seed = 1;
 };
 

@@ -90,7 +90,7 @@ TEST_F(TurnsCommand, RefusesWhatIsNoListOfContenders) {
 TEST_F(TurnsCommand, RefusesAContenderThatCannotBeAndSaysWhichOne) {
     const Json right = words("published", "one");
     EXPECT_TRUE(refused(turns({right, Json{scene}}), 1, {"contender 2", "--record"}));
-    EXPECT_TRUE(refused(turns({words("publishde", "one")}), 1, {"publishde", "published"}));
+    EXPECT_TRUE(refused(turns({right, words("publishde", "two")}), 1, {"publishde", "published"}));
     EXPECT_TRUE(refused(turns({right, words("nine", "two", {"--tag", "x"})}), 1, {"--tag", "KEY=VALUE"}));
     EXPECT_TRUE(
         refused(turns({right, words("nine", "two", {"--no-such"})}), 1, {"contender 2", "--no-such"}));
