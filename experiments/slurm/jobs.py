@@ -16,7 +16,7 @@ from typing import Any
 from experiments.plan.cluster import Cluster, Partition
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
-from experiments.plan.program import find_programs
+from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.site import Machine, Site, load_site
 from experiments.run.study import Settings, Study
 from experiments.support.errors import InputError
@@ -91,7 +91,7 @@ class PartitionFolder:
         the names of the variants, and nothing has been measured with the ones that are still to come.
         """
         build = self.build
-        if to_be_built and find_programs(self._site, build)["gcc"].sha256 is None:
+        if to_be_built and find_programs(self._site, build)[GENERATOR].sha256 is None:
             build = self.settings.build
         machine = Machine(self.partition.name, self.partition.cpus, self.partition.hardware_threads)
         return Study(replace(self.settings, results=self.path, build=build, figures=False), machine)
