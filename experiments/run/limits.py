@@ -2,7 +2,7 @@
 
 from dataclasses import asdict
 
-from experiments.plan.point import Point
+from experiments.plan.point import Point, Tags
 from experiments.run.kept_records import KeptRecords, key
 from experiments.support.process import Completed
 
@@ -21,7 +21,7 @@ def measure_limits(point: Point, records: KeptRecords) -> Completed | None:
     if point.figure != FIGURE:
         return None
     name = f"{FOLDER}/{key(point.program.sha256, asdict(point.machine), point.threads, point.openmp)}.json"
-    tags = {"experiment": FOLDER, "site": point.site}
+    tags: Tags = {"experiment": FOLDER, "site": point.site}
     done = records.ensure("limits", name, point, ["--threads", str(point.threads)], tags)
     if done is None or done.exit_code == 0:
         return done

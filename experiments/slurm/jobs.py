@@ -8,7 +8,7 @@ import hashlib
 import os
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import Field, asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from typing import Any
 from experiments.plan.cluster import Cluster, Partition
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
-from experiments.plan.program import find_programs
+from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.site import Machine, Site, load_site
 from experiments.run.study import Settings, Study
 from experiments.support.errors import InputError
@@ -55,11 +55,8 @@ def read_job(path: Path) -> Job:
     """Raises InputError if the file does not hold a job."""
     content = read_json(path)
     try:
-        kept = {
-            one.name: _typed(one, content[one.name])
-            for one in fields(Settings)
-            if one.name not in _OF_ONE_RUN
-        }
+        defaults = {key: value for key, value in vars(Settings()).items() if key not in _OF_ONE_RUN}
+        kept = {key: _like(default, content[key]) for key, default in defaults.items()}
         tasks = tuple(tuple((str(name), int(block)) for name, block in task) for task in content["tasks"])
         settings = Settings(**_OF_ONE_RUN, **kept)
         return Job(content["name"], content["partition"], settings, tasks, content["submitted_at"])
@@ -67,9 +64,9 @@ def read_job(path: Path) -> Job:
         raise InputError(f"{path}: is not the list of blocks of a job") from None
 
 
-def _typed(field: Field[Any], value: Any) -> Any:  # noqa: ANN401 - read from a file
+def _like(default: Any, value: Any) -> Any:  # noqa: ANN401 - read from a file
     """What JSON made of a setting, as its default is: a path of a text, a tuple of a list."""
-    return value if field.default is None else type(field.default)(value)
+    return value if default is None else type(default)(value)
 
 
 class PartitionFolder:
@@ -94,7 +91,7 @@ class PartitionFolder:
         the names of the variants, and nothing has been measured with the ones that are still to come.
         """
         build = self.build
-        if to_be_built and find_programs(self._site, build)["gcc"].sha256 is None:
+        if to_be_built and find_programs(self._site, build)[GENERATOR].sha256 is None:
             build = self.settings.build
         machine = Machine(self.partition.name, self.partition.cpus, self.partition.hardware_threads)
         return Study(replace(self.settings, results=self.path, build=build, figures=False), machine)
