@@ -26,8 +26,9 @@ def together(experiment: Experiment, block: int, missing: Sequence[Position]) ->
         return [[one] for one in missing]
     groups: dict[object, list[Position]] = {}
     for position, point in missing:
-        # Threads of one team for all: a pool that shrinks and grows between turns would be timed too.
-        key = (point.program.sha256, point.openmp, point.threads)
+        # Nothing is compared across a question's named scenes. And as many threads for all: a pool of threads
+        # that shrinks and grows between turns would be timed too.
+        key = (point.program.sha256, point.openmp, point.threads, point.scene_name)
         groups.setdefault(key, []).append((position, point))
     return [part for group in groups.values() for part in _fitting(group)]
 
