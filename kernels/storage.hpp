@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
-#include <ranges>
 #include <vector>
 
 #include "grid.hpp"
@@ -37,8 +36,24 @@ template <class Real> struct DiscsOf<Storage::numbered, Real> {
     int number(int i) const { return i; }
 };
 
-/// The integers of [first, last).
-using Indices = std::ranges::iota_view<int, int>;
+/// The integers of [first, last), to iterate over: std::views::iota, which clang 14 cannot compile.
+struct Indices {
+    struct Iterator {
+        int i;
+        int operator*() const { return i; }
+        Iterator& operator++() {
+            ++i;
+            return *this;
+        }
+        bool operator==(const Iterator& other) const { return i == other.i; }
+    };
+
+    int first;
+    int last;
+
+    Iterator begin() const { return {first}; }
+    Iterator end() const { return {last}; }
+};
 
 /// Discs in the order of their boxes, row by row; in a box they keep the order that they had before. A box is
 /// a range of indices, and so is a run of neighbouring boxes of one row.

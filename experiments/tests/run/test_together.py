@@ -1,13 +1,13 @@
 """Points of a block that take turns in one process, and what keeps a process of its own."""
 
+import os
 from collections.abc import Callable
 
 import pytest
 
 from experiments.plan.point import Point
-from experiments.run import together as module
 from experiments.run.study import POINTS_FAILED, Study, run
-from experiments.run.together import together
+from experiments.run.together import _bytes, together
 from experiments.tests.conftest import CHUNKS, ERRORS, FOUR_AND_NINE, PAIR, SCENE, Workplace
 
 THREADS = f"""
@@ -75,9 +75,9 @@ def test_no_more_than_memory_holds_take_turns(
     empty_workplace: Workplace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     one = groups_of(empty_workplace, CHUNKS)[0][0]
-    monkeypatch.setattr(module.os, "sysconf", lambda _: (2.5 * module._bytes(one) * 4) ** 0.5)
+    monkeypatch.setattr(os, "sysconf", lambda _: (2.5 * _bytes(one) * 4) ** 0.5)
     assert sizes(groups_of(empty_workplace, CHUNKS)) == [1, 2]
-    monkeypatch.setattr(module.os, "sysconf", lambda _: 1)
+    monkeypatch.setattr(os, "sysconf", lambda _: 1)
     assert sizes(groups_of(empty_workplace, CHUNKS)) == [1, 1, 1]
 
 
