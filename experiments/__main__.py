@@ -5,12 +5,12 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
-from experiments.plan import question, site
+from experiments.plan import site
 from experiments.plan.program import GENERATOR
 from experiments.plan.question import load_questions
 from experiments.plan.scale import SCALES
@@ -87,18 +87,8 @@ def _collect(options: argparse.Namespace) -> int:
 
 
 def _settings(options: argparse.Namespace) -> Settings:
-    return Settings(
-        study=options.study,
-        scale=options.scale,
-        site=options.site,
-        results=options.results,
-        build=options.build,
-        questions=options.questions,
-        blocks=options.blocks,
-        budget_seconds=None if options.budget is None else options.budget * 60,
-        seed=options.seed,
-        figures=not options.no_figures,
-    )
+    """Every setting is an option."""
+    return Settings(**{field.name: getattr(options, field.name) for field in fields(Settings)})
 
 
 class _Parser(argparse.ArgumentParser):
@@ -120,21 +110,18 @@ def _parser() -> argparse.ArgumentParser:
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("--study", type=names, default=(), metavar="A,B", help="questions, beside the control (default: all)")
-    add("--scale", default="paper", metavar="|".join(SCALES), help="size of scenes (default: %(default)s)")
-    add("--site", default="local", help="a name in experiments/sites, or a file (default: %(default)s)")
-    add("--results", type=Path, default=Path("results"), help="folder of the records (default: %(default)s)")
-    add("--build", type=Path, default=Path("build"), help="folder of the programs (default: %(default)s)")
-    add(
-        "--questions",
-        type=Path,
-        default=question.FOLDER,
-        help="folder of questions (default: this package's)",
-    )
+    add("--study", type=names, metavar="A,B", help="questions, beside the control (default: all)")
+    add("--scale", metavar="|".join(SCALES), help="size of scenes (default: %(default)s)")
+    add("--site", help="a name in experiments/sites, or a file (default: %(default)s)")
+    add("--results", type=Path, help="folder of the records (default: %(default)s)")
+    add("--build", type=Path, help="folder of the programs (default: %(default)s)")
+    add("--questions", type=Path, help="folder of questions (default: this package's)")
     add("--blocks", type=positive_number, help="repeat every experiment so many times, whatever the budget")
-    add("--budget", type=minutes, metavar="MINUTES", help="time for the whole study (default: the scale's)")
-    add("--seed", type=int, default=Settings.seed, help="of the order within blocks (default: %(default)s)")
-    add("--no-figures", action="store_true", help="draw nothing")
+    budget = "time for the whole study (default: the scale's)"
+    add("--budget", type=minutes, dest="budget_seconds", metavar="MINUTES", help=budget)
+    add("--seed", type=int, help="of the order within blocks (default: %(default)s)")
+    add("--no-figures", action="store_false", dest="figures", help="draw nothing")
+    parser.set_defaults(**{field.name: field.default for field in fields(Settings)})
 
 
 def _add_submit_options(parser: argparse.ArgumentParser) -> None:
@@ -201,11 +188,11 @@ def positive_number(text: str) -> int:
 
 
 def minutes(text: str) -> float:
-    """A number above 0. Raises ValueError, which the parser makes a line of."""
+    """A number of minutes above 0, in seconds. Raises ValueError, which the parser makes a line of."""
     number = float(text)
     if not 0 < number < float("inf"):
         raise ValueError
-    return number
+    return number * 60
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

@@ -79,7 +79,7 @@ template <Policies policies> void place_part(State<policies>& state, int part, i
     const int boxes = state.grid.box_count();
     for (auto box = static_cast<std::size_t>(share(part, parts, boxes));
          box < static_cast<std::size_t>(share(part + 1, parts, boxes)); ++box) {
-        state.first[box] = place;
+        state.box_begin[box] = place;
         for (std::vector<int>& places : state.places) {
             place += std::exchange(places[box], place);
         }
@@ -122,7 +122,7 @@ void bin(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     std::exclusive_scan(begin.begin(), begin.end(), begin.begin(), 0);
     for_each_part(tuning, probe,
                   [&](int part) { place_part(state, part, parts, begin[static_cast<std::size_t>(part)]); });
-    state.first.back() = state.count();
+    state.box_begin.back() = state.count();
     for_each_part(tuning, probe, [&](int part) { scatter_part(state, part, parts); });
     state.discs.swap(state.spare_discs);
     state.numbers.swap(state.spare_numbers);

@@ -30,12 +30,12 @@ bool overlap(const BasicDisc<Real>& first, const BasicDisc<Real>& second,
 /// not bound it: where two fast discs move almost together, their difference is all rounding. Scaling lengths
 /// or times by a power of two changes no decision. published: tolerance = 1e-7 (length^2 per time), whatever
 /// the units.
-template <class Real = double> struct Approach {
+template <class Real = double> struct ApproachTolerance {
     Real relative;
     Real absolute;
     Real sure; ///< see surely_counts
 
-    explicit Approach(Tolerance tolerance)
+    explicit ApproachTolerance(Tolerance tolerance)
         : relative(tolerance == Tolerance::relative ? 64 * std::numeric_limits<Real>::epsilon() : 0),
           absolute(tolerance == Tolerance::published ? static_cast<Real>(1e-7) : 0),
           sure(tolerance == Tolerance::relative ? 2 * (relative * relative)
@@ -109,7 +109,7 @@ template <class Real> struct DiscInRegisters {
 /// no normal and are not colliding.
 template <class Real>
 [[gnu::always_inline]] inline bool resolve_pair(DiscInRegisters<Real>& first, BasicDisc<Real>& second,
-                                                const Approach<Real>& approaching) {
+                                                const ApproachTolerance<Real>& approaching) {
     using Both = BothComponents<Real>;
     const auto distance = Both::load_position(second) - first.position;
     const auto velocity2 = Both::load_velocity(second);
@@ -133,7 +133,7 @@ template <class Real>
 /// The same for two discs in memory.
 template <class Real>
 [[gnu::always_inline]] inline bool resolve_pair(BasicDisc<Real>& first, BasicDisc<Real>& second,
-                                                const Approach<Real>& approaching) {
+                                                const ApproachTolerance<Real>& approaching) {
     DiscInRegisters<Real> in_registers(first);
     const bool resolved = resolve_pair(in_registers, second, approaching);
     if (resolved) {
@@ -154,7 +154,8 @@ template <class Real>
 /// As resolve_pair, for a pair whose unit normal n = d / |d| is known: then s d = ((v2 - v1).n) n.
 template <class Real>
 [[gnu::always_inline]] inline bool resolve_along(const std::array<Real, 2>& normal, BasicDisc<Real>& first,
-                                                 BasicDisc<Real>& second, const Approach<Real>& approaching) {
+                                                 BasicDisc<Real>& second,
+                                                 const ApproachTolerance<Real>& approaching) {
     using Both = BothComponents<Real>;
     const Real approach = approach_along(normal, first, second);
     if (!(approach < 0)) {

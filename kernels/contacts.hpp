@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -25,14 +26,39 @@ template <class Real> struct Contact {
     std::array<Real, 2> normal;
 };
 
+/// Overlapping discs found so far. A search writes those that it finds beyond the end, where there is room
+/// for all that there may be, and then says where the new end is.
+class FoundPairs {
+  public:
+    void clear() { size_ = 0; }
+
+    const OverlappingDiscs* begin() const { return pairs_.data(); }
+    const OverlappingDiscs* end() const { return pairs_.data() + size_; }
+
+    /// The end, with room for `more` there.
+    OverlappingDiscs* room(int more) {
+        const std::size_t needed = size_ + static_cast<std::size_t>(std::max(more, 0));
+        if (pairs_.size() < needed) [[unlikely]] {
+            pairs_.resize(2 * needed);
+        }
+        return pairs_.data() + size_;
+    }
+
+    void end_at(const OverlappingDiscs* end) { size_ = static_cast<std::size_t>(end - pairs_.data()); }
+
+  private:
+    std::vector<OverlappingDiscs> pairs_;
+    std::size_t size_ = 0;
+};
+
 /// The contacts whose first disc lies in one strip of rows of boxes, in the order of the boxes. The second
 /// disc lies in the same strip or in the first row of the next.
 template <class Real> struct Strip {
     std::vector<Contact<Real>> contacts;
-    std::vector<int> first; ///< of each block of boxes, its first contact; at the end, their number
-    std::vector<OverlappingDiscs> found; ///< of one block, while it is searched
-    std::vector<int> active;             ///< blocks of one row to look at, in a sweep; room for one more
-    std::vector<int> colliding;          ///< contacts that may collide, in a sweep; room for one more
+    std::vector<int> block_begin; ///< of each block of boxes, its first contact; at the end, their number
+    FoundPairs found;             ///< of one block, while it is searched
+    std::vector<int> blocks_to_look_at; ///< blocks of one row to look at, in a sweep; room for one more
+    std::vector<int> colliding;         ///< contacts that may collide, in a sweep; room for one more
 };
 
 /// Which blocks of boxes have contacts to look at: with Worklist::all always all of them. A block is a run of
@@ -78,8 +104,8 @@ class ActiveBlocks {
                 .right_edge = columns.last < last_column_ ? columns.last : -1};
     }
 
-    /// Marks blocks. Apart from the rest so that it can be copied into registers: nobody knows what else a
-    /// store of bytes may change.
+    /// Marks blocks. A copy of what that takes, which can stay in registers: a byte may alias anything, so
+    /// that after a store through it the members would be loaded again.
     struct Marker {
         unsigned char* marks;
         std::ptrdiff_t stride;

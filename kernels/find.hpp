@@ -60,8 +60,8 @@ void for_each_other_box(BoxRange rows, BoxRange columns, int row, int column, co
 
 /// Finds the overlaps within one box, each pair once, and resolves it at once if asked to.
 template <Policies policies>
-void find_within_box(State<policies>& state, int row, int column, const ApproachOf<policies>& approaching,
-                     Tally& tally) {
+void find_within_box(State<policies>& state, int row, int column,
+                     const ApproachToleranceOf<policies>& approaching, Tally& tally) {
     const auto reach_squared = state.reach_squared();
     const auto& own = state.discs_in(row, column);
     for (auto i = own.begin(); i != own.end(); ++i) {
@@ -89,7 +89,7 @@ void find_within_box(State<policies>& state, int row, int column, const Approach
 /// resolve of the step will find.
 template <Policies policies>
 Changes resolve_within_box(State<policies>& state, int row, int column,
-                           const ApproachOf<policies>& approaching) {
+                           const ApproachToleranceOf<policies>& approaching) {
     Remembered remembered;
     Changes changes =
         visit_each<LookAtWalls::no>(state, state.discs_in(row, column), remembered, approaching);
@@ -132,8 +132,8 @@ template <Policies policies> std::int64_t find_beyond_box(State<policies>& state
 /// Any two boxes may run at the same time: only the lists and the velocities of the box's own discs are
 /// written, and of other boxes only positions are read, which nobody writes.
 template <Policies policies>
-void find_in_box(State<policies>& state, int row, int column, const ApproachOf<policies>& approaching,
-                 Tally& tally) {
+void find_in_box(State<policies>& state, int row, int column,
+                 const ApproachToleranceOf<policies>& approaching, Tally& tally) {
     find_within_box(state, row, column, approaching, tally);
     if constexpr (policies.self_contained == SelfContained::on) {
         tally += resolve_within_box(state, row, column, approaching);
@@ -145,7 +145,7 @@ void find_in_box(State<policies>& state, int row, int column, const ApproachOf<p
 template <Policies policies, class SomeProbe>
     requires(policies.overlaps == Overlaps::lists)
 Tally find(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
-    const ApproachOf<policies> approaching(tuning.tolerance);
+    const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     const int boxes_per_side = state.grid.boxes_per_side();
     Tally tally = parallel_for_boxes<policies.find_schedule>(
         tuning.threads, boxes_per_side, boxes_per_side, tuning.find_chunk, probe,

@@ -52,7 +52,7 @@ template <Policies policies> struct Candidates {
             if (!sparse || any(overlaps)) {
                 for (int k = 0; k < 4; ++k) {
                     *found = {i, j + k};
-                    found -= overlaps[k];
+                    found -= overlaps[k]; // -1 where they may overlap: the next one is written after this one
                 }
             }
             j += 4;
@@ -64,12 +64,10 @@ template <Policies policies> struct Candidates {
 /// Turns the candidates that do overlap into contacts; returns the number of pairs. Coincident centres have
 /// no normal: such a pair never collides, and is no contact.
 template <Policies policies>
-Tally add_contacts(const State<policies>& state, Strip<typename State<policies>::Real>& strip,
-                   std::size_t size) {
+Tally add_contacts(const State<policies>& state, Strip<typename State<policies>::Real>& strip) {
     using Real = typename State<policies>::Real;
     Tally tally;
-    for (std::size_t k = 0; k < size; ++k) {
-        const OverlappingDiscs pair = strip.found[k];
+    for (const OverlappingDiscs pair : strip.found) {
         if (pair.at_wall()) {
             constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
             strip.contacts.push_back({pair, {nan, nan}});
@@ -92,30 +90,20 @@ Tally add_contacts(const State<policies>& state, Strip<typename State<policies>:
     return tally;
 }
 
-/// Room for `more` elements after the first `size`.
-inline OverlappingDiscs* room(std::vector<OverlappingDiscs>& found, std::size_t size, int more) {
-    const std::size_t needed = size + static_cast<std::size_t>(std::max(more, 0));
-    if (found.size() < needed) [[unlikely]] {
-        found.resize(2 * needed);
-    }
-    return found.data() + size;
-}
-
 /// Searches one block of boxes of a row for partners of its discs among the discs after them: in storage
 /// order the boxes of lower rows hold only discs before, and so does a disc's own box up to itself, so that
-/// half the neighbourhood is enough. Disc by disc, since most boxes hold one or none. Returns how many were
-/// found.
+/// half the neighbourhood is enough. Disc by disc, since most boxes hold one or none.
 template <Policies policies>
-std::size_t search_block(State<policies>& state, const Candidates<policies>& candidates,
-                         std::vector<OverlappingDiscs>& found, int row, BoxRange columns) {
-    std::size_t size = 0;
-    const Grid grid = state.grid; // a copy, since nobody knows what else a store of integers may change
+void search_block(State<policies>& state, const Candidates<policies>& candidates, FoundPairs& found, int row,
+                  BoxRange columns) {
+    found.clear();
+    const Grid grid = state.grid; // a copy: its integers could alias those that are stored
     [[maybe_unused]] const ActiveBlocks::Block block = state.active.block(row, columns);
     const int row_begin = grid.box_of(row, 0);
     const int boxes_per_side = grid.boxes_per_side();
-    const int* const first = state.first.data();
-    const int end = first[row_begin + columns.last + 1];
-    for (int i = first[row_begin + columns.first]; i < end; ++i) {
+    const int* const box_begin = state.box_begin.data();
+    const int end = box_begin[row_begin + columns.last + 1];
+    for (int i = box_begin[row_begin + columns.first]; i < end; ++i) {
         const auto disc = static_cast<std::size_t>(i);
         const int column = state.box_of_disc[disc] - row_begin;
         if constexpr (policies.worklist == Worklist::active) {
@@ -123,18 +111,18 @@ std::size_t search_block(State<policies>& state, const Candidates<policies>& can
         }
         if (grid.at_wall(row, column) && overlaps_wall(state.discs[disc], state.side, state.radius))
             [[unlikely]] {
-            *room(found, size++, 1) = {i, i};
+            OverlappingDiscs* const pair = found.room(1);
+            *pair = {i, i};
+            found.end_at(pair + 1);
         }
         const BoxRange rows = Look<policies.neighbourhood>::along(grid, state.discs[disc].y, row);
         const BoxRange near = Look<policies.neighbourhood>::along(grid, state.discs[disc].x, column);
         for (int box = row_begin; box <= rows.last * boxes_per_side; box += boxes_per_side) {
-            const int from = std::max(i + 1, first[box + near.first]);
-            const int to = first[box + near.last + 1];
-            OverlappingDiscs* const begin = room(found, size, to - from + 4);
-            size += static_cast<std::size_t>(candidates.append(i, from, to, begin) - begin);
+            const int from = std::max(i + 1, box_begin[box + near.first]);
+            const int to = box_begin[box + near.last + 1];
+            found.end_at(candidates.append(i, from, to, found.room(to - from + 4)));
         }
     }
-    return size;
 }
 
 template <Policies policies> Tally find_in_strip(State<policies>& state, int index) {
@@ -143,18 +131,18 @@ template <Policies policies> Tally find_in_strip(State<policies>& state, int ind
     const Candidates<policies> candidates(state);
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     strip.contacts.clear();
-    strip.first.clear();
+    strip.block_begin.clear();
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
     for (int row = rows.first; row <= rows.last; ++row) {
         for (int column = 0; column < state.grid.boxes_per_side(); column += per_block) {
             const int last = std::min(column + per_block, state.grid.boxes_per_side()) - 1;
-            const std::size_t size = search_block(state, candidates, strip.found, row, {column, last});
-            strip.first.push_back(static_cast<int>(strip.contacts.size()));
-            tally += add_contacts(state, strip, size);
+            search_block(state, candidates, strip.found, row, {column, last});
+            strip.block_begin.push_back(static_cast<int>(strip.contacts.size()));
+            tally += add_contacts(state, strip);
         }
     }
-    strip.first.push_back(static_cast<int>(strip.contacts.size()));
-    strip.active.resize(static_cast<std::size_t>(state.active.per_row()) + 1);
+    strip.block_begin.push_back(static_cast<int>(strip.contacts.size()));
+    strip.blocks_to_look_at.resize(static_cast<std::size_t>(state.active.per_row()) + 1);
     strip.colliding.resize(strip.contacts.size() + 1);
     for (int row = rows.first; row <= rows.last; ++row) {
         std::fill_n(state.active.row(row), state.active.per_row(), static_cast<unsigned char>(1));

@@ -15,7 +15,7 @@ inline constexpr int few_changes = 300;
 /// Changes velocities until no pair and no wall is colliding, or the sweep limit is reached.
 template <Policies policies, class SomeProbe>
 Tally resolve(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
-    const ApproachOf<policies> approaching(tuning.tolerance);
+    const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     [[maybe_unused]] Remembered remembered;
     [[maybe_unused]] Wavefront wavefront(
         policies.order == Order::wavefront ? state.grid.strip_count(strip_height(policies.order)) : 0);

@@ -39,7 +39,7 @@ int* look_at_contacts(const State<policies>& state, const Strip<RealOf<policies.
 /// changed.
 template <Policies policies, class OnChange>
 Changes resolve_contacts(State<policies>& state, const Strip<RealOf<policies.precision>>& strip,
-                         const int* begin, const int* end, const ApproachOf<policies>& approaching,
+                         const int* begin, const int* end, const ApproachToleranceOf<policies>& approaching,
                          const OnChange on_change) {
     Changes changes;
     auto* const discs = state.discs.data();
@@ -78,12 +78,12 @@ inline constexpr int blocks_at_once = 4;
 /// next row's first one.
 template <Policies policies, class OnChange>
 Changes resolve_row(State<policies>& state, Strip<RealOf<policies.precision>>& strip, int row,
-                    const int* first_contact, const ApproachOf<policies>& approaching,
+                    const int* first_contact, const ApproachToleranceOf<policies>& approaching,
                     const OnChange on_change) {
     Changes changes;
     unsigned char* const marks = state.active.row(row);
-    const int* block = strip.active.data();
-    const int* const last = active_blocks(marks, state.active.per_row(), strip.active.data());
+    const int* block = strip.blocks_to_look_at.data();
+    const int* const last = active_blocks(marks, state.active.per_row(), strip.blocks_to_look_at.data());
     while (block != last) {
         int* const begin = strip.colliding.data();
         int* end = begin;
@@ -104,7 +104,7 @@ Changes resolve_row(State<policies>& state, Strip<RealOf<policies.precision>>& s
 /// looked at, of each row those that are active when its turn comes: what is left out would change nothing.
 template <Policies policies>
     requires(policies.overlaps == Overlaps::contacts)
-Changes resolve_strip(State<policies>& state, int index, const ApproachOf<policies>& approaching) {
+Changes resolve_strip(State<policies>& state, int index, const ApproachToleranceOf<policies>& approaching) {
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     const auto marker = state.active.marker();
     const auto* const blocks_of_disc = state.blocks_of_disc.data();
@@ -114,7 +114,7 @@ Changes resolve_strip(State<policies>& state, int index, const ApproachOf<polici
         }
     };
     Changes changes;
-    const int* first_contact = strip.first.data();
+    const int* first_contact = strip.block_begin.data();
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
     for (int row = rows.first; row <= rows.last; ++row, first_contact += state.active.per_row()) {
         changes += resolve_row(state, strip, row, first_contact, approaching, on_change);

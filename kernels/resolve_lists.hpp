@@ -25,7 +25,7 @@ template <LookAtWalls walls, Policies policies> bool looks_at_wall(const State<p
 /// `again`, until a pass changes nothing. `on_partner(j)` is called for each partner changed.
 template <bool again, Direction direction, Policies policies, class OnPartner>
 [[gnu::always_inline]] inline Changes visit(State<policies>& state, int i, bool at_wall,
-                                            const ApproachOf<policies>& approaching,
+                                            const ApproachToleranceOf<policies>& approaching,
                                             const OnPartner& on_partner) {
     auto* const discs = state.discs.data();
     constexpr bool reverse = direction == Direction::reverse;
@@ -62,7 +62,8 @@ template <bool again, Direction direction, Policies policies, class OnPartner>
 inline constexpr auto ignore_partner = [](int) {};
 
 template <Policies policies>
-Changes resolve_box(State<policies>& state, int row, int column, const ApproachOf<policies>& approaching) {
+Changes resolve_box(State<policies>& state, int row, int column,
+                    const ApproachToleranceOf<policies>& approaching) {
     Changes changes;
     const bool at_wall = state.grid.at_wall(row, column);
     for (const int i : state.discs_in(row, column)) {
@@ -75,7 +76,7 @@ Changes resolve_box(State<policies>& state, int row, int column, const ApproachO
 /// What one strip of rows does in a sweep.
 template <Policies policies>
     requires(policies.overlaps == Overlaps::lists)
-Changes resolve_strip(State<policies>& state, int strip, const ApproachOf<policies>& approaching) {
+Changes resolve_strip(State<policies>& state, int strip, const ApproachToleranceOf<policies>& approaching) {
     Changes changes;
     const BoxRange rows = state.grid.rows_of_strip(strip, strip_height(policies.order));
     for (int row = rows.first; row <= rows.last; ++row) {
@@ -110,7 +111,7 @@ struct Remembered {
 /// Visits each of `discs` in turn and remembers partners before it that it changed.
 template <LookAtWalls walls, Policies policies, class Discs>
 Changes visit_each(State<policies>& state, const Discs& discs, Remembered& remembered,
-                   const ApproachOf<policies>& approaching) {
+                   const ApproachToleranceOf<policies>& approaching) {
     Changes total;
     remembered.next.clear();
     for (const int i : discs) {
@@ -131,7 +132,7 @@ Changes visit_each(State<policies>& state, const Discs& discs, Remembered& remem
 /// Visits what was remembered, and remembers every partner changed.
 template <LookAtWalls walls, Policies policies>
 Changes visit_remembered(State<policies>& state, Remembered& remembered,
-                         const ApproachOf<policies>& approaching) {
+                         const ApproachToleranceOf<policies>& approaching) {
     Changes total;
     remembered.begin_round(state.count());
     for (const int i : remembered.now) {

@@ -69,7 +69,7 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
           side(static_cast<Real>(scene.side)), radius(static_cast<Real>(scene.radius)), grid(its_grid) {}
 };
 
-template <Policies policies> using ApproachOf = Approach<RealOf<policies.precision>>;
+template <Policies policies> using ApproachToleranceOf = ApproachTolerance<RealOf<policies.precision>>;
 
 /// The discs in double, disc i at index i.
 template <Policies policies> std::vector<Disc> discs_by_number(const State<policies>& state) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <ranges>
 #include <vector>
 
 #include "grid.hpp"
@@ -36,24 +37,8 @@ template <class Real> struct DiscsOf<Storage::numbered, Real> {
     int number(int i) const { return i; }
 };
 
-/// The integers of [first, last), to iterate over.
-struct Indices {
-    struct Iterator {
-        int i;
-        int operator*() const { return i; }
-        Iterator& operator++() {
-            ++i;
-            return *this;
-        }
-        bool operator==(const Iterator& other) const { return i == other.i; }
-    };
-
-    int first;
-    int last;
-
-    Iterator begin() const { return {first}; }
-    Iterator end() const { return {last}; }
-};
+/// The integers of [first, last).
+using Indices = std::ranges::iota_view<int, int>;
 
 /// Discs in the order of their boxes, row by row; in a box they keep the order that they had before. A box is
 /// a range of indices, and so is a run of neighbouring boxes of one row.
@@ -61,7 +46,7 @@ template <class Real> struct DiscsOf<Storage::sorted, Real> {
     std::vector<BasicDisc<Real>> discs;
     std::vector<int> numbers;     ///< the number, in the scene, of the disc at each index
     std::vector<int> box_of_disc; ///< written by the move, and then sorted with the discs
-    std::vector<int> first;       ///< index of the first disc of each box; one more, the count, at the end
+    std::vector<int> box_begin;   ///< index of the first disc of each box; one more, the count, at the end
 
     std::vector<float> near_x; ///< Search::filtered: positions in float, and four more that mean nothing
     std::vector<float> near_y; ///< ditto
@@ -74,12 +59,12 @@ template <class Real> struct DiscsOf<Storage::sorted, Real> {
 
     DiscsOf(const Scene& scene, const Grid& grid)
         : discs(discs_of<Real>(scene)), numbers(discs.size()), box_of_disc(discs.size()),
-          first(static_cast<std::size_t>(grid.box_count()) + 1), spare_discs(discs.size()),
+          box_begin(static_cast<std::size_t>(grid.box_count()) + 1), spare_discs(discs.size()),
           spare_numbers(discs.size()), spare_box_of_disc(discs.size()) {
         std::iota(numbers.begin(), numbers.end(), 0);
     }
 
-    int begin_of(int box) const { return first[static_cast<std::size_t>(box)]; }
+    int begin_of(int box) const { return box_begin[static_cast<std::size_t>(box)]; }
     Indices discs_in_box(int box) const { return {begin_of(box), begin_of(box + 1)}; }
     int number(int i) const { return numbers[static_cast<std::size_t>(i)]; }
 };

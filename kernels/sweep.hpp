@@ -27,8 +27,8 @@
 
 namespace carom {
 
-/// How many of the indices below `count` have the parity of `first`, which is 0 or 1.
-constexpr int every_other(int count, int first) { return (count - first + 1) / 2; }
+/// How many of the indices below `count` have this parity, 0 or 1.
+constexpr int every_other(int count, int parity) { return (count - parity + 1) / 2; }
 
 /// What a sweep did, or several that ran as one.
 struct Swept {
@@ -42,8 +42,8 @@ inline Swept one_sweep(Tally work) {
 }
 
 template <Policies policies, class SomeProbe>
-Swept sweep_checkered(State<policies>& state, const Tuning& tuning, const ApproachOf<policies>& approaching,
-                      SomeProbe& probe) {
+Swept sweep_checkered(State<policies>& state, const Tuning& tuning,
+                      const ApproachToleranceOf<policies>& approaching, SomeProbe& probe) {
     Tally tally;
     const int side = state.grid.boxes_per_side();
     for (int first_row = 0; first_row < 2; ++first_row) {
@@ -65,21 +65,21 @@ Swept sweep_checkered(State<policies>& state, const Tuning& tuning, const Approa
 
 /// One sweep of `row` or `strips`. A row is a strip of one row.
 template <Policies policies, class SomeProbe>
-Swept sweep_strips(State<policies>& state, const Tuning& tuning, const ApproachOf<policies>& approaching,
-                   SomeProbe& probe) {
+Swept sweep_strips(State<policies>& state, const Tuning& tuning,
+                   const ApproachToleranceOf<policies>& approaching, SomeProbe& probe) {
     Tally tally;
     const int count = state.grid.strip_count(strip_height(policies.order));
-    for (int first = 0; first < 2; ++first) {
+    for (int parity = 0; parity < 2; ++parity) {
         tally += parallel_for<policies.resolve_schedule>(
-            tuning.threads, every_other(count, first), tuning.resolve_chunk, probe,
-            [&](int k) { return Tally(resolve_strip(state, first + 2 * k, approaching)); });
+            tuning.threads, every_other(count, parity), tuning.resolve_chunk, probe,
+            [&](int k) { return Tally(resolve_strip(state, parity + 2 * k, approaching)); });
     }
     return one_sweep(tally);
 }
 
 /// One sweep of `once` or `repeat`: every disc in the order of its number.
 template <Policies policies>
-Swept sweep_discs(State<policies>& state, const ApproachOf<policies>& approaching) {
+Swept sweep_discs(State<policies>& state, const ApproachToleranceOf<policies>& approaching) {
     Tally tally;
     for (int i = 0; i < state.count(); ++i) {
         constexpr bool again = policies.order == Order::repeat;
@@ -91,11 +91,11 @@ Swept sweep_discs(State<policies>& state, const ApproachOf<policies>& approachin
 
 /// One sweep of `track`: every disc in the order of its number, then, sweep by sweep, the remembered ones.
 template <Policies policies>
-Swept sweep_track(State<policies>& state, Remembered& remembered, bool first,
-                  const ApproachOf<policies>& approaching) {
+Swept sweep_track(State<policies>& state, Remembered& remembered, bool is_first,
+                  const ApproachToleranceOf<policies>& approaching) {
     Swept swept = one_sweep(
-        first ? visit_each<LookAtWalls::yes>(state, Indices{0, state.count()}, remembered, approaching)
-              : visit_remembered<LookAtWalls::yes>(state, remembered, approaching));
+        is_first ? visit_each<LookAtWalls::yes>(state, Indices{0, state.count()}, remembered, approaching)
+                 : visit_remembered<LookAtWalls::yes>(state, remembered, approaching));
     swept.last_changes = std::ssize(remembered.next);
     return swept;
 }

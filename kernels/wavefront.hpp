@@ -66,7 +66,7 @@ inline constexpr int most_sweeps_at_once = 8;
 /// changes nothing. On one thread one sweep, elsewhere twice as many each time, so that few are run in vain.
 template <Policies policies, class SomeProbe>
 Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, int most, const Tuning& tuning,
-                      const ApproachOf<policies>& approaching, SomeProbe& probe) {
+                      const ApproachToleranceOf<policies>& approaching, SomeProbe& probe) {
     const int count = tuning.threads == 1 ? 1 : std::min({done + 1, most, most_sweeps_at_once});
     const int strips = state.grid.strip_count(strip_height(policies.order));
     const int even = every_other(strips, 0);

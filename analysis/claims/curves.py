@@ -14,7 +14,7 @@ from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records
 from analysis.records.studies import Study
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.pairs import log_ratios, process_medians
-from analysis.statistics.trends import Turn, growth, linearity, turn
+from analysis.statistics.trends import Minimum, growth, linearity, minimum
 from analysis.support.wording import blocks, change, exact, factor, interval, listed, number
 
 ONE_POINT = "needs at least two values of the swept parameter"
@@ -115,26 +115,26 @@ def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = 
 
 
 def _shape(processes: pd.DataFrame, published: pd.DataFrame) -> Outcome:
-    turning = turn(processes)
+    ours = minimum(processes)
     name = processes["x_name"].iloc[0]
     measured = (
-        f"least at {name} = {exact(turning.lowest)}{_break(turning)}; against it {change(turning.fall)} at "
-        f"the smallest and {change(turning.rise)} at the largest {name}, {blocks(turning.fall)}"
+        f"least at {name} = {exact(ours.lowest)}{_break(ours)}; against it {change(ours.fall)} at "
+        f"the smallest and {change(ours.rise)} at the largest {name}, {blocks(ours.fall)}"
     )
-    theirs = turn(published)
+    theirs = minimum(published)
     figures = (
-        Compared(f"least time at {name}", exact(theirs.lowest), exact(turning.lowest)),
-        Compared(f"smallest {name} against it", factor(theirs.fall["ratio"]), factor(turning.fall["ratio"])),
-        Compared(f"largest {name} against it", factor(theirs.rise["ratio"]), factor(turning.rise["ratio"])),
+        Compared(f"least time at {name}", exact(theirs.lowest), exact(ours.lowest)),
+        Compared(f"smallest {name} against it", factor(theirs.fall["ratio"]), factor(ours.fall["ratio"])),
+        Compared(f"largest {name} against it", factor(theirs.rise["ratio"]), factor(ours.rise["ratio"])),
     )
-    row = {"blocks": turning.fall["blocks"], "p": turning.p, "verdict": turning.verdict}
+    row = {"blocks": ours.fall["blocks"], "p": ours.p, "verdict": ours.verdict}
     outcome = judged(row, "falls then rises", measured, figures)
-    return replace(outcome, why=outcome.why or turning.verdict)
+    return replace(outcome, why=outcome.why or ours.verdict)
 
 
-def _break(turning: Turn) -> str:
+def _break(least: Minimum) -> str:
     """Return the break point in words; nothing if it could not be fitted."""
-    found = turning.break_point
+    found = least.break_point
     if pd.isna(found.estimate):
         return ""
     if not isfinite(found.low):

@@ -24,7 +24,7 @@ Point = tuple[Any, ...]
 
 
 def compare(first: Path, second: Path, experiment: str | None = None) -> pd.DataFrame:
-    """Return a row a point: its place, and `second` / `first` as `verdicts.judge`.
+    """Return a row a point: its columns `POINT`, and `second` / `first` as `verdicts.judge`.
 
     Points match by figure, scene, threads and tunings. The folders were not interleaved, so processes are
     compared unpaired; the p-values are Holm-corrected within each experiment. A point that only one of the
@@ -38,8 +38,8 @@ def compare(first: Path, second: Path, experiment: str | None = None) -> pd.Data
     if not shared:
         raise InputError(f"{first} and {second}: no point in common to compare")
     names = set(sides[0]["experiment"]) & set(sides[1]["experiment"])
-    place = POINT.index("experiment")
-    lone = [point for point in groups[0].keys() ^ groups[1].keys() if point[place] in names]
+    column = POINT.index("experiment")
+    lone = [point for point in groups[0].keys() ^ groups[1].keys() if point[column] in names]
     table = _judged(groups, shared)
     parts = [corrected(part) for _, part in table.groupby("experiment")]
     return pd.concat([*parts, *([_judged(groups, sorted(lone))] if lone else [])])[[*SHOWN, *COLUMNS]]

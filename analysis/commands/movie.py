@@ -34,7 +34,7 @@ MOST_BOXES = 48
 COLOURS = ("#dceaf5", "#fbe6d4", "#ddf0e4", "#f3e3ee")
 """Of the boxes, pale: even and odd rows times even and odd columns."""
 
-TURNS = ("first", "second", "third", "fourth")
+ORDER = ("first", "second", "third", "fourth")
 
 SUFFIXES = (".mp4", ".gif", ".png")
 
@@ -55,7 +55,7 @@ def draw(scene: Path, trajectory: Path, output: Path | None = None, step: int | 
     OSError where the file cannot be written.
     """
     target = output or Path("results", "movies", scene.stem).with_suffix(".mp4" if _has_ffmpeg() else ".gif")
-    _refuse_format(target)
+    _require_format(target)
     box, run = read_box(scene), read_trajectory(trajectory)
     if step is not None and not 0 <= step <= run.steps:
         raise InputError(f"--step: found {step}, expected a step from 0 to {run.steps}")
@@ -92,7 +92,7 @@ def _has_ffmpeg() -> bool:
     return shutil.which("ffmpeg") is not None
 
 
-def _refuse_format(target: Path) -> None:
+def _require_format(target: Path) -> None:
     if target.suffix not in SUFFIXES:
         raise InputError(
             f"{target}: found the suffix '{target.suffix}', expected one of {', '.join(SUFFIXES)}"
@@ -182,7 +182,7 @@ def _draw_boxes(axes: Axes, box: Box) -> None:
                 Rectangle(corner, width, height, facecolor=colour, edgecolor="white", linewidth=0.5)
             )
     axes.legend(
-        handles=[Patch(facecolor=colour, label=turn) for turn, colour in zip(TURNS, COLOURS, strict=True)],
+        handles=[Patch(facecolor=colour, label=name) for name, colour in zip(ORDER, COLOURS, strict=True)],
         loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=4, frameon=False,
         title="Boxes of one colour are resolved in parallel: no disc is in reach of two of them.",
     )  # fmt: skip

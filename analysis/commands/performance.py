@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.derived.ladder import claims, factors, named, rungs, scene_title, speed_up
+from analysis.derived.ladder import RUNG, claims, factors, named, rungs, scene_title, speed_up
 from analysis.derived.limits import against_limits
 from analysis.records.studies import Study
 from analysis.support.wording import number, share
@@ -24,10 +24,9 @@ def _ladder(study: Study, experiment: str) -> str:
     times = named(study.times_of(experiment))
     if times.empty or times["series_number"].isna().any():
         return ""
-    place = ["scene_name", "series_number"]
-    judged = factors(times)[[*place, "ratio", "low", "high"]]
+    judged = factors(times)[[*RUNG, "ratio", "low", "high"]]
     table = (
-        rungs(runs, times, study.counters).drop(columns=["low", "high"]).merge(judged, on=place, how="left")
+        rungs(runs, times, study.counters).drop(columns=["low", "high"]).merge(judged, on=RUNG, how="left")
     )
     lines = [f"- {sentence}" for sentence in claims(runs, times)]
     for scene, rows in table.groupby("scene_name", sort=False):

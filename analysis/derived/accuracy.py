@@ -160,9 +160,9 @@ def outside(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
     table = table[table["scene_sha256"].isin(study.runs_of(experiment)["scene_sha256"])]
     if table.empty or measure.key != "energy":
         return pd.DataFrame()
-    place = ["scene_name", "substeps", "engine"]
-    errors = table.groupby(place)["energy_drift"].median().rename("error").reset_index()
-    return summarise(table, place, "seconds").merge(errors, on=place)
+    keys = ["scene_name", "substeps", "engine"]
+    errors = table.groupby(keys)["energy_drift"].median().rename("error").reset_index()
+    return summarise(table, keys, "seconds").merge(errors, on=keys)
 
 
 def orders(table: pd.DataFrame) -> pd.DataFrame:

@@ -17,7 +17,7 @@ from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import COLUMNS, judge
 from analysis.support.wording import exact, number
 
-PLACE = ["scene_name", "series_number"]
+RUNG = ["scene_name", "series_number"]
 POLICIES = [
     "neighbourhood", "order", "self_contained", "direction", "find_schedule", "resolve_schedule", *LATER_AXES,
 ]  # fmt: skip
@@ -51,7 +51,7 @@ def rungs(runs: pd.DataFrame, times: pd.DataFrame, counters: pd.DataFrame) -> pd
     work = passed.assign(
         resolves=passed["pair_resolves"] / (steps * passed["particles"]), sweeps=passed["sweeps"] / steps
     )
-    table = runs.groupby(PLACE).agg(
+    table = runs.groupby(RUNG).agg(
         series=("series", "first"),
         variant=("variant", "first"),
         particles=("particles", "first"),
@@ -60,8 +60,8 @@ def rungs(runs: pd.DataFrame, times: pd.DataFrame, counters: pd.DataFrame) -> pd
         passed=("check_verdict", lambda verdicts: int((verdicts == "passed").sum())),
         records=("check_verdict", "size"),
     )
-    table = table.join(work.groupby(PLACE)[["resolves", "sweeps"]].median())
-    summary = summarise(per_disc_step(times), PLACE, value="nanoseconds").set_index(PLACE)
+    table = table.join(work.groupby(RUNG)[["resolves", "sweeps"]].median())
+    summary = summarise(per_disc_step(times), RUNG, value="nanoseconds").set_index(RUNG)
     table = table.join(summary[["median", "low", "high"]].rename(columns={"median": "nanoseconds"}))
     table = table.reset_index()
     return table.assign(change=_changes(runs, table), **_instructions(table, counters))
@@ -71,12 +71,12 @@ def factors(times: pd.DataFrame) -> pd.DataFrame:
     """Return a row of `verdicts.judge` for every rung but the first of each scene, against the rung below
     it.
     """
-    return _judged(times, lambda numbers: list(pairwise(numbers)), PLACE)
+    return _judged(times, lambda numbers: list(pairwise(numbers)), RUNG)
 
 
 def totals(times: pd.DataFrame) -> pd.DataFrame:
     """Return a row of `verdicts.judge` for each scene: its last rung against its first."""
-    return _judged(times, lambda numbers: [(numbers[0], numbers[-1])] if len(numbers) > 1 else [], PLACE[:1])
+    return _judged(times, lambda numbers: [(numbers[0], numbers[-1])] if len(numbers) > 1 else [], RUNG[:1])
 
 
 def speed_up(row: pd.Series | dict[str, float], digits: int = 3) -> str:
@@ -162,6 +162,6 @@ def _instructions(table: pd.DataFrame, counters: pd.DataFrame) -> dict[str, Sequ
             values = rows.loc[(rows["quantity"] == INSTRUCTIONS) & (rows["source"] == source), "value"]
             if len(values):
                 found[tuple(key)] = (float(values.median()), source)
-    places = table[keys].itertuples(index=False, name=None)
-    pairs = [found.get(tuple(place), (np.nan, "")) for place in places]
+    scenes = table[keys].itertuples(index=False, name=None)
+    pairs = [found.get(tuple(scene), (np.nan, "")) for scene in scenes]
     return {"instructions": [value for value, _ in pairs], "source": [source for _, source in pairs]}

@@ -7,7 +7,7 @@ import pandas as pd
 
 from analysis.derived.unavoidable import unavoidable
 
-PLACE = ["scene_name", "series", "phase"]
+KEYS = ["scene_name", "series", "phase"]
 COPY, ARITHMETIC = "copy", "arithmetic"
 RATES = ["level", "size", "copy_rate", "arithmetic_rate"]
 
@@ -24,7 +24,7 @@ def against_limits(
     `copy_rate`, `arithmetic_rate` (per second), `bytes` and `operations` per disc and step. Empty without
     limits of as many threads, or fewer.
     """
-    rows = phases[["file", *PLACE, "particles", "steps", "substeps", "threads", "wall_seconds"]]
+    rows = phases[["file", *KEYS, "particles", "steps", "substeps", "threads", "wall_seconds"]]
     rows = rows.merge(unavoidable(runs), on=["file", "phase"]).merge(
         _busy(threads), on=["file", "phase"], how="left"
     )
@@ -57,7 +57,7 @@ def against_limits(
         "bytes",
         "operations",
     ]
-    groups = rows.groupby(PLACE, sort=False)
+    groups = rows.groupby(KEYS, sort=False)
     table = groups[numbers].median().join(groups[["level", "size", "threads", "particles"]].first())
     bound = np.where(table[COPY] >= table[ARITHMETIC], COPY, ARITHMETIC)
     return table.assign(bound=bound, runs=groups["file"].nunique()).reset_index()

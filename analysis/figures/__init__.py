@@ -1,5 +1,5 @@
-"""The figures of the report, in its order: those of the published questions, one function each, then those
-of all other experiments, by the kind that their records name.
+"""The figures of the report, in its order: those of the published questions, from a table, then those of all
+other experiments, by the kind that their records name.
 """
 
 import re
@@ -29,6 +29,7 @@ from analysis.figures import (
     sweeps,
     timeline,
 )
+from analysis.figures.captions import growth_sentence, linear_sentence, minimum_sentence
 from analysis.figures.style import Data, Drawing, Table, mark_partial, partial, save, styled
 from analysis.records.studies import Study
 from analysis.support.parallel import in_parallel
@@ -56,8 +57,31 @@ class Drawn:
     tables: Sequence[Table] = ()
 
 
-def _entry(title: str, draw: Callable[[Data], Drawing | None], experiment: str = "") -> Entry:
-    return Entry(draw.__name__, experiment or draw.__name__, title, draw)
+def _of_kind(
+    experiment: str, title: str, draw: Callable[..., Drawing | None], subject: str, **more: object
+) -> Entry:
+    return Entry(experiment, experiment, title, bound(draw, experiment=experiment, subject=subject, **more))
+
+
+def _own(name: str, title: str, draw: Callable[[Data], Drawing | None], experiment: str = "") -> Entry:
+    return Entry(name, experiment or name, title, draw)
+
+
+def _over(experiment: str, title: str, label: str, describe: Callable[[pd.DataFrame], str]) -> Entry:
+    subject = f"Time over the {label}"
+    return _of_kind(experiment, title, sweeps.trend, subject, label=label, describe=describe)
+
+
+def _pair(
+    experiment: str, title: str, candidate: str, reference: str, subject: str,
+    names: tuple[str, str] | None = None, *, work: bool = False,
+) -> Entry:  # fmt: skip
+    sides = pairs.Sides(experiment, candidate, reference, subject, names or (candidate, reference))
+    return Entry(experiment, experiment, title, bound(pairs.pair_drawing, sides=sides, work=work))
+
+
+def _counted(name: str, title: str, source: str, subject: str) -> Entry:
+    return Entry(name, "phases", title, bound(counters.panels, source=source, subject=subject))
 
 
 def _accuracy(kind: str, experiment: str, name: str, title: str) -> list[Entry]:
@@ -84,40 +108,54 @@ def _accuracy(kind: str, experiment: str, name: str, title: str) -> list[Entry]:
 SPEED_AGAINST_ERROR, HARD_CASES = "speed_against_error", "hard_cases"
 """The kinds of experiments about errors, whose figures have a part of the report of their own."""
 
+_EARLY = "Resolving self-contained pairs early, on against off, under the"
+
 FIGURES = [
-    _entry("Control: the same variant twice", pairs.control),
-    _entry("Threads", scaling.threads),
-    _entry("More threads than the machine has", scaling.oversubscription),
-    _entry("Machines", machines.machine),
-    _entry("Number of discs", sweeps.particles),
-    _entry("Side length", grid_length.grid_length),
-    _entry("Radius", sweeps.radius),
-    _entry("Area fraction", sweeps.density),
-    _entry("Steps", sweeps.steps),
-    _entry("Least velocity", sweeps.min_velocity),
-    _entry("Greatest velocity", sweeps.max_velocity),
-    _entry("Four boxes against nine", pairs.neighbourhood),
-    _entry("Self-contained resolves, checkered", pairs.self_contained_checkered),
-    _entry("Self-contained resolves, sequential (track)", pairs.self_contained_track),
-    _entry("Self-contained resolves, sequential (repeat)", pairs.self_contained_repeat),
-    _entry("Sequential orders", orders.sequential_orders),
-    _entry("Schedule for finding overlaps", schedules.schedule_find),
-    _entry("Schedule for the checkered resolve", schedules.schedule_resolve),
-    _entry("Schedule for the row resolve", schedules.schedule_resolve_row),
-    _entry("Row against checkered", orders.row),
-    _entry("Reverse against forward", pairs.reverse),
-    _entry("Compilers", pairs.compiler),
-    _entry("The ladder from the published best to the fastest variant", ladder.ladder),
-    _entry("The phases of a step", phases.phases),
-    _entry("How close to the limits of the machine", limits.limits),
-    _entry("A step on every thread", timeline.timeline, "phases"),
-    _entry("Hardware counters", counters.counters_hardware, "phases"),
-    _entry("Software counters", counters.counters_software, "phases"),
-    _entry("Resource usage", counters.counters_usage, "phases"),
-    _entry("Simulated counters", counters.counters_simulated, "phases"),
+    _pair("control", "Control: the same variant twice", "A-again", "A",
+          "The same variant under two labels", ("A again", "A")),
+    _of_kind("threads", "Threads", scaling.scaling, "Time, speed-up and efficiency over threads"),
+    _own("oversubscription", "More threads than the machine has", scaling.oversubscription),
+    _of_kind("machine", "Machines", machines.machines, "One scene on every machine"),
+    _over("particles", "Number of discs", "number of discs", growth_sentence),
+    _own("grid_length", "Side length", grid_length.grid_length),
+    _over("radius", "Radius", "radius of a disc", minimum_sentence),
+    _own("density", "Area fraction", sweeps.density),
+    _over("steps", "Steps", "number of steps", linear_sentence),
+    _over("min_velocity", "Least velocity", "least velocity component", growth_sentence),
+    _over("max_velocity", "Greatest velocity", "greatest velocity component", growth_sentence),
+    _pair("neighbourhood", "Four boxes against nine", "four", "nine",
+          "Four boxes against nine", ("four boxes", "nine boxes")),
+    _pair("self_contained_checkered", "Self-contained resolves, checkered", "on", "off",
+          f"{_EARLY} checkered order"),
+    _pair("self_contained_track", "Self-contained resolves, sequential (track)", "on", "off",
+          f"{_EARLY} sequential order (track)"),
+    _pair("self_contained_repeat", "Self-contained resolves, sequential (repeat)", "on", "off",
+          f"{_EARLY} sequential order (repeat)"),
+    _own("sequential_orders", "Sequential orders", orders.sequential_orders),
+    _of_kind("schedule_find", "Schedule for finding overlaps", schedules.schedule,
+             "Schedules for finding overlaps", chosen=("guided", 4)),
+    _of_kind("schedule_resolve", "Schedule for the checkered resolve", schedules.schedule,
+             "Schedules for the checkered resolve", chosen=("guided", 5)),
+    _of_kind("schedule_resolve_row", "Schedule for the row resolve", schedules.schedule,
+             "Schedules for the row resolve", chosen=("dynamic", 1)),
+    _own("row", "Row against checkered", orders.row),
+    _pair("reverse", "Reverse against forward", "reverse", "forward",
+          "A disc's overlaps in reverse against forward", work=True),
+    _pair("compiler", "Compilers", "clang++", "g++", "The same source by two compilers"),
+    _of_kind("ladder", "The ladder from the published best to the fastest variant", ladder.waterfall,
+             "From the published best to the fastest variant"),
+    _of_kind("phases", "The phases of a step", phases.profile, "Where the time of a step goes"),
+    _of_kind("limits", "How close to the limits of the machine", limits.phases_against_limits,
+             "Phases of a step against the limits of this machine"),
+    _own("timeline", "A step on every thread", timeline.timeline, "phases"),
+    _counted("counters_hardware", "Hardware counters", "papi-hardware", "Hardware counters (PAPI)"),
+    _counted("counters_software", "Software counters", "papi-software", "Software counters (PAPI)"),
+    _counted("counters_usage", "Resource usage", "rusage", "Resource usage (getrusage)"),
+    _counted("counters_simulated", "Simulated counters", "cachegrind",
+             "Simulated counters (cachegrind, one thread)"),
     *_accuracy(SPEED_AGAINST_ERROR, "speed_against_error", "speed_against_error", "Speed against error"),
     *_accuracy(HARD_CASES, "hard_cases", "hard_cases", "Hard cases"),
-]
+]  # fmt: skip
 
 KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
     "scaling": scaling.scaling,

@@ -4,7 +4,7 @@ import pandas as pd
 
 from analysis.statistics.intervals import Interval
 from analysis.statistics.pairs import process_medians
-from analysis.statistics.trends import growth, linearity, turn
+from analysis.statistics.trends import growth, linearity, minimum
 from analysis.support.wording import change, count, exact, interval, number
 
 MEDIANS = "Dots are medians, bars their 95 % bootstrap intervals"
@@ -54,16 +54,16 @@ def linear_sentence(times: pd.DataFrame) -> str:
     return f" {verdict}: exponent {interval(line.exponent)} over a fixed cost."
 
 
-def turn_sentence(times: pd.DataFrame) -> str:
+def minimum_sentence(times: pd.DataFrame) -> str:
     """Say where the time is least, and how far it falls before and rises after."""
     processes = process_medians(times)
     if processes["x"].nunique() < 3:
         return growth_sentence(times)
-    turning = turn(processes)
-    where = f"{exact(turning.lowest)}{_with('; break point', turning.break_point)}"
+    least = minimum(processes)
+    where = f"{exact(least.lowest)}{_with('; break point', least.break_point)}"
     return (
-        f" The time is least at {where}; against it {change(turning.fall)} at the smallest and "
-        f"{change(turning.rise)} at the largest ({turning.verdict})."
+        f" The time is least at {where}; against it {change(least.fall)} at the smallest and "
+        f"{change(least.rise)} at the largest ({least.verdict})."
     )
 
 

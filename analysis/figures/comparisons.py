@@ -26,13 +26,13 @@ def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
         return None
     against = reference(times)
     table = differences(times, against)
-    table["name"] = [f"{_place(row, table)} against {against}" for row in table.to_dict("records")]
+    table["name"] = [f"{_label(row, table)} against {against}" for row in table.to_dict("records")]
     names = sorted(times["series"].unique(), key=lambda name: name == against)
     if len(names) == 2 and times["x"].nunique() == 1:
-        drawing = pair_drawing(data, Sides(experiment, names[0], names[1], (names[0], names[1]), subject))
+        drawing = pair_drawing(data, Sides(experiment, names[0], names[1], subject, (names[0], names[1])))
         return drawing and replace(drawing, verdicts=table)
     summary = summarise(times, ["series", "x"]).iloc[::-1]
-    summary["name"] = [_place(row, summary) for row in summary.to_dict("records")]
+    summary["name"] = [_label(row, summary) for row in summary.to_dict("records")]
     figure, (left, right) = new_figure(0.8 + 0.42 * len(summary), columns=2)
     dots(left, summary, "name")
     left.set_xlabel("time of the steps, s")
@@ -66,12 +66,12 @@ def differences(times: pd.DataFrame, against: str) -> pd.DataFrame:
 def differences_sentence(table: pd.DataFrame, against: str) -> str:
     """Say every difference with its verdict; nothing for an empty table."""
     said = "; ".join(
-        f"{_place(row, table)} {change(row)} ({row['verdict']})" for row in table.to_dict("records")
+        f"{_label(row, table)} {change(row)} ({row['verdict']})" for row in table.to_dict("records")
     )
     return f" Against {against}: {said} (Holm-corrected)." if said else ""
 
 
-def _place(row: Mapping[Hashable, Any], table: pd.DataFrame) -> str:
+def _label(row: Mapping[Hashable, Any], table: pd.DataFrame) -> str:
     """Return the series, with x where the table has several."""
     return f"{row['series']}, {exact(row['x'])}" if table["x"].nunique() > 1 else str(row["series"])
 

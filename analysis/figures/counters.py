@@ -12,27 +12,8 @@ from analysis.support.wording import count, number
 COLUMNS = 3
 
 
-def counters_hardware(data: Data) -> Drawing | None:
-    """Draw what the processor's own counters say."""
-    return _panels(data, "papi-hardware", "Hardware counters (PAPI)")
-
-
-def counters_software(data: Data) -> Drawing | None:
-    """Draw what the operating system's counters say."""
-    return _panels(data, "papi-software", "Software counters (PAPI)")
-
-
-def counters_usage(data: Data) -> Drawing | None:
-    """Draw what the operating system says of each thread's use of resources."""
-    return _panels(data, "rusage", "Resource usage (getrusage)")
-
-
-def counters_simulated(data: Data) -> Drawing | None:
-    """Draw what cachegrind counted on a simulated processor, on one thread."""
-    return _panels(data, "cachegrind", "Simulated counters (cachegrind, one thread)")
-
-
-def _panels(data: Data, source: str, subject: str) -> Drawing | None:
+def panels(data: Data, source: str, subject: str) -> Drawing | None:
+    """Draw what one source counted of the published variants, a panel a quantity."""
     counters = data.study.counters
     rows = derived(counters[(counters["experiment"] == "phases") & (counters["source"] == source)])
     if rows.empty:

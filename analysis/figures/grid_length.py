@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from analysis.derived.ladder import per_disc_step, speed_up
-from analysis.figures.captions import opening, turn_sentence
+from analysis.figures.captions import minimum_sentence, opening
 from analysis.figures.curves import colours, curve, published_curve
 from analysis.figures.labels import label_ends
 from analysis.figures.style import Data, Drawing, lighten, logarithmic_ticks, new_figure, plain_ticks
@@ -25,7 +25,7 @@ def grid_length(data: Data) -> Drawing | None:
     """Draw time per disc and step over the side length, on logarithmic axes so that both ends can be read."""
     times = data.study.times_of(EXPERIMENT)
     if times["series"].nunique() < 2:
-        return trend(data, EXPERIMENT, SUBJECT, "side length", turn_sentence)
+        return trend(data, EXPERIMENT, SUBJECT, "side length", minimum_sentence)
     summary = summarise(per_disc_step(times), ["series", "x"], value="nanoseconds")
     shades = colours(times)
     figure, (axes,) = new_figure(3.2)
@@ -81,7 +81,7 @@ def _sentences(times: pd.DataFrame) -> str:
     said = []
     for series, part in processes.groupby("series"):
         if len(first) and part["variant"].iloc[0] == PUBLISHED:
-            said.append(f" {series}:{turn_sentence(times[times['series'] == series])}")
+            said.append(f" {series}:{minimum_sentence(times[times['series'] == series])}")
             continue
         said.append(f" {series}:{_flatness(part)}{_against(first, part)}")
     return "".join(said)

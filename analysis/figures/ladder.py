@@ -30,11 +30,6 @@ ROW_HEIGHT = 0.2
 COLOURS = {"faster": GREEN, "slower": VERMILLION}
 
 
-def ladder(data: Data) -> Drawing | None:
-    """Draw the way from the published best to the fastest variant."""
-    return waterfall(data, "ladder", "From the published best to the fastest variant")
-
-
 def waterfall(data: Data, experiment: str, subject: str) -> Drawing | None:
     """Draw an experiment's series in the order of its question, each against the one before, on every
     scene.
@@ -85,7 +80,7 @@ def _panels(scenes: int, rows: int) -> tuple[Figure, list[tuple[Axes, Axes]]]:
 
 
 def _bars(axes: Axes, rows: list[Row], names: pd.Series, has_both_ends: bool) -> None:
-    heights = {rung: -float(place) for place, rung in enumerate(names.index)}
+    heights = {rung: -float(line) for line, rung in enumerate(names.index)}
     axes.set_xscale("log")
     for row in rows:
         height = heights[row["series_number"]]
@@ -101,8 +96,8 @@ def _bars(axes: Axes, rows: list[Row], names: pd.Series, has_both_ends: bool) ->
         left, width = min(first, last), abs(first - last)
         axes.barh(-len(names), width, left=left, color=lighten(FAINT), height=0.3, zorder=2)
     axes.set_ylim(-len(names) - 0.6, 0.6)
-    place = axes.get_subplotspec()
-    labelled = place is None or place.is_first_col()
+    spec = axes.get_subplotspec()
+    labelled = spec is None or spec.is_first_col()
     ticks = [*heights.values(), -len(names)]
     axes.set_yticks(ticks, [*names, "in all"] if labelled else [""] * len(ticks))
     axes.tick_params(axis="y", length=0)
@@ -112,7 +107,7 @@ def _bars(axes: Axes, rows: list[Row], names: pd.Series, has_both_ends: bool) ->
 
 def _figures(axes: Axes, rows: list[Row], names: pd.Series, total: pd.Series | None) -> None:
     """Write what each rung gains and does beside its bar."""
-    heights = {rung: -float(place) for place, rung in enumerate(names.index)}
+    heights = {rung: -float(line) for line, rung in enumerate(names.index)}
     columns = {"ns": 0.1, "factor": 0.37, "resolves": 0.65, "sweeps": 0.91, "✓": 1.0}
     for heading, end in columns.items():
         _write(axes, end, 0.75, heading, FAINT, "bottom")

@@ -22,11 +22,6 @@ KEY = [
 ]
 
 
-def limits(data: Data) -> Drawing | None:
-    """Draw how close the phases come to what this machine can do."""
-    return phases_against_limits(data, "limits", "Phases of a step against the limits of this machine")
-
-
 def phases_against_limits(data: Data, experiment: str, subject: str) -> Drawing | None:
     """Draw a row a series and phase, a panel a scene; None without profiled runs or without measured
     limits.
@@ -63,7 +58,7 @@ def _has(table: pd.DataFrame, series: str, phase: str) -> bool:
 def _heights(rows: list[tuple[str, str]]) -> dict[tuple[str, str], float]:
     """Return the height of each row, from above, with a gap between the series."""
     series = list(dict.fromkeys(name for name, _ in rows))
-    return {row: -(place + 0.6 * series.index(row[0])) for place, row in enumerate(rows)}
+    return {row: -(line + 0.6 * series.index(row[0])) for line, row in enumerate(rows)}
 
 
 def _panel(axes: Axes, table: pd.DataFrame, rows: list[tuple[str, str]]) -> None:

@@ -11,11 +11,6 @@ from analysis.statistics.verdicts import corrected
 from analysis.support.wording import change, count, exact
 
 
-def machine(data: Data) -> Drawing | None:
-    """Draw the time on each machine, with the published machines."""
-    return machines(data, "machine", "One scene on every machine")
-
-
 def machines(data: Data, experiment: str, subject: str) -> Drawing | None:
     """Draw the time on each machine, a row a series: every study at this scale that measured the
     experiment, never merged.

@@ -34,67 +34,14 @@ class Sides:
     experiment: str
     candidate: str
     reference: str
-    names: tuple[str, str]
     subject: str
-
-
-def neighbourhood(data: Data) -> Drawing | None:
-    """Draw four boxes against nine."""
-    return pair_drawing(
-        data, Sides("neighbourhood", "four", "nine", ("four boxes", "nine boxes"), "Four boxes against nine")
-    )
-
-
-def self_contained_checkered(data: Data) -> Drawing | None:
-    """Draw self-contained resolves on against off, under the checkered order."""
-    return _self_contained(data, "self_contained_checkered", "checkered order")
-
-
-def self_contained_track(data: Data) -> Drawing | None:
-    """Draw self-contained resolves on against off, under the sequential order `track`."""
-    return _self_contained(data, "self_contained_track", "sequential order (track)")
-
-
-def self_contained_repeat(data: Data) -> Drawing | None:
-    """Draw self-contained resolves on against off, under the sequential order `repeat`."""
-    return _self_contained(data, "self_contained_repeat", "sequential order (repeat)")
-
-
-def compiler(data: Data) -> Drawing | None:
-    """Draw clang++ against g++."""
-    return pair_drawing(
-        data, Sides("compiler", "clang++", "g++", ("clang++", "g++"), "The same source by two compilers")
-    )
-
-
-def control(data: Data) -> Drawing | None:
-    """Draw the control: the same variant under two labels, which must come out equivalent."""
-    return pair_drawing(
-        data, Sides("control", "A-again", "A", ("A again", "A"), "The same variant under two labels")
-    )
-
-
-def reverse(data: Data) -> Drawing | None:
-    """Draw a disc's overlaps traversed in reverse against forward: time, and the attempts at resolving a pair
-    that it takes.
-    """
-    sides = Sides(
-        "reverse",
-        "reverse",
-        "forward",
-        ("reverse", "forward"),
-        "A disc's overlaps in reverse against forward",
-    )
-    return pair_drawing(data, sides, work=True)
-
-
-def _self_contained(data: Data, experiment: str, order: str) -> Drawing | None:
-    subject = f"Resolving self-contained pairs early, on against off, under the {order}"
-    return pair_drawing(data, Sides(experiment, "on", "off", ("on", "off"), subject))
+    names: tuple[str, str]
 
 
 def pair_drawing(data: Data, sides: Sides, work: bool = False) -> Drawing | None:
-    """Draw the times of both sides block by block, the published ones, and the ratio with its verdict."""
+    """Draw the times of both sides block by block, the published ones, and the ratio with its verdict; with
+    `work` also the attempts at resolving a pair that each takes.
+    """
     times = data.study.times_of(sides.experiment)
     processes = process_medians(times)
     candidate, reference = (
@@ -128,10 +75,10 @@ def _by_block(axes: Axes, curves: dict[str, pd.DataFrame]) -> None:
     labels = []
     both = pd.concat(curves)
     # Nodes number their blocks alike: they stand one after another.
-    both["place"] = 1 + both.groupby(PAIR).ngroup()
+    both["position"] = 1 + both.groupby(PAIR).ngroup()
     for name, colour in zip(curves, (BLUE, VERMILLION), strict=True):
-        ordered = both.loc[name].sort_values("place")
-        axes.plot(ordered["place"], ordered["steps_seconds"], color=colour, marker="o", linewidth=0.8)
+        ordered = both.loc[name].sort_values("position")
+        axes.plot(ordered["position"], ordered["steps_seconds"], color=colour, marker="o", linewidth=0.8)
         labels.append((name, ordered["steps_seconds"].iloc[-1], colour))
     axes.margins(y=0.15)
     label_ends(axes, labels)

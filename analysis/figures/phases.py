@@ -16,12 +16,7 @@ from analysis.figures.style import (
 )
 from analysis.support.wording import count, number, share
 
-PHASES = {"move": ORANGE, "bin": GREEN, "find": BLUE, "resolve": VERMILLION}
-
-
-def phases(data: Data) -> Drawing | None:
-    """Draw the phases of the published variants."""
-    return profile(data, "phases", "Where the time of a step goes")
+PHASE_COLOURS = {"move": ORANGE, "bin": GREEN, "find": BLUE, "resolve": VERMILLION}
 
 
 def profile(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -34,7 +29,7 @@ def profile(data: Data, experiment: str, subject: str) -> Drawing | None:
     figure, (left, right) = new_figure(0.8 + 0.42 * len(series), columns=2, widths=[1.15, 1])
     shares = phase_shares(table)
     _stacked(left, shares, series)
-    key(left, [(f"■ {phase}", colour) for phase, colour in PHASES.items()])
+    key(left, [(f"■ {phase}", colour) for phase, colour in PHASE_COLOURS.items()])
     left.set(xlabel="share of the wall time of a step, %", xlim=(0, 100))
     busy = busy_shares(threads)
     _busy(right, busy, series)
@@ -48,7 +43,11 @@ def phase_shares(table: pd.DataFrame) -> pd.DataFrame:
     """
     walls = table.pivot_table(index=["series", "file"], columns="phase", values="wall_seconds", aggfunc="sum")
     shares = walls.div(walls.sum(axis=1), axis=0)
-    return shares.groupby("series").median().reindex(columns=[phase for phase in PHASES if phase in shares])
+    return (
+        shares.groupby("series")
+        .median()
+        .reindex(columns=[phase for phase in PHASE_COLOURS if phase in shares])
+    )
 
 
 def busy_shares(threads: pd.DataFrame) -> pd.DataFrame:
@@ -74,7 +73,13 @@ def _stacked(axes: Axes, shares: pd.DataFrame, series: list[str]) -> None:
         for phase in shares.columns:
             width = 100 * float(shares.loc[name, phase])
             axes.barh(
-                height, width, left=left, color=PHASES[phase], height=0.6, edgecolor="white", linewidth=0.5
+                height,
+                width,
+                left=left,
+                color=PHASE_COLOURS[phase],
+                height=0.6,
+                edgecolor="white",
+                linewidth=0.5,
             )
             if width >= 6:
                 axes.annotate(
@@ -92,13 +97,15 @@ def _stacked(axes: Axes, shares: pd.DataFrame, series: list[str]) -> None:
 
 def _busy(axes: Axes, busy: pd.DataFrame, series: list[str]) -> None:
     """One thin bar a phase, in the phases' order from above, over a pale bar of the whole."""
-    shown = [phase for phase in PHASES if phase in busy.columns]
+    shown = [phase for phase in PHASE_COLOURS if phase in busy.columns]
     thickness = 0.7 / max(len(shown), 1)
     for height, name in enumerate(series):
         for rank, phase in enumerate(shown):
             y = height + 0.35 - thickness * (rank + 0.5)
-            axes.barh(y, 100, color=lighten(PHASES[phase], 0.8), height=thickness * 0.85)
-            axes.barh(y, 100 * float(busy.loc[name, phase]), color=PHASES[phase], height=thickness * 0.85)
+            axes.barh(y, 100, color=lighten(PHASE_COLOURS[phase], 0.8), height=thickness * 0.85)
+            axes.barh(
+                y, 100 * float(busy.loc[name, phase]), color=PHASE_COLOURS[phase], height=thickness * 0.85
+            )
     axes.set_yticks(range(len(series)), [""] * len(series))
     axes.tick_params(axis="y", length=0)
 

@@ -29,11 +29,6 @@ from analysis.statistics.verdicts import judge
 from analysis.support.wording import change, count, exact, interval, number
 
 
-def threads(data: Data) -> Drawing | None:
-    """Draw the published question: time, speed-up and efficiency over threads."""
-    return scaling(data, "threads", "Time, speed-up and efficiency over threads")
-
-
 def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
     """Draw time, speed-up against ideal, and efficiency over threads, a curve a series; the law is fitted to
     a single one. None without records whose x is the number of threads.

@@ -31,21 +31,6 @@ ASIDE = {"dynamic": 0.985, "static": 1.015}
 TICKS = [1, 2, 3, 5, 10, 20, 40, 80, 160, 320, 640, 1280]
 
 
-def schedule_find(data: Data) -> Drawing | None:
-    """Draw the schedules for finding overlaps."""
-    return schedule(data, "schedule_find", "Schedules for finding overlaps", ("guided", 4))
-
-
-def schedule_resolve(data: Data) -> Drawing | None:
-    """Draw the schedules for the checkered resolve."""
-    return schedule(data, "schedule_resolve", "Schedules for the checkered resolve", ("guided", 5))
-
-
-def schedule_resolve_row(data: Data) -> Drawing | None:
-    """Draw the schedules for the row resolve."""
-    return schedule(data, "schedule_resolve_row", "Schedules for the row resolve", ("dynamic", 1))
-
-
 def schedule(data: Data, experiment: str, subject: str, chosen: Choice | None = None) -> Drawing | None:
     """Draw time over the chunk, a curve a series, the published series beside it if there is one; `chosen`
     is the published choice, which is ringed.

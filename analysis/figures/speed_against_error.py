@@ -133,7 +133,7 @@ def _outside_sentence(outside: pd.DataFrame, table: pd.DataFrame) -> str:
         said.append(
             f"{scene}: {number(MILLI * first['median'])}{NO_BREAK}ms with a drift of "
             f"{first['error']:.2g} in steps of 1/{first['substeps']:g}, {times} times the time of "
-            f"{place(str(cheapest['series']), cheapest['x'])}"
+            f"{run_label(str(cheapest['series']), cheapest['x'])}"
         )
     if not said:
         return ""
@@ -194,7 +194,7 @@ def _advice(table: pd.DataFrame, timed: pd.DataFrame, measure: Measure) -> Table
 def _choice(choice: Choice | None) -> Cell:
     if choice is None:
         return Cell("none of those measured", "open")
-    named = [place(series, x) for series, x in choice.others[:OTHERS]]
+    named = [run_label(series, x) for series, x in choice.others[:OTHERS]]
     if len(choice.others) > OTHERS:
         named.append(f"{len(choice.others) - OTHERS} more")
     said = f"; not found slower: {', '.join(named)}" if named else ""
@@ -202,10 +202,10 @@ def _choice(choice: Choice | None) -> Cell:
         MILLI * value for value in (choice.seconds.estimate, choice.seconds.low, choice.seconds.high)
     ]
     estimate, low, high = (number(value) for value in milliseconds)
-    return Cell(f"{place(choice.series, choice.substeps)}: {estimate}{NO_BREAK}ms [{low}, {high}]{said}")
+    return Cell(f"{run_label(choice.series, choice.substeps)}: {estimate}{NO_BREAK}ms [{low}, {high}]{said}")
 
 
-def place(series: str, substeps: float) -> str:
+def run_label(series: str, substeps: float) -> str:
     """Return a series with its step, e.g. `row, dt = 1/8`."""
     return f"{series}, dt{NO_BREAK}={NO_BREAK}{'1' if substeps == 1 else f'1/{substeps:g}'}"
 

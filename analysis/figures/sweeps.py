@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pandas as pd
 from matplotlib.axes import Axes
 
-from analysis.figures.captions import growth_sentence, linear_sentence, opening, turn_sentence
+from analysis.figures.captions import growth_sentence, opening
 from analysis.figures.curves import colours, curve, published_curve
 from analysis.figures.style import (
     BLUE,
@@ -24,31 +24,6 @@ from analysis.figures.style import (
 from analysis.statistics.bootstrap import summarise
 
 SAME_RANGE = 0.75
-
-
-def particles(data: Data) -> Drawing | None:
-    """Draw time over the number of discs in one box."""
-    return _over(data, "particles", "number of discs", growth_sentence)
-
-
-def radius(data: Data) -> Drawing | None:
-    """Draw time over the radius of the discs."""
-    return _over(data, "radius", "radius of a disc", turn_sentence)
-
-
-def steps(data: Data) -> Drawing | None:
-    """Draw time over the number of steps."""
-    return _over(data, "steps", "number of steps", linear_sentence)
-
-
-def min_velocity(data: Data) -> Drawing | None:
-    """Draw time over the least velocity component."""
-    return _over(data, "min_velocity", "least velocity component", growth_sentence)
-
-
-def max_velocity(data: Data) -> Drawing | None:
-    """Draw time over the greatest velocity component."""
-    return _over(data, "max_velocity", "greatest velocity component", growth_sentence)
 
 
 def density(data: Data) -> Drawing | None:
@@ -71,10 +46,6 @@ def density(data: Data) -> Drawing | None:
     return Drawing(
         figure, opening(times, "Time over the area fraction of the discs") + growth_sentence(times)
     )
-
-
-def _over(data: Data, experiment: str, label: str, describe: Callable[[pd.DataFrame], str]) -> Drawing | None:
-    return trend(data, experiment, f"Time over the {label}", label, describe)
 
 
 def trend(

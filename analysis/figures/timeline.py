@@ -7,7 +7,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analysis.figures.phases import PHASES
+from analysis.figures.phases import PHASE_COLOURS
 from analysis.figures.style import FAINT, INK, WIDTH, Data, Drawing, key, lighten
 from analysis.records import timelines
 from analysis.support.wording import count, number, share
@@ -37,7 +37,7 @@ def timeline(data: Data) -> Drawing | None:
         _gantt(axes, step, longest)
         axes.set_title(" ", pad=3)
         axes.annotate(one.title, (0, 1), xycoords="axes fraction", xytext=(0, 3), textcoords="offset points")
-    entries = [(f"■ {phase}", colour) for phase, colour in PHASES.items()]
+    entries = [(f"■ {phase}", colour) for phase, colour in PHASE_COLOURS.items()]
     key(grid[0], [*entries, ("■ waiting", FAINT), ("pale: serial part of the phase", INK)], raised=16)
     grid[-1].set_xlabel("time since the step began, ms")
     said = "; ".join(f"{one.title}: {_sentence(step)}" for one, step in zip(found, steps, strict=True))
@@ -54,7 +54,7 @@ def _gantt(axes: Axes, step: pd.DataFrame, longest: float) -> None:
         row = len(threads) - 1 - threads.index(thread)
         # Thousands of chunks would make the vector formats huge: those alone become pixels.
         style: dict[str, Any] = {"linewidth": 0, "rasterized": len(bars) > MANY}
-        colour = PHASES.get(phase, FAINT)
+        colour = PHASE_COLOURS.get(phase, FAINT)
         if kind == "phase":
             axes.broken_barh(bars, (-0.5, len(threads)), color=lighten(colour, 0.75), zorder=1, **style)
         elif kind == "wait":

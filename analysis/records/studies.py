@@ -106,8 +106,8 @@ def _by_program(runs: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     """
     programs = runs["binary_sha256"]
     order = programs.map(programs.value_counts().sort_index().rank(method="first", ascending=False))
-    place = order.groupby([runs["experiment"], runs["series"]]).rank("dense")
-    parts = [runs[place == number] for number in sorted(place.unique())]
+    rank = order.groupby([runs["experiment"], runs["series"]]).rank("dense")
+    parts = [runs[rank == number] for number in sorted(rank.unique())]
     if len(parts) == 1:
         return [("", runs)]
     return [(", ".join(sorted(part["binary_sha256"].str[:8].unique())), part) for part in parts]

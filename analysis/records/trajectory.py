@@ -59,16 +59,16 @@ def read_trajectory(path: Path) -> Trajectory:
     states: list[tuple[float, ...]] = []
     count: int | None = None
     for number, line in enumerate(_lines(path), 1):
-        place = f"{path}:{number}"
+        where = f"{path}:{number}"
         fields = line.split()
         if len(fields) != 6:
-            raise InputError(f"{place}: found {_shown(line)}, expected six numbers `{COLUMNS}`")
+            raise InputError(f"{where}: found {_shown(line)}, expected six numbers `{COLUMNS}`")
         if count is None and fields[:2] == ["1", "0"]:
             count = number - 1
         step, disc = (0, number - 1) if count is None else divmod(number - 1, max(1, count))
         if fields[:2] != [str(step), str(disc)]:
-            raise InputError(f"{place}: found {_shown(line)}, expected step {step}, disc {disc}")
-        states.append(tuple(_number(field, place, "a finite number") for field in fields[2:]))
+            raise InputError(f"{where}: found {_shown(line)}, expected step {step}, disc {disc}")
+        states.append(tuple(_number(field, where, "a finite number") for field in fields[2:]))
     discs = count or len(states)
     if not states or len(states) % discs:
         missing = f"disc {len(states) % discs}" if states else "step 0, disc 0"
@@ -86,14 +86,14 @@ def _lines(path: Path) -> Iterator[str]:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
 
 
-def _number(text: str, place: str, expected: str) -> float:
+def _number(text: str, where: str, expected: str) -> float:
     """Return the number; what Python takes besides (underscores, nan, inf) is none."""
     try:
         number = math.nan if "_" in text else float(text)
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise InputError(f"{place}: found {_shown(text)}, expected {expected}")
+        raise InputError(f"{where}: found {_shown(text)}, expected {expected}")
     return number
 
 

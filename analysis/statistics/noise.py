@@ -94,8 +94,8 @@ def blocks_needed(noise: float, margin: float = MARGIN, rate: float = 0.95) -> f
     if `MOST_BLOCKS` are too few, of which an estimate would say nothing. `noise` is per process.
     """
     counts = range(FEWEST, MOST_BLOCKS + 1)
-    place = bisect_left(counts, rate, key=lambda blocks: equivalence_rate(noise, blocks, margin))
-    return counts[place] if place < len(counts) else np.inf
+    index = bisect_left(counts, rate, key=lambda blocks: equivalence_rate(noise, blocks, margin))
+    return counts[index] if index < len(counts) else np.inf
 
 
 def needed_said(needed: float) -> str:
@@ -125,12 +125,10 @@ def warning(noise: pd.DataFrame) -> str | None:
     if short.empty:
         return None
     worst = short.loc[short["needed"].idxmax()]
-    place = (
-        f"The worst is {worst['experiment']!r}: the time of a process varies by {share(worst['noise'], 1)}"
-    )
+    said = f"The worst is {worst['experiment']!r}: the time of a process varies by {share(worst['noise'], 1)}"
     return (
         f"The machine was too noisy to settle differences of {share(MARGIN)} in {len(short)} of {len(asked)} "
-        f"experiments about small ones. {place}, with {count(worst['bursts'], 'burst')}, which needs "
+        f"experiments about small ones. {said}, with {count(worst['bursts'], 'burst')}, which needs "
         f"{needed_said(worst['needed'])} blocks; {worst['blocks']} were run. Expect verdicts of "
         f"'inconclusive'. To do better: {ADVICE}."
     )

@@ -49,10 +49,9 @@ class Linearity:
 
 
 @dataclass(frozen=True)
-class Turn:
+class Minimum:
     """A fall to a break point and a rise from it; `fall` and `rise` are rows like those of `judge_one`, of
-    the
-    first and the last x against the lowest.
+    the first and the last x against the lowest.
     """
 
     break_point: Interval
@@ -105,7 +104,7 @@ def linearity(processes: pd.DataFrame, within: tuple[float, float] = LINEAR_WITH
     return Linearity(centre(exponents), len(exponents), verdict, p)
 
 
-def turn(processes: pd.DataFrame, margin: float = MARGIN) -> Turn:
+def minimum(processes: pd.DataFrame, margin: float = MARGIN) -> Minimum:
     """Tell whether the time falls to some x and rises from there.
 
     All points are compared with each other, by simultaneous 95 % intervals (see `simultaneous`), so that the
@@ -122,11 +121,11 @@ def turn(processes: pd.DataFrame, margin: float = MARGIN) -> Turn:
     lowest = int(found.means.argmin())
     verdict, p = _shape(found, np.log1p(margin)) if len(whole) >= FEWEST else (TOO_FEW_BLOCKS, 1.0)
     fall, rise = (verdict_row(found.interval(end, lowest), len(whole), p, verdict) for end in (0, len(x) - 1))
-    return Turn(break_point(x, whole.to_numpy()), float(x[lowest]), fall, rise, verdict, p)
+    return Minimum(break_point(x, whole.to_numpy()), float(x[lowest]), fall, rise, verdict, p)
 
 
 def _shape(found: Differences, bound: float) -> tuple[str, float]:
-    """Return the verdict of `turn` and its p-value: that of the least of the slacks which it rests on."""
+    """Return the verdict of `minimum` and its p-value: that of the least of the slacks which it rests on."""
     logs = found.means
     first, last, inside = logs[0], logs[-1], logs[1:-1]
     slack = {

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -114,12 +114,8 @@ def bench(
     axes, scene = AXES | point.axes, SCENE | point.scene
     area = scene["particles"] * np.pi * scene["radius"] ** 2 / scene["side"] ** 2
     repetitions = [{"steps_seconds": float(value), "cpu_seconds": float(value) * 1.9} for value in seconds]
-    return {
-        "schema_version": 1,
-        "kind": "bench",
-        "recorded_at": f"2024-05-01T10:{block:02}:00Z",
+    return record("bench", tags_of(experiment, point, block, machine) | tags, block) | {
         "axes": axes,
-        "tags": place(experiment, point, block, machine) | tags,
         "scene": {**scene, "sha256": digest(scene), "area_fraction": float(area)},
         "warm_ups": 1,
         "repetitions": repetitions,
@@ -141,7 +137,13 @@ def bench(
     }
 
 
-def place(experiment: str, point: Point, block: int, machine: Machine) -> dict[str, str | float]:
+def record(kind: str, tags: Mapping[str, str | float], minute: int = 0) -> dict[str, Any]:
+    """Return what records of every kind have."""
+    recorded_at = f"2024-05-01T10:{minute:02}:00Z"
+    return {"schema_version": 1, "kind": kind, "recorded_at": recorded_at, "tags": dict(tags)}
+
+
+def tags_of(experiment: str, point: Point, block: int, machine: Machine) -> dict[str, str | float]:
     """Return the tags that say where a record stands in the study."""
     named = (point.label, point.scene_name, *point.tags.values())
     identity = (machine.host, experiment, point.series, point.x, *named)
@@ -223,11 +225,8 @@ def limits(machine: Machine, copy: dict[str, tuple[int, float]], arithmetic: flo
     def rate(best: float) -> dict[str, float]:
         return {"best": best, "median": 0.9 * best, "repetitions": 9}
 
-    return {
-        "schema_version": 1,
-        "kind": "limits",
-        "recorded_at": "2024-05-01T09:00:00Z",
-        "tags": {"experiment": "limits-of-machines", "point": "limits", "block": 0},
+    tags: dict[str, str | float] = {"experiment": "limits-of-machines", "point": "limits", "block": 0}
+    return record("limits", tags) | {
         "limits": {
             "copy": [
                 {"level": level, "working_set_bytes": size, "threads": n, "bytes_per_second": rate(n * best)}
@@ -251,43 +250,28 @@ def outside(
     time.
     """
     scene = beside["tags"]["scene_name"]
-    return {
-        "schema_version": 1,
-        "kind": "outside",
-        "recorded_at": "2024-05-01T09:00:00Z",
-        "tags": {
-            "experiment": "speed_against_error", "series": "outside", "scene_name": scene,
-            "x_name": "substeps", "x": substeps, "block": block, "scale": "paper", "session": "s1",
-            "point": f"outside-{scene}-{substeps}",
-        },
+    tags = {
+        "experiment": "speed_against_error", "series": "outside", "scene_name": scene,
+        "x_name": "substeps", "x": substeps, "block": block, "scale": "paper", "session": "s1",
+        "point": f"outside-{scene}-{substeps}",
+    }  # fmt: skip
+    return record("outside", tags) | {
         "engine": {"name": "Chipmunk", "version": "7.0.3", "iterations": 10},
         "axes": {"threads": 1, "substeps": substeps},
         "scene": beside["scene"],
         "repetitions": [dict.fromkeys(("steps_seconds", "cpu_seconds"), beside["scene"]["steps"] * seconds)],
         "errors": {"energy_drift": drift, "discs_outside": 0},
         "provenance": machine.provenance("g++ 12.2.0", 1),
-    }  # fmt: skip
+    }
 
 
 def failure(experiment: str, series: str, reason: str, **tags: str) -> dict[str, Any]:
     """Return the record of a point that failed."""
-    return {
-        "schema_version": 1,
-        "kind": "failure",
+    where: dict[str, str | float] = {"x_name": "none", "x": 0, "block": 0, "scale": "paper", "site": "local"}
+    return record("failure", {"experiment": experiment, "series": series, **where, **tags}) | {
         "exit_code": 2,
         "reason": reason,
-        "tags": {
-            "experiment": experiment,
-            "series": series,
-            "x_name": "none",
-            "x": 0,
-            "block": 0,
-            "scale": "paper",
-            "site": "local",
-            **tags,
-        },
         "command": ["build/gcc/carom", "bench", "scene.in"],
-        "recorded_at": "2024-05-01T10:00:00Z",
     }
 
 

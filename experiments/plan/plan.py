@@ -7,7 +7,7 @@ from typing import Any
 from experiments.plan.blocks import orders
 from experiments.plan.point import Point
 from experiments.plan.program import Program, variants
-from experiments.plan.question import Place, Question, Series, Threads
+from experiments.plan.question import NamedScene, Question, Series, Threads
 from experiments.plan.scale import Scale
 from experiments.plan.scenes import Scene
 from experiments.plan.site import Machine, Site
@@ -53,8 +53,8 @@ def plan(question: Question, around: Surroundings) -> Experiment:
     would measure the same thing twice.
     """
     points = [
-        _point(question, number, series, place, value, around)
-        for place in around.scale.places(question)
+        _point(question, number, series, scene, value, around)
+        for scene in around.scale.scenes(question)
         for number, series in enumerate(question.series, start=1)
         if not _left_out(series, around)
         for value in _values(question, _known(question, number, series, around), around)
@@ -113,21 +113,24 @@ def _values(question: Question, series: Series, around: Surroundings) -> Sequenc
 
 
 def _point(
-    question: Question, number: int, series: Series, place: Place, value: float | None, around: Surroundings
+    question: Question,
+    number: int,
+    series: Series,
+    named: NamedScene,
+    value: float | None,
+    around: Surroundings,
 ) -> Point:
-    parameter = question.sweep.parameter
-    threads, substeps = _threads(question.threads, around.machine), question.substeps
-    chunks = {"find_chunk": series.find_chunk, "resolve_chunk": series.resolve_chunk}
-    scene = around.scale.scene(place.scene)
-    if parameter == "threads" and value is not None:
-        threads = max(1, round(value))
-        value = threads
-    elif parameter in chunks and value is not None:
-        chunks[parameter] = int(value)
-    elif parameter == "substeps" and value is not None:
-        substeps = int(value)
-    elif isinstance(scene, Scene) and parameter is not None and value is not None:
-        scene = _swept(question, scene, parameter, value)
+    parameter, scene, x = question.sweep.parameter, named.scene, 0 if value is None else value
+    run: dict[str, Any] = {
+        "threads": _threads(question.threads, around.machine),
+        "substeps": question.substeps,
+        "find_chunk": series.find_chunk,
+        "resolve_chunk": series.resolve_chunk,
+    }
+    if parameter in run:
+        x = run[parameter] = max(1, round(x))
+    elif parameter is not None and isinstance(scene, Scene):
+        scene = _swept(question, scene, parameter, x)
     return Point(
         experiment=question.name,
         figure=question.figure,
@@ -135,9 +138,9 @@ def _point(
         series=series.name,
         series_number=number,
         label=series.label,
-        scene_name=place.name,
+        scene_name=named.name,
         x_name=question.sweep.x_name,
-        x=0 if value is None else value,
+        x=x,
         scale=around.scale.name,
         site=around.site.name,
         machine=around.machine,
@@ -145,15 +148,13 @@ def _point(
         program=around.programs[series.program],
         scene=scene,
         variant=series.variant,
-        threads=threads,
-        substeps=substeps,
         tolerance=question.tolerance,
         warm_up=question.warm_up,
         repetitions=question.repetitions,
         errors=question.errors,
         simulated=around.scale.simulated(question),
-        openmp=_openmp(question, threads, around),
-        **chunks,
+        openmp=_openmp(question, run["threads"], around),
+        **run,
     )
 
 

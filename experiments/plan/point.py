@@ -1,34 +1,28 @@
 """One point of a figure: everything that decides what is measured, and the id made from it."""
 
-import hashlib
 import json
 import re
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from pathlib import Path
 
 from experiments.plan.program import Program, tag_arguments
-from experiments.plan.scenes import AnyScene
+from experiments.plan.scenes import AnyScene, HardCase, Scene
 from experiments.plan.site import Machine
+from experiments.support.digest import digest
 
 Tags = dict[str, str | int | float]
 
 
 @dataclass(frozen=True)
-class Point:
-    """One combination of program, scene, variant, tunings and threads, and its place in a figure."""
+class Measurement:
+    """Everything that decides what is measured: every field is part of the id.
 
-    experiment: str
-    figure: str
-    claim: str | None
-    series: str
-    series_number: int
+    The label is one of them: the control measures the same under two labels.
+    """
+
     label: str | None
-    scene_name: str | None
-    x_name: str
-    x: float
-    scale: str
     site: str
     machine: Machine
     verb: str
@@ -48,26 +42,10 @@ class Point:
 
     @cached_property
     def id(self) -> str:
-        """`p` and 16 hexadecimal digits over the content; equal ids are the same measurement in any figure.
-
-        The label is part of the content: the control measures one content under two labels.
-        """
-        content = {
-            "label": self.label,
-            "site": self.site,
-            "machine": asdict(self.machine),
-            "verb": self.verb,
-            "program": (self.program.name, self.program.sha256),
-            "scene": self.scene.arguments,
-            "openmp": self.openmp,
-            **self.axes,
-            "warm_up": self.warm_up,
-            "repetitions": self.repetitions,
-            "errors": self.errors,
-            "simulated": self.simulated,
-        }
+        """`p` and 16 hexadecimal digits; equal ids are the same measurement in any figure."""
+        content = {field.name: getattr(self, field.name) for field in fields(Measurement)}
         # The letter keeps the id a text: the program takes a tag that reads as a number for one.
-        return "p" + hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+        return "p" + digest(json.dumps(content, sort_keys=True, default=_content))
 
     @property
     def axes(self) -> dict[str, str | int | None]:
@@ -81,23 +59,30 @@ class Point:
             "tolerance": self.tolerance,
         }
 
+
+@dataclass(frozen=True)
+class Point(Measurement):
+    """A measurement and what only says where in which figure it is shown."""
+
+    experiment: str
+    figure: str
+    claim: str | None
+    series: str
+    series_number: int
+    scene_name: str | None
+    x_name: str
+    x: float
+    scale: str
+
     @property
-    def place(self) -> Tags:
-        """The tags that say where in which figure the point stands."""
-        place: Tags = {
-            "experiment": self.experiment,
-            "figure": self.figure,
-            "series": self.series,
-            "series_number": self.series_number,
-            "x_name": self.x_name,
-            "x": self.x,
-            "scale": self.scale,
-            "site": self.site,
-            "program": self.program.name,
-            "point": self.id,
+    def tags(self) -> Tags:
+        """What a record of the point tells those who draw it."""
+        measured = {field.name for field in fields(Measurement)}
+        shown = {
+            field.name: getattr(self, field.name) for field in fields(self) if field.name not in measured
         }
-        optional = {"claim": self.claim, "label": self.label, "scene_name": self.scene_name}
-        return place | {key: value for key, value in optional.items() if value is not None}
+        told = {"label": self.label, "site": self.site, "program": self.program.name, "point": self.id}
+        return {key: value for key, value in (shown | told).items() if value is not None}
 
     @property
     def timeline(self) -> str:
@@ -140,3 +125,15 @@ class Point:
         if timeline is not None:
             words += ["--timeline", str(timeline), "--timeline-chunks"]
         return (*words, "--record", str(record), *tag_arguments(tags))
+
+
+def _content(value: object) -> object:
+    """What of a field that is no plain value decides the measurement: of a program not where it is."""
+    match value:
+        case Program():
+            return value.name, value.sha256
+        case Scene() | HardCase():
+            return value.arguments
+        case Machine():
+            return asdict(value)
+    raise TypeError(f"{value!r} has no place in an id")

@@ -31,7 +31,7 @@ class Blocks:
 
 
 @dataclass(frozen=True)
-class Place:
+class NamedScene:
     """A scene, its name where the question has several, and whether it is left out at quick scale."""
 
     scene: AnyScene
@@ -73,13 +73,14 @@ class Question:
     file: Path
     title: str
     figure: str
-    scenes: tuple[Place, ...]
+    scenes: tuple[NamedScene, ...]
     series: tuple[Series, ...]
     sweep: Sweep = Sweep()
     claim: str | None = None
     verb: Literal["bench", "profile"] = "bench"
     threads: Threads = "hardware_threads"
     bound: bool = True
+    turns: bool = True
     tolerance: Literal["relative", "published"] = "relative"
     tolerance_reason: str | None = None
     substeps: int = 1
@@ -104,7 +105,7 @@ def load_question(path: Path) -> Question:
         blocks=Blocks(**document.pop("blocks", {})),
         **document,
     )
-    _check(question)
+    _require_valid(question)
     return question
 
 
@@ -129,28 +130,28 @@ def load_questions(folder: Path, names: Iterable[str] = ()) -> tuple[Question, .
 
 def _scenes(
     path: Path, one: dict[str, Any] | None, several: list[dict[str, Any]] | None
-) -> tuple[Place, ...]:
+) -> tuple[NamedScene, ...]:
     if one is not None and several is not None:
         raise InputError(f"{path}: scene: found beside scenes, expected either")
     if one is not None:
-        return (_place(one),)
+        return (_named_scene(one),)
     if several is None:
         raise InputError(f"{path}: scene: missing; expected a table, or a list scenes of several")
-    places: dict[str, Place] = {}
+    named: dict[str, NamedScene] = {}
     for number, table in enumerate(several, start=1):
         key = f"scenes[{number}]"
-        place = _place({"name": table.get("case"), **table})
-        if place.name is None:
+        scene = _named_scene({"name": table.get("case"), **table})
+        if scene.name is None:
             raise InputError(f"{path}: {key}.name: missing; expected a text, which tells the scenes apart")
-        if place.name in places:
-            raise InputError(f'{path}: {key}.name: found "{place.name}" twice, expected each once')
-        places[place.name] = place
-    return tuple(places.values())
+        if scene.name in named:
+            raise InputError(f'{path}: {key}.name: found "{scene.name}" twice, expected each once')
+        named[scene.name] = scene
+    return tuple(named.values())
 
 
-def _place(table: dict[str, Any]) -> Place:
-    of_place = {key: table.pop(key) for key in ("name", "paper_only") if key in table}
-    return Place(HardCase(**table) if "case" in table else Scene(**table), **of_place)
+def _named_scene(table: dict[str, Any]) -> NamedScene:
+    beside = {key: table.pop(key) for key in ("name", "paper_only") if key in table}
+    return NamedScene(HardCase(**table) if "case" in table else Scene(**table), **beside)
 
 
 def _series(table: Mapping[str, Any], of_sweep: Mapping[str, tuple[float, ...]]) -> Series:
@@ -161,40 +162,40 @@ def _series(table: Mapping[str, Any], of_sweep: Mapping[str, tuple[float, ...]])
     return Series(**{**table, **own})
 
 
-def _check(question: Question) -> None:
-    """What a schema cannot say."""
+def _require_valid(question: Question) -> None:
+    """What a schema cannot say: raises InputError for the first thing that is wrong, as the ones below do."""
     file, sweep, blocks = question.file, question.sweep, question.blocks
     if blocks.wanted < blocks.minimum:
         raise InputError(f"{file}: blocks.wanted: found {blocks.wanted}, expected at least {blocks.minimum}")
-    _check_names(question)
-    _check_scenes(question)
-    _check_errors(question)
-    _check_tolerance(question)
+    _require_names(question)
+    _require_possible_scenes(question)
+    _require_what_errors_need(question)
+    _require_published_tolerance(question)
     if sweep.parameter == "substeps" and question.substeps != 1:
         raise InputError(f"{file}: substeps: found beside a sweep of it, expected either")
     for key, only in (("unit", "threads"), ("limit", "threads"), ("constant", "particles")):
         if getattr(sweep, key) is not None and sweep.parameter != only:
             raise InputError(f"{file}: sweep.{key}: found for {sweep.parameter}, expected for {only} only")
     for number, series in enumerate(question.series, start=1):
-        _check_values(question, f"series[{number}]", series)
+        _require_values(question, f"series[{number}]", series)
 
 
-def _check_names(question: Question) -> None:
+def _require_names(question: Question) -> None:
     """A tag that reads as a number is one in a record, and no longer the name that it was."""
     named = {"file name": question.name}
     for number, series in enumerate(question.series, start=1):
         named |= {f"series[{number}].name": series.name, f"series[{number}].label": series.label or ""}
-    for number, place in enumerate(question.scenes, start=1):
-        named[f"scenes[{number}].name"] = place.name or ""
+    for number, scene in enumerate(question.scenes, start=1):
+        named[f"scenes[{number}].name"] = scene.name or ""
     for key, name in named.items():
         if _NUMBER.fullmatch(name):
             raise InputError(f'{question.file}: {key}: found "{name}", expected a name that is no number')
 
 
-def _check_scenes(question: Question) -> None:
+def _require_possible_scenes(question: Question) -> None:
     parameter = question.sweep.parameter
-    for number, place in enumerate(question.scenes, start=1):
-        scene, key = place.scene, "scene" if len(question.scenes) == 1 else f"scenes[{number}]"
+    for number, named in enumerate(question.scenes, start=1):
+        scene, key = named.scene, "scene" if len(question.scenes) == 1 else f"scenes[{number}]"
         if isinstance(scene, HardCase):
             if parameter is not None and parameter not in _OF_THE_RUN:
                 raise InputError(
@@ -208,7 +209,7 @@ def _check_scenes(question: Question) -> None:
             )
 
 
-def _check_errors(question: Question) -> None:
+def _require_what_errors_need(question: Question) -> None:
     """What the figures about errors need, and what only they can draw."""
     file, figure = question.file, question.figure
     if question.errors and question.verb != "bench":
@@ -226,7 +227,7 @@ def _check_errors(question: Question) -> None:
         )
 
 
-def _check_tolerance(question: Question) -> None:
+def _require_published_tolerance(question: Question) -> None:
     """A published claim is about the published program, and so about its tolerance, unless that cannot be."""
     if question.claim and question.tolerance != "published" and question.tolerance_reason is None:
         raise InputError(
@@ -239,7 +240,7 @@ def _check_tolerance(question: Question) -> None:
         )
 
 
-def _check_values(question: Question, key: str, series: Series) -> None:
+def _require_values(question: Question, key: str, series: Series) -> None:
     parameter = question.sweep.parameter
     if parameter in ("particles", "side") and series.quick_values == series.values:
         raise InputError(

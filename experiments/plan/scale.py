@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from experiments.plan.question import Place, Question, Series
+from experiments.plan.question import NamedScene, Question, Series
 from experiments.plan.scenes import AnyScene, HardCase
 from experiments.support.errors import InputError, nearest
 
@@ -24,12 +24,6 @@ class Scale:
     blocks_divisor: int
     budget_seconds: float
 
-    def scene(self, scene: AnyScene) -> AnyScene:
-        """A question's scene at this scale; a hard case has one size only."""
-        if isinstance(scene, HardCase):
-            return scene
-        return replace(scene.shrunk(self.divisor), steps=max(1, scene.steps // self.steps_divisor))
-
     def question(self, question: Question) -> Question:
         """A question at this scale: a smaller least number of blocks leaves more to the budget.
 
@@ -45,13 +39,20 @@ class Scale:
         """How many steps of a profile are simulated at this scale, 0 for none."""
         return max(1, question.simulated // self.steps_divisor) if question.simulated else 0
 
-    def places(self, question: Question) -> tuple[Place, ...]:
+    def scenes(self, question: Question) -> tuple[NamedScene, ...]:
         """A question's scenes at this scale."""
-        return tuple(place for place in question.scenes if self.divisor == 1 or not place.paper_only)
+        kept = (one for one in question.scenes if self.divisor == 1 or not one.paper_only)
+        return tuple(replace(one, scene=self._scene(one.scene)) for one in kept)
 
     def values(self, series: Series) -> tuple[float, ...]:
         """A series' values at this scale."""
         return series.values if self.divisor == 1 else series.quick_values
+
+    def _scene(self, scene: AnyScene) -> AnyScene:
+        """A hard case has one size only."""
+        if isinstance(scene, HardCase):
+            return scene
+        return replace(scene.shrunk(self.divisor), steps=max(1, scene.steps // self.steps_divisor))
 
 
 SCALES = {

@@ -19,11 +19,11 @@ COLLECTED = "collected"
 
 @dataclass(frozen=True)
 class _Found:
-    """One file of a source folder, and where it belongs: equal places are the same process."""
+    """One file of a source folder, and its path below the results: equal paths are the same process."""
 
     file: Path
     content: Any
-    place: Path
+    path: Path
 
     @property
     def sha256(self) -> str:
@@ -54,15 +54,13 @@ def _read(source: Path, results: Path) -> Iterator[_Found]:
         raise InputError(f"{source}: is the folder to collect into; expected another one")
     for file in _files(source):
         content = read_json(file)
-        _refuse_other_schema(file, content)
+        _require_schema(file, content)
         kind = file.relative_to(source).parts[0]
-        place = (
-            Path(kind) / COLLECTED / _owner(content) / _word(content["tags"].get("experiment")) / file.name
-        )
-        yield _Found(file, content, place)
+        experiment = _word(content["tags"].get("experiment"))
+        yield _Found(file, content, Path(kind, COLLECTED, _owner(content), experiment, file.name))
 
 
-def _refuse_other_schema(file: Path, content: Any) -> None:  # noqa: ANN401 - read from a file
+def _require_schema(file: Path, content: Any) -> None:  # noqa: ANN401 - read from a file
     if not isinstance(content, dict):
         raise InputError(f"{file}: is not a record; nothing was collected")
     expected = json.loads(RECORD_SCHEMA.read_text(encoding="utf-8"))["properties"]["schema_version"]["const"]
@@ -89,7 +87,7 @@ def _owner(content: dict[str, Any]) -> str:
 
 
 def _word(text: object) -> str:
-    """A folder's name: a record from elsewhere must not choose any other place."""
+    """A folder's name: a record from elsewhere must not choose any other one."""
     return re.sub(r"[^A-Za-z0-9_.-]+", "-", str(text)).lstrip(".") or "unknown"
 
 
@@ -103,7 +101,7 @@ def _take(store: Store, found: Sequence[_Found]) -> int:
         # A process that has been measured since has not failed.
         if one.sha256 in known or (one.content["kind"] == "failure" and one.file.name in measured):
             continue
-        target = store.root / one.place
+        target = store.root / one.path
         there = read_json(target)
         if is_record(there) and there["recorded_at"] >= one.content["recorded_at"]:
             continue

@@ -177,7 +177,7 @@ def unusable(record: Any, point: Point, block: int) -> str | None:  # noqa: ANN4
     if point.measures_errors(block) and "trajectory" not in (record["errors"] or {}):
         return "it lacks the error measures"
     tags = record["tags"]
-    for key, value in (point.place | {"block": block}).items():
+    for key, value in (point.tags | {"block": block}).items():
         if tags.get(key) != value:
             return f"its tag {key} is {tags.get(key)!r}, not {value!r}"
     return None

@@ -7,22 +7,44 @@ from pathlib import Path
 
 from experiments.plan.point import Point
 from experiments.plan.scenes import AnyScene, HardCase, Scene
-from experiments.run.turn import run_in_turn
+from experiments.run.host_lock import run_alone
 from experiments.support.files import read_json
 
 PROBE = Scene(particles=10000, side=3162, radius=16, steps=10, min_velocity=2, max_velocity=5)
 
-# Rough on purpose: they only foretell, before anything is measured, how long the study takes.
-_BOX_PER_DISC = 0.2
+# These foretell, before anything is measured, how long the study takes; a first block of each question then
+# overrules them. So they are round: too high costs a few blocks, too low a little more than the budget.
+
+# Fitted to the published variant: on two cores, and to the study's series in analysis/records/published.toml.
+_BOX_PER_DISC = 0.1
+"""Of a disc's time, over the side length: 0.07, and 0.11 in the study's series."""
+_PER_UNIT_OF_VELOCITY = 0.025
+"""Of the time of discs at rest, for each unit of the mean component: 0.024 and 0.026 in the study's."""
+_CROWDING = 30
+_CROWDING_POWER = 16
+"""More time by area fraction: 0.1 of it at 0.71 (measured 0.2), 0.9 at 0.80 (0.6), 3.4 at 0.87 (3.4)."""
 _GROWTH_BEYOND_CACHES = 0.2
+"""Power of the discs: from 10 000 to a million 0.24 for the published variant, 0.05 for the fastest."""
+_SECONDS_PER_DISC_READ = 7e-7
+"""Measured, the same for 10 000 discs and for a million. Generating takes about twice as long."""
+
+# What the program does, in runs of the steps.
 _RUNS_OF_A_PROFILE = 3
-_PROBED = 3
+"""A bare one, the profiled one, and one in which events are counted."""
 _RUNS_OF_A_CHECK = 3
 _RUNS_FOR_ERRORS = 3
+"""A guess, not measured: to check a step, or to follow the exact paths beside it, takes as long as two."""
 _SLOWED_BY_CACHEGRIND = 60
-_SECONDS_PER_DISC_READ = 6e-7
+"""Between the 20 and the 100 times of Valgrind's manual."""
+
 _SECONDS_PER_HARD_CASE = 0.01
 _SECONDS_OF_LONG_CASES = {"drift": 3.0}
+"""Most have few discs and steps; `drift` has 100 discs for 100 000 steps, at 0.3 us a disc and step."""
+
+_PROBED = 3
+"""Runs of a probe, of which the least counts: enough for one without a disturbance, and over in 0.1 s."""
+_UNPROBED_STEP, _UNPROBED_PROCESS = 0.01, 0.05
+"""Seconds of a variant whose probe failed: several times what the published one takes."""
 
 SECONDS_PER_PROCESS = 0.03
 """What a process takes beside its own account of its time: its start, its end, the look at its record."""
@@ -109,7 +131,7 @@ class Costs:
         return self._models[point.id]
 
     def _probe(self, point: Point) -> Probe:
-        return self._probes.get(probe_key(point), Probe(step=0.01, process=0.05))
+        return self._probes.get(probe_key(point), Probe(_UNPROBED_STEP, _UNPROBED_PROCESS))
 
 
 def probe_key(point: Point) -> str:
@@ -122,7 +144,7 @@ def probe(point: Point, scene: Path, record: Path, time_limit: float) -> Probe |
     words = [str(point.program.path), "bench", str(scene), "--variant", point.variant]
     words += ["--threads", str(point.threads), "--record", str(record), "--warm-up", "0"]
     words += ["--repetitions", str(_PROBED)]
-    done = run_in_turn(words, point.openmp, time_limit)
+    done = run_alone(words, point.openmp, time_limit)
     content = read_json(record)
     if done.exit_code != 0 or content is None:
         return None
@@ -157,7 +179,7 @@ def _work(scene: Scene) -> float:
     outgrows the caches costs more each time.
     """
     boxes = (scene.side / (4 * scene.radius + 1)) ** 2
-    crowding = 1 + 42 * scene.area_fraction**16
-    speed = 1 + 0.06 * (scene.min_velocity + scene.max_velocity) / 2
+    crowding = 1 + _CROWDING * scene.area_fraction**_CROWDING_POWER
+    speed = 1 + _PER_UNIT_OF_VELOCITY * (scene.min_velocity + scene.max_velocity) / 2
     beyond = max(1.0, scene.particles / PROBE.particles) ** _GROWTH_BEYOND_CACHES
     return (scene.particles * crowding * speed + _BOX_PER_DISC * boxes) * beyond

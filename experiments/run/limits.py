@@ -2,10 +2,8 @@
 
 from dataclasses import asdict
 
-from experiments.plan.point import Point
-from experiments.plan.program import tag_arguments
-from experiments.results.store import Store
-from experiments.run import beside
+from experiments.plan.point import Point, Tags
+from experiments.run.kept_records import KeptRecords, key
 from experiments.support.process import Completed
 
 FIGURE = "limits"
@@ -15,30 +13,16 @@ FOLDER = "limits-of-machines"
 """Below `records/`, beside the folders of the experiments."""
 
 
-class Limits:
-    """Runs `carom limits`, once for each program, machine, number of threads and binding; records are
-    kept.
+def measure_limits(point: Point, records: KeptRecords) -> Completed | None:
+    """Run `carom limits`, once for each program, machine, number of threads and binding.
+
+    None if its record is there or the point's figure needs none.
     """
-
-    def __init__(self, store: Store, time_limit: float) -> None:
-        self._store = store
-        self._time_limit = time_limit
-
-    def measure(self, point: Point) -> Completed:
-        """Measure what the point's machine can do, unless a record of it is there or the figure needs
-        none.
-        """
-        path = self._store.root / "records" / FOLDER / f"{_name(point)}.json"
-        scratch = self._store.temporary / "limits.json"
-        words = [str(point.program.path), "limits", "--threads", str(point.threads), "--record", str(scratch)]
-        command = (*words, *tag_arguments({"experiment": FOLDER, "site": point.site}))
-        if point.figure != FIGURE or self._store.holds(path, "limits"):
-            return Completed(command, 0, "", "")
-        done = beside.record(command, point.openmp, self._time_limit, scratch, path)
-        if done.exit_code != 0:
-            return Completed(command, done.exit_code, "", f"limits of the machine: {done.reason}")
+    if point.figure != FIGURE:
+        return None
+    name = f"{FOLDER}/{key(point.program.sha256, asdict(point.machine), point.threads, point.openmp)}.json"
+    tags: Tags = {"experiment": FOLDER, "site": point.site}
+    done = records.ensure("limits", name, point, ["--threads", str(point.threads)], tags)
+    if done is None or done.exit_code == 0:
         return done
-
-
-def _name(point: Point) -> str:
-    return beside.name_of([point.program.sha256, asdict(point.machine), point.threads, point.openmp])
+    return Completed(done.command, done.exit_code, "", f"limits of the machine: {done.reason}")

@@ -1,6 +1,9 @@
-"""One process of one point, from its scene to its record or to the reason why there is none."""
+"""Points measured, from their scenes to their records or to the reasons why there are none."""
 
+import json
+import shutil
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,9 +12,10 @@ from experiments.plan.point import Point, Tags
 from experiments.plan.program import CHECK_FAILED, Program, generate
 from experiments.plan.scenes import AnyScene, SceneFile, SceneFolder, sha256_of
 from experiments.results.store import Store, unusable
-from experiments.run.limits import Limits
+from experiments.run.host_lock import run_alone
+from experiments.run.kept_records import KeptRecords
+from experiments.run.limits import measure_limits
 from experiments.run.outside import Outside
-from experiments.run.turn import run_in_turn
 from experiments.run.verify import Verifier, representative
 from experiments.support.errors import InputError
 from experiments.support.files import move, read_json
@@ -20,7 +24,7 @@ from experiments.support.process import NOT_FOUND, Completed
 
 @dataclass(frozen=True)
 class Task:
-    """One process: a point in one block of its experiment."""
+    """A point in one block of its experiment."""
 
     experiment: Experiment
     point: Point
@@ -31,7 +35,7 @@ class Task:
     def tags(self, session: str) -> Tags:
         """Everything that the record remembers of the plan."""
         return {
-            **self.point.place,
+            **self.point.tags,
             "title": self.experiment.question.title,
             "block": self.block,
             "position": self.position,
@@ -52,7 +56,7 @@ class Outcome:
 
 
 class Runner:
-    """Runs tasks one at a time; each leaves a record or a failure in the store."""
+    """Runs tasks, one process at a time; each leaves a record or a failure in the store."""
 
     def __init__(self, store: Store, scenes: SceneFolder, generator: Program, time_limit: float) -> None:
         self._store = store
@@ -60,14 +64,31 @@ class Runner:
         self._generator = generator
         self._time_limit = time_limit
         self._verifier = Verifier(store, time_limit)
-        self._limits = Limits(store, time_limit)
-        self._outside = Outside(store, time_limit)
+        self._records = KeptRecords(store, time_limit)
+        self._outside = Outside(self._records)
 
-    def run(self, task: Task) -> Outcome:
-        """Verify the point's variant if that is still to be done, then measure it.
+    def run(self, tasks: Sequence[Task]) -> list[Outcome]:
+        """Verify the points' variants as far as that is still to be done, then measure the points: several of
+        them in turns, in one process.
 
         Raises InputError only for what concerns the whole study: a program that changed under it.
         """
+        prepared = [self._prepare(task) for task in tasks]
+        ready = [
+            (task, scene) for task, scene in zip(tasks, prepared, strict=True) if isinstance(scene, SceneFile)
+        ]
+        measured = iter(self._measure_all(ready))
+        return [next(measured) if isinstance(one, SceneFile) else one for one in prepared]
+
+    def _measure_all(self, ready: Sequence[tuple[Task, SceneFile]]) -> list[Outcome]:
+        if len(ready) > 1:
+            outcomes = self._measure_in_turns(ready)
+            if outcomes is not None:
+                return outcomes
+        return [self._measure(task, scene) for task, scene in ready]
+
+    def _prepare(self, task: Task) -> SceneFile | Outcome:
+        """The point's scene once its variant is verified, or why it cannot be measured."""
         point = task.point
         if point.program.sha256 is None:
             command = (str(point.program.path), point.verb)
@@ -80,17 +101,38 @@ class Runner:
         verdict = self._verifier.check(representative(task.experiment, point), checked)
         if verdict.exit_code != 0:
             return self._fail(task, verdict)
-        limits = self._limits.measure(point)
-        if limits.exit_code != 0:
+        limits = measure_limits(point, self._records)
+        if limits is not None and limits.exit_code != 0:
             return self._fail(task, limits)
         failed = self._outside.measure(point, task.block, scene, task.tags(self._store.session))
         if failed is not None and failed.exit_code != 0:
             print(f"outside engine: not measured: {failed.reason}", file=sys.stderr)
-        return self._measure(task, scene)
+        return scene
 
     def scene(self, scene: AnyScene) -> SceneFile:
         """The scene's file, generated if need be."""
         return self._scenes.get(scene, lambda wanted, path: generate(self._generator, wanted, path))
+
+    def _measure_in_turns(self, ready: Sequence[tuple[Task, SceneFile]]) -> list[Outcome] | None:
+        """All of them in one process; None if it broke off: each must show alone what is wrong with it."""
+        folder = self._store.temporary / "turns"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        commands = [
+            task.point.command(scene.path, folder / f"{number}.json", task.tags(self._store.session))
+            for number, (task, scene) in enumerate(ready)
+        ]
+        first = ready[0][0]
+        contenders = folder / "contenders.json"
+        contenders.write_text(json.dumps([words[2:] for words in commands]), encoding="utf-8")
+        command = (commands[0][0], "turns", str(contenders), "--seed", str(first.block + 1))
+        done = run_alone(command, first.point.openmp, self._time_limit * len(ready))
+        if done.exit_code not in (0, CHECK_FAILED):
+            return None
+        return [
+            self._keep(task, folder / f"{number}.json", Completed(words, done.exit_code, "", done.error))
+            for number, ((task, _), words) in enumerate(zip(ready, commands, strict=True))
+        ]
 
     def _measure(self, task: Task, scene: SceneFile) -> Outcome:
         point = task.point
@@ -99,24 +141,30 @@ class Runner:
         tags = task.tags(self._store.session)
         timeline = self._store.temporary / "timeline.json" if _is_drawn(task) else None
         command = point.command(scene.path, scratch, tags, timeline, point.besides(task.block))
-        done = run_in_turn(command, point.openmp, self._time_limit)
+        done = run_alone(command, point.openmp, self._time_limit)
+        outcome = self._keep(task, scratch, done)
+        if outcome.seconds is not None and timeline is not None and timeline.exists():
+            move(timeline, self._store.root / "timelines" / point.timeline)
+        return outcome
+
+    def _keep(self, task: Task, scratch: Path, done: Completed) -> Outcome:
+        """Take in the record that a process left of a point, or the reason why there is none."""
         record = read_json(scratch)
-        if done.exit_code == 0:
-            wrong = unusable(record, point, task.block)
-            if wrong is None:
-                self._store.keep_record(point, task.block, scratch)
-                if timeline is not None and timeline.exists():
-                    move(timeline, self._store.root / "timelines" / point.timeline)
-                return Outcome(float(record["process_seconds"]))
-            said = "left no record" if record is None else f"left a record that cannot be used: {wrong}"
-            done = Completed(done.command, 1, "", said)
-        elif done.exit_code == CHECK_FAILED:
-            done = Completed(done.command, CHECK_FAILED, "", _violation(record) or done.reason)
-        return self._fail(task, done)
+        if done.exit_code not in (0, CHECK_FAILED):
+            return self._fail(task, done)
+        wrong = unusable(record, task.point, task.block)
+        if wrong is None:
+            self._store.keep_record(task.point, task.block, scratch)
+            return Outcome(float(record["process_seconds"]))
+        violation = _violation(record)
+        if done.exit_code == CHECK_FAILED and (violation or record is None):
+            return self._fail(task, Completed(done.command, CHECK_FAILED, "", violation or done.reason))
+        said = "left no record" if record is None else f"left a record that cannot be used: {wrong}"
+        return self._fail(task, Completed(done.command, 1, "", said))
 
     def _fail(self, task: Task, done: Completed) -> Outcome:
         if task.point.program.sha256 is not None:
-            _still_the_same(task.point.program)
+            _require_unchanged(task.point.program)
         self._store.keep_failure(task.point, task.block, done, task.tags(self._store.session))
         return Outcome(None, done.reason, done.exit_code)
 
@@ -132,7 +180,7 @@ def _violation(record: object) -> str | None:
     return check.get("reason") if isinstance(check, dict) else None
 
 
-def _still_the_same(program: Program) -> None:
+def _require_unchanged(program: Program) -> None:
     path: Path = program.path
     if sha256_of(path) != program.sha256:
         raise InputError(f"{path}: was built anew while the study ran; run the study again to go on with it")

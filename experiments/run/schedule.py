@@ -42,8 +42,8 @@ class Schedule:
 
     def decide(self, seconds_left: float) -> None:
         """Share what is left of the budget among the experiments; those already begun keep what they have."""
-        seen: set[object] = set()
-        loads = [self._load(experiment, seen) for experiment in self.experiments]
+        once = self._once_seconds()
+        loads = [self._load(experiment, once[experiment.name]) for experiment in self.experiments]
         self.blocks = allocate(loads, seconds_left)
 
     def begin(self, experiment: Experiment) -> int:
@@ -91,13 +91,11 @@ class Schedule:
         """How far the study is; what is left counts scenes, checks and figures too."""
         missing = self._all_missing()
         planned = sum(len(one.points) * self.blocks[one.name] for one in self.experiments)
-        seen: set[object] = set()
-        once = sum(self._once(one, seen) for one in self.experiments)
         return Status(
             planned=planned,
             done=planned - len(missing) - self._without_hope(),
             seconds_done=sum(sum(found.seconds.values()) for found in self._found.values()),
-            seconds_left=once + sum(self._costs.point(point) for point in missing),
+            seconds_left=sum(self._once_seconds().values()) + sum(map(self._costs.point, missing)),
         )
 
     def _without_hope(self) -> int:
@@ -115,26 +113,31 @@ class Schedule:
         share = status.seconds_done / max(status.seconds_done + status.seconds_left, 1e-9)
         return math.ceil(self.blocks[control.name] * share)
 
-    def _load(self, experiment: Experiment, seen: set[object]) -> Load:
+    def _load(self, experiment: Experiment, once: float) -> Load:
         seconds = {point.id: self._costs.point(point) for point in experiment.points}
         limits = experiment.question.blocks
         minimum = self._decided.get(experiment.name, limits.minimum)
         is_fixed = experiment.name in self._decided and experiment.name not in self._growing
         wanted = minimum if is_fixed else limits.wanted
         done = sum(seconds[point] for point, block in self._found[experiment.name].seconds if block < minimum)
-        once = self._once(experiment, seen) - done
-        return Load(experiment.name, sum(seconds.values()), once, minimum, wanted)
+        return Load(experiment.name, sum(seconds.values()), once - done, minimum, wanted)
 
-    def _once(self, experiment: Experiment, seen: set[object]) -> float:
-        """Figure, scenes and checks of an experiment, but for what is done or counted in `seen`."""
-        if self.is_complete(experiment):
-            return 0.0
-        seconds = self.figure_seconds
-        measured = {point for point, _ in self._found[experiment.name].seconds}
-        for point, key, cost in self._once_each[experiment.name]:
-            if key not in seen and point not in measured:
-                seconds += cost
-            seen.add(key)
+    def _once_seconds(self) -> dict[str, float]:
+        """What each experiment that is not complete still costs once: its figure, scenes and checks.
+
+        What several need is counted for the first of them only.
+        """
+        seconds = dict.fromkeys((one.name for one in self.experiments), 0.0)
+        counted: set[object] = set()
+        for one in self.experiments:
+            if self.is_complete(one):
+                continue
+            seconds[one.name] = self.figure_seconds
+            measured = {point for point, _ in self._found[one.name].seconds}
+            for point, key, cost in self._once_each[one.name]:
+                if key not in counted and point not in measured:
+                    seconds[one.name] += cost
+                counted.add(key)
         return seconds
 
     def _all_missing(self) -> list[Point]:

@@ -20,8 +20,9 @@ from experiments.run.costs import PROBE, Costs, Probe, kept_probes, probe, probe
 from experiments.run.progress import Report, about, warn
 from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.schedule import Schedule, split
+from experiments.run.together import together
 from experiments.support.errors import InputError
-from experiments.support.process import NOT_FOUND, Companion
+from experiments.support.process import NOT_FOUND, Coprocess
 
 COSTS = "costs.json"
 POINTS_FAILED = 2
@@ -53,27 +54,25 @@ class Settings:
     budget_seconds: float | None = None
     seed: int = SEED
     figures: bool = True
-    machine: Machine | None = None
-    """The machine to plan for; this one if none is given."""
 
 
 class Study:
-    """The questions chosen, planned for this machine, and the folder that holds their results."""
+    """The questions chosen, planned for a machine, and the folder that holds their results."""
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, machine: Machine | None = None) -> None:
+        """Plan for this machine, or for another one that is named."""
         self.settings = settings
         self.site = site.load_site(settings.site)
         self.scale = find_scale(settings.scale)
         self.budget_seconds = settings.budget_seconds or self.scale.budget_seconds
         self.measuring_seconds = self.budget_seconds - (REPORT_SECONDS if settings.figures else 0.0)
-        if self.site.cluster is not None and settings.machine is None:
+        if self.site.cluster is not None and machine is None:
             raise InputError(f"site {self.site.name}: is a cluster; use `make submit SITE={settings.site}`")
-        machine = settings.machine or site.this_machine()
         programs = find_programs(self.site, settings.build)
         self.generator: Program = programs[GENERATOR]
         if self.generator.sha256 is None:
             raise InputError(self.generator.remedy)
-        around = Surroundings(self.site, machine, programs, self.scale, settings.seed)
+        around = Surroundings(self.site, machine or site.this_machine(), programs, self.scale, settings.seed)
         questions = load_questions(settings.questions, settings.study)
         self.experiments: tuple[Experiment, ...] = tuple(
             plan(with_blocks(self.scale.question(one), settings.blocks), around) for one in questions
@@ -127,7 +126,7 @@ def run(settings: Settings) -> int:
         runner = study.runner()
         schedule = study.schedule(runner, settle=True)
         report.line(summary(schedule, study.budget_seconds))
-        with Companion(study.drawing_command()) as painter:
+        with Coprocess(study.drawing_command()) as painter:
             return _Session(study, runner, schedule, report, painter).run()
 
 
@@ -151,7 +150,7 @@ class _Session:
     """One invocation: a first block of every experiment, then one after the other, the control in between."""
 
     def __init__(
-        self, study: Study, runner: Runner, schedule: Schedule, report: Report, painter: Companion
+        self, study: Study, runner: Runner, schedule: Schedule, report: Report, painter: Coprocess
     ) -> None:
         self._study = study
         self._runner = runner
@@ -207,12 +206,13 @@ class _Session:
         missing = self._schedule.missing(experiment, block)
         blocks = self._schedule.promised(experiment)
         what = f"{experiment.name}, block {block + 1} of {blocks}"
-        for position, point in missing:
+        for group in together(experiment, block, missing):
             self._report.now(what, self._schedule.status)
-            outcome = self._runner.run(Task(experiment, point, block, position, blocks))
-            self._schedule.finish(experiment, point, block, outcome.seconds)
-            if outcome.seconds is None:
-                self._tell(point, outcome)
+            tasks = [Task(experiment, point, block, position, blocks) for position, point in group]
+            for (_, point), outcome in zip(group, self._runner.run(tasks), strict=True):
+                self._schedule.finish(experiment, point, block, outcome.seconds)
+                if outcome.seconds is None:
+                    self._tell(point, outcome)
         if missing:
             self._report.block(what, self._schedule.status)
 

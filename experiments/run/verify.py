@@ -1,6 +1,5 @@
 """The steps of a variant checked, each of them, before anything of it is timed."""
 
-import hashlib
 from dataclasses import replace
 
 from experiments.plan.plan import Experiment
@@ -8,7 +7,8 @@ from experiments.plan.point import Point
 from experiments.plan.program import CHECK_FAILED, check_command
 from experiments.plan.scenes import HardCase, SceneFile
 from experiments.results.store import Store
-from experiments.run.turn import run_in_turn
+from experiments.run.host_lock import run_alone
+from experiments.support.digest import digest
 from experiments.support.process import TIMED_OUT, Completed
 
 CHECKED_STEPS = 20
@@ -43,7 +43,7 @@ class Verifier:
         if kept is not None:
             return kept
         command = check_command(point.program, scene.path, point.variant, point.threads, point.tolerance)
-        done = run_in_turn(command, point.openmp, self._time_limit)
+        done = run_alone(command, point.openmp, self._time_limit)
         reason = "" if done.exit_code == 0 else f"check of each step: {done.reason}"
         if done.exit_code in (0, CHECK_FAILED):
             verdict = {"command": list(command), "exit_code": done.exit_code, "reason": reason}
@@ -62,4 +62,4 @@ def _verdict(kept: object) -> Completed | None:
 def note_of(point: Point, scene: SceneFile) -> str:
     """The name under which the verdict on a variant, a tolerance and a scene is kept."""
     content = f"{point.program.sha256} {point.variant} {point.tolerance} {scene.sha256}"
-    return f"checks/{hashlib.sha256(content.encode()).hexdigest()[:16]}.json"
+    return f"checks/{digest(content)}.json"

@@ -8,7 +8,7 @@ import hashlib
 import os
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from typing import Any
 from experiments.plan.cluster import Cluster, Partition
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
-from experiments.plan.program import find_programs
+from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.site import Machine, Site, load_site
 from experiments.run.study import Settings, Study
 from experiments.support.errors import InputError
@@ -24,6 +24,9 @@ from experiments.support.files import read_json
 
 Unit = tuple[str, int]
 """An experiment and one of its blocks: what is measured within one allocation."""
+
+_OF_ONE_RUN: dict[str, Any] = {"budget_seconds": None, "figures": False}
+"""Settings that no job keeps: its tasks draw nothing, and Slurm limits their time."""
 
 
 @dataclass(frozen=True)
@@ -38,20 +41,13 @@ class Job:
 
     def content(self) -> dict[str, Any]:
         """As JSON."""
-        chosen = self.settings
+        kept = {key: value for key, value in asdict(self.settings).items() if key not in _OF_ONE_RUN}
         return {
             "name": self.name,
             "partition": self.partition,
             "tasks": self.tasks,
             "submitted_at": self.submitted_at,
-            "study": chosen.study,
-            "scale": chosen.scale,
-            "site": chosen.site,
-            "results": os.fspath(chosen.results),
-            "build": os.fspath(chosen.build),
-            "questions": os.fspath(chosen.questions),
-            "blocks": chosen.blocks,
-            "seed": chosen.seed,
+            **{key: os.fspath(value) if isinstance(value, Path) else value for key, value in kept.items()},
         }
 
 
@@ -59,21 +55,18 @@ def read_job(path: Path) -> Job:
     """Raises InputError if the file does not hold a job."""
     content = read_json(path)
     try:
-        settings = Settings(
-            study=tuple(content["study"]),
-            scale=content["scale"],
-            site=content["site"],
-            results=Path(content["results"]),
-            build=Path(content["build"]),
-            questions=Path(content["questions"]),
-            blocks=content["blocks"],
-            seed=content["seed"],
-            figures=False,
-        )
+        defaults = {key: value for key, value in vars(Settings()).items() if key not in _OF_ONE_RUN}
+        kept = {key: _like(default, content[key]) for key, default in defaults.items()}
         tasks = tuple(tuple((str(name), int(block)) for name, block in task) for task in content["tasks"])
+        settings = Settings(**_OF_ONE_RUN, **kept)
         return Job(content["name"], content["partition"], settings, tasks, content["submitted_at"])
     except (TypeError, KeyError, ValueError):
         raise InputError(f"{path}: is not the list of blocks of a job") from None
+
+
+def _like(default: Any, value: Any) -> Any:  # noqa: ANN401 - read from a file
+    """What JSON made of a setting, as its default is: a path of a text, a tuple of a list."""
+    return value if default is None else type(default)(value)
 
 
 class PartitionFolder:
@@ -98,11 +91,10 @@ class PartitionFolder:
         the names of the variants, and nothing has been measured with the ones that are still to come.
         """
         build = self.build
-        if to_be_built and find_programs(self._site, build)["gcc"].sha256 is None:
+        if to_be_built and find_programs(self._site, build)[GENERATOR].sha256 is None:
             build = self.settings.build
         machine = Machine(self.partition.name, self.partition.cpus, self.partition.hardware_threads)
-        chosen = replace(self.settings, results=self.path, build=build, figures=False, machine=machine)
-        return Study(chosen)
+        return Study(replace(self.settings, results=self.path, build=build, figures=False), machine)
 
     def known_jobs(self) -> list[Job]:
         """All jobs ever submitted, the first one first."""

@@ -1,12 +1,14 @@
 """One task of a job array: measures the blocks that are its own, within its allocation."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from experiments.plan.plan import Experiment
 from experiments.plan.scenes import SceneFolder
 from experiments.run.progress import Report
-from experiments.run.runner import Runner, Task
+from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.study import POINTS_FAILED, Study
+from experiments.run.together import together
 from experiments.slurm.jobs import PartitionFolder, folders, read_job, units
 from experiments.support.errors import InputError
 
@@ -44,16 +46,19 @@ class _Worker:
     def run(self, own: set[tuple[str, int]]) -> int:
         for (_, block), experiment, missing in units(self._study):
             if (experiment.name, block) in own:
-                for position, point in missing:
-                    self._measure(Task(experiment, point, block, position, _blocks(experiment)))
+                hopeful = [one for one in missing if (experiment.name, one[1].id) not in self._failed]
+                for group in together(experiment, block, hopeful):
+                    tasks = [Task(experiment, point, block, at, _blocks(experiment)) for at, point in group]
+                    self._measure([one for one in tasks if not self._study.store.has(one.point, block)])
         return POINTS_FAILED if self._failed else 0
 
-    def _measure(self, task: Task) -> None:
+    def _measure(self, tasks: Sequence[Task]) -> None:
+        for task, outcome in zip(tasks, self._runner.run(tasks), strict=True):
+            self._tell(task, outcome)
+
+    def _tell(self, task: Task, outcome: Outcome) -> None:
         point = task.point
         where = f"{point.experiment}, block {task.block + 1}, {point.series}, {point.x_name} {point.x:g}"
-        if (point.experiment, point.id) in self._failed or self._study.store.has(point, task.block):
-            return
-        outcome = self._runner.run(task)
         if outcome.seconds is None:
             self._failed.add((point.experiment, point.id))
             self._report.line(f"{where}: failed: {outcome.reason}")

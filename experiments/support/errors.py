@@ -24,5 +24,5 @@ def nearest(found: str, names: Iterable[str]) -> str:
 
 def cannot(error: OSError) -> str:
     """What the system refused, in one line: the file, the reason, what was expected."""
-    place = error.filename2 or error.filename or "a file"
-    return f"{place}: {error.strerror or error}, expected a writable place with room"
+    path = error.filename2 or error.filename or "a file"
+    return f"{path}: {error.strerror or error}, expected a writable place with room"

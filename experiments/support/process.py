@@ -63,7 +63,7 @@ def run(
     return Completed(tuple(command), child.returncode, output, said)
 
 
-class Companion:
+class Coprocess:
     """A child that answers a line with a line, as often as asked, and sleeps in between; a context manager.
 
     It starts when first asked, and anew once it has ended.
@@ -75,7 +75,7 @@ class Companion:
         # A file: a pipe that nobody reads before the end could fill, and stop the child.
         self._errors = tempfile.TemporaryFile("w+", errors="replace")  # noqa: SIM115 - closed in __exit__
 
-    def __enter__(self) -> "Companion":
+    def __enter__(self) -> "Coprocess":
         return self
 
     def __exit__(

@@ -30,11 +30,15 @@ def main(words: list[str]) -> int:
 
 
 def answer(words: list[str]) -> int:
-    verb, rest = words[0], words[1:]
-    if verb == "list":
+    if words[0] == "turns":
+        return max(answer(said) for said in contenders(words))
+    if words[0] == "list":
         print("\n".join(VARIANTS))
         return 0
-    options, positional = split(rest)
+    return answer_with(words[0], *split(words[1:]))
+
+
+def answer_with(verb: str, options: Options, positional: list[str]) -> int:
     if verb == "generate":
         words = [*positional, options["seed"]] if positional else ["3", "100", "5", "10", options["case"]]
         write(options["output"], "".join(f"{word}\n" for word in words))
@@ -116,7 +120,15 @@ def note(words: list[str]) -> None:
     if "FAKE_LOG" in os.environ:
         with Path(os.environ["FAKE_LOG"]).open("a", encoding="utf-8") as file:
             openmp = {key: value for key, value in os.environ.items() if key.startswith("OMP_")}
-            file.write(json.dumps({"pid": os.getpid(), "words": words, "openmp": openmp}) + "\n")
+            for call in [words, *contenders(words)]:
+                file.write(json.dumps({"pid": os.getpid(), "words": call, "openmp": openmp}) + "\n")
+
+
+def contenders(words: list[str]) -> list[list[str]]:
+    """What those who take turns would be told alone."""
+    if words[0] != "turns":
+        return []
+    return [["bench", *said] for said in json.loads(Path(words[1]).read_text(encoding="utf-8"))]
 
 
 def write(path: str, text: str) -> None:
@@ -130,11 +142,7 @@ def sha256(path: str) -> str:
 def make_record(verb: str, scene: str, options: Options, wrong: bool) -> dict[str, Any]:
     seconds = 0.001 + float(os.environ.get("FAKE_SECONDS", "0"))
     particles, side, radius, steps = map(float, Path(scene).read_text(encoding="utf-8").split()[:4])
-    return {
-        "schema_version": 1,
-        "kind": verb,
-        "tags": options["tags"],
-        "recorded_at": "2024-01-01T00:00:00Z",
+    return any_record(verb, options) | {
         "axes": axes(options),
         "scene": {
             "name": scene,
@@ -157,6 +165,15 @@ def make_record(verb: str, scene: str, options: Options, wrong: bool) -> dict[st
             "reason": "energy changed by 3 %" if wrong else None,
         },
         "state_hash": "0123456789abcdef",
+    }
+
+
+def any_record(kind: str, options: Options) -> dict[str, Any]:
+    return {
+        "schema_version": 1,
+        "kind": kind,
+        "tags": options["tags"],
+        "recorded_at": "2024-01-01T00:00:00Z",
         "provenance": provenance(),
     }
 
@@ -166,25 +183,16 @@ def make_limits(options: Options) -> dict[str, Any]:
     threads = {"threads": int(options["threads"])}
     copy = {"level": "memory", "working_set_bytes": 1 << 20, **threads, "bytes_per_second": rate}
     arithmetic = {"lanes": 2, **threads, "operations_per_second": rate}
-    return {
-        "schema_version": 1,
-        "kind": "limits",
-        "tags": options["tags"],
-        "recorded_at": "2024-01-01T00:00:00Z",
-        "limits": {"copy": [copy], "arithmetic": [arithmetic]},
-        "provenance": provenance(),
-    }
+    return any_record("limits", options) | {"limits": {"copy": [copy], "arithmetic": [arithmetic]}}
 
 
 def make_outside(scene: str, options: Options) -> dict[str, Any]:
     bench = make_record("bench", scene, options | {"variant": "published", "threads": 1}, wrong=False)
-    return {
-        **{key: bench[key] for key in ("schema_version", "tags", "recorded_at", "scene", "repetitions")},
-        "kind": "outside",
+    return any_record("outside", options) | {
+        **{key: bench[key] for key in ("scene", "repetitions")},
         "engine": {"name": "Chipmunk", "version": "7.0.3", "iterations": 10},
         "axes": {"threads": 1, "substeps": int(options["substeps"])},
         "errors": {"energy_drift": -0.003, "discs_outside": 0},
-        "provenance": provenance(),
     }
 
 

@@ -57,7 +57,9 @@ Measurement measurement_of(const LoadedScene& loaded, const Variant& variant, co
             .parse_seconds = loaded.parse_seconds,
             .tags = options.tags,
             .repetitions = {},
-            .violation = {}};
+            .violation = {},
+            .turns = {},
+            .own_seconds = {}};
 }
 
 } // namespace carom

@@ -23,20 +23,15 @@ struct ReferenceOptions {
     bool json = false;
 };
 
-template <class Real> std::string disc_lines(const std::vector<ExactDisc<Real>>& discs) {
+template <class Real> std::string disc_lines(const std::vector<BasicDisc<Real>>& discs) {
     std::string text;
     for (std::size_t i = 0; i < discs.size(); ++i) {
-        append_number(text, i);
-        for (const Real value : {discs[i].x, discs[i].y, discs[i].vx, discs[i].vy}) {
-            text += ' ';
-            append_number(text, value);
-        }
-        text += '\n';
+        append_disc(text, i, discs[i]);
     }
     return text;
 }
 
-template <class Real> Real speeds_squared(const std::vector<ExactDisc<Real>>& discs) {
+template <class Real> Real speeds_squared(const std::vector<BasicDisc<Real>>& discs) {
     Real sum = 0;
     for (const auto& disc : discs) {
         sum += disc.vx * disc.vx + disc.vy * disc.vy;

@@ -1,9 +1,13 @@
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -33,109 +37,144 @@ struct RunOptions {
     bool json = false;
 };
 
-std::string trajectory_lines(int step, const std::vector<Disc>& discs) {
-    std::string text;
-    for (std::size_t i = 0; i < discs.size(); ++i) {
-        append_number(text, step);
-        text += ' ';
-        append_number(text, i);
-        for (const double value : {discs[i].x, discs[i].y, discs[i].vx, discs[i].vy}) {
-            text += ' ';
-            append_number(text, value);
-        }
-        text += '\n';
-    }
-    return text;
-}
+/// What a run did, by the step and by the second.
+struct Summary {
+    std::string scene;
+    std::string_view variant;
+    Policies policies;
+    int threads;
+    int substeps;
+    std::size_t particles;
+    int steps;
+    double steps_seconds;
+    double process_seconds;
+    double steps_per_second;
+    double disc_steps_per_second;
+    double overlaps_per_step;
+    double pair_resolves_per_step;
+    double wall_resolves_per_step;
+    double pair_attempts_per_step;
+    double sweeps_per_step;
+    std::optional<double> energy_drift; ///< empty if nothing moves at the start
+    int discs_outside;
+    std::string state_hash;
+};
 
-nlohmann::ordered_json summary_json(const RunOptions& options, const Scene& scene, const Variant& variant,
-                                    const Run& run) {
-    const Tuning& tuning = options.simulation.tuning;
-    const double steps = static_cast<double>(scene.steps) * tuning.substeps;
+Summary summarise(const SimulationOptions& options, const Scene& scene, const Variant& variant,
+                  const Run& run) {
+    const double steps = static_cast<double>(scene.steps) * options.tuning.substeps;
     const auto per_step = [steps](std::int64_t total) {
         return steps > 0 ? static_cast<double>(total) / steps : 0;
     };
     const auto per_second = [&run](double total) {
         return run.steps_seconds > 0 ? total / run.steps_seconds : 0;
     };
-    const auto drift = energy_drift(scene, run.discs);
-    nlohmann::ordered_json json{
-        {"scene", options.simulation.scene},
-        {"variant", variant.name},
-        {"policies", policies_json(variant.policies)},
-        {"threads", tuning.threads},
-        {"substeps", tuning.substeps},
-        {"particles", scene.discs.size()},
-        {"steps", scene.steps},
-        {"steps_seconds", run.steps_seconds},
-        {"process_seconds", process_seconds()},
-        {"steps_per_second", per_second(steps)},
-        {"disc_steps_per_second", per_second(steps * static_cast<double>(scene.discs.size()))},
-        {"overlaps_per_step", per_step(run.work.overlaps)},
-        {"pair_resolves_per_step", per_step(run.work.pair_resolves)},
-        {"wall_resolves_per_step", per_step(run.work.wall_resolves)},
-        {"pair_attempts_per_step", per_step(run.work.pair_attempts)},
-        {"sweeps_per_step", per_step(run.work.sweeps)},
-        {"energy_drift", nullptr},
-        {"discs_outside", discs_outside(scene, run.discs)},
-        {"state_hash", state_hash(run.discs)}};
-    if (drift) {
-        json["energy_drift"] = *drift;
-    }
-    return json;
+    return {.scene = options.scene,
+            .variant = variant.name,
+            .policies = variant.policies,
+            .threads = options.tuning.threads,
+            .substeps = options.tuning.substeps,
+            .particles = scene.discs.size(),
+            .steps = scene.steps,
+            .steps_seconds = run.steps_seconds,
+            .process_seconds = process_seconds(),
+            .steps_per_second = per_second(steps),
+            .disc_steps_per_second = per_second(steps * static_cast<double>(scene.discs.size())),
+            .overlaps_per_step = per_step(run.work.overlaps),
+            .pair_resolves_per_step = per_step(run.work.pair_resolves),
+            .wall_resolves_per_step = per_step(run.work.wall_resolves),
+            .pair_attempts_per_step = per_step(run.work.pair_attempts),
+            .sweeps_per_step = per_step(run.work.sweeps),
+            .energy_drift = energy_drift(scene, run.discs),
+            .discs_outside = discs_outside(scene, run.discs),
+            .state_hash = state_hash(run.discs)};
 }
 
-void print_errors(const nlohmann::ordered_json& errors) {
-    const auto line = [&errors](const char* field, const char* what, const char* unit) {
-        const auto& value = errors[field];
-        if (value.is_null()) {
-            std::printf("  %-33s    not known\n", what);
+nlohmann::ordered_json summary_json(const Summary& summary) {
+    return {{"scene", summary.scene},
+            {"variant", summary.variant},
+            {"policies", policies_json(summary.policies)},
+            {"threads", summary.threads},
+            {"substeps", summary.substeps},
+            {"particles", summary.particles},
+            {"steps", summary.steps},
+            {"steps_seconds", summary.steps_seconds},
+            {"process_seconds", summary.process_seconds},
+            {"steps_per_second", summary.steps_per_second},
+            {"disc_steps_per_second", summary.disc_steps_per_second},
+            {"overlaps_per_step", summary.overlaps_per_step},
+            {"pair_resolves_per_step", summary.pair_resolves_per_step},
+            {"wall_resolves_per_step", summary.wall_resolves_per_step},
+            {"pair_attempts_per_step", summary.pair_attempts_per_step},
+            {"sweeps_per_step", summary.sweeps_per_step},
+            {"energy_drift", or_null(summary.energy_drift)},
+            {"discs_outside", summary.discs_outside},
+            {"state_hash", summary.state_hash}};
+}
+
+void print_summary(const Summary& summary) {
+    std::printf("%s: %zu discs, %d steps, variant %s, %d threads\n", summary.scene.c_str(), summary.particles,
+                summary.steps, std::string(summary.variant).c_str(), summary.threads);
+    std::printf("  steps           %12.6g s\n", summary.steps_seconds);
+    std::printf("  whole process   %12.6g s\n", summary.process_seconds);
+    std::printf("  steps/s         %12.6g\n", summary.steps_per_second);
+    std::printf("  disc-steps/s    %12.6g\n", summary.disc_steps_per_second);
+    std::printf("  overlaps        %12.6g a step\n", summary.overlaps_per_step);
+    std::printf("  pair resolves   %12.6g a step\n", summary.pair_resolves_per_step);
+    std::printf("  wall resolves   %12.6g a step\n", summary.wall_resolves_per_step);
+    std::printf("  sweeps          %12.6g a step\n", summary.sweeps_per_step);
+    if (summary.energy_drift) {
+        std::printf("  energy drift    %12.3g relative\n", *summary.energy_drift);
+    } else {
+        std::printf("  energy drift     not defined: nothing moves at the start\n");
+    }
+    std::printf("  discs outside   %12d\n", summary.discs_outside);
+}
+
+void print_errors(const ErrorMeasures& errors) {
+    const auto line = [](const char* what, std::optional<double> value, const char* unit) {
+        if (value && std::isfinite(*value)) {
+            std::printf("  %-33s %12.6g %s\n", what, *value, unit);
         } else {
-            std::printf("  %-33s %12.6g %s\n", what, value.get<double>(), unit);
+            std::printf("  %-33s    not known\n", what);
         }
     };
-    line("momentum_drift", "momentum that no wall explains", "of the sum of |v|");
-    line("penetration_worst", "worst penetration", "r");
-    line("penetration_mean", "mean penetration", "r");
-    line("unresolved_pairs", "left colliding", "");
-    line("collision_rate", "collisions", "a disc and unit of time");
-    line("collision_rate_reference", "  of the reference", "");
-    line("pressure", "pressure", "");
-    line("pressure_reference", "  of the reference", "");
-    line("speed_distance", "distance of the speeds", "(Kolmogorov-Smirnov)");
-    line("time_to_tenth_radius", "0.1 r from the reference after", "units of time");
-    if (errors["trajectory"].is_array()) {
-        for (const auto& at : errors["trajectory"]) {
-            std::printf("  distance after %6d steps %21.6g r (root mean square)\n", at["time"].get<int>(),
-                        at["rms_distance"].get<double>());
+    const auto of_reference = [&errors](auto AgainstReference::* field) -> std::optional<double> {
+        return errors.reference ? std::optional<double>((*errors.reference).*field) : std::nullopt;
+    };
+    line("momentum that no wall explains", errors.momentum_drift, "of the sum of |v|");
+    line("worst penetration", errors.penetration_worst, "r");
+    line("mean penetration", errors.penetration_mean, "r");
+    line("left colliding", static_cast<double>(errors.unresolved_pairs), "");
+    line("collisions", errors.collision_rate, "a disc and unit of time");
+    line("  of the reference", of_reference(&AgainstReference::collision_rate), "");
+    line("pressure", errors.pressure, "");
+    line("  of the reference", of_reference(&AgainstReference::pressure), "");
+    line("distance of the speeds", of_reference(&AgainstReference::speed_distance), "(Kolmogorov-Smirnov)");
+    const bool leaves = errors.reference && errors.reference->time_to_tenth_radius;
+    line("0.1 r from the reference after",
+         leaves ? std::optional<double>(*errors.reference->time_to_tenth_radius) : std::nullopt,
+         "units of time");
+    if (errors.reference) {
+        for (const DistanceAt& at : errors.reference->trajectory) {
+            std::printf("  distance after %6d steps %21.6g r (root mean square)\n", at.time, at.rms_distance);
         }
     }
-    for (const char* reason : {"pressure_reason", "reference_reason"}) {
-        if (errors[reason].is_string()) {
-            std::printf("  %s\n", errors[reason].get<std::string>().c_str());
+    for (const std::string& reason : {errors.pressure_reason, errors.reference_reason}) {
+        if (!reason.empty()) {
+            std::printf("  %s\n", reason.c_str());
         }
     }
 }
 
-void print_summary(const nlohmann::ordered_json& json) {
-    const auto number = [&json](const char* field) { return json[field].get<double>(); };
-    std::printf("%s: %zu discs, %d steps, variant %s, %d threads\n", json["scene"].get<std::string>().c_str(),
-                json["particles"].get<std::size_t>(), json["steps"].get<int>(),
-                json["variant"].get<std::string>().c_str(), json["threads"].get<int>());
-    std::printf("  steps           %12.6g s\n", number("steps_seconds"));
-    std::printf("  whole process   %12.6g s\n", number("process_seconds"));
-    std::printf("  steps/s         %12.6g\n", number("steps_per_second"));
-    std::printf("  disc-steps/s    %12.6g\n", number("disc_steps_per_second"));
-    std::printf("  overlaps        %12.6g a step\n", number("overlaps_per_step"));
-    std::printf("  pair resolves   %12.6g a step\n", number("pair_resolves_per_step"));
-    std::printf("  wall resolves   %12.6g a step\n", number("wall_resolves_per_step"));
-    std::printf("  sweeps          %12.6g a step\n", number("sweeps_per_step"));
-    if (json["energy_drift"].is_null()) {
-        std::printf("  energy drift     not defined: nothing moves at the start\n");
-    } else {
-        std::printf("  energy drift    %12.3g relative\n", number("energy_drift"));
+std::string trajectory_lines(int step, const std::vector<Disc>& discs) {
+    std::string text;
+    for (std::size_t i = 0; i < discs.size(); ++i) {
+        append_number(text, step);
+        text += ' ';
+        append_disc(text, i, discs[i]);
     }
-    std::printf("  discs outside   %12d\n", json["discs_outside"].get<int>());
+    return text;
 }
 
 Run simulate(const RunOptions& options, const Scene& scene, const Variant& variant) {
@@ -170,17 +209,22 @@ void run(const RunOptions& options) {
     const Scene scene = read_scene(options.simulation.scene);
     const Variant& variant = require_variant(options.simulation.variant, scene);
     const Run result = simulate(options, scene, variant);
-    auto json = summary_json(options, scene, variant, result);
+    const Summary summary = summarise(options.simulation, scene, variant, result);
+    std::optional<ErrorMeasures> errors;
     if (options.errors) {
-        json["errors"] = error_measures_json(measure_errors(scene, variant, options.simulation.tuning));
+        errors = measure_errors(scene, variant, options.simulation.tuning);
     }
     if (options.json) {
-        std::cout << json_text(json, 2) << '\n';
-    } else {
-        print_summary(json);
-        if (options.errors) {
-            print_errors(json["errors"]);
+        auto json = summary_json(summary);
+        if (errors) {
+            json["errors"] = error_measures_json(*errors);
         }
+        std::cout << json_text(json, 2) << '\n';
+        return;
+    }
+    print_summary(summary);
+    if (errors) {
+        print_errors(*errors);
     }
 }
 

@@ -1,9 +1,9 @@
 #include "harness/measure/bench_case.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "harness/measure/energy_drift.hpp"
+#include "harness/measure/warm_up.hpp"
 
 namespace carom {
 
@@ -13,7 +13,9 @@ std::string BenchCase::name() const {
 }
 
 void BenchCase::run(benchmark::State& state) {
-    warm_up();
+    if (!std::exchange(warm_, true)) {
+        warm_up(measurement_);
+    }
     for (auto iteration : state) {
         static_cast<void>(iteration);
         if (measurement_.violation) {
@@ -22,8 +24,9 @@ void BenchCase::run(benchmark::State& state) {
         state.PauseTiming();
         const auto simulation = measurement_.variant.simulate(measurement_.scene, measurement_.tuning);
         Stopwatch stopwatch([&state] { state.ResumeTiming(); }, [&state] { state.PauseTiming(); });
-        note(run_scene(measurement_.scene, *simulation, measurement_.tuning, check(CheckScope::last_step),
-                       nullptr, std::move(stopwatch)));
+        note(run_scene(measurement_.scene, *simulation, measurement_.tuning,
+                       Check(CheckScope::last_step, rounding_of(measurement_.variant.policies)), nullptr,
+                       std::move(stopwatch)));
         state.ResumeTiming();
         state.SetIterationTime(measurement_.repetitions.back().steps_seconds);
     }
@@ -31,31 +34,6 @@ void BenchCase::run(benchmark::State& state) {
         state.SkipWithError(measurement_.violation->c_str());
     } else {
         set_counters(state);
-    }
-}
-
-void BenchCase::warm_up() {
-    if (std::exchange(warm_, true)) {
-        return;
-    }
-    const auto untimed = [this](CheckScope scope, const Scene& scene) {
-        const auto simulation = measurement_.variant.simulate(scene, measurement_.tuning);
-        return run_scene(scene, *simulation, measurement_.tuning, check(scope));
-    };
-    if (measurement_.scope == CheckScope::every_step) {
-        Run run = untimed(CheckScope::every_step, measurement_.scene);
-        measurement_.violation = run.violation;
-        if (run.violation) {
-            measurement_.repetitions.push_back(std::move(run));
-        }
-    }
-    for (int k = 0; k < measurement_.warm_ups && !measurement_.violation; ++k) {
-        untimed(CheckScope::nothing, measurement_.scene);
-    }
-    if (measurement_.warm_ups == 0) {
-        Scene beginning = measurement_.scene;
-        beginning.steps = std::min(beginning.steps, warm_up_steps);
-        untimed(CheckScope::nothing, beginning);
     }
 }
 

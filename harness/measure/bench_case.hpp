@@ -27,13 +27,6 @@ class BenchCase {
     const Measurement& measurement() const { return measurement_; }
 
   private:
-    Check check(CheckScope scope) const { return {scope, rounding_of(measurement_.variant.policies)}; }
-
-    /// What a process runs untimed, once, when no whole runs are asked for: it meets cold memory, sleeping
-    /// threads and a processor at rest.
-    static constexpr int warm_up_steps = 2;
-
-    void warm_up();
     void note(Run run);
     void set_counters(benchmark::State& state) const;
 

@@ -1,7 +1,9 @@
 #include "harness/measure/measure.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdio>
+#include <utility>
 
 #include "harness/verify/checker.hpp"
 
@@ -23,46 +25,64 @@ std::string unsettled(const Checker& checker, const std::vector<Disc>& discs, in
 
 } // namespace
 
-Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, const Check& check,
-              const OnStep& on_step, Stopwatch stopwatch) {
-    Run run;
-    const Checker checker(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, check.rounding);
-    std::vector<Disc> before;
-    stopwatch.start();
-    for (int step = 1; step <= scene.steps && !run.violation; ++step) {
-        for (int substep = 1; substep <= tuning.substeps && !run.violation; ++substep) {
-            const bool last = step == scene.steps && substep == tuning.substeps;
-            const bool checked =
-                check.scope == CheckScope::every_step || (check.scope == CheckScope::last_step && last);
-            if (checked) {
-                stopwatch.stop();
-                before = simulation.discs();
-                stopwatch.start();
-            }
-            const Tally tally = simulation.step();
-            run.work += tally;
-            if (checked || !tally.settled) {
-                stopwatch.stop();
-                const auto violation = tally.settled
-                                           ? checker.step(before, simulation.discs())
-                                           : unsettled(checker, simulation.discs(), tuning.sweep_limit);
-                if (violation) {
-                    run.violation = at_step(step, substep, tuning.substeps, *violation);
-                }
-                stopwatch.start();
-            }
+RunInParts::RunInParts(const Scene& scene, Simulation& simulation, const Tuning& tuning, const Check& check,
+                       OnStep on_step, Stopwatch stopwatch)
+    : scene_(scene), simulation_(simulation), tuning_(tuning), scope_(check.scope),
+      checker_(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, check.rounding),
+      on_step_(std::move(on_step)), stopwatch_(std::move(stopwatch)) {}
+
+double RunInParts::advance(int steps) {
+    const double before = stopwatch_.wall_seconds();
+    const int end = std::min(done_ + steps, scene_.steps);
+    stopwatch_.start();
+    while (done_ < end && !run_.violation) {
+        ++done_;
+        for (int substep = 1; substep <= tuning_.substeps && !run_.violation; ++substep) {
+            step(substep);
         }
-        if (on_step) {
-            stopwatch.stop();
-            on_step(step, simulation.discs());
-            stopwatch.start();
+        if (on_step_) {
+            stopwatch_.stop();
+            on_step_(done_, simulation_.discs());
+            stopwatch_.start();
         }
     }
-    stopwatch.stop();
-    run.steps_seconds = stopwatch.wall_seconds();
-    run.cpu_seconds = stopwatch.cpu_seconds();
-    run.discs = simulation.discs();
-    return run;
+    stopwatch_.stop();
+    return stopwatch_.wall_seconds() - before;
+}
+
+void RunInParts::step(int substep) {
+    const bool last = done_ == scene_.steps && substep == tuning_.substeps;
+    const bool checked = scope_ == CheckScope::every_step || (scope_ == CheckScope::last_step && last);
+    if (checked) {
+        stopwatch_.stop();
+        before_ = simulation_.discs();
+        stopwatch_.start();
+    }
+    const Tally tally = simulation_.step();
+    run_.work += tally;
+    if (checked || !tally.settled) {
+        stopwatch_.stop();
+        const auto violation = tally.settled ? checker_.step(before_, simulation_.discs())
+                                             : unsettled(checker_, simulation_.discs(), tuning_.sweep_limit);
+        if (violation) {
+            run_.violation = at_step(done_, substep, tuning_.substeps, *violation);
+        }
+        stopwatch_.start();
+    }
+}
+
+Run RunInParts::finish() {
+    run_.steps_seconds = stopwatch_.wall_seconds();
+    run_.cpu_seconds = stopwatch_.cpu_seconds();
+    run_.discs = simulation_.discs();
+    return std::move(run_);
+}
+
+Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, const Check& check,
+              const OnStep& on_step, Stopwatch stopwatch) {
+    RunInParts run(scene, simulation, tuning, check, on_step, std::move(stopwatch));
+    run.advance(scene.steps);
+    return run.finish();
 }
 
 std::string state_hash(const std::vector<Disc>& discs) {

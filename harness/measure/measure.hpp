@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/support/stopwatch.hpp"
+#include "harness/verify/checker.hpp"
 #include "harness/verify/rounding.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/scene.hpp"
@@ -39,8 +40,37 @@ struct Run {
 /// Called after each unit of time with its number, from 1, and the discs.
 using OnStep = std::function<void(int step, const std::vector<Disc>& discs)>;
 
-/// Runs the scene from its initial state. The stopwatch is stopped while the checker and `on_step` work and
-/// while the checker's copy is made. A resolve given up at the sweep limit ends the run with a violation.
+/// A run from the scene's initial state, some steps at a time. The stopwatch runs while it steps, but not
+/// while the checker and `on_step` work or the checker's copy is made. A resolve given up at the sweep limit
+/// ends the run with a violation. What it is given must outlive it.
+class RunInParts {
+  public:
+    RunInParts(const Scene& scene, Simulation& simulation, const Tuning& tuning, const Check& check,
+               OnStep on_step = nullptr, Stopwatch stopwatch = {});
+
+    /// Simulates up to `steps` units of time more, fewer at the end of the scene or at a violation. Returns
+    /// the wall time that the steps took, in seconds.
+    double advance(int steps);
+
+    /// What was run, with the state as it is now.
+    Run finish();
+
+  private:
+    void step(int substep);
+
+    const Scene& scene_;
+    Simulation& simulation_;
+    const Tuning& tuning_;
+    CheckScope scope_;
+    Checker checker_;
+    OnStep on_step_;
+    Stopwatch stopwatch_;
+    Run run_;
+    std::vector<Disc> before_; ///< the state before the step that is checked
+    int done_ = 0;             ///< units of time
+};
+
+/// The whole run at once.
 Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, const Check& check,
               const OnStep& on_step = nullptr, Stopwatch stopwatch = {});
 

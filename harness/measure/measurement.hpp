@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,13 @@
 #include "variants/registry.hpp"
 
 namespace carom {
+
+/// How a run was timed that took turns with others in its process.
+struct Turns {
+    int contenders = 0;          ///< that took turns, this one among them
+    std::uint64_t seed = 0;      ///< of the order of the turns
+    std::vector<double> seconds; ///< wall time of each turn
+};
 
 /// What of a measured process goes into its record (record.schema.json).
 struct Measurement {
@@ -24,6 +32,8 @@ struct Measurement {
     std::vector<std::string> tags;        ///< KEY=VALUE
     std::vector<Run> repetitions;         ///< all of them, in the order they ran
     std::optional<std::string> violation; ///< of the first run that failed its check
+    std::optional<Turns> turns;           ///< empty if it had its process for itself
+    std::optional<double> own_seconds;    ///< of a process of several: those spent on this one
 };
 
 } // namespace carom

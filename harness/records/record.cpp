@@ -41,6 +41,13 @@ Json work_json(const Measurement& measurement, const Tally& work) {
             {"sweeps", work.sweeps}};
 }
 
+Json turns_json(const std::optional<Turns>& turns) {
+    if (!turns) {
+        return nullptr;
+    }
+    return {{"contenders", turns->contenders}, {"seed", turns->seed}, {"seconds", turns->seconds}};
+}
+
 Json errors_json(const Measurement& measurement, const Run& last) {
     const Scene& scene = measurement.scene;
     const Checker checker(scene.side, scene.radius, 1.0 / measurement.tuning.substeps,
@@ -104,7 +111,8 @@ Json record_json(const Measurement& measurement) {
             {"warm_ups", measurement.warm_ups},
             {"repetitions", repetitions},
             {"parse_seconds", measurement.parse_seconds},
-            {"process_seconds", process_seconds()},
+            {"process_seconds", measurement.own_seconds.value_or(process_seconds())},
+            {"turns", turns_json(measurement.turns)},
             {"work", work_json(measurement, last.work)},
             {"errors", errors_json(measurement, last)},
             {"check",

@@ -178,13 +178,7 @@ std::string scene_text(const Scene& scene) {
     std::string text = std::to_string(scene.discs.size()) + "\n" + number_text(scene.side) + "\n" +
                        number_text(scene.radius) + "\n" + std::to_string(scene.steps) + "\n";
     for (std::size_t i = 0; i < scene.discs.size(); ++i) {
-        const Disc& disc = scene.discs[i];
-        append_number(text, i);
-        for (const double value : {disc.x, disc.y, disc.vx, disc.vy}) {
-            text += ' ';
-            append_number(text, value);
-        }
-        text += '\n';
+        append_disc(text, i, scene.discs[i]);
     }
     return text;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
+#include "harness/support/text.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {
@@ -26,6 +28,16 @@ Scene read_scene(const std::filesystem::path& path);
 
 /// The text that `parse_scene` reads back as the same scene, to the last bit.
 std::string scene_text(const Scene& scene);
+
+/// Appends one disc as it stands in a scene's file: a line `i x y vx vy`.
+template <class Real> void append_disc(std::string& text, std::size_t i, const BasicDisc<Real>& disc) {
+    append_number(text, i);
+    for (const Real value : {disc.x, disc.y, disc.vx, disc.vy}) {
+        text += ' ';
+        append_number(text, value);
+    }
+    text += '\n';
+}
 
 /// Throw InputError, with `where` in front, if `parse_scene` would not accept the number.
 void require_radius(double radius, const std::string& where);

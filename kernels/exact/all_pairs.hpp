@@ -125,7 +125,7 @@ class AllPairs {
     Scene scene_;
     Policies policies_;
     Tuning tuning_;
-    Approach<double> approaching_;
+    ApproachTolerance<double> approaching_;
 };
 
 } // namespace carom

@@ -7,19 +7,12 @@
 #include <limits>
 #include <vector>
 
+#include "kernels/collide.hpp"
 #include "kernels/exact/event_cells.hpp"
 #include "kernels/exact/event_queue.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {
-
-/// Position and velocity of one disc in the reference's precision.
-template <class Real> struct ExactDisc {
-    Real x;
-    Real y;
-    Real vx;
-    Real vy;
-};
 
 /// How far the reference goes before it gives up.
 struct EventLimits {
@@ -92,8 +85,8 @@ template <class Real> class EventDriven {
     }
 
     /// The discs as they are now, disc i at index i.
-    std::vector<ExactDisc<Real>> discs() const {
-        std::vector<ExactDisc<Real>> result;
+    std::vector<BasicDisc<Real>> discs() const {
+        std::vector<BasicDisc<Real>> result;
         result.reserve(bodies_.size());
         for (const Body& body : bodies_) {
             const Real elapsed = now_ - body.time;
@@ -118,8 +111,6 @@ template <class Real> class EventDriven {
     static constexpr int wall_x = -2;
     static constexpr int wall_y = -3;
     static constexpr Real never = std::numeric_limits<Real>::infinity();
-    static constexpr Real coincident_squared =
-        std::numeric_limits<Real>::min() / std::numeric_limits<Real>::epsilon();
 
     struct Body {
         Real x = 0;
@@ -269,7 +260,7 @@ template <class Real> class EventDriven {
             return never;
         }
         const Real distance_squared = dx * dx + dy * dy;
-        if (distance_squared < coincident_squared) {
+        if (distance_squared < coincident_squared<Real>) {
             return never;
         }
         const Real c = distance_squared - 4 * radius_ * radius_;

@@ -16,8 +16,8 @@ using tests::Random;
 using tests::same_bits;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-const Approach relative(Tolerance::relative);
-const Approach published(Tolerance::published);
+const ApproachTolerance relative(Tolerance::relative);
+const ApproachTolerance published(Tolerance::published);
 
 double speed_sum(const Disc& first, const Disc& second) {
     return std::hypot(first.vx, first.vy) + std::hypot(second.vx, second.vy);
@@ -195,7 +195,7 @@ TEST(ResolvePair, StaysExactWhereCentresNearlyCoincide) {
 }
 
 TEST(ToleranceOfApproach, PublishedIsAbsoluteAndRelativeIsNot) {
-    const auto resolves = [](double speed, const Approach<>& approach) {
+    const auto resolves = [](double speed, const ApproachTolerance<>& approach) {
         Disc first{0, 0, speed, 0};
         Disc second{1, 0, 0, 0};
         return resolve_pair(first, second, approach);

@@ -118,8 +118,8 @@ std::vector<Place> places(State<active>& state) {
         const auto& strip = state.strips[static_cast<std::size_t>(s)];
         const std::ptrdiff_t first_block =
             static_cast<std::ptrdiff_t>(s) * strip_height(Order::strips) * state.active.per_row();
-        for (std::size_t b = 0; b + 1 < strip.first.size(); ++b) {
-            for (int c = strip.first[b]; c < strip.first[b + 1]; ++c) {
+        for (std::size_t b = 0; b + 1 < strip.block_begin.size(); ++b) {
+            for (int c = strip.block_begin[b]; c < strip.block_begin[b + 1]; ++c) {
                 found.push_back({s, first_block + static_cast<std::ptrdiff_t>(b),
                                  strip.contacts[static_cast<std::size_t>(c)].discs});
             }
@@ -246,7 +246,7 @@ TEST(Filter, ChangesNothing) {
 /// Sweeps over all contacts once more.
 Changes sweep_over_all(State<active>& state) {
     Changes changes;
-    const Approach approaching(Tolerance::relative);
+    const ApproachTolerance approaching(Tolerance::relative);
     for (int row = 0; row < state.grid.boxes_per_side(); ++row) {
         std::fill_n(state.active.row(row), state.active.per_row(), static_cast<unsigned char>(1));
     }

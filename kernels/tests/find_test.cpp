@@ -182,7 +182,8 @@ TEST(SelfContainedFind, LeavesNothingCollidingWithinABox) {
                 const auto j = static_cast<std::size_t>(partner);
                 Disc one = state.discs[i];
                 Disc two = state.discs[j];
-                EXPECT_FALSE(box_of(i) == box_of(j) && resolve_pair(one, two, Approach(Tolerance::relative)))
+                EXPECT_FALSE(box_of(i) == box_of(j) &&
+                             resolve_pair(one, two, ApproachTolerance(Tolerance::relative)))
                     << i << " and " << j;
             }
         }

@@ -8,50 +8,19 @@
 #include "kernels/collide.hpp"
 #include "kernels/find.hpp"
 #include "kernels/grid.hpp"
+#include "kernels/tests/random_grid.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "kernels/tests/simulate.hpp"
 
 namespace carom {
 namespace {
 
+using tests::Box;
 using tests::Random;
-
-struct Box {
-    double side;
-    double radius;
-};
-
-/// A box of up to 30 grid boxes along a side, at any scale that a scene may have.
-Box random_box(Random& random) {
-    const double radius = random.coin() ? random.magnitude(-60, 57) : random.magnitude(-2, 2);
-    const double side = std::max(2 * radius, (4 * radius + 1) * random.uniform(0.1, 30));
-    return {side, radius};
-}
-
-Rest random_rest(Random& random) { return random.coin() ? Rest::own_box : Rest::in_last_box; }
-
-double some_ulps_from(double value, Random& random) {
-    const double ulp =
-        std::nextafter(std::abs(value), std::numeric_limits<double>::infinity()) - std::abs(value);
-    return value + random.below(9) * ulp - 4 * ulp;
-}
-
-/// A position anywhere in the box, at the edge of a grid box or in its middle, at a wall, or outside, near
-/// and far.
-double random_position(const Box& box, const Grid& grid, Random& random) {
-    switch (random.below(6)) {
-    case 0:
-        return some_ulps_from(0.5 * random.below(2 * grid.boxes_per_side() + 1) * grid.box_side(), random);
-    case 1:
-        return some_ulps_from(random.coin() ? box.radius : box.side - box.radius, random);
-    case 2:
-        return random.uniform(-3, 3) * box.radius + (random.coin() ? box.side : 0);
-    case 3:
-        return (random.coin() ? 1 : -1) * random.magnitude(-60, 60);
-    default:
-        return random.uniform(0, box.side);
-    }
-}
+using tests::random_box;
+using tests::random_position;
+using tests::random_rest;
+using tests::some_ulps_from;
 
 /// A partner of the disc at most 2r away, often by exactly 2r along an axis.
 Disc random_partner(const Disc& disc, double radius, Random& random) {
@@ -69,13 +38,6 @@ template <Neighbourhood neighbourhood> bool looks_at(const Grid& grid, double po
 
 template <Neighbourhood neighbourhood> bool sees(const Grid& grid, const Disc& disc, const Disc& other) {
     return looks_at<neighbourhood>(grid, disc.x, other.x) && looks_at<neighbourhood>(grid, disc.y, other.y);
-}
-
-TEST(Grid, HasThePublishedBoxSide) {
-    const Grid grid(10'000, 16);
-    EXPECT_EQ(grid.boxes_per_side(), 154); // 10000 / 65, rounded up
-    EXPECT_EQ(grid.box_side(), 65);
-    EXPECT_EQ(grid.box_count(), 154 * 154);
 }
 
 TEST(Grid, HasBoxesOfAtLeastFourRadiiThatCoverTheSide) {
@@ -98,24 +60,6 @@ TEST(Grid, HasAtMost4096BoxesAlongASide) {
     EXPECT_EQ(grid.coordinate(1e60), 4095);
     EXPECT_EQ(grid.coordinate(0.5e60), 2048);
     EXPECT_TRUE(grid.at_wall(4095, 7));
-}
-
-TEST(Grid, PutsTheRestWhereItIsTold) {
-    EXPECT_EQ(Grid(52, 1, 1, BoxSide::wide, Rest::own_box).boxes_per_side(), 11);
-    EXPECT_EQ(Grid(50, 1, 1, BoxSide::wide, Rest::own_box).boxes_per_side(), 10);
-    const Grid wider(52, 1, 1, BoxSide::wide, Rest::in_last_box);
-    EXPECT_EQ(wider.boxes_per_side(), 10);
-    EXPECT_EQ(wider.coordinate(44.9), 8);
-    EXPECT_EQ(wider.coordinate(51.9), 9);
-    EXPECT_EQ(Grid(3, 1, 1, BoxSide::wide, Rest::in_last_box).boxes_per_side(), 1);
-    EXPECT_EQ(Grid(1e60, 1e-60, 1, BoxSide::wide, Rest::in_last_box).boxes_per_side(), 4096);
-}
-
-TEST(Grid, OfEachPublishedProgramHasItsRest) {
-    const Scene scene{.side = 52, .radius = 1, .steps = 1, .discs = {}};
-    EXPECT_EQ(State<Policies{}>(scene).grid.boxes_per_side(), 10);
-    EXPECT_EQ(State<Policies{.order = Order::track}>(scene).grid.boxes_per_side(), 10);
-    EXPECT_EQ(State<Policies{.order = Order::row}>(scene).grid.boxes_per_side(), 11);
 }
 
 TEST(GridCoordinate, IsTheNearestBoxForEveryPosition) {
@@ -159,29 +103,6 @@ TEST(GridReach, IsTowardsTheNearerBox) {
     EXPECT_EQ(grid.reach(14.9), 1);
     EXPECT_EQ(grid.reach(-0.1), -1);
     EXPECT_EQ(grid.reach(-4.9), -1);
-}
-
-/// What the published program computes, in its own words.
-TEST(GridReach, IsThatOfThePublishedProgramForEveryPosition) {
-    Random random(26);
-    for (int trial = 0; trial < 2'000; ++trial) {
-        const int radius = random.below(60) + 1;
-        const int side = (4 * radius + 1) * (random.below(30) + 1) + random.below(4 * radius + 1);
-        const int width = 4 * radius + 1;
-        const Grid grid(side, radius);
-        for (int one = 0; one < 50; ++one) {
-            const double position =
-                random_position({static_cast<double>(side), static_cast<double>(radius)}, grid, random);
-            if (std::abs(position) < 1e9) {
-                const bool rounded_up = std::trunc(position / width) * width > position && position > 0;
-                const int upper = !rounded_up && std::fmod(position, width) >= width / 2.0 ? 1 : -1;
-                ASSERT_EQ(grid.reach(position), upper) << position << " in boxes of " << width;
-                ASSERT_EQ(grid.coordinate(position),
-                          std::clamp(static_cast<int>(position / width), 0, grid.boxes_per_side() - 1))
-                    << position << " in boxes of " << width;
-            }
-        }
-    }
 }
 
 TEST(GridNeighbours, OfBothNeighbourhoodsHoldEveryOverlappingPartner) {

@@ -114,7 +114,7 @@ TEST(EveryOther, CountsIndicesOfOneParity) {
 template <Policies policies> Tally sweep_of(State<policies>& state, int threads) {
     NoProbe probe;
     const Tuning tuning{.threads = threads};
-    const Approach approaching(tuning.tolerance);
+    const ApproachTolerance approaching(tuning.tolerance);
     if constexpr (policies.order == Order::checkered) {
         return sweep_checkered(state, tuning, approaching, probe).work;
     } else if constexpr (policies.order == Order::wavefront) {
@@ -161,7 +161,7 @@ template <Order order = Order::checkered, Direction direction = Direction::rever
 TEST(Direction, DecidesWhichPartnerComesFirst) {
     State forward = chain<Order::checkered, Direction::forward>();
     State reverse = chain();
-    const Approach approaching(Tolerance::relative);
+    const ApproachTolerance approaching(Tolerance::relative);
     std::vector<int> changed;
     const auto note = [&changed](int j) { changed.push_back(j); };
     // Disc 1 is listed with 0 and then 2; only after the blow from 0 has it anything to pass on to 2.

@@ -89,7 +89,7 @@ def test_boxes_of_one_colour_are_a_box_apart(scene: Path, trajectory: Path) -> N
     picture = Picture("scene.in", read_box(scene), read_trajectory(trajectory))
     legend = picture.figure.axes[0].get_legend()
     assert legend is not None
-    assert [text.get_text() for text in legend.get_texts()] == list(movie.TURNS)
+    assert [text.get_text() for text in legend.get_texts()] == list(movie.ORDER)
     boxes = {
         (round(patch.get_x() / 21), round(patch.get_y() / 21)): patch
         for patch in picture.figure.axes[0].patches

@@ -10,7 +10,7 @@ from analysis import report
 from analysis.derived import accuracy
 from analysis.derived.accuracy import MEASURES, Measure
 from analysis.figures import further
-from analysis.figures.speed_against_error import draw, front_in_words, place, power_of_ten
+from analysis.figures.speed_against_error import draw, front_in_words, power_of_ten, run_label
 from analysis.figures.studies import draw_all
 from analysis.figures.style import Data, Drawing
 from analysis.records import published
@@ -224,8 +224,8 @@ def test_records_without_errors_draw_nothing(tmp_path: Path, data: Data) -> None
 
 def test_numbers_read_well() -> None:
     assert [power_of_ten(value) for value in (1e-2, 1.0, 1e-13, 1e4)] == ["0.01", "1", "10⁻¹³", "10⁴"]
-    assert place("row", 8) == "row, dt\u00a0=\u00a01/8"
-    assert place("row", 1) == "row, dt\u00a0=\u00a01"
+    assert run_label("row", 8) == "row, dt\u00a0=\u00a01/8"
+    assert run_label("row", 1) == "row, dt\u00a0=\u00a01"
 
 
 def test_a_general_engine_stands_outside_where_energy_is_measured_and_nowhere_else(tmp_path: Path) -> None:

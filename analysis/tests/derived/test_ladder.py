@@ -135,7 +135,7 @@ def test_a_rung_that_fails_its_check_is_shown_as_wrong_and_has_no_time(tmp_path:
 
 def test_a_rung_without_a_result_is_named_and_lends_its_place_to_no_other(tmp_path: Path) -> None:
     records = ladder_records()
-    first, third = (list(LADDER)[place] for place in (0, 2))
+    first, third = (list(LADDER)[index] for index in (0, 2))
     lacking = {"dense": first, "sparse": third}
     kept = [
         record for record in records if lacking[str(record["tags"]["scene_name"])] != record["tags"]["series"]

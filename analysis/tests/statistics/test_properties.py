@@ -86,4 +86,4 @@ def test_holm_only_raises_keeps_the_order_and_does_not_ask_for_it(p: list[float]
     assert adjusted[int(np.argmin(p))] == pytest.approx(min(1, len(p) * min(p)))
     order = list(range(len(p)))
     random.shuffle(order)  # type: ignore[attr-defined]
-    assert [adjusted[place] for place in order] == pytest.approx(holm([p[place] for place in order]))
+    assert [adjusted[index] for index in order] == pytest.approx(holm([p[index] for index in order]))

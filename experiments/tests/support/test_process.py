@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from experiments.support.errors import Interrupted
-from experiments.support.process import NOT_FOUND, TIMED_OUT, Companion, run
+from experiments.support.process import NOT_FOUND, TIMED_OUT, Coprocess, run
 
 
 def python(code: str) -> list[str]:
@@ -65,8 +65,8 @@ for line in sys.stdin:
 
 
 def test_a_companion_answers_again_and_again() -> None:
-    with Companion(python(ECHO)) as companion:
-        answers = [companion.ask(word, time_limit=20).output.split() for word in ("one", "two")]
+    with Coprocess(python(ECHO)) as coprocess:
+        answers = [coprocess.ask(word, time_limit=20).output.split() for word in ("one", "two")]
     (first, one), (second, two) = answers
     assert (one, two) == ("one", "two")
     assert first == second, "the same process"
@@ -74,15 +74,15 @@ def test_a_companion_answers_again_and_again() -> None:
 
 
 def test_a_companion_that_fails_says_why_and_starts_anew() -> None:
-    with Companion(python(ECHO)) as companion:
+    with Coprocess(python(ECHO)) as coprocess:
         for _ in range(2):
-            failed = companion.ask("fail", time_limit=20)
+            failed = coprocess.ask("fail", time_limit=20)
             assert (failed.exit_code, failed.reason) == (1, "it fails")
-        assert companion.ask("more", time_limit=20).output.endswith("more\n")
+        assert coprocess.ask("more", time_limit=20).output.endswith("more\n")
 
 
 def test_a_companion_that_takes_too_long_is_stopped() -> None:
-    with Companion(python(ECHO)) as companion:
-        late = companion.ask("sleep", time_limit=0.3)
+    with Coprocess(python(ECHO)) as coprocess:
+        late = coprocess.ask("sleep", time_limit=0.3)
         assert (late.exit_code, late.reason) == (TIMED_OUT, "took longer than 0.3 s and was stopped")
-        assert companion.ask("more", time_limit=20).exit_code == 0
+        assert coprocess.ask("more", time_limit=20).exit_code == 0

@@ -10,7 +10,7 @@
 namespace carom::tests {
 namespace {
 
-double twice_energy(const std::vector<ExactDisc<double>>& discs) {
+double twice_energy(const std::vector<Disc>& discs) {
     double sum = 0;
     for (const auto& disc : discs) {
         sum += disc.vx * disc.vx + disc.vy * disc.vy;

@@ -36,7 +36,7 @@ template <class Disc> double twice_energy(const std::vector<Disc>& discs) {
     return sum;
 }
 
-double deepest_overlap(const std::vector<ExactDisc<double>>& discs, double radius) {
+double deepest_overlap(const std::vector<Disc>& discs, double radius) {
     double deepest = 0;
     for (std::size_t i = 0; i < discs.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
@@ -215,8 +215,8 @@ TEST(EventDriven, LongDoubleKnowsTheErrorOfDouble) {
 }
 
 /// The area fraction of a scene's inner part, where the walls' layering is no longer felt.
-double inner_area_fraction(const std::vector<ExactDisc<double>>& discs, double side, double margin) {
-    const auto inside = [&](const ExactDisc<double>& disc) {
+double inner_area_fraction(const std::vector<Disc>& discs, double side, double margin) {
+    const auto inside = [&](const Disc& disc) {
         return disc.x > margin && disc.y > margin && disc.x < side - margin && disc.y < side - margin;
     };
     const auto count = static_cast<double>(std::count_if(discs.begin(), discs.end(), inside));

@@ -17,6 +17,7 @@ MACHINE = f"""
 title = "Machine"
 figure = "machine"
 claim = "machine"
+tolerance = "published"
 threads = 16
 {SCENE}
 [[series]]
@@ -32,7 +33,7 @@ SITE = SLURM_SITE + "minutes = 5\n"
 
 
 @dataclass(frozen=True)
-class Place:
+class ClusterWorkplace:
     """A workplace on the cluster."""
 
     workplace: Workplace
@@ -83,10 +84,10 @@ def cluster() -> Iterator[Cluster]:
 
 
 @pytest.fixture
-def place(cluster: Cluster, empty_workplace: Workplace) -> Iterator[Place]:
+def place(cluster: Cluster, empty_workplace: Workplace) -> Iterator[ClusterWorkplace]:
     empty_workplace.question("machine", MACHINE)
     empty_workplace.behave(**cluster.environment)
-    place = Place(empty_workplace, cluster)
+    place = ClusterWorkplace(empty_workplace, cluster)
     place.site()
     yield place
     cluster.ask("scancel", "--me")

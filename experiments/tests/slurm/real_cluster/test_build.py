@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from experiments.tests.conftest import ROOT
-from experiments.tests.slurm.real_cluster.conftest import Place
+from experiments.tests.slurm.real_cluster.conftest import ClusterWorkplace
 
 CMAKE = """#!/bin/sh
 # Stands in for cmake: `--preset release -B FOLDER` makes the folder, `--build FOLDER` puts a program there.
@@ -20,7 +20,7 @@ mv "$2/scratch" "$2/carom"
 """
 
 
-def test_each_kind_of_node_builds_once_for_itself(place: Place, tmp_path: Path) -> None:
+def test_each_kind_of_node_builds_once_for_itself(place: ClusterWorkplace, tmp_path: Path) -> None:
     tools = tmp_path / "tools"
     tools.mkdir()
     (tools / "cmake").write_text(CMAKE)
@@ -47,7 +47,7 @@ def test_each_kind_of_node_builds_once_for_itself(place: Place, tmp_path: Path) 
     not (ROOT / "build" / "gcc" / "carom").is_file(),
     reason="build/gcc/carom is not built (`make build` builds it)",
 )
-def test_a_job_builds_the_real_program_for_its_own_processor(place: Place) -> None:
+def test_a_job_builds_the_real_program_for_its_own_processor(place: ClusterWorkplace) -> None:
     place.site("w5-3423", common="build = true")
     site = place.workplace.root / "cluster.toml"
     site.write_text(site.read_text(encoding="utf-8").replace("minutes = 5", "minutes = 30"), encoding="utf-8")

@@ -11,13 +11,13 @@ from typing import Any
 import pytest
 
 from experiments.tests.slurm.real_cluster.cluster import MAX_ARRAY_SIZE, node_of, until
-from experiments.tests.slurm.real_cluster.conftest import MACHINE, Place
+from experiments.tests.slurm.real_cluster.conftest import MACHINE, ClusterWorkplace
 
 PARTITION = "w5-3423"
 KILLS = 4
 
 
-def measurements(place: Place) -> Counter[str]:
+def measurements(place: ClusterWorkplace) -> Counter[str]:
     """How often each block was measured."""
     words = [call["words"] for call in place.measured() if "experiment=machine" in call["words"]]
     return Counter(next(word for word in one if word.startswith("block=")) for one in words)
@@ -27,12 +27,12 @@ def contents(paths: list[Path]) -> dict[Path, Any]:
     return {path: json.loads(path.read_text(encoding="utf-8")) for path in paths}
 
 
-def blocks(place: Place, number: int) -> None:
+def blocks(place: ClusterWorkplace, number: int) -> None:
     limits = f"minimum = {number}\nwanted = {number}"
     place.workplace.question("machine", MACHINE.replace("minimum = 5\nwanted = 5", limits))
 
 
-def test_a_node_dies_in_mid_task_and_comes_back(place: Place) -> None:
+def test_a_node_dies_in_mid_task_and_comes_back(place: ClusterWorkplace) -> None:
     place.site(PARTITION, common="blocks_per_task = 5")
     place.workplace.behave(FAKE_SECONDS="1")
     place.say("submit")
@@ -51,7 +51,7 @@ def test_a_node_dies_in_mid_task_and_comes_back(place: Place) -> None:
     assert "nothing to submit; all is measured" in place.say("resume")
 
 
-def test_half_an_array_cancelled_is_what_resume_submits(place: Place) -> None:
+def test_half_an_array_cancelled_is_what_resume_submits(place: ClusterWorkplace) -> None:
     place.site(PARTITION, common="at_once = 1")
     place.workplace.behave(FAKE_SECONDS="0.3")
     blocks(place, 6)
@@ -69,7 +69,7 @@ def test_half_an_array_cancelled_is_what_resume_submits(place: Place) -> None:
     assert re.search(rf"^{PARTITION} +machine +6 +0 +0 +0 +0$", place.say("status"), re.MULTILINE)
 
 
-def test_tasks_killed_at_random_moments_lose_at_most_the_point_they_were_on(place: Place) -> None:
+def test_tasks_killed_at_random_moments_lose_at_most_the_point_they_were_on(place: ClusterWorkplace) -> None:
     place.site(PARTITION, common="blocks_per_task = 12")
     place.workplace.behave(FAKE_SECONDS="0.5")
     blocks(place, 12)
@@ -95,7 +95,7 @@ def test_tasks_killed_at_random_moments_lose_at_most_the_point_they_were_on(plac
     assert counts.total() <= 12 + KILLS, "a kill costs no more than one process"
 
 
-def test_what_waits_or_runs_is_not_submitted_again(place: Place) -> None:
+def test_what_waits_or_runs_is_not_submitted_again(place: ClusterWorkplace) -> None:
     place.site(PARTITION, common="at_once = 1")
     place.workplace.behave(FAKE_SECONDS="3")
     place.say("submit")
@@ -106,7 +106,7 @@ def test_what_waits_or_runs_is_not_submitted_again(place: Place) -> None:
     assert "4 of the tasks wait: JobArrayTaskLimit" in said
 
 
-def test_a_point_that_fails_is_told_with_its_reason(place: Place) -> None:
+def test_a_point_that_fails_is_told_with_its_reason(place: ClusterWorkplace) -> None:
     place.site(PARTITION)
     place.workplace.behave(FAKE_BENCH_CRASHES="published")
     place.say("submit")
@@ -116,7 +116,7 @@ def test_a_point_that_fails_is_told_with_its_reason(place: Place) -> None:
     assert f"{PARTITION}: machine: 5 failed: killed by SIGABRT: out of memory" in said
 
 
-def test_arrays_stay_below_the_largest_that_the_cluster_takes(place: Place) -> None:
+def test_arrays_stay_below_the_largest_that_the_cluster_takes(place: ClusterWorkplace) -> None:
     place.site(PARTITION)
     blocks(place, MAX_ARRAY_SIZE + 4)
     assert "20 processes in 10 tasks" in place.say("submit")
@@ -125,7 +125,7 @@ def test_arrays_stay_below_the_largest_that_the_cluster_takes(place: Place) -> N
 
 
 @pytest.mark.slow
-def test_a_task_at_its_time_limit_keeps_what_it_finished(place: Place) -> None:
+def test_a_task_at_its_time_limit_keeps_what_it_finished(place: ClusterWorkplace) -> None:
     place.site(PARTITION, common="blocks_per_task = 16", each="hardware_threads = 24\nminutes = 1")
     place.workplace.behave(FAKE_SECONDS="7")
     blocks(place, 16)

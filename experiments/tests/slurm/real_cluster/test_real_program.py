@@ -11,7 +11,7 @@ import pytest
 from experiments.support.schema import RECORD_SCHEMA, validator
 from experiments.tests.conftest import ROOT
 from experiments.tests.slurm.real_cluster.cluster import PARTITIONS, node_of
-from experiments.tests.slurm.real_cluster.conftest import MACHINE, Place
+from experiments.tests.slurm.real_cluster.conftest import MACHINE, ClusterWorkplace
 
 PROGRAM = ROOT / "build" / "gcc" / "carom"
 
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def test_a_small_study_comes_back_from_two_partitions(place: Place) -> None:
+def test_a_small_study_comes_back_from_two_partitions(place: ClusterWorkplace) -> None:
     place.site("xs-4114", "i7-13700", common="blocks_per_task = 3")
     place.say("submit", "--build", str(ROOT / "build"))
     place.cluster.wait_until_idle()
@@ -43,7 +43,7 @@ def test_a_small_study_comes_back_from_two_partitions(place: Place) -> None:
 
 
 @pytest.mark.slow
-def test_three_kinds_of_node_with_one_processor_are_no_different(place: Place) -> None:
+def test_three_kinds_of_node_with_one_processor_are_no_different(place: ClusterWorkplace) -> None:
     place.workplace.question("machine", MANY_SHORT_RUNS)
     place.site(common="blocks_per_task = 10")
     for blocks in BLOCKS:
@@ -66,7 +66,7 @@ def test_three_kinds_of_node_with_one_processor_are_no_different(place: Place) -
         pytest.skip(f"too noisy here for the verdict `equivalent`: {caption}")
 
 
-def test_the_published_command_lines_work(place: Place) -> None:
+def test_the_published_command_lines_work(place: ClusterWorkplace) -> None:
     if shutil.which("perf") is None:
         pytest.skip("perf is not here (on Debian the package linux-perf)")
     if subprocess.run(["perf", "stat", "true"], capture_output=True, check=False).returncode != 0:

@@ -4,10 +4,10 @@ import json
 
 from experiments.tests.conftest import ROOT
 from experiments.tests.slurm.real_cluster.cluster import PARTITIONS, node_of
-from experiments.tests.slurm.real_cluster.conftest import Place
+from experiments.tests.slurm.real_cluster.conftest import ClusterWorkplace
 
 
-def test_three_partitions_give_one_figure_with_three_machines(place: Place) -> None:
+def test_three_partitions_give_one_figure_with_three_machines(place: ClusterWorkplace) -> None:
     place.workplace.behave(FAKE_SECONDS="0.05")
     said = place.say("submit")
     assert [line.split(": ")[0] for line in said.splitlines()] == list(PARTITIONS)
@@ -33,7 +33,7 @@ def test_three_partitions_give_one_figure_with_three_machines(place: Place) -> N
     assert report.count("(equivalent)") >= 2
 
 
-def test_odd_folders_and_hostile_names_run_nothing(place: Place) -> None:
+def test_odd_folders_and_hostile_names_run_nothing(place: ClusterWorkplace) -> None:
     folder = place.workplace.root / "a  b $(touch owned) `touch owned` & touch owned; %a"
     place.site("w5-3423", common=f'results = "{folder}"\narguments = ["--comment=a b; touch owned"]')
     place.say("submit")

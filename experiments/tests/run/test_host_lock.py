@@ -1,4 +1,4 @@
-"""Turns: measurements on one host never overlap."""
+"""The lock of a host: measurements on one host never overlap."""
 
 import itertools
 import subprocess
@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from experiments.run.turn import turn
+from experiments.run.host_lock import host_lock
 from experiments.support.errors import InputError
 from experiments.tests.conftest import ERRORS, Workplace
 from experiments.tests.run.test_limits import LIMITS
 
 ANOTHER = """
 import sys, time
-from experiments.run.turn import turn
-with turn():
+from experiments.run.host_lock import host_lock
+with host_lock():
     print(time.monotonic(), flush=True)
     time.sleep(float(sys.argv[1]))
     print(time.monotonic(), flush=True)
@@ -38,7 +38,7 @@ def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.tempdir", None)
 
 
-def test_turns_of_two_processes_do_not_overlap() -> None:
+def test_what_two_processes_do_under_it_does_not_overlap() -> None:
     spans = sorted(times(process) for process in [another(0.3), another(0.3), another(0.3)])
     assert all(len(span) == 2 for span in spans)
     assert all(before[1] <= after[0] for before, after in itertools.pairwise(spans))
@@ -57,29 +57,29 @@ def test_what_two_runners_run_does_not_overlap(empty_workplace: Workplace) -> No
         _, error = runner.communicate(timeout=120)
         assert (runner.returncode, error) == (0, "")
     lines = [line.split() for line in spans.read_text(encoding="utf-8").splitlines()]
-    assert {verb for verb, _, _ in lines} == {"bench", "check", "limits", "outside", "profile"}
+    assert {verb for verb, _, _ in lines} == {"bench", "check", "limits", "outside", "profile", "turns"}
     times_of = sorted((float(began), float(ended), verb) for verb, began, ended in lines)
     for before, after in itertools.pairwise(times_of):
         assert before[1] <= after[0], f"{after[2]} began before {before[2]} had ended"
 
 
-def test_a_killed_process_gives_up_its_turn() -> None:
+def test_a_killed_process_gives_it_up() -> None:
     killed = another(600)
     assert killed.stdout is not None
     killed.stdout.readline()
     killed.kill()
     killed.wait()
     before = time.monotonic()
-    with turn():
+    with host_lock():
         assert time.monotonic() - before < 60
 
 
 def test_a_link_in_the_place_of_the_lock_is_refused(tmp_path: Path) -> None:
-    with turn():
+    with host_lock():
         pass
     (lock,) = tmp_path.iterdir()
     lock.unlink()
     lock.symlink_to(tmp_path / "elsewhere")
-    with pytest.raises(InputError, match="cannot be opened"), turn():
+    with pytest.raises(InputError, match="cannot be opened"), host_lock():
         pass
     assert not (tmp_path / "elsewhere").exists()

@@ -13,23 +13,23 @@ from experiments.support.errors import InputError
 from experiments.support.process import Completed
 
 
-def run_in_turn(command: Sequence[str], openmp: Iterable[tuple[str, str]], time_limit: float) -> Completed:
+def run_alone(command: Sequence[str], openmp: Iterable[tuple[str, str]], time_limit: float) -> Completed:
     """Run a program to its end with these OpenMP variables and no others, while no other one computes.
 
-    The time limit, in seconds, counts from when its turn has come. Raises InputError like `turn`.
+    The time limit, in seconds, counts from when it begins. Raises InputError like `host_lock`.
     """
-    with turn():
+    with host_lock():
         return process.run(command, clean_environment(dict(openmp)), time_limit)
 
 
 @contextlib.contextmanager
-def turn() -> Iterator[None]:
+def host_lock() -> Iterator[None]:
     """Wait until no other runner of this user measures on this host, and keep others waiting meanwhile.
 
     Runners of other results folders count, and so do tasks of a cluster whose nodes are one host. The kernel
-    ends a turn with its process, however that ends. Raises InputError where the lock cannot be made.
+    lets go of it with its process, however that ends. Raises InputError where the lock cannot be made.
     """
-    path = Path(tempfile.gettempdir()) / f"carom-{os.getuid()}.turn"
+    path = Path(tempfile.gettempdir()) / f"carom-{os.getuid()}.lock"
     try:
         lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
     except OSError as error:

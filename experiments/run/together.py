@@ -1,0 +1,65 @@
+"""Which points of a block are measured together: side by side in one process, some steps of each in turn.
+
+A machine that changes its speed from one second to the next disturbs those alike that take turns of some
+milliseconds, and not those that run one after the other. What turns would distort keeps a process of its own.
+"""
+
+import os
+from collections.abc import Sequence
+
+from experiments.plan.plan import Experiment
+from experiments.plan.point import Point
+from experiments.plan.scenes import Scene
+
+Position = tuple[int, Point]
+
+_SHARE_OF_MEMORY = 0.25
+_BYTES_PER_DISC = 400
+"""Of the published layout, the largest: a disc 32, its list's header 24, and what the lists hold."""
+_BYTES_PER_BOX = 60
+"""The header of a box's list, and the memory of the lists that have ever held a disc."""
+
+
+def together(experiment: Experiment, block: int, missing: Sequence[Position]) -> list[list[Position]]:
+    """The points that are still to be run of one block, in groups that one process measures."""
+    if not _may_take_turns(experiment, block):
+        return [[one] for one in missing]
+    groups: dict[object, list[Position]] = {}
+    for position, point in missing:
+        # Nothing is compared across a question's named scenes. And as many threads for all: a pool of threads
+        # that shrinks and grows between turns would be timed too.
+        key = (point.program.sha256, point.openmp, point.threads, point.scene_name)
+        groups.setdefault(key, []).append((position, point))
+    return [part for group in groups.values() for part in _fitting(group)]
+
+
+def _may_take_turns(experiment: Experiment, block: int) -> bool:
+    """Whether no point of the block does anything but run once: those compared are measured alike."""
+    return experiment.question.turns and all(
+        point.verb == "bench" and point.repetitions == 1 and not point.besides(block)
+        for point in experiment.points
+    )
+
+
+def _fitting(group: Sequence[Position]) -> list[list[Position]]:
+    """The group in as few parts as the machine's memory allows, since all of a part are in it at once."""
+    most = _SHARE_OF_MEMORY * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    parts: list[list[Position]] = [[]]
+    used = 0.0
+    for one in group:
+        needed = _bytes(one[1])
+        if parts[-1] and used + needed > most:
+            parts.append([])
+            used = 0.0
+        parts[-1].append(one)
+        used += needed
+    return parts
+
+
+def _bytes(point: Point) -> float:
+    """About how much memory a simulation of the point takes; a hard case takes little."""
+    scene = point.scene
+    if not isinstance(scene, Scene):
+        return 0.0
+    boxes = max(scene.side / (4 * scene.radius + 1), scene.particles**0.5) ** 2
+    return scene.particles * _BYTES_PER_DISC + boxes * _BYTES_PER_BOX

@@ -1,0 +1,110 @@
+"""Points of a block that take turns in one process, and what keeps a process of its own."""
+
+from collections.abc import Callable
+
+import pytest
+
+from experiments.plan.point import Point
+from experiments.run import together as module
+from experiments.run.study import POINTS_FAILED, Study, run
+from experiments.run.together import together
+from experiments.tests.conftest import CHUNKS, ERRORS, FOUR_AND_NINE, PAIR, SCENE, Workplace
+
+THREADS = f"""
+title = "Threads"
+figure = "scaling"
+{SCENE}
+[sweep]
+parameter = "threads"
+values = [1, 2]
+
+{FOUR_AND_NINE}"""
+
+
+def groups_of(workplace: Workplace, text: str, block: int = 0) -> list[list[Point]]:
+    """The groups of one block of a question, none of it measured yet."""
+    workplace.question("asked", text)
+    [experiment] = [one for one in Study(workplace.settings).experiments if one.name == "asked"]
+    groups = together(experiment, block, list(enumerate(experiment.block(block))))
+    assert sorted(at for group in groups for at, _ in group) == list(range(len(experiment.points)))
+    return [[point for _, point in group] for group in groups]
+
+
+def sizes(groups: list[list[Point]]) -> list[int]:
+    return sorted(map(len, groups))
+
+
+def test_what_a_question_compares_takes_turns(empty_workplace: Workplace) -> None:
+    assert sizes(groups_of(empty_workplace, PAIR)) == [2]
+    assert sizes(groups_of(empty_workplace, CHUNKS)) == [3]
+
+
+def test_only_as_many_threads_take_turns(empty_workplace: Workplace) -> None:
+    groups = groups_of(empty_workplace, THREADS)
+    assert sizes(groups) == [2, 2]
+    assert all(len({point.threads for point in group}) == 1 for group in groups)
+
+
+def test_two_programs_cannot_be_in_one_process(empty_workplace: Workplace) -> None:
+    empty_workplace.build("clang", "# another one")
+    text = PAIR.replace('variant = "nine"', 'variant = "published"\nprogram = "clang"')
+    assert sizes(groups_of(empty_workplace, text)) == [1, 1]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: text.replace("[scene]", "turns = false\n[scene]", 1),
+        lambda text: text.replace("[scene]", 'verb = "profile"\n[scene]', 1),
+        lambda text: text.replace("[scene]", "repetitions = 3\n[scene]", 1),
+    ],
+    ids=["told so", "profiles", "several runs each"],
+)
+def test_what_turns_would_distort_is_measured_alone(
+    empty_workplace: Workplace, change: Callable[[str], str]
+) -> None:
+    assert sizes(groups_of(empty_workplace, change(PAIR))) == [1, 1]
+
+
+def test_a_block_that_measures_errors_besides_is_measured_alone(empty_workplace: Workplace) -> None:
+    assert sizes(groups_of(empty_workplace, ERRORS, block=0)) == [1] * 8
+    assert sizes(groups_of(empty_workplace, ERRORS, block=1)) == [4, 4], "one for each scene"
+
+
+def test_no_more_than_memory_holds_take_turns(
+    empty_workplace: Workplace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one = groups_of(empty_workplace, CHUNKS)[0][0]
+    monkeypatch.setattr(module.os, "sysconf", lambda _: (2.5 * module._bytes(one) * 4) ** 0.5)
+    assert sizes(groups_of(empty_workplace, CHUNKS)) == [1, 2]
+    monkeypatch.setattr(module.os, "sysconf", lambda _: 1)
+    assert sizes(groups_of(empty_workplace, CHUNKS)) == [1, 1, 1]
+
+
+def test_each_of_a_group_has_its_record(workplace: Workplace) -> None:
+    assert run(workplace.settings) == 0
+    calls = [call["words"][0] for call in workplace.calls()]
+    assert calls.count("turns") == 3 + 2 + 2, "one process a block"
+    assert len(workplace.records()) == 16
+    assert run(workplace.settings) == 0
+    assert [call["words"][0] for call in workplace.calls()].count("turns") == 7, "nothing is measured twice"
+
+
+def test_where_one_of_a_group_crashes_each_is_measured_alone(workplace: Workplace) -> None:
+    workplace.behave(FAKE_BENCH_CRASHES="nine")
+    assert run(workplace.settings) == POINTS_FAILED
+    assert [one["reason"] for one in workplace.failures()] == ["killed by SIGABRT: out of memory"]
+    assert {one["axes"]["variant"] for one in workplace.records("pair").values()} == {"published"}
+    assert len(workplace.records("pair")) == 2
+
+
+def test_one_that_fails_its_check_does_not_take_the_others_with_it(workplace: Workplace) -> None:
+    workplace.behave(FAKE_RESULT_WRONG="nine")
+    assert run(workplace.settings) == POINTS_FAILED
+    assert len(workplace.records("pair")) == 2
+    alone = [
+        call["words"]
+        for call in workplace.calls()
+        if call["words"][0] == "bench" and "experiment=pair" in call["words"]
+    ]
+    assert len(alone) == 3, "two in the first block together, and the one that is left in the second"

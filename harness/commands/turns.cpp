@@ -1,0 +1,143 @@
+#include "harness/measure/turns.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/commands/commands.hpp"
+#include "harness/commands/measurement_options.hpp"
+#include "harness/commands/simulation_options.hpp"
+#include "harness/machine/threads.hpp"
+#include "harness/measure/variant_contender.hpp"
+#include "harness/records/record.hpp"
+#include "harness/support/errors.hpp"
+#include "harness/support/input_file.hpp"
+
+namespace carom {
+namespace {
+
+struct TurnsOptions {
+    std::string file;
+    double turn_seconds = 0.02;
+    std::uint64_t seed = 1;
+};
+
+/// What one contender's words say.
+struct ContenderOptions {
+    SimulationOptions simulation;
+    MeasurementOptions measurement;
+    int repetitions = 1;
+};
+
+/// Parses one contender's words. Throws InputError with `where` in front.
+ContenderOptions parse_contender(const std::vector<std::string>& words, const std::string& where) {
+    ContenderOptions options;
+    CLI::App parser;
+    parser.set_help_flag();
+    add_simulation_options(parser, options.simulation);
+    add_measurement_options(parser, options.measurement);
+    parser.add_option("--repetitions", options.repetitions)->check(CLI::Range(1, 1));
+    try {
+        parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    } catch (const CLI::ParseError& error) {
+        throw InputError(where + ": " + error.what());
+    }
+    if (options.measurement.record.empty()) {
+        throw InputError(where + ": found no --record, expected a file for it");
+    }
+    require_threads(options.simulation.tuning.threads);
+    tags_json(options.measurement.tags);
+    return options;
+}
+
+/// Reads a JSON list with a list of words for each contender. Throws InputError.
+std::vector<ContenderOptions> read_contenders(const std::string& path) {
+    const auto json = nlohmann::json::parse(read_file(path), nullptr, false);
+    const auto is_words = [](const auto& words) {
+        return words.is_array() &&
+               std::ranges::all_of(words, [](const auto& word) { return word.is_string(); });
+    };
+    if (!json.is_array() || json.empty() || !std::ranges::all_of(json, is_words)) {
+        throw InputError(path + ": found something else, expected a JSON list with a list of words, as for "
+                                "`carom bench`, for each contender");
+    }
+    std::vector<ContenderOptions> contenders;
+    for (const auto& words : json) {
+        contenders.push_back(parse_contender(words.template get<std::vector<std::string>>(),
+                                             path + ", contender " + std::to_string(contenders.size() + 1)));
+    }
+    return contenders;
+}
+
+/// Lets them run; returns the seconds of each turn of each contender.
+std::vector<std::vector<double>> compete(std::deque<VariantContender>& contenders,
+                                         const TurnsOptions& options) {
+    std::vector<double> expected;
+    std::vector<Contender*> everyone;
+    int fewest_steps = contenders.front().steps();
+    for (VariantContender& one : contenders) {
+        expected.push_back(one.prepare());
+        everyone.push_back(&one);
+        fewest_steps = std::min(fewest_steps, one.steps());
+    }
+    return take_turns(everyone, count_rounds(expected, fewest_steps, options.turn_seconds), options.seed);
+}
+
+void turns(const TurnsOptions& options) {
+    const std::vector<ContenderOptions> said = read_contenders(options.file);
+    std::map<std::string, LoadedScene> scenes;
+    std::deque<VariantContender> contenders;
+    for (const ContenderOptions& one : said) {
+        const std::string& path = one.simulation.scene;
+        auto loaded = scenes.find(path);
+        if (loaded == scenes.end()) {
+            loaded = scenes.emplace(path, load_scene(path)).first;
+        }
+        const LoadedScene& scene = loaded->second;
+        contenders.emplace_back(measurement_of(scene, require_variant(one.simulation.variant, scene.scene),
+                                               one.simulation.tuning, one.measurement));
+    }
+    const auto seconds = compete(contenders, options);
+    const VariantContender* failed = nullptr;
+    for (std::size_t k = 0; k < contenders.size(); ++k) {
+        VariantContender& one = contenders[k];
+        one.finish(
+            {.contenders = static_cast<int>(contenders.size()), .seed = options.seed, .seconds = seconds[k]});
+        write_record(said[k].measurement.record, record_json(one.measurement()));
+        if (one.measurement().violation && failed == nullptr) {
+            failed = &one;
+        }
+    }
+    if (failed != nullptr) {
+        const Measurement& measurement = failed->measurement();
+        throw CheckError(measurement.scene_name + ", variant " + std::string(measurement.variant.name) +
+                         ": " + *measurement.violation);
+    }
+}
+
+} // namespace
+
+void add_turns_command(CLI::App& program) {
+    auto options = std::make_shared<TurnsOptions>();
+    CLI::App* command = program.add_subcommand(
+        "turns", "Time several variants, scenes or tunings side by side, some steps of each in turn");
+    command
+        ->add_option(
+            "CONTENDERS", options->file,
+            "JSON file: a list with, for each contender, a list of the words that `carom bench` would be "
+            "given, --record among them")
+        ->required();
+    command->add_option("--turn", options->turn_seconds, "Seconds that a turn is to last, a step at least")
+        ->check(CLI::Range(1e-6, 1e6))
+        ->capture_default_str();
+    command->add_option("--seed", options->seed, "Of the order of the turns")->capture_default_str();
+    command->callback([options] { turns(*options); });
+}
+
+} // namespace carom

@@ -1,0 +1,113 @@
+#include <fstream>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/scenes/scene_file.hpp"
+#include "harness/tests/program.hpp"
+#include "harness/tests/temporary_directory.hpp"
+#include "kernels/tests/scenes.hpp"
+
+namespace carom {
+namespace {
+
+using Json = nlohmann::json;
+using tests::content_of;
+using tests::refused;
+using tests::run_carom;
+
+class TurnsCommand : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::ofstream(scene) << scene_text(tests::random_scene_of_density(400, 0.6, 20, 9));
+    }
+
+    /// What the program says of contenders with these words.
+    tests::ProgramResult turns(const Json& contenders, const std::vector<std::string>& more = {}) {
+        std::ofstream(directory / "contenders.json") << contenders.dump();
+        std::vector<std::string> arguments{"turns", directory / "contenders.json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_carom(arguments);
+    }
+
+    Json record(const std::string& name) { return Json::parse(content_of(directory / name)); }
+
+    Json words(const std::string& variant, const std::string& name,
+               const std::vector<std::string>& more = {}) {
+        Json list{scene, "--variant", variant, "--threads", "2", "--record", directory / name};
+        for (const std::string& word : more) {
+            list.push_back(word);
+        }
+        return list;
+    }
+
+    tests::TemporaryDirectory directory;
+    const std::string scene = directory / "scene.in";
+};
+
+TEST_F(TurnsCommand, LeavesARecordForEachThatIsAsOfAProcessOfItsOwn) {
+    const auto result = turns({words("published", "one", {"--tag", "series=a"}), words("nine", "two"),
+                               words("published", "three", {"--substeps", "2"})},
+                              {"--turn", "1e-6", "--seed", "7"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.output, "");
+    EXPECT_EQ(result.error, "");
+    const auto alone = run_carom({"bench", scene, "--threads", "2", "--record", directory / "alone"});
+    ASSERT_EQ(alone.exit_code, 0) << alone.error;
+    for (const char* field : {"state_hash", "work", "axes", "scene", "check", "warm_ups"}) {
+        EXPECT_EQ(record("one")[field], record("alone")[field]) << field;
+    }
+    EXPECT_TRUE(record("alone")["turns"].is_null());
+    EXPECT_EQ(record("one")["tags"], (Json{{"series", "a"}}));
+    EXPECT_EQ(record("two")["axes"]["variant"], "nine");
+    EXPECT_EQ(record("three")["axes"]["substeps"], 2);
+    for (const char* name : {"one", "two", "three"}) {
+        const Json turns = record(name)["turns"];
+        EXPECT_EQ(turns["contenders"], 3);
+        EXPECT_EQ(turns["seed"], 7);
+        EXPECT_EQ(turns["seconds"].size(), 20) << "a step a turn";
+        const auto seconds = turns["seconds"].get<std::vector<double>>();
+        EXPECT_NEAR(std::accumulate(seconds.begin(), seconds.end(), 0.0),
+                    record(name)["repetitions"][0]["steps_seconds"].get<double>(), 1e-9);
+        EXPECT_GE(record(name)["process_seconds"], record(name)["repetitions"][0]["steps_seconds"]);
+    }
+}
+
+TEST_F(TurnsCommand, RefusesWhatIsNoListOfContenders) {
+    const std::vector<std::string> expected{"contenders.json", "expected a JSON list"};
+    for (const Json& wrong : {Json{}, Json::array(), Json{1}, Json{"scene.in"}, Json{Json{1, 2}}}) {
+        EXPECT_TRUE(refused(turns(wrong), 1, expected)) << wrong;
+    }
+    std::ofstream(directory / "torn.json") << "[[\"scene.in\", ";
+    EXPECT_TRUE(
+        refused(run_carom({"turns", directory / "torn.json"}), 1, {"torn.json", "expected a JSON list"}));
+    EXPECT_TRUE(refused(run_carom({"turns", directory / "none.json"}), 1, {"none.json"}));
+}
+
+TEST_F(TurnsCommand, RefusesAContenderThatCannotBeAndSaysWhichOne) {
+    const Json right = words("published", "one");
+    EXPECT_TRUE(refused(turns({right, Json{scene}}), 1, {"contender 2", "--record"}));
+    EXPECT_TRUE(refused(turns({right, words("publishde", "two")}), 1, {"publishde", "published"}));
+    EXPECT_TRUE(refused(turns({right, words("nine", "two", {"--tag", "x"})}), 1, {"--tag", "KEY=VALUE"}));
+    EXPECT_TRUE(
+        refused(turns({right, words("nine", "two", {"--no-such"})}), 1, {"contender 2", "--no-such"}));
+}
+
+TEST_F(TurnsCommand, OneThatFailsItsCheckHasNoTimesAndTheOthersHave) {
+    Scene wedged{.side = 3, .radius = 1, .steps = 3, .discs = {{1, 1.5, 1, 0}, {2, 1.5, -1, 0}}};
+    std::ofstream(directory / "wedged.in") << scene_text(wedged);
+    const Json endless{directory / "wedged.in", "--threads",     "1", "--record",
+                       directory / "wedged",    "--sweep-limit", "1"};
+    const auto result = turns({words("published", "one"), endless});
+    EXPECT_TRUE(refused(result, 2, {"wedged.in", "sweeps"}));
+    EXPECT_EQ(record("wedged")["check"]["verdict"], "failed");
+    EXPECT_TRUE(record("wedged")["repetitions"].empty());
+    EXPECT_EQ(record("one")["check"]["verdict"], "passed");
+    EXPECT_EQ(record("one")["repetitions"].size(), 1);
+}
+
+} // namespace
+} // namespace carom

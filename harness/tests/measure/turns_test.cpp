@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "harness/measure/turns.hpp"
+#include "harness/measure/variant_contender.hpp"
+#include "kernels/tests/scenes.hpp"
+#include "variants/registry.hpp"
+
+namespace carom {
+namespace {
+
+/// Notes when its turns come; a turn of n steps takes n seconds.
+class Diarist final : public Contender {
+  public:
+    Diarist(int number, int steps, std::vector<int>& diary) : number_(number), steps_(steps), diary_(diary) {}
+
+    int steps() const override { return steps_; }
+    double advance(int steps) override {
+        diary_.push_back(number_);
+        taken.push_back(steps);
+        return steps;
+    }
+
+    std::vector<int> taken; ///< steps of each turn
+
+  private:
+    int number_;
+    int steps_;
+    std::vector<int>& diary_;
+};
+
+TEST(Turns, EachTakesOneInEveryRoundAndAllItsStepsInAll) {
+    std::vector<int> diary;
+    Diarist one(0, 100, diary);
+    Diarist two(1, 37, diary);
+    Diarist three(2, 10, diary);
+    const std::vector<Contender*> everyone{&one, &two, &three};
+    const auto seconds = take_turns(everyone, 10, 1);
+    ASSERT_EQ(diary.size(), 30);
+    for (auto round = diary.begin(); round != diary.end(); round += 3) {
+        std::vector<int> turn(round, round + 3);
+        std::ranges::sort(turn);
+        EXPECT_EQ(turn, (std::vector<int>{0, 1, 2}));
+    }
+    for (const auto& [who, steps] : {std::pair{&one, 100}, {&two, 37}, {&three, 10}}) {
+        EXPECT_EQ(who->taken.size(), 10);
+        EXPECT_EQ(std::accumulate(who->taken.begin(), who->taken.end(), 0), steps);
+        EXPECT_LE(std::ranges::max(who->taken) - std::ranges::min(who->taken), 1);
+    }
+    EXPECT_EQ(seconds[2], std::vector<double>(10, 1));
+}
+
+TEST(Turns, TheirOrderIsDrawnAnewInEachRoundAndFollowsTheSeed) {
+    const auto diary_of = [](std::uint64_t seed) {
+        std::vector<int> diary;
+        Diarist one(0, 1000, diary);
+        Diarist two(1, 1000, diary);
+        const std::vector<Contender*> both{&one, &two};
+        take_turns(both, 1000, seed);
+        return diary;
+    };
+    const std::vector<int> diary = diary_of(1);
+    int first = 0;
+    for (std::size_t k = 0; k < diary.size(); k += 2) {
+        first += diary[k] == 0;
+    }
+    EXPECT_NEAR(first, 500, 80) << "five standard deviations";
+    EXPECT_EQ(diary, diary_of(1));
+    EXPECT_NE(diary, diary_of(2));
+}
+
+TEST(Turns, AreAsLongAsAskedButNoShorterThanAStep) {
+    EXPECT_EQ(count_rounds(std::vector{1.0, 2.0, 100.0}, 1000, 0.05), 40);
+    EXPECT_EQ(count_rounds(std::vector{1.0, 2.0, 100.0}, 30, 0.05), 30);
+    EXPECT_EQ(count_rounds(std::vector{0.01}, 30, 0.05), 1);
+    EXPECT_EQ(count_rounds(std::vector{0.0}, 0, 0.05), 1);
+}
+
+Measurement measurement_of(const Scene& scene, const char* variant,
+                           CheckScope scope = CheckScope::last_step) {
+    Measurement measurement{.scene = scene,
+                            .scene_name = "scene.in",
+                            .scene_sha256 = {},
+                            .variant = *find_variant(variant),
+                            .tuning = {},
+                            .tags = {},
+                            .repetitions = {},
+                            .violation = {},
+                            .turns = {},
+                            .own_seconds = {}};
+    measurement.scope = scope;
+    return measurement;
+}
+
+TEST(VariantContender, EndsAsIfItHadRunAlone) {
+    const Scene scene = tests::random_scene_of_density(300, 0.4, 12, 5);
+    VariantContender published(measurement_of(scene, "published"));
+    VariantContender track(measurement_of(scene, "track", CheckScope::every_step));
+    EXPECT_GT(published.prepare(), 0);
+    EXPECT_GT(track.prepare(), 0);
+    const std::vector<Contender*> both{&published, &track};
+    const auto seconds = take_turns(both, 5, 3);
+    int number = 0;
+    for (VariantContender* one : {&published, &track}) {
+        const auto turns = seconds[static_cast<std::size_t>(number++)];
+        one->finish({.contenders = 2, .seed = 3, .seconds = turns});
+        const Measurement& measurement = one->measurement();
+        ASSERT_EQ(measurement.repetitions.size(), 1);
+        EXPECT_FALSE(measurement.violation);
+        const auto& run = measurement.repetitions.back();
+        const auto alone = measurement.variant.simulate(scene, measurement.tuning);
+        const auto whole = run_scene(scene, *alone, measurement.tuning, CheckScope::nothing);
+        EXPECT_EQ(run.discs, whole.discs);
+        EXPECT_EQ(run.work, whole.work);
+        EXPECT_NEAR(std::accumulate(turns.begin(), turns.end(), 0.0), run.steps_seconds, 1e-9);
+        EXPECT_GE(*measurement.own_seconds, run.steps_seconds);
+    }
+}
+
+} // namespace
+} // namespace carom
