@@ -5,7 +5,7 @@ from dataclasses import asdict, replace
 
 import pandas as pd
 
-from analysis.claims import compilers, counts, curves, machines, phases, ratios, scaling, schedules
+from analysis.claims import compilers, counts, curves, family, machines, phases, ratios, scaling, schedules
 from analysis.claims.entry import Claim, Evidence, load
 from analysis.claims.outcome import ELSEWHERE, OPEN, Compared, Outcome, Verdict
 from analysis.records.published import Published
@@ -35,17 +35,23 @@ def evaluate(study: Study, studies: Sequence[Study], published: Published) -> pd
     `tested_threads`, `verdict` with `said`, the same in words, `measured`, `why`, `figures` and `missing`.
 
     Everything is judged on the records of `study`, except the claim about machines, which needs all of them.
+    Those that may be decided at its scale are corrected for their number (see `family`).
     """
     evidence = Evidence(study, studies, published)
-    return pd.DataFrame([_row(claim, evidence) for claim in load()])
+    listed_claims = load()
+    tested = [
+        _at_scale(TESTS[one.test](evidence, **one.arguments), one, study.scale) for one in listed_claims
+    ]
+    outcomes = family.corrected(tested)
+    return pd.DataFrame(
+        [_row(claim, outcome, study) for claim, outcome in zip(listed_claims, outcomes, strict=True)]
+    )
 
 
-def _row(claim: Claim, evidence: Evidence) -> dict[str, object]:
-    study = evidence.study
+def _row(claim: Claim, outcome: Outcome, study: Study) -> dict[str, object]:
     runs = study.runs[study.runs["experiment"].isin(claim.experiments)]
     tested = tuple(sorted(int(number) for number in runs["threads"].unique()))
-    outcome = TESTS[claim.test](evidence, **claim.arguments)
-    outcome = _with_failures(_at_scale(_at_threads(outcome, claim, tested), claim, study.scale), claim, study)
+    outcome = _with_failures(_at_threads(outcome, claim, tested), claim, study)
     figures = (*_setting(claim, tested, runs), *outcome.figures)
     return {
         "id": claim.id,
@@ -72,7 +78,7 @@ def _at_scale(outcome: Outcome, claim: Claim, scale: str) -> Outcome:
     """A scale at which a claim may not be decided leaves what was measured, and no verdict."""
     if scale in claim.scales or (outcome.verdict == OPEN and not outcome.measured):
         return outcome
-    return replace(outcome, verdict=Verdict.OTHER_SCALE, why=claim.other_scales)
+    return replace(outcome, verdict=Verdict.OTHER_SCALE, why=claim.other_scales, p=None)
 
 
 def _with_failures(outcome: Outcome, claim: Claim, study: Study) -> Outcome:

@@ -1,24 +1,21 @@
 """Whether anything measured beside a choice is faster than it."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pandas as pd
 
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Outcome
-from analysis.statistics.verdicts import ERROR, MARGIN, holm, judge_one, not_faster
+from analysis.claims.outcome import FAILS, TOO_FEW, Outcome, judged
+from analysis.statistics.verdicts import ERROR, MARGIN, judge, not_faster
 from analysis.support.wording import share
 
 
 @dataclass(frozen=True)
 class Alternatives:
-    """`table` is a row of `judge` an alternative, by `name`, for its time against that of the choice."""
+    """`table` is a row of `judge` an alternative, by `name`, for its time against that of the choice, with
+    `behind`, the p-value of its not being faster.
+    """
 
     table: pd.DataFrame
-    undecided: int
-    """Alternatives of which it is not established that they are not faster."""
-    further: list[float]
-    """The corrected p-values of the further ways to refute the claim."""
 
     @property
     def best(self) -> pd.Series:
@@ -27,28 +24,26 @@ class Alternatives:
 
     def outcome(self, measured: str) -> Outcome:
         """That nothing is faster by more than the margin holds, does not hold, or is not settled."""
-        faster = list(self.table.loc[self.table["verdict"] == "faster", "name"])
-        if faster:
-            return Outcome(FAILS, measured, f"faster by more than {share(MARGIN)}: {', '.join(faster)}")
-        if self.undecided:
-            said = f"not settled against {self.undecided} of {len(self.table)} others; {TOO_FEW}"
-            return Outcome(OPEN, measured, said)
-        return Outcome(
-            HOLDS, measured, f"none of {len(self.table)} others is faster by more than {share(MARGIN)}"
-        )
+        blocks, others = int(self.table["blocks"].min()), len(self.table)
+        faster = self.table[self.table["verdict"] == "faster"]
+        if len(faster):
+            why = f"faster by more than {share(MARGIN)}: {', '.join(faster['name'])}"
+            return Outcome(FAILS, measured, why, p=float(faster["p"].min()))
+        p = float(self.table["behind"].max())
+        undecided = int((self.table["behind"] > ERROR).sum())
+        row = {"blocks": blocks, "p": p, "verdict": "inconclusive" if undecided else "not faster"}
+        said = f"not settled against {undecided} of {others} others; {TOO_FEW}"
+        found = judged(row, "not faster", measured, unsettled=said)
+        why = found.why or f"none of {others} others is faster by more than {share(MARGIN)}"
+        return replace(found, why=why)
 
 
-def alternatives(pairs: pd.DataFrame, further: Sequence[float] = ()) -> Alternatives:
+def alternatives(pairs: pd.DataFrame) -> Alternatives:
     """Judge the alternatives; `pairs` has `name` and `log_ratio` = ln(alternative / choice).
 
     That nothing is faster needs evidence against every alternative (an intersection of tests, each at 5 %);
-    that something is faster is Holm-corrected over the alternatives, and over the p-values of `further` ways
-    to refute the same claim.
+    that something is faster is Holm-corrected over the alternatives.
     """
-    groups = list(pairs.groupby("name"))
-    rows = pd.DataFrame([{"name": name, **judge_one(group["log_ratio"])} for name, group in groups])
-    adjusted = holm([*rows["p"], *further])
-    stands = [p <= ERROR for p in adjusted[: len(rows)]]
-    table = rows.assign(verdict=rows["verdict"].where(stands, "inconclusive"))
-    undecided = sum(not not_faster(group["log_ratio"]) for _, group in groups)
-    return Alternatives(table, undecided, adjusted[len(rows) :])
+    behind = {name: not_faster(group["log_ratio"]) for name, group in pairs.groupby("name")}
+    table = judge(pairs, ["name"])
+    return Alternatives(table.assign(behind=table["name"].map(behind)))

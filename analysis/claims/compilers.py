@@ -1,10 +1,12 @@
 """The claim about compilers, each of which brings an OpenMP runtime of its own."""
 
+from dataclasses import replace
+
 import pandas as pd
 
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import Compared, Outcome, both, no_records
-from analysis.claims.ratios import judged
+from analysis.claims.family import both
+from analysis.claims.outcome import Compared, Outcome, judged, no_records
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change
@@ -35,7 +37,7 @@ def compilers(evidence: Evidence, experiment: str, candidate: str, reference: st
     joined = both(parts)
     if code is None:
         why = "; ".join(part for part in (joined.why, NOT_TOLD_APART) if part)
-        return Outcome(joined.verdict, joined.measured, why, joined.figures)
+        return replace(joined, why=why)
     return joined
 
 
@@ -48,4 +50,4 @@ def _against(reference: pd.DataFrame, candidate: pd.DataFrame, how: str) -> Outc
     measured = f"{names[0]} against {names[1]}: {change(row)} of time, {blocks(row)} ({row['verdict']})"
     figure = Compared(f"time of {names[0]} against {names[1]}", "–", change(row))
     outcome = judged(row, "faster", measured, (figure,))
-    return Outcome(outcome.verdict, measured, outcome.why or f"{row['verdict']} {how}", outcome.figures)
+    return replace(outcome, why=outcome.why or f"{row['verdict']} {how}")

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, no_records
+from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, judged, no_records
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, count
@@ -49,11 +49,8 @@ def fewer_wasted_attempts(
         *(Compared(f"{value.replace('_', ' ')}", "–", change(row)) for value, row in rows.items()),
         Compared("time", "–", change(seconds)),
     )
-    if wasted["blocks"] < 2:
-        return Outcome(OPEN, measured, "needs at least two seeds", figures)
-    if wasted["verdict"] == "inconclusive":
-        return Outcome(OPEN, measured, TOO_FEW.replace("blocks or a quieter machine", "seeds"), figures)
-    return Outcome(HOLDS if wasted["verdict"] == "faster" else FAILS, measured, figures=figures)
+    unsettled = TOO_FEW.replace("blocks or a quieter machine", "seeds")
+    return judged(wasted, "faster", measured, figures, unsettled, unit="seed")
 
 
 def _over_seeds(before: pd.DataFrame, after: pd.DataFrame, value: str) -> pd.Series:

@@ -1,16 +1,20 @@
 """Claims about how the time changes over a swept parameter."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from math import isfinite
 
 import pandas as pd
 
 from analysis.claims import published_curves
 from analysis.claims.alternatives import alternatives
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
+from analysis.claims.family import both
+from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records
 from analysis.records.studies import Study
+from analysis.statistics.intervals import FEWEST
 from analysis.statistics.pairs import log_ratios, process_medians
-from analysis.statistics.trends import growth, linearity, minimum
+from analysis.statistics.trends import Minimum, growth, linearity, minimum
 from analysis.support.wording import blocks, change, exact, factor, interval, listed, number
 
 ONE_POINT = "needs at least two values of the swept parameter"
@@ -48,9 +52,8 @@ def _grows(evidence: Evidence, experiment: str) -> Outcome:
         f"exponent {interval(trend.exponent)}, {blocks(trend.change)}"
     ) + (f" (without the degenerate {name} = {listed(without)})" if without else "")
     figures = (_growth_compared(evidence, experiment, kept),)
-    if trend.verdict == "inconclusive":
-        return Outcome(OPEN, measured, TOO_FEW, figures)
-    return Outcome(HOLDS if trend.verdict == "grows" else FAILS, measured, figures=figures)
+    row = {"blocks": trend.change["blocks"], "p": trend.p, "verdict": trend.verdict}
+    return judged(row, "grows", measured, figures)
 
 
 def _growth_compared(evidence: Evidence, experiment: str, processes: pd.DataFrame) -> Compared:
@@ -79,7 +82,7 @@ def linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> 
     curve = published_curves.curve(evidence.published, experiment)
     outcome = _linear(processes, curve, within)
     grown = _growth_compared(evidence, experiment, processes)
-    return Outcome(outcome.verdict, outcome.measured, outcome.why, (*outcome.figures, grown))
+    return replace(outcome, figures=(*outcome.figures, grown))
 
 
 def _linear(processes: pd.DataFrame, published: pd.DataFrame, within: tuple[float, float]) -> Outcome:
@@ -93,10 +96,9 @@ def _linear(processes: pd.DataFrame, published: pd.DataFrame, within: tuple[floa
         f"taken as linear between {within[0]} and {within[1]}"
     )
     figures = (Compared(f"exponent over {name}", number(theirs), interval(line.exponent)),)
-    if line.verdict == "inconclusive":
-        why = "the exponent's interval reaches across a bound: more blocks would decide"
-        return Outcome(OPEN, measured, why, figures)
-    return Outcome(HOLDS if line.verdict == "linear" else FAILS, measured, figures=figures)
+    row = {"blocks": line.blocks, "p": line.p, "verdict": line.verdict}
+    why = "the exponent's interval reaches across a bound: more blocks would decide"
+    return judged(row, "linear", measured, figures, why)
 
 
 def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = None) -> Outcome:
@@ -115,10 +117,9 @@ def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = 
 def _shape(processes: pd.DataFrame, published: pd.DataFrame) -> Outcome:
     ours = minimum(processes)
     name = processes["x_name"].iloc[0]
-    where = "" if pd.isna(ours.break_point.estimate) else f", break point {interval(ours.break_point)}"
     measured = (
-        f"least at {name} = {exact(ours.lowest)}{where}; against it {change(ours.fall)} at the "
-        f"smallest and {change(ours.rise)} at the largest {name}, {blocks(ours.fall)}"
+        f"least at {name} = {exact(ours.lowest)}{_break(ours)}; against it {change(ours.fall)} at "
+        f"the smallest and {change(ours.rise)} at the largest {name}, {blocks(ours.fall)}"
     )
     theirs = minimum(published)
     figures = (
@@ -126,10 +127,19 @@ def _shape(processes: pd.DataFrame, published: pd.DataFrame) -> Outcome:
         Compared(f"smallest {name} against it", factor(theirs.fall["ratio"]), factor(ours.fall["ratio"])),
         Compared(f"largest {name} against it", factor(theirs.rise["ratio"]), factor(ours.rise["ratio"])),
     )
-    if ours.verdict == "inconclusive":
-        return Outcome(OPEN, measured, TOO_FEW, figures)
-    held = ours.verdict == "falls then rises"
-    return Outcome(HOLDS if held else FAILS, measured, ours.verdict, figures)
+    row = {"blocks": ours.fall["blocks"], "p": ours.p, "verdict": ours.verdict}
+    outcome = judged(row, "falls then rises", measured, figures)
+    return replace(outcome, why=outcome.why or ours.verdict)
+
+
+def _break(least: Minimum) -> str:
+    """Return the break point in words; nothing if it could not be fitted."""
+    found = least.break_point
+    if pd.isna(found.estimate):
+        return ""
+    if not isfinite(found.low):
+        return f", break point {number(found.estimate)} (an interval needs {FEWEST} blocks)"
+    return f", break point {interval(found)}"
 
 
 def _least_at(processes: pd.DataFrame, least: float) -> Outcome:

@@ -1,17 +1,17 @@
 """The claim about machines, the only one that looks across studies."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import pandas as pd
 
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, no_records
+from analysis.claims.family import both
+from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records
 from analysis.records.published import Published
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.unpaired import judge_unpaired
-from analysis.statistics.verdicts import corrected
 from analysis.support.wording import listed, number
 
 
@@ -41,7 +41,7 @@ def clock(evidence: Evidence, experiment: str) -> Outcome:
 
     Only the greatest clocks of the published machines are known. The clock in a CPU's name is the base clock,
     and stands beside none of them. Machines are not interleaved, so their processes are compared unpaired,
-    each with the next faster clock, Holm-corrected; all on one number of threads, or not at all.
+    each with the next faster clock; all on one number of threads, or not at all.
     """
     machines = _machines(evidence, experiment)
     if not machines:
@@ -52,21 +52,14 @@ def clock(evidence: Evidence, experiment: str) -> Outcome:
     if why:
         return Outcome(OPEN, measured if len(machines) > 1 else "", why, figures)
     ordered = sorted(_known(machines), key=lambda one: one.gigahertz or 0)
-    table = corrected(
-        pd.DataFrame(
-            [
-                judge_unpaired(slow.processes["steps_seconds"], fast.processes["steps_seconds"])
-                for slow, fast in pairwise(ordered)
-                if slow.gigahertz != fast.gigahertz
-            ]
-        )
-    )
-    verdicts = set(table["verdict"])
-    if {"slower", "equivalent"} & verdicts:
-        return Outcome(FAILS, measured, "a higher clock was not faster", figures)
-    if "inconclusive" in verdicts:
-        return Outcome(OPEN, measured, TOO_FEW, figures)
-    return Outcome(HOLDS, measured, figures=figures)
+    rows = [
+        judge_unpaired(slow.processes["steps_seconds"], fast.processes["steps_seconds"])
+        for slow, fast in pairwise(ordered)
+        if slow.gigahertz != fast.gigahertz
+    ]
+    joined = both([judged(row, "faster", "", unit="process") for row in rows])
+    why = "a higher clock was not faster" if joined.verdict == FAILS else joined.why
+    return replace(joined, measured=measured, why=why, figures=figures)
 
 
 def _known(machines: Sequence[Measured]) -> list[Measured]:

@@ -1,8 +1,12 @@
 """What became of a claim: holds, does not hold, or cannot be decided here, with what was measured and why."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
+
+from analysis.statistics.intervals import FEWEST
+from analysis.support.wording import count
 
 
 class Verdict(StrEnum):
@@ -36,7 +40,8 @@ class Compared:
 @dataclass(frozen=True)
 class Outcome:
     """`measured` is the effect with its 95 % interval, empty if there is none; `why` is the reason in
-    words. `missing` tells a claim without records from one that they do not decide.
+    words. `missing` tells a claim without records from one that they do not decide. `p` is the p-value of the
+    verdict, or of the one best supported; None where nothing could be tested.
     """
 
     verdict: Verdict
@@ -44,6 +49,7 @@ class Outcome:
     why: str = ""
     figures: tuple[Compared, ...] = ()
     missing: bool = False
+    p: float | None = None
 
 
 def no_records(experiment: str, missing: str = "") -> Outcome:
@@ -52,15 +58,21 @@ def no_records(experiment: str, missing: str = "") -> Outcome:
     return Outcome(OPEN, why=f"{NO_RECORDS}{detail} (experiment {experiment!r})", missing=True)
 
 
-def both(outcomes: Sequence[Outcome]) -> Outcome:
-    """Join the outcomes of a claim's parts: it holds if all do, fails if one does, and is open otherwise."""
-    verdicts = [outcome.verdict for outcome in outcomes]
-    verdict = FAILS if FAILS in verdicts else OPEN if OPEN in verdicts else HOLDS
-    decisive = [outcome for outcome in outcomes if outcome.verdict == verdict]
-    return Outcome(
-        verdict,
-        "; ".join(outcome.measured for outcome in outcomes if outcome.measured),
-        "; ".join(dict.fromkeys(outcome.why for outcome in decisive if outcome.why)),
-        tuple(dict.fromkeys(figure for outcome in outcomes for figure in outcome.figures)),
-        all(outcome.missing for outcome in outcomes),
-    )
+def judged(
+    row: Mapping[str, Any],
+    expected: str,
+    measured: str,
+    figures: tuple[Compared, ...] = (),
+    unsettled: str = TOO_FEW,
+    unit: str = "block",
+) -> Outcome:
+    """Return what a verdict with its `p`, from so many `blocks` (or another unit), says of a claim that
+    expects
+    one; `unsettled` is why it is open where they are enough and do not decide.
+    """
+    if row["blocks"] < FEWEST:
+        why = f"rests on {count(row['blocks'], unit)}: a verdict needs at least {FEWEST}"
+        return Outcome(OPEN, measured, why, figures)
+    if row["verdict"] == "inconclusive":
+        return Outcome(OPEN, measured, unsettled, figures, p=row["p"])
+    return Outcome(HOLDS if row["verdict"] == expected else FAILS, measured, figures=figures, p=row["p"])

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, no_records
+from analysis.claims.outcome import Compared, Outcome, judged, no_records
 from analysis.statistics.pairs import PAIR
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import count, number, share
@@ -43,6 +43,4 @@ def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str)
     )
     said = f"{share(float((resolving / whole).median()))}, {share(part[phase])} without early resolves"
     figures = (Compared("share of a step that resolving takes", "–", said),)
-    if row["verdict"] == "inconclusive":
-        return Outcome(OPEN, measured, TOO_FEW, figures)
-    return Outcome(HOLDS if row["verdict"] == "slower" else FAILS, measured, figures=figures)
+    return judged(row, "slower", measured, figures)

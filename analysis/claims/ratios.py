@@ -5,13 +5,13 @@ equivalent, the claim does not hold.
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import pandas as pd
 
 from analysis.claims import published_curves
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
+from analysis.claims.family import both
+from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, exact, percent
@@ -66,10 +66,3 @@ def _one_pair(
 
 def _ratios(against: pd.DataFrame, chosen: pd.DataFrame, x: float) -> pd.Series:
     return log_ratios(against[against["x"] == x], chosen[chosen["x"] == x])["log_ratio"]
-
-
-def judged(row: dict[str, Any], expected: str, measured: str, figures: tuple[Compared, ...] = ()) -> Outcome:
-    """Return what a row of `judge_one` says of a claim that expects one of its verdicts."""
-    if row["verdict"] == "inconclusive":
-        return Outcome(OPEN, measured, TOO_FEW, figures)
-    return Outcome(HOLDS if row["verdict"] == expected else FAILS, measured, figures=figures)

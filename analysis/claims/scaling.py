@@ -1,6 +1,6 @@
 """The claim about threads: what the curve does up to the cores, to the hardware threads, and beyond."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import pandas as pd
@@ -8,9 +8,11 @@ import pandas as pd
 from analysis.claims import published_curves
 from analysis.claims.curves import published_processes
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
+from analysis.claims.family import both
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, Compared, Outcome, judged, no_records
 from analysis.statistics.pairs import log_ratios
-from analysis.statistics.verdicts import ERROR, MARGIN, holm, judge_one
+from analysis.statistics.scalability import doubt
+from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.wording import blocks, change, exact, factor
 
 ANOTHER_BINDING = "threads are bound at one end and not at the other: the binding changes with their number"
@@ -42,7 +44,6 @@ def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_m
 
     `flat_margin` is what counts as flat. A stretch that the machine does not have leaves the claim open
     unless another stretch already contradicts it; one whose ends were bound differently decides nothing.
-    The tests are Holm-corrected.
     """
     processes = published_processes(evidence.study, experiment)
     if processes.empty:
@@ -51,11 +52,7 @@ def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_m
     cores = study.cores or study.hardware_threads
     stretches = _stretches(sorted(processes["x"].unique()), cores, study.hardware_threads, flat_margin)
     there = [stretch for stretch in stretches if stretch.start < stretch.end]
-    rows = [stretch.judge(processes) for stretch in there]
-    tested = [
-        _judged(stretch, row, p, processes)
-        for stretch, row, p in zip(there, rows, holm([row["p"] for row in rows]), strict=True)
-    ]
+    tested = [_judged(stretch, processes, cores) for stretch in there]
     absent = [Outcome(OPEN, why=f"needs {one.needs}") for one in stretches if one not in there]
     figures = _compared(evidence, experiment, stretches, processes, published_machine)
     return both([*tested, *absent, Outcome(HOLDS, figures=figures)])
@@ -74,16 +71,16 @@ def _stretches(x: list[float], cores: int, hardware: int, flat_margin: float) ->
     ]  # fmt: skip
 
 
-def _judged(stretch: Stretch, row: dict[str, Any], p: float, processes: pd.DataFrame) -> Outcome:
-    measured = f"{stretch.start:g} to {stretch.end:g} threads: {change(row)} of time, {blocks(row)}"
+def _judged(stretch: Stretch, processes: pd.DataFrame, cores: int) -> Outcome:
+    row, span = stretch.judge(processes), f"{stretch.start:g} to {stretch.end:g} threads"
+    unlikely = doubt(1 / row["ratio"], min(stretch.end, cores) / min(stretch.start, cores))
+    measured = f"{span}: {change(row)} of time, {blocks(row)}{unlikely and f' ({unlikely})'}"
     if not stretch.same_binding(processes):
         return Outcome(OPEN, measured, ANOTHER_BINDING)
-    if p > ERROR or row["verdict"] == "inconclusive":
-        return Outcome(OPEN, measured, TOO_FEW)
-    if row["verdict"] == stretch.expected:
-        return Outcome(HOLDS, measured)
-    why = f"from {stretch.start:g} to {stretch.end:g} threads {row['verdict']}, expected {stretch.expected}"
-    return Outcome(FAILS, measured, why)
+    outcome = judged(row, stretch.expected, measured)
+    if outcome.verdict != FAILS:
+        return outcome
+    return replace(outcome, why=f"from {span} {row['verdict']}, expected {stretch.expected}")
 
 
 def _compared(

@@ -1,5 +1,6 @@
 """Claims that one schedule and chunk is the one to choose."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -7,10 +8,11 @@ import pandas as pd
 
 from analysis.claims.alternatives import alternatives
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, TOO_FEW, Compared, Outcome, both, no_records
+from analysis.claims.family import both
+from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records
 from analysis.records.published import Published
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
-from analysis.statistics.verdicts import ERROR, judge_one
+from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, count, exact, number, percent
 
 ONE_THREAD = "on a single thread a schedule shares nothing out: needs 2 hardware threads"
@@ -45,7 +47,7 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     if pairs.empty:
         return no_records(experiment, "any block with both sides")
     average = judge_one(_average(pairs))
-    found = alternatives(pairs, [average["p"]])
+    found = alternatives(pairs)
     best, seconds = found.best, number(float(np.median(chosen["steps_seconds"])))
     measured = (
         f"{schedule} {chunk}: {seconds} s on {count(int(chosen['threads'].iloc[0]), 'thread')}; "
@@ -56,8 +58,7 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
         Compared("best other against the choice", _best_other(evidence, experiment, schedule, chunk),
                  f"{best['name']}: {change(best)}"),
     )  # fmt: skip
-    parts = both([found.outcome(measured), _matters(average, found.further[0])])
-    return Outcome(parts.verdict, parts.measured, parts.why, figures)
+    return replace(both([found.outcome(measured), _matters(average)]), figures=figures)
 
 
 def _average(pairs: pd.DataFrame) -> pd.Series:
@@ -66,16 +67,11 @@ def _average(pairs: pd.DataFrame) -> pd.Series:
     return -table.mean(axis=1)
 
 
-def _matters(average: dict[str, Any], corrected: float) -> Outcome:
-    """Judge the choice against the average of the others: that it is faster confirms, so it is not corrected;
-    that it is not refutes, in one of several ways.
-    """
+def _matters(average: dict[str, Any]) -> Outcome:
+    """Judge the choice against the average of the others."""
     measured = f"against the others on average {change(average)} of time, {blocks(average)}"
-    if average["verdict"] == "faster":
-        return Outcome(HOLDS, measured)
-    if average["verdict"] == "inconclusive" or corrected > ERROR:
-        return Outcome(OPEN, measured, TOO_FEW)
-    return Outcome(FAILS, measured, NOT_BETTER[average["verdict"]])
+    outcome = judged(average, "faster", measured)
+    return replace(outcome, why=NOT_BETTER[average["verdict"]]) if outcome.verdict == FAILS else outcome
 
 
 def _fastest(published: Published, experiment: str, processes: pd.DataFrame) -> tuple[str, str]:

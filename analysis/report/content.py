@@ -19,10 +19,11 @@ from analysis.records.studies import Study, split
 from analysis.report import provenance
 from analysis.report.horizons import horizons
 from analysis.statistics.intervals import RANKS_FROM
-from analysis.statistics.noise import process_noise, warning
+from analysis.statistics.levels import in_order, levels
+from analysis.statistics.noise import needed_said, process_noise, warning
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import ERROR, MARGIN, judge_one
-from analysis.support.wording import blocks, change, count, share
+from analysis.support.wording import blocks, change, count, number, share
 
 STYLE = Path(__file__).parent / "report.css"
 CONTROL = "control"
@@ -104,6 +105,22 @@ def control_sentence(study: Study) -> str:
     sides = [part for _, part in processes.groupby("label")]
     if len(sides) != 2:
         return "The control (one variant, two labels) was not measured: nothing vouches for the rest."
+    return f"{_control_verdict(study, processes, sides)}{_two_speeds(processes)}"
+
+
+def _two_speeds(processes: pd.DataFrame) -> str:
+    """Say that the machine has two speeds, if the control's times show them: no count of bursts does."""
+    found = levels(in_order(processes))
+    if found is None:
+        return ""
+    return (
+        f" The machine has two speeds, a factor of {number(found.factor, 2)} apart: {found.slow} of the "
+        f"{found.times} runs of the control were slow, and it changed {count(found.changes, 'time')} between "
+        "them. What is compared was measured in part on one and in part on the other, which widens intervals."
+    )
+
+
+def _control_verdict(study: Study, processes: pd.DataFrame, sides: Sequence[pd.DataFrame]) -> str:
     row = judge_one(log_ratios(*sides)["log_ratio"])
     sessions, beside = study.times["session"].nunique(), processes["session"].nunique()
     over = "the whole run" if beside == sessions else f"{beside} of {count(sessions, 'session')}"
@@ -121,7 +138,7 @@ def control_sentence(study: Study) -> str:
 
 
 def _noise_row(row: dict[str, Any]) -> dict[str, Any]:
-    return {**row, "noise": share(row["noise"], 2)}
+    return {**row, "noise": share(row["noise"], 2), "needed": needed_said(row["needed"])}
 
 
 def _figure(figure: Drawn) -> dict[str, Any]:

@@ -3,6 +3,9 @@
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy import stats
+
+from analysis.statistics.intervals import FEWEST
 
 Floats = NDArray[np.float64]
 
@@ -16,28 +19,44 @@ def summarise(
     """Return per group of `by`: `median`, `low`, `high` of `value`, and how many sessions, processes,
     samples.
 
-    The median is that of the processes' medians. The interval is the percentile interval of a hierarchical
-    bootstrap (Davison and Hinkley, "Bootstrap Methods and their Application", 1997, section 3.8): sessions
-    are drawn with replacement, then processes within each, then repetitions within each. With a single
-    process there is nothing to resample above the repetitions and the interval covers those alone.
+    The median is that of the processes' medians. The interval comes from a hierarchical bootstrap (Davison
+    and Hinkley, "Bootstrap Methods and their Application", 1997, section 3.8): sessions are drawn with
+    replacement, then processes within each, then repetitions within each. Its percentiles are too narrow for
+    few processes and are widened, in logarithms about the median, as much as Student's t is wider than the
+    normal and a sample's deviation less than the true one (Hesterberg, Am. Stat. 69, 2015, section 4.1).
+    Fewer than `FEWEST` processes give no interval: its ends are NaN.
     """
     rows = []
     for key, group in times.groupby(by, sort=True):
         padded = _padded(group, value)
         medians = _row_medians(padded.reshape(-1, padded.shape[2]))
-        low, high = np.quantile(_replicates(padded), [(1 - level) / 2, (1 + level) / 2])
+        median, processes = float(_row_medians(medians[np.newaxis])[0]), group["file"].nunique()
+        low, high = _widened(padded, median, processes, level)
         rows.append(
             {
                 **dict(zip(by, key, strict=True)),
-                "median": float(_row_medians(medians[np.newaxis])[0]),
-                "low": float(low),
-                "high": float(high),
+                "median": median,
+                "low": low,
+                "high": high,
                 "sessions": padded.shape[0],
-                "processes": group["file"].nunique(),
+                "processes": processes,
                 "samples": len(group),
             }
         )
     return pd.DataFrame(rows, columns=[*by, "median", "low", "high", "sessions", "processes", "samples"])
+
+
+def _widened(padded: Floats, median: float, processes: int, level: float) -> tuple[float, float]:
+    if processes < FEWEST:
+        return np.nan, np.nan
+    tail = (1 + level) / 2
+    wider = stats.t.ppf(tail, processes - 1) / stats.norm.ppf(tail) * np.sqrt(processes / (processes - 1))
+    # Of few processes the median has few values: between them, not at the nearest one, is the quantile (Ma,
+    # Genton and Parzen, Ann. Inst. Stat. Math. 63, 2011).
+    values, counts = np.unique(_replicates(padded), return_counts=True)
+    levels = (np.cumsum(counts) - counts / 2) / counts.sum()
+    low, high = median * (np.interp([1 - tail, tail], levels, values) / median) ** wider
+    return float(low), float(high)
 
 
 def _padded(group: pd.DataFrame, value: str) -> Floats:

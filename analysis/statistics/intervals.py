@@ -23,6 +23,10 @@ from scipy import stats
 Floats = NDArray[np.float64]
 
 RANKS_FROM = 12
+FEWEST = 4
+"""Blocks below which nothing is decided: of two or three a single disturbed one makes any answer, and their
+deviation is hardly known.
+"""
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
-from analysis.statistics.intervals import RANKS_FROM
+from analysis.statistics.intervals import FEWEST, RANKS_FROM
 from analysis.statistics.pairs import PAIR, process_medians
 from analysis.statistics.verdicts import ERROR, MARGIN
 from analysis.support.wording import count, share
@@ -15,6 +15,7 @@ from analysis.support.wording import count, share
 Floats = NDArray[np.float64]
 
 BURST = 4.0
+MOST_BLOCKS = 1000
 LARGE_EFFECTS = ("trend", "scaling", "machine", "phases", "speed_against_error", "hard_cases")
 ADVICE = (
     "close other programs, keep the machine on mains power and a fixed clock, run on bare metal or a whole "
@@ -27,9 +28,10 @@ def process_noise(times: pd.DataFrame) -> pd.DataFrame:
 
     `noise` is the typical standard deviation of ln(time) from process to process, as a fraction: 0.01 is 1
     %. `bursts` counts the processes that took far longer than that explains. `needed` blocks would let two
-    equal configurations be found equivalent 95 times in 100: with bursts, at least as many as the signed
-    ranks start from, which a burst cannot move far. `small` tells the experiments that are about small
-    differences, not trends. Those with a single block or configuration have no estimate and are left out.
+    equal configurations be found equivalent 95 times in 100 (infinite for more than `MOST_BLOCKS`): with
+    bursts, at least as many as the signed ranks start from, which a burst cannot move far. `small` tells the
+    experiments that are about small differences, not trends. Those with a single block or configuration have
+    no estimate and are left out.
     """
     rows = []
     processes = process_medians(times)
@@ -87,24 +89,29 @@ def count_bursts(logs: Floats, noise: float) -> int:
     return int((np.array(excess) > BURST * np.sqrt(2) * noise).sum())
 
 
-def blocks_needed(noise: float, margin: float = MARGIN, rate: float = 0.95, most: int = 1000) -> int:
-    """Return the blocks with which two equal configurations come out equivalent at the given rate, at most
-    `most`. `noise` is per process.
+def blocks_needed(noise: float, margin: float = MARGIN, rate: float = 0.95) -> float:
+    """Return the blocks with which two equal configurations come out equivalent at the given rate; infinite
+    if `MOST_BLOCKS` are too few, of which an estimate would say nothing. `noise` is per process.
     """
-    counts = range(3, most + 1)
+    counts = range(FEWEST, MOST_BLOCKS + 1)
     index = bisect_left(counts, rate, key=lambda blocks: equivalence_rate(noise, blocks, margin))
-    return counts[min(index, len(counts) - 1)]
+    return counts[index] if index < len(counts) else np.inf
+
+
+def needed_said(needed: float) -> str:
+    """Return a number of blocks needed in words."""
+    return f"{needed:.0f}" if np.isfinite(needed) else f"more than {MOST_BLOCKS}"
 
 
 def equivalence_rate(noise: float, blocks: int, margin: float = MARGIN) -> float:
-    """Return how often two one-sided t tests find two equal configurations equivalent.
+    """Return how often the t interval finds two equal configurations equivalent.
 
     The mean of the log ratios is normal and their deviation, independent of it, a scaled chi; the rate is the
-    chance that the 90 % interval lies within the margin, averaged over quantiles of the deviation.
+    chance that the 95 % interval lies within the margin, averaged over quantiles of the deviation.
     """
     true_error = noise * np.sqrt(2 / blocks)
     quantiles = stats.chi2.ppf((np.arange(200) + 0.5) / 200, blocks - 1)
-    half_width = stats.t.ppf(1 - ERROR, blocks - 1) * true_error * np.sqrt(quantiles / (blocks - 1))
+    half_width = stats.t.ppf(1 - ERROR / 2, blocks - 1) * true_error * np.sqrt(quantiles / (blocks - 1))
     room = np.maximum(np.log1p(margin) - half_width, 0)
     return float((2 * stats.norm.cdf(room / max(true_error, 1e-12)) - 1).mean())
 
@@ -121,7 +128,7 @@ def warning(noise: pd.DataFrame) -> str | None:
     said = f"The worst is {worst['experiment']!r}: the time of a process varies by {share(worst['noise'], 1)}"
     return (
         f"The machine was too noisy to settle differences of {share(MARGIN)} in {len(short)} of {len(asked)} "
-        f"experiments about small ones. {said}, with {count(worst['bursts'], 'burst')}, which needs about "
-        f"{worst['needed']} blocks; {worst['blocks']} were run. Expect verdicts of 'inconclusive'. To do "
-        f"better: {ADVICE}."
+        f"experiments about small ones. {said}, with {count(worst['bursts'], 'burst')}, which needs "
+        f"{needed_said(worst['needed'])} blocks; {worst['blocks']} were run. Expect verdicts of "
+        f"'inconclusive'. To do better: {ADVICE}."
     )

@@ -7,13 +7,11 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from analysis.statistics.intervals import Interval
+from analysis.statistics.intervals import FEWEST, Interval, centre
 from analysis.statistics.pairs import PAIR
+from analysis.support.wording import number
 
 Floats = NDArray[np.float64]
-
-REPLICATES = 1000
-SEED = 20240229
 
 
 @dataclass(frozen=True)
@@ -41,32 +39,49 @@ def fit(processes: pd.DataFrame, most_threads: int) -> ScalabilityLaw | None:
 
     Takes one row a process with `x` = threads. The law says nothing of more threads than the machine runs
     at once. It is linear in its coefficients once multiplied out, n t(n) = t(1) (1 + contention (n - 1) +
-    coherency n (n - 1)), and solved under its own condition that none is negative; the intervals are
-    percentiles over bootstrap draws of the blocks. Source: Gunther, "Guerrilla Capacity Planning", 2007,
-    chapters 4 to 6.
+    coherency n (n - 1)), and solved under its own condition that none is negative. The intervals are
+    Student's t over the blocks, each fitted without that condition, which would press them against 0: where
+    one lies below 0, the law does not hold. Fewer than `FEWEST` blocks give no interval. Source: Gunther,
+    "Guerrilla Capacity Planning", 2007, chapters 4 to 6.
     """
     chosen = processes[processes["x"] <= most_threads]
     curves = chosen.pivot_table(index=PAIR, columns="x", values="steps_seconds", aggfunc="median").dropna()
     threads = curves.columns.to_numpy(dtype=float)
     if len(threads) < 4 or len(curves) == 0:
         return None
-    generator = np.random.default_rng(SEED)
     blocks = curves.to_numpy()
-    drawn = blocks[generator.integers(len(blocks), size=(REPLICATES, len(blocks)))].mean(axis=1)
-    seconds, contention, coherency = _coefficients(threads, blocks.mean(axis=0))
-    replicates = np.array([_coefficients(threads, curve) for curve in drawn])
-    low, high = np.quantile(replicates, [0.025, 0.975], axis=0)
-    return ScalabilityLaw(
-        seconds=seconds,
-        contention=Interval(contention, float(low[1]), float(high[1])),
-        coherency=Interval(coherency, float(low[2]), float(high[2])),
-        points=len(threads),
+    seconds, *estimates = _coefficients(threads, blocks.mean(axis=0))
+    free = np.array([_coefficients(threads, curve, condition=False)[1:] for curve in blocks])
+    contention, coherency = (
+        _interval(estimate, each) for estimate, each in zip(estimates, free.T, strict=True)
     )
+    return ScalabilityLaw(seconds, contention, coherency, len(threads))
 
 
-def _coefficients(threads: Floats, seconds: Floats) -> tuple[float, float, float]:
-    """Return t(1), contention and coherency that fit with the least relative error."""
+def _interval(estimate: float, each: Floats) -> Interval:
+    if len(each) < FEWEST:
+        return Interval(estimate, -np.inf, np.inf)
+    found = centre(each)
+    return Interval(estimate, min(found.low, estimate), max(found.high, estimate))
+
+
+def _coefficients(threads: Floats, seconds: Floats, condition: bool = True) -> tuple[float, float, float]:
+    """Return t(1), contention and coherency that fit with the least relative error; with the condition none
+    is negative.
+    """
     design = np.column_stack([np.ones_like(threads), threads - 1, threads * (threads - 1)])
     work = threads * seconds
-    (single, contention, coherency), _ = nnls(design / work[:, None], np.ones_like(work))
-    return float(single), float(contention / single), float(coherency / single)
+    scaled, ones = design / work[:, None], np.ones_like(work)
+    solution = nnls(scaled, ones)[0] if condition else np.linalg.lstsq(scaled, ones)[0]
+    single, contention, coherency = (float(one) for one in solution)
+    return single, contention / single, coherency / single
+
+
+def doubt(speed_up: float, most: float) -> str:
+    """Return a word of doubt on a speed-up above `most`, which the cores give; nothing else."""
+    if not speed_up > most:
+        return ""
+    return (
+        f"a speed-up of {number(speed_up)} is doubtful, the cores give {number(most)} at most: the caches "
+        "of more cores hold more, or the machine was slower while one end was measured"
+    )

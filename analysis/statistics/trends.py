@@ -11,14 +11,15 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
-from analysis.statistics.intervals import Interval, centre
+from analysis.statistics.breaks import break_point
+from analysis.statistics.intervals import FEWEST, Interval, centre, p_value
 from analysis.statistics.pairs import PAIR, log_ratios
-from analysis.statistics.verdicts import MARGIN, holm, judge_one
+from analysis.statistics.simultaneous import Differences, differences
+from analysis.statistics.verdicts import ERROR, MARGIN, judge_one, two_sided, verdict_row
 
 Floats = NDArray[np.float64]
 
-REPLICATES = 1000
-SEED = 20240229
+TOO_FEW_BLOCKS = "too few blocks"
 LINEAR_WITHIN = (0.9, 1.1)
 EXPONENTS = (0.3, 2.5, 441)
 
@@ -34,20 +35,23 @@ class Growth:
     first: float
     last: float
     verdict: str
+    p: float
 
 
 @dataclass(frozen=True)
 class Linearity:
-    """The exponent of x over a fixed cost, and whether that is a straight line."""
+    """The exponent of x over a fixed cost, from how many blocks, and whether that is a straight line."""
 
     exponent: Interval
+    blocks: int
     verdict: str
+    p: float
 
 
 @dataclass(frozen=True)
 class Minimum:
-    """A fall to a break point and a rise from it; `fall` and `rise` are rows of `judge_one` against the
-    lowest x.
+    """A fall to a break point and a rise from it; `fall` and `rise` are rows like those of `judge_one`, of
+    the first and the last x against the lowest.
     """
 
     break_point: Interval
@@ -55,6 +59,7 @@ class Minimum:
     fall: dict[str, Any]
     rise: dict[str, Any]
     verdict: str
+    p: float
 
 
 def growth(processes: pd.DataFrame, margin: float = MARGIN) -> Growth:
@@ -67,15 +72,16 @@ def growth(processes: pd.DataFrame, margin: float = MARGIN) -> Growth:
     """
     first, last = float(processes["x"].min()), float(processes["x"].max())
     change = judge_one(_ratio(processes, first, last), margin)
-    exponent = centre(_block_exponents(processes))
-    verdict = "inconclusive"
-    if change["verdict"] == "slower" and exponent.low > 0:
-        verdict = "grows"
-    elif change["verdict"] == "faster" and exponent.high < 0:
-        verdict = "falls"
-    elif change["verdict"] == "equivalent":
-        verdict = "flat"
-    return Growth(exponent, change, first, last, verdict)
+    exponents = _block_exponents(processes)
+    p = {
+        "grows": two_sided(p_value(exponents, 0, "greater"), len(exponents)),
+        "falls": two_sided(p_value(exponents, 0, "less"), len(exponents)),
+        "flat": 0.0,
+    }
+    said = {"slower": "grows", "faster": "falls", "equivalent": "flat"}.get(change["verdict"], "inconclusive")
+    p_of_both = max(change["p"], p.get(said, 1.0))
+    verdict = said if p_of_both <= ERROR else "inconclusive"
+    return Growth(centre(exponents), change, first, last, verdict, p_of_both)
 
 
 def linearity(processes: pd.DataFrame, within: tuple[float, float] = LINEAR_WITHIN) -> Linearity:
@@ -83,46 +89,54 @@ def linearity(processes: pd.DataFrame, within: tuple[float, float] = LINEAR_WITH
 
     Fits time = a + b x^exponent with the least relative error in each block (variable projection: a and b are
     linear, the exponent is searched on a fine grid); the interval is over the blocks. `linear` if it lies
-    within the bounds, `not linear` if outside, else `inconclusive`; NaN with fewer than four x.
+    within the bounds, `not linear` if outside, else `inconclusive`, as from fewer than `FEWEST` blocks; NaN
+    with fewer than four x.
     """
     curves = processes.pivot_table(index=PAIR, columns="x", values="steps_seconds", aggfunc="median").dropna()
     x = curves.columns.to_numpy(dtype=float)
     if len(x) < 4 or len(curves) == 0:
-        return Linearity(Interval(np.nan, -np.inf, np.inf), "inconclusive")
-    exponent = centre(_offset_exponents(x / x.max(), curves.to_numpy()))
-    verdict = "inconclusive"
-    if within[0] <= exponent.low and exponent.high <= within[1]:
-        verdict = "linear"
-    elif exponent.high < within[0] or exponent.low > within[1]:
-        verdict = "not linear"
-    return Linearity(exponent, verdict)
+        return Linearity(Interval(np.nan, -np.inf, np.inf), len(curves), "inconclusive", 1.0)
+    exponents = _offset_exponents(x / x.max(), curves.to_numpy())
+    inside = max(p_value(exponents, within[0], "greater"), p_value(exponents, within[1], "less"))
+    outside = min(p_value(exponents, within[0], "less"), p_value(exponents, within[1], "greater"))
+    p = two_sided(min(inside, outside), len(exponents))
+    verdict = "inconclusive" if p > ERROR else "linear" if inside < outside else "not linear"
+    return Linearity(centre(exponents), len(exponents), verdict, p)
 
 
 def minimum(processes: pd.DataFrame, margin: float = MARGIN) -> Minimum:
     """Tell whether the time falls to some x and rises from there.
 
-    The break point is that of a continuous line of two pieces through ln(time) over ln(x) (Muggeo, Stat.
-    Med. 22, 2003), with the percentile interval of a bootstrap over blocks. The verdict rests on the lowest
-    of the measured points: both the first and the last x must be slower than it (two rows, Holm-corrected).
+    All points are compared with each other, by simultaneous 95 % intervals (see `simultaneous`), so that the
+    lowest point may be where it was found. `falls then rises`: at some x inside the range the time is less
+    than at both ends by more than the margin; `rises only`: it is more at the last x than at the first, and
+    nowhere less than there; `falls only`: the other way round; `flat`: no two points differ; each by more
+    than the margin. At most one of these is true, and one that is not is said in at most 5 % of studies. What
+    is not established is `inconclusive`, and anything from fewer than `FEWEST` whole blocks `too few blocks`.
     """
-    curve = processes.groupby("x")["steps_seconds"].median()
-    lowest = float(curve.idxmin())
-    fall = judge_one(_ratio(processes, lowest, float(curve.index.min())), margin)
-    rise = judge_one(_ratio(processes, lowest, float(curve.index.max())), margin)
-    falls, rises = holm([fall["p"], rise["p"]])
-    legs = [
-        row["verdict"] if adjusted <= 0.05 else "inconclusive"
-        for row, adjusted in ((fall, falls), (rise, rises))
-    ]
-    if lowest in (curve.index.min(), curve.index.max()):
-        verdict = "rises only" if lowest == curve.index.min() else "falls only"
-    elif legs == ["slower", "slower"]:
-        verdict = "falls then rises"
-    elif "inconclusive" in legs:
-        verdict = "inconclusive"
-    else:
-        verdict = "falls only" if legs[0] == "slower" else "rises only" if legs[1] == "slower" else "flat"
-    return Minimum(_break_point(processes), lowest, fall, rise, verdict)
+    table = processes.pivot_table(index=PAIR, columns="x", values="steps_seconds", aggfunc="median")
+    whole, x = table.dropna(), table.columns.to_numpy(dtype=float)
+    curves = whole if len(whole) else table.median().to_frame().T
+    found = differences(np.log(curves.to_numpy(dtype=float)))
+    lowest = int(found.means.argmin())
+    verdict, p = _shape(found, np.log1p(margin)) if len(whole) >= FEWEST else (TOO_FEW_BLOCKS, 1.0)
+    fall, rise = (verdict_row(found.interval(end, lowest), len(whole), p, verdict) for end in (0, len(x) - 1))
+    return Minimum(break_point(x, whole.to_numpy()), float(x[lowest]), fall, rise, verdict, p)
+
+
+def _shape(found: Differences, bound: float) -> tuple[str, float]:
+    """Return the verdict of `minimum` and its p-value: that of the least of the slacks which it rests on."""
+    logs = found.means
+    first, last, inside = logs[0], logs[-1], logs[1:-1]
+    slack = {
+        "falls then rises": min(first, last) - inside.min(initial=np.inf) - bound,
+        "rises only": min(last - first - bound, bound - (first - logs[1:].min(initial=np.inf))),
+        "falls only": min(first - last - bound, bound - (last - logs[:-1].min(initial=np.inf))),
+        "flat": bound - (logs.max() - logs.min()),
+    }
+    best = max(slack, key=lambda verdict: slack[verdict])
+    p = found.p_value(float(slack[best]))
+    return best if p <= ERROR else "inconclusive", p
 
 
 def _ratio(processes: pd.DataFrame, reference: float, candidate: float) -> Floats:
@@ -157,33 +171,3 @@ def _offset_exponents(x: Floats, curves: Floats) -> Floats:
         errors[row] = ((weighted - design @ (np.linalg.pinv(design) @ weighted)) ** 2).sum(axis=0)
     exponents: Floats = candidates[errors.argmin(axis=0)]
     return exponents
-
-
-def _break_point(processes: pd.DataFrame) -> Interval:
-    """Fit the break in the mean curve of the blocks and of bootstrap draws of them; needs four x and no
-    gaps.
-    """
-    curves = processes.pivot_table(index=PAIR, columns="x", values="steps_seconds", aggfunc="median").dropna()
-    x = curves.columns.to_numpy(dtype=float)
-    if len(x) < 4 or len(curves) == 0 or x.min() <= 0:
-        return Interval(np.nan, -np.inf, np.inf)
-    generator = np.random.default_rng(SEED)
-    logs = np.log(curves.to_numpy())
-    drawn = generator.integers(len(logs), size=(REPLICATES, len(logs)))
-    breaks = _best_breaks(np.log(x), logs[drawn].mean(axis=1))
-    low, high = np.quantile(breaks, [0.025, 0.975]) if len(logs) > 1 else (-np.inf, np.inf)
-    return Interval(float(_best_breaks(np.log(x), logs.mean(axis=0)[None])[0]), float(low), float(high))
-
-
-def _best_breaks(x: Floats, curves: Floats) -> Floats:
-    """Return for each curve the break, over a fine grid inside x, of the two-piece line with the least
-    squares.
-    """
-    candidates = np.linspace(x[0], x[-1], 202)[1:-1]
-    errors = np.empty((len(candidates), len(curves)))
-    for row, candidate in enumerate(candidates):
-        design = np.column_stack([np.ones_like(x), x, np.maximum(x - candidate, 0)])
-        residuals = curves.T - design @ (np.linalg.pinv(design) @ curves.T)
-        errors[row] = (residuals**2).sum(axis=0)
-    breaks: Floats = np.exp(candidates[errors.argmin(axis=0)])
-    return breaks

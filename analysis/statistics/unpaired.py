@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
-from analysis.statistics.verdicts import ERROR, MARGIN, decide
+from analysis.statistics.intervals import Interval
+from analysis.statistics.verdicts import ERROR, MARGIN, decide, verdict_row
 
 
 def judge_unpaired(reference: ArrayLike, candidate: ArrayLike, margin: float = MARGIN) -> dict[str, Any]:
@@ -18,29 +19,19 @@ def judge_unpaired(reference: ArrayLike, candidate: ArrayLike, margin: float = M
     """
     first, second = np.log(np.asarray(reference, dtype=float)), np.log(np.asarray(candidate, dtype=float))
     fewest = min(len(first), len(second))
+    estimate = float(second.mean() - first.mean()) if fewest else np.nan
     if fewest < 2:
-        ratio = float(np.exp(second.mean() - first.mean())) if fewest else np.nan
-        unbounded = {"low": 0.0, "high": np.inf, "decision_low": 0.0, "decision_high": np.inf}
-        return {"ratio": ratio, **unbounded, "blocks": fewest, "p": 1.0, "verdict": "inconclusive"}
+        return verdict_row(Interval(estimate, -np.inf, np.inf), fewest, 1.0, "inconclusive")
     bound = np.log1p(margin)
 
     def p_value(shift: float, alternative: str) -> float:
         return float(stats.ttest_ind(second - shift, first, equal_var=False, alternative=alternative).pvalue)
 
-    test = stats.ttest_ind(second, first, equal_var=False)
-    shown, decisive = test.confidence_interval(0.95), test.confidence_interval(1 - 2 * ERROR)
     verdict, p = decide(
         faster=p_value(-bound, "less"),
         slower=p_value(bound, "greater"),
         equivalent=max(p_value(-bound, "greater"), p_value(bound, "less")),
+        blocks=fewest,
     )
-    return {
-        "ratio": float(np.exp(second.mean() - first.mean())),
-        "low": float(np.exp(shown.low)),
-        "high": float(np.exp(shown.high)),
-        "decision_low": float(np.exp(decisive.low)),
-        "decision_high": float(np.exp(decisive.high)),
-        "blocks": fewest,
-        "p": p,
-        "verdict": verdict,
-    }
+    shown = stats.ttest_ind(second, first, equal_var=False).confidence_interval(1 - ERROR)
+    return verdict_row(Interval(estimate, float(shown.low), float(shown.high)), fewest, p, verdict)

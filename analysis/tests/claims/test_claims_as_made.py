@@ -168,6 +168,13 @@ def test_stretches_stand_beside_the_published_ones(tmp_path: Path) -> None:
     assert figures(row)["time beyond"][0] == "×3.15 from 20 to 35"
 
 
+def test_a_speed_up_beyond_the_cores_carries_a_doubt(tmp_path: Path) -> None:
+    records = slowed(study(["threads"], machine=Machine(cores=2, hardware_threads=4), noise=QUIET), 2.0, x=1)
+    row = row_of(tmp_path, records, "threads")
+    assert "a speed-up of 3.6" in row["measured"]
+    assert "is doubtful, the cores give 2.00 at most" in row["measured"]
+
+
 # What failed
 
 

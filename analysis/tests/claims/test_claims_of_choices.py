@@ -80,17 +80,17 @@ def test_a_base_clock_in_a_name_stands_beside_no_greatest_clock(tmp_path: Path) 
     assert "clock not known" in row["measured"]
 
 
-@pytest.mark.parametrize(("count", "verdict"), [(2, HOLDS), (3, OPEN)])
+@pytest.mark.parametrize(("count", "verdict"), [(2, FAILS), (3, OPEN)])
 def test_pairs_of_machines_are_corrected_for_their_number(
     tmp_path: Path, count: int, verdict: Verdict
 ) -> None:
-    # Each faster than the one before by so much that its p-value alone is 0.04.
+    # The second slower than the first by so much that its p-value alone is 0.035; the third far faster.
     models = ["Xeon Silver 4114", "Xeon w5-3423", "Core i7-13700"][:count]
-    for number, model in enumerate(models):
+    for shift, model in zip((0, 0.0716, -1), models, strict=False):
         machine = Machine(host=model.split()[-1], cpu_model=model)
         point = Point("checkered", 0, 1.0, axes={"threads": 16})
         for block, scatter in enumerate([0.031, -0.031, 0.012, -0.012]):
-            write(tmp_path, [bench("machine", point, block, [exp(scatter - 0.0601 * number)], machine)])
+            write(tmp_path, [bench("machine", point, block, [exp(scatter + shift)], machine)])
     assert row_of(tmp_path, [], "machine")["verdict"] == verdict
 
 

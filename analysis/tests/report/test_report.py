@@ -152,6 +152,17 @@ def test_a_failed_control_is_shouted(tmp_path: Path) -> None:
     assert "The control FAILED" in text_of(report.render(tmp_path))
 
 
+def test_two_speeds_of_the_machine_are_said(tmp_path: Path) -> None:
+    records = study(["control"], blocks=8, noise=QUIET)
+    for record in records:
+        if record["tags"]["block"] in (2, 3, 6):
+            record["repetitions"][0]["steps_seconds"] *= 2.3
+    write(tmp_path, records)
+    text = text_of(report.render(tmp_path)).replace("\u00a0", " ")
+    assert "The machine has two speeds, a factor of 2.3 apart: 6 of the 16 runs" in text
+    assert "it changed 4 times between them" in text
+
+
 def test_several_machines_have_a_part_each(tmp_path: Path) -> None:
     for host in ("bench-1", "bench-2"):
         write(tmp_path, study(["machine"], blocks=3, machine=Machine(host=host)))

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analysis.statistics.bootstrap import summarise
+from analysis.statistics.intervals import FEWEST
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, holm, judge_one, not_faster
 
@@ -43,9 +44,9 @@ def test_a_verdict_is_that_of_its_interval_and_mirrored_by_changing_sides(values
     elif row["verdict"] == "equivalent":
         assert lowest - 1e-9 <= row["decision_low"] <= row["decision_high"] <= highest + 1e-9
     if row["verdict"] == "faster":
-        assert not not_faster(values)
+        assert not_faster(values) > 0.05
     if row["verdict"] == "slower":
-        assert not_faster(values)
+        assert not_faster(values) <= 0.05
 
 
 @given(st.lists(st.tuples(SECONDS, SECONDS), min_size=2, max_size=8), st.floats(1e-3, 1e3))
@@ -65,13 +66,16 @@ def test_ratios_do_not_ask_for_the_unit_of_time(blocks: list[tuple[float, float]
     )
 )
 @settings(max_examples=50, deadline=None)
-def test_a_bootstrap_interval_stands_within_the_samples(runs: list[tuple[str, list[float]]]) -> None:
+def test_a_bootstrap_interval_stands_about_the_median_of_enough_processes(
+    runs: list[tuple[str, list[float]]],
+) -> None:
     sessions, rows = zip(*runs, strict=True)
     table = processes(list(rows)).assign(series="one")
     row = summarise(table.assign(session=table["block"].map(dict(enumerate(sessions)))), ["series"]).iloc[0]
-    values = table["steps_seconds"]
     assert row["median"] == pytest.approx(np.median([np.median(values) for values in rows]))
-    assert values.min() * (1 - 1e-12) <= row["low"] <= row["high"] <= values.max() * (1 + 1e-12)
+    assert np.isnan(row["low"]) == np.isnan(row["high"]) == (len(rows) < FEWEST)
+    assert len(rows) < FEWEST or row["low"] <= row["median"] * (1 + 1e-12)
+    assert len(rows) < FEWEST or row["high"] >= row["median"] * (1 - 1e-12)
     assert (row["sessions"], row["processes"], row["samples"]) == (len(set(sessions)), len(rows), len(table))
 
 

@@ -1,12 +1,16 @@
 import numpy as np
 import pandas as pd
 import pytest
+from numpy.typing import NDArray
 
 from analysis.records import published
 from analysis.statistics import scalability
+from analysis.statistics.breaks import break_point
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.trends import growth, linearity, minimum
 from analysis.tests.synthetic_noise import Noise, times_table
+
+Floats = NDArray[np.float64]
 
 VM = Noise(burst_rate=0.01)
 
@@ -77,6 +81,64 @@ def test_the_turn_is_found_with_its_break_point() -> None:
 @pytest.mark.parametrize(("power", "verdict"), [(1.0, "rises only"), (-1.0, "falls only")])
 def test_a_monotone_curve_has_no_minimum_inside(power: float, verdict: str) -> None:
     assert minimum(curve({float(x): float(x) ** power for x in (1, 2, 4, 8)})).verdict == verdict
+
+
+@pytest.mark.parametrize(("blocks", "slow_points"), [(4, 2.0), (7, 1.0)])
+def test_a_flat_curve_rises_or_falls_in_at_most_one_study_in_twenty(blocks: int, slow_points: float) -> None:
+    generator = np.random.default_rng(blocks)
+    noise = 0.05 * np.where(np.arange(10) % 2, slow_points, 1.0)
+    verdicts = [minimum(table(np.exp(generator.normal(0, noise, (blocks, 10))))).verdict for _ in range(150)]
+    assert set(verdicts) <= {"inconclusive", "flat", "rises only", "falls only", "falls then rises"}
+    assert 150 - verdicts.count("inconclusive") - verdicts.count("flat") <= 7
+
+
+@pytest.mark.parametrize("blocks", [1, 2, 3])
+def test_too_few_blocks_have_no_shape_and_no_break_point(blocks: int) -> None:
+    least = minimum(curve({float(x): 1.0 + abs(x - 4) for x in range(1, 8)}, blocks=blocks))
+    assert least.verdict == "too few blocks"
+    assert least.lowest == 4
+    assert (least.break_point.low, least.break_point.high) == (-np.inf, np.inf)
+
+
+def table(curves: Floats) -> pd.DataFrame:
+    """Return the processes of a curve, a row of times a block, at x = 1, 2, ..."""
+    blocks, points = curves.shape
+    return pd.DataFrame(
+        {
+            "x": np.tile(np.arange(1.0, points + 1), blocks),
+            "steps_seconds": curves.ravel(),
+            "node": "n",
+            "block": np.repeat(np.arange(blocks), points),
+        }
+    )
+
+
+@pytest.mark.parametrize("blocks", [4, 7])
+def test_the_break_point_s_interval_covers_it(blocks: int) -> None:
+    x = np.arange(5.0, 51, 5)
+    truth = np.exp(np.abs(np.log(x / 35)) * np.where(x < 35, 0.5, 1.5))
+    generator = np.random.default_rng(blocks)
+    curves = truth * np.exp(generator.normal(0, 0.02, (200, blocks, len(x))))
+    found = [break_point(x, study) for study in curves]
+    assert sum(one.low <= 35 <= one.high for one in found) >= 0.93 * 200
+
+
+@pytest.mark.parametrize("blocks", [4, 7])
+def test_the_law_s_intervals_cover_its_coefficients(blocks: int) -> None:
+    threads = np.array([1.0, 2, 3, 4, 5, 6])
+    truth = 4 / threads * (1 + 0.06 * (threads - 1) + 0.004 * threads * (threads - 1))
+    generator = np.random.default_rng(blocks)
+    laws = [
+        scalability.fit(table(truth * np.exp(generator.normal(0, 0.02, (blocks, 6)))), 6) for _ in range(200)
+    ]
+    for name, value in (("contention", 0.06), ("coherency", 0.004)):
+        found = [getattr(law, name) for law in laws]
+        assert sum(one.low <= value <= one.high for one in found) >= 0.925 * 200, name
+
+
+def test_a_speed_up_beyond_the_cores_is_doubted() -> None:
+    assert scalability.doubt(1.9, 2) == ""
+    assert scalability.doubt(2.89, 2).startswith("a speed-up of 2.89 is doubtful")
 
 
 def test_the_law_gives_back_its_coefficients() -> None:

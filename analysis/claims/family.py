@@ -1,0 +1,64 @@
+"""The one place where claims are corrected for their number: their parts, and the claims among each other.
+
+Two families, both by Holm's method (Scand. J. Stat. 6, 1979), which asks nothing of how the tests depend on
+each other:
+
+* the parts of one claim. It holds if all parts do, which needs no correction: the greatest p-value is its own
+  (an intersection-union test, Berger, Technometrics 24, 1982). It does not hold if any part does not, and
+  that is corrected for the number of parts;
+* the claims of one report that may be decided there: at the study's scale, from enough blocks. Of all of
+  them together, "holds" or "does not hold" is said wrongly of any in at most 5 % of studies.
+"""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, Outcome, Verdict
+from analysis.statistics.verdicts import ERROR, holm
+from analysis.support.wording import count, number
+
+ALONE = {HOLDS: "hold", FAILS: "not hold"}
+
+
+def both(outcomes: Sequence[Outcome]) -> Outcome:
+    """Join the outcomes of a claim's parts: it holds if all do, fails if one does, and is open otherwise."""
+    parts = _corrected(outcomes, [FAILS], "part")
+    verdicts = [outcome.verdict for outcome in parts]
+    verdict = FAILS if FAILS in verdicts else OPEN if OPEN in verdicts else HOLDS
+    decisive = [outcome for outcome in parts if outcome.verdict == verdict]
+    p = [outcome.p for outcome in decisive if outcome.p is not None]
+    return Outcome(
+        verdict,
+        "; ".join(outcome.measured for outcome in outcomes if outcome.measured),
+        "; ".join(dict.fromkeys(outcome.why for outcome in decisive if outcome.why)),
+        tuple(dict.fromkeys(figure for outcome in outcomes for figure in outcome.figures)),
+        all(outcome.missing for outcome in outcomes),
+        (min(p) if verdict == FAILS else max(p)) if p else None,
+    )
+
+
+def corrected(claims: Sequence[Outcome]) -> list[Outcome]:
+    """Return the outcomes of the claims of one report, open where their verdict no longer stands."""
+    return _corrected(claims, [HOLDS, FAILS], "claim")
+
+
+def _corrected(outcomes: Sequence[Outcome], said: Collection[Verdict], noun: str) -> list[Outcome]:
+    """Return the outcomes with the p-values of the verdicts `said` corrected for the number of all tests."""
+    tested = [one for one in outcomes if one.p is not None]
+    adjusted = iter(holm([one.p or 0.0 if one.verdict in said else 1.0 for one in tested]))
+    result = []
+    for one in outcomes:
+        p = 1.0 if one.p is None else next(adjusted)
+        stands = one.p is None or one.verdict not in said
+        result.append(one if stands else _standing(one, p, count(len(tested), noun)))
+    return result
+
+
+def _standing(outcome: Outcome, p: float, family: str) -> Outcome:
+    if p <= ERROR:
+        return replace(outcome, p=p)
+    why = (
+        f"alone it would {ALONE[outcome.verdict]} (p = {number(outcome.p or 0, 2)}), corrected for {family} "
+        "it is not settled: more blocks would decide"
+    )
+    return replace(outcome, verdict=OPEN, why=why, p=p)
