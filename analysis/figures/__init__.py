@@ -87,15 +87,8 @@ def _counted(name: str, title: str, source: str, subject: str) -> Entry:
 def _accuracy(kind: str, experiment: str, name: str, title: str) -> list[Entry]:
     """Return the entries of an experiment about errors: a figure a measure, or the one of the hard cases."""
     if kind == HARD_CASES:
-        return [
-            Entry(
-                name,
-                experiment,
-                title,
-                bound(hard_cases.hard_cases, experiment=experiment, subject=title),
-                kind,
-            )
-        ]
+        draw = bound(hard_cases.hard_cases, experiment=experiment, subject=title)
+        return [Entry(name, experiment, title, draw, kind)]
     return [
         Entry(
             f"{name}-{measure.key}", experiment, f"{title}: {measure.title}",

@@ -78,7 +78,7 @@ def test_several_runs_give_a_median_and_their_range() -> None:
 
 
 def test_the_figure_names_its_source_alone(data: Data) -> None:
-    drawing = figures.panels(data, "papi-software", "Software counters")
+    drawing = figures.panels(data, "papi-software", "Software counters (PAPI)")
     assert drawing is not None
     assert drawing.caption.startswith("Software counters (PAPI)")
     titles = [axes.get_title() for axes in drawing.figure.axes if axes.get_visible()]
