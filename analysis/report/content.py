@@ -19,7 +19,7 @@ from analysis.records.studies import Study, split
 from analysis.report import provenance
 from analysis.report.horizons import horizons
 from analysis.statistics.intervals import RANKS_FROM
-from analysis.statistics.levels import in_order, levels
+from analysis.statistics.levels import in_order, levels, shifting
 from analysis.statistics.noise import needed_said, process_noise, warning
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import ERROR, MARGIN, judge_one
@@ -105,18 +105,29 @@ def control_sentence(study: Study) -> str:
     sides = [part for _, part in processes.groupby("label")]
     if len(sides) != 2:
         return "The control (one variant, two labels) was not measured: nothing vouches for the rest."
-    return f"{_control_verdict(study, processes, sides)}{_two_speeds(processes)}"
+    return f"{_control_verdict(study, processes, sides)}{_speeds(processes)}"
 
 
-def _two_speeds(processes: pd.DataFrame) -> str:
-    """Say that the machine has two speeds, if the control's times show them: no count of bursts does."""
-    found = levels(in_order(processes))
-    if found is None:
+def _speeds(processes: pd.DataFrame) -> str:
+    """Say that the machine has two speeds, or one that shifts, if the control's times show it: no count of
+    bursts does.
+    """
+    times = in_order(processes)
+    found = levels(times)
+    if found is not None:
+        said = (
+            f"has two speeds, a factor of {number(found.factor, 2)} apart: {found.slow} of the {found.times} "
+            f"runs of the control were slow, and it changed {count(found.changes, 'time')} between them"
+        )
+    elif shifting(times):
+        said = (
+            f"shifts its speed: the same run took {number(times.min())} to {number(times.max())} s, and runs "
+            "close in time took alike"
+        )
+    else:
         return ""
     return (
-        f" The machine has two speeds, a factor of {number(found.factor, 2)} apart: {found.slow} of the "
-        f"{found.times} runs of the control were slow, and it changed {count(found.changes, 'time')} between "
-        "them. What is compared was measured in part on one and in part on the other, which widens intervals."
+        f" The machine {said}. What is compared was in part measured at unlike speeds: intervals are wider."
     )
 
 

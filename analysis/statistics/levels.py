@@ -1,10 +1,14 @@
-"""Whether a machine has two speeds: noise that no count of bursts shows, since half of all is slow."""
+"""Whether a machine has two speeds, or one that shifts: noise that no count of bursts shows, since much of
+all
+is slow.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
+from scipy import stats
 
 Floats = NDArray[np.float64]
 
@@ -52,6 +56,24 @@ def levels(times: ArrayLike) -> Levels | None:
         times=len(logs),
         changes=int((slow[1:] != slow[:-1]).sum()),
     )
+
+
+def shifting(times: ArrayLike) -> bool:
+    """Tell whether times of the same thing, given in the order in which they were measured, are of a speed
+    that
+    shifts: a factor of `FACTOR` apart, and neighbours more alike than chance would have it.
+
+    That is von Neumann's ratio, of the mean square of successive differences to the variance, at 1 %, of
+    ranks, so that bursts hardly count (Bartels, J. Am. Stat. Assoc. 77, 1982).
+    """
+    values = np.asarray(times, dtype=float)
+    count = len(values)
+    if count < FEWEST_TIMES or np.quantile(values, 0.9) < FACTOR * np.quantile(values, 0.1):
+        return False
+    ranks = stats.rankdata(values)
+    ratio = (np.diff(ranks) ** 2).mean() / ranks.var()
+    deviation = np.sqrt(4 * (count - 2) / (count**2 - 1))
+    return bool(ratio < 2 + stats.norm.ppf(0.01) * deviation)
 
 
 def in_order(processes: pd.DataFrame) -> Floats:

@@ -1,6 +1,6 @@
 import numpy as np
 
-from analysis.statistics.levels import levels
+from analysis.statistics.levels import levels, shifting
 
 
 def test_a_machine_that_switches_has_two_speeds() -> None:
@@ -24,3 +24,12 @@ def test_a_burst_and_few_or_equal_times_are_no_second_speed() -> None:
     assert levels([1.0] * 11 + [2.3]) is None
     assert levels([1.0, 2.3] * 3) is None
     assert levels([1.0] * 12) is None
+
+
+def test_a_speed_that_shifts_is_told_from_noise() -> None:
+    generator = np.random.default_rng(3)
+    drift = np.cumsum(generator.normal(0, 0.1, (200, 24)), axis=1)
+    noise = generator.normal(0, 0.3, (200, 24))
+    assert sum(shifting(np.exp(one)) for one in drift) > 100
+    assert sum(shifting(np.exp(one)) for one in noise) <= 6
+    assert not shifting(np.linspace(1.0, 1.1, 24)), "a drift of 10 % cancels within blocks"
