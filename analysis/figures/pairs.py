@@ -107,18 +107,13 @@ def _published_panel(axes: Axes, published: pd.DataFrame, sides: Sides) -> dict[
 def ratio_panel(
     axes: Axes, ours: dict[str, float], theirs: dict[str, float] | None, names: tuple[str, str]
 ) -> None:
-    """Draw the ratio as a dot with its 95 % interval (thin) and the 90 % interval the verdict rests on
-    (thick).
-    """
+    """Draw the ratio as a dot with its 95 % interval, on which the verdict rests."""
     axes.axvspan(-100 * MARGIN, 100 * MARGIN, color=BAND, zorder=0, linewidth=0)
     axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
     entries = [("measured", ours, INK)] + ([("published", theirs, lighten(INK))] if theirs else [])
     for height, (name, row, colour) in zip((1.0, 0.0), entries, strict=False):
-        estimate, low, high, inner_low, inner_high = (
-            100 * (row[end] - 1) for end in ("ratio", "low", "high", "decision_low", "decision_high")
-        )
-        axes.plot([low, high], [height, height], color=colour, linewidth=0.9, zorder=2)
-        axes.plot([inner_low, inner_high], [height, height], color=colour, linewidth=2.6, zorder=2)
+        estimate, low, high = (100 * (row[end] - 1) for end in ("ratio", "low", "high"))
+        axes.plot([low, high], [height, height], color=colour, linewidth=2.6, zorder=2)
         axes.plot(estimate, height, "o", color=colour, markersize=5, markeredgecolor="white", zorder=3)
         axes.annotate(
             f"{name}: {row['verdict']}",
@@ -176,5 +171,5 @@ def _sentences(row: dict[str, float], theirs: dict[str, float] | None, sides: Si
     return (
         f" The time of {sides.names[0]} is {change(row)} against {sides.names[1]}, from {blocks(row)} "
         f"({method} on paired log ratios): {row['verdict']} with a margin of {100 * MARGIN:g} % (shaded; "
-        f"thick bars are the 90 % intervals that decide, thin ones 95 %).{published}"
+        f"the bar is the 95 % interval, which decides).{published}"
     )

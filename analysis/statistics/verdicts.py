@@ -11,7 +11,7 @@ from analysis.statistics.intervals import FEWEST, Interval, centre, p_value
 
 MARGIN = 0.02
 ERROR = 0.05
-COLUMNS = ["ratio", "low", "high", "decision_low", "decision_high", "blocks", "p", "verdict"]
+COLUMNS = ["ratio", "low", "high", "blocks", "p", "verdict"]
 
 
 def judge(
@@ -20,8 +20,8 @@ def judge(
     """Return one row a group of `by` with its ratio, interval and verdict, Holm-corrected over the whole
     table.
 
-    Columns: `ratio` (candidate / reference) with its 95 % interval `low`, `high`, which decides and is shown
-    (`decision_low`, `decision_high` are the same), `blocks`, `p`, `verdict`.
+    Columns: `ratio` (candidate / reference) with its 95 % interval `low`, `high`, which decides and is shown,
+    `blocks`, `p`, `verdict`.
 
     *faster*: the interval lies below 1 / (1 + margin); *slower*: above 1 + margin; *equivalent*: between the
     two. A verdict is wrong only where the interval misses the truth, in at most 5 % of all, wherever that
@@ -63,16 +63,7 @@ def judge_one(log_ratios: ArrayLike, margin: float = MARGIN) -> dict[str, Any]:
 def verdict_row(log_ratio: Interval, blocks: int, p: float, verdict: str) -> dict[str, Any]:
     """Return the columns that `judge` adds, of an interval of a log ratio."""
     ratio, low, high = (float(np.exp(one)) for one in (log_ratio.estimate, log_ratio.low, log_ratio.high))
-    decision = {"decision_low": low, "decision_high": high}
-    return {
-        "ratio": ratio,
-        "low": low,
-        "high": high,
-        **decision,
-        "blocks": blocks,
-        "p": p,
-        "verdict": verdict,
-    }
+    return {"ratio": ratio, "low": low, "high": high, "blocks": blocks, "p": p, "verdict": verdict}
 
 
 def decide(faster: float, slower: float, equivalent: float, blocks: int) -> tuple[str, float]:
