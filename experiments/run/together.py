@@ -5,6 +5,7 @@ milliseconds, and not those that run one after the other. What turns would disto
 """
 
 import os
+from collections import Counter
 from collections.abc import Sequence
 
 from experiments.plan.plan import Experiment
@@ -26,19 +27,30 @@ def together(experiment: Experiment, block: int, missing: Sequence[Position]) ->
         return [[one] for one in missing]
     groups: dict[object, list[Position]] = {}
     for position, point in missing:
-        # Nothing is compared across a question's named scenes. And as many threads for all: a pool of threads
-        # that shrinks and grows between turns would be timed too.
-        key = (point.program.sha256, point.openmp, point.threads, point.scene_name)
-        groups.setdefault(key, []).append((position, point))
+        groups.setdefault(_process(point), []).append((position, point))
     return [part for group in groups.values() for part in _fitting(group)]
 
 
+def _process(point: Point) -> tuple[object, ...]:
+    """Which process it can be in.
+
+    Nothing is compared across a question's named scenes. And as many threads for all: a pool of threads that
+    shrinks and grows between turns would be timed too.
+    """
+    return point.scene_name, point.program.sha256, point.openmp, point.threads
+
+
 def _may_take_turns(experiment: Experiment, block: int) -> bool:
-    """Whether no point of the block does anything but run once: those compared are measured alike."""
-    return experiment.question.turns and all(
-        point.verb == "bench" and point.repetitions == 1 and not point.besides(block)
-        for point in experiment.points
+    """Whether those compared are measured alike: no point of the block does anything but run once, and of one
+    scene as many take turns in each process, since a turn among many finds colder caches.
+    """
+    points = experiment.points
+    once = all(
+        point.verb == "bench" and point.repetitions == 1 and not point.besides(block) for point in points
     )
+    processes = Counter(map(_process, points))
+    alike = {(process[0], number) for process, number in processes.items()}
+    return experiment.question.turns and once and len(alike) == len({point.scene_name for point in points})
 
 
 def _fitting(group: Sequence[Position]) -> list[list[Position]]:

@@ -51,6 +51,12 @@ def test_two_programs_cannot_be_in_one_process(empty_workplace: Workplace) -> No
     assert sizes(groups_of(empty_workplace, text)) == [1, 1]
 
 
+def test_processes_that_are_compared_hold_as_many(empty_workplace: Workplace) -> None:
+    empty_workplace.build("clang", "# another one")
+    third = '[[series]]\nname = "by clang"\nvariant = "published"\nprogram = "clang"\n\n[blocks]'
+    assert sizes(groups_of(empty_workplace, PAIR.replace("[blocks]", third))) == [1, 1, 1]
+
+
 @pytest.mark.parametrize(
     "change",
     [
