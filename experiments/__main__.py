@@ -67,8 +67,7 @@ def _check(options: argparse.Namespace) -> int:
 def _builds(options: argparse.Namespace) -> int:
     """The one that makes the scenes, and what the questions cannot do without."""
     questions = load_questions(options.questions, options.study)
-    asked = {GENERATOR}
-    asked.update(series.program for one in questions for series in one.series if not series.optional)
+    asked = {GENERATOR}.union(*(one.programs for one in questions))
     print(*(name for name in load_site(options.site).programs if name in asked))
     return 0
 
@@ -115,6 +114,8 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     add("--site", help="a name in experiments/sites, or a file (default: %(default)s)")
     add("--results", type=Path, help="folder of the records (default: %(default)s)")
     add("--build", type=Path, help="folder of the programs (default: %(default)s)")
+    built = "only what these builds can measure, in its share of the time; the rest comes later"
+    add("--builds", type=names, metavar="A,B", help=built)
     add("--questions", type=Path, help="folder of questions (default: this package's)")
     add("--blocks", type=positive_number, help="repeat every experiment so many times, whatever the budget")
     budget = "time for the whole study (default: the scale's)"

@@ -90,6 +90,11 @@ class Question:
     simulated: int = 0
     blocks: Blocks = Blocks()
 
+    @property
+    def programs(self) -> frozenset[str]:
+        """The builds of the program that it cannot do without."""
+        return frozenset(one.program for one in self.series if not one.optional)
+
 
 def load_question(path: Path) -> Question:
     """Read one question. Raises InputError with one line if the file is not a valid question."""

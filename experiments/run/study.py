@@ -49,6 +49,7 @@ class Settings:
     site: str = "local"
     results: Path = Path("results")
     build: Path = Path("build")
+    builds: tuple[str, ...] = ()
     questions: Path = question.FOLDER
     blocks: int | None = None
     budget_seconds: float | None = None
@@ -65,7 +66,6 @@ class Study:
         self.site = site.load_site(settings.site)
         self.scale = find_scale(settings.scale)
         self.budget_seconds = settings.budget_seconds or self.scale.budget_seconds
-        self.measuring_seconds = self.budget_seconds - (REPORT_SECONDS if settings.figures else 0.0)
         if self.site.cluster is not None and machine is None:
             raise InputError(f"site {self.site.name}: is a cluster; use `make submit SITE={settings.site}`")
         programs = find_programs(self.site, settings.build)
@@ -73,7 +73,13 @@ class Study:
         if self.generator.sha256 is None:
             raise InputError(self.generator.remedy)
         around = Surroundings(self.site, machine or site.this_machine(), programs, self.scale, settings.seed)
-        questions = load_questions(settings.questions, settings.study)
+        all_questions = load_questions(settings.questions, settings.study)
+        questions = [
+            one for one in all_questions if not settings.builds or one.programs <= {*settings.builds}
+        ]
+        report_seconds = REPORT_SECONDS if settings.figures else 0.0
+        self.is_whole = len(questions) == len(all_questions)
+        self.measuring_seconds = (self.budget_seconds - report_seconds) * len(questions) / len(all_questions)
         self.experiments: tuple[Experiment, ...] = tuple(
             plan(with_blocks(self.scale.question(one), settings.blocks), around) for one in questions
         )
@@ -250,7 +256,8 @@ class _Session:
     def _conclude(self) -> int:
         root = self._study.store.root
         if not self._failures:
-            self._report.line(f"the study is complete: {root / 'records'}")
+            if self._study.is_whole:
+                self._report.line(f"the study is complete: {root / 'records'}")
             return 0
         points = ", ".join(f"{name} ({number})" for name, number in self._failures.items())
         warn(f"points failed: {points}; the reasons are in {root / 'failures'} and in the report")

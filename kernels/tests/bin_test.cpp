@@ -13,10 +13,10 @@
 namespace carom {
 namespace {
 
-constexpr Policies sorted{.storage = Storage::sorted};
+constexpr Policies sorted_discs{.storage = Storage::sorted};
 
-State<sorted> stepped(const Scene& scene, int steps, int threads) {
-    State<sorted> state(scene);
+State<sorted_discs> stepped(const Scene& scene, int steps, int threads) {
+    State<sorted_discs> state(scene);
     NoProbe probe;
     for (int step = 0; step < steps; ++step) {
         move(state, {.threads = threads}, probe);

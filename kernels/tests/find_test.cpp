@@ -20,7 +20,7 @@ using tests::same_bits;
 using Lists = std::vector<std::vector<int>>;
 
 /// Every disc's partners in the order of their numbers, found by looking at all pairs.
-Lists brute_force(const std::vector<Disc>& discs, double radius) {
+Lists overlaps_by_brute_force(const std::vector<Disc>& discs, double radius) {
     Lists lists(discs.size());
     for (std::size_t i = 0; i < discs.size(); ++i) {
         for (std::size_t j = 0; j < discs.size(); ++j) {
@@ -71,7 +71,7 @@ template <Policies policies> void finds_what_looking_at_all_pairs_finds() {
         SCOPED_TRACE(name);
         State<policies> state = moved<policies>(scene);
         const Tally tally = find_in(state);
-        const Lists expected = brute_force(state.discs, scene.radius);
+        const Lists expected = overlaps_by_brute_force(state.discs, scene.radius);
         EXPECT_EQ(sorted(state.overlaps), expected);
         EXPECT_EQ(tally.overlaps, pairs_in(expected));
         EXPECT_EQ(tally.pair_resolves, 0);
@@ -102,7 +102,7 @@ std::vector<Offset> offsets(Neighbourhood neighbourhood, const Grid& grid, const
 
 /// Every disc's partners: those of its own box by number, then those of one other box after the other.
 template <Policies policies> Lists in_published_order(const State<policies>& state) {
-    Lists lists = brute_force(state.discs, state.radius);
+    Lists lists = overlaps_by_brute_force(state.discs, state.radius);
     for (std::size_t i = 0; i < lists.size(); ++i) {
         const auto row_of = [&](std::size_t k) { return state.grid.coordinate(state.discs[k].y); };
         const auto column_of = [&](std::size_t k) { return state.grid.coordinate(state.discs[k].x); };
@@ -140,7 +140,7 @@ TEST(Find, ListsPartnersInTheOrderOfTheirNumbersWithinABox) {
     State state = moved(tests::one_box_scene(31));
     ASSERT_EQ(state.grid.box_count(), 1);
     find_in(state);
-    EXPECT_EQ(state.overlaps, brute_force(state.discs, state.radius));
+    EXPECT_EQ(state.overlaps, overlaps_by_brute_force(state.discs, state.radius));
     EXPECT_GT(pairs_in(state.overlaps), 3);
 }
 
@@ -148,7 +148,7 @@ TEST(Find, ForgetsTheOverlapsOfTheStepBefore) {
     State state = moved(tests::random_scene(100, 40, 1, 1, 1, 32));
     find_in(state);
     find_in(state);
-    EXPECT_EQ(sorted(state.overlaps), brute_force(state.discs, state.radius));
+    EXPECT_EQ(sorted(state.overlaps), overlaps_by_brute_force(state.discs, state.radius));
 }
 
 TEST(SelfContainedFind, ResolvesPairsWithinABoxAndNoOthers) {

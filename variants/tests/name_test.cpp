@@ -74,9 +74,9 @@ TEST(NameOf, IsKnownWhenCompiling) {
     static_assert(name_of({}).view() == std::string_view("published"));
 }
 
-const std::vector<Schedule> schedules{Schedule::static_, Schedule::static_chunk,
-                                      Schedule::dynamic, Schedule::dynamic_chunk,
-                                      Schedule::guided,  Schedule::guided_chunk};
+const std::vector<Schedule> every_schedule{Schedule::static_, Schedule::static_chunk,
+                                           Schedule::dynamic, Schedule::dynamic_chunk,
+                                           Schedule::guided,  Schedule::guided_chunk};
 
 std::vector<Policies> every_combination() {
     std::vector<Policies> combinations;
@@ -84,8 +84,8 @@ std::vector<Policies> every_combination() {
         for (const auto order : {Order::checkered, Order::row, Order::track, Order::repeat, Order::once}) {
             for (const auto self_contained : {SelfContained::on, SelfContained::off}) {
                 for (const auto direction : {Direction::reverse, Direction::forward}) {
-                    for (const auto find_schedule : schedules) {
-                        for (const auto resolve_schedule : schedules) {
+                    for (const auto find_schedule : every_schedule) {
+                        for (const auto resolve_schedule : every_schedule) {
                             combinations.push_back({neighbourhood, order, self_contained, direction,
                                                     find_schedule, resolve_schedule});
                         }

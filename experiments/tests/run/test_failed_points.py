@@ -79,3 +79,18 @@ def test_a_build_that_is_missing_is_a_gap_with_a_remedy(workplace: Workplace) ->
     assert run(workplace.settings) == 0
     assert len(workplace.records("pair")) == 4
     assert not workplace.failures()
+
+
+def test_what_one_build_can_measure_comes_before_the_other_is_built(
+    workplace: Workplace, capsys: pytest.CaptureFixture[str]
+) -> None:
+    clang = PAIR.replace('variant = "nine"', 'variant = "published"\nprogram = "clang"')
+    workplace.question("pair", clang)
+    assert run(replace(workplace.settings, builds=("gcc",))) == 0
+    assert "the study is complete" not in capsys.readouterr().out
+    assert (len(workplace.records("control")), len(workplace.records("pair"))) == (6, 0)
+    assert not workplace.failures()
+    workplace.build("clang")
+    assert run(workplace.settings) == 0
+    assert "the study is complete" in capsys.readouterr().out
+    assert len(workplace.records("pair")) == 4

@@ -15,10 +15,10 @@ namespace carom {
 namespace {
 
 /// Counts what `count` says for its thread; every call must come from the thread that made it.
-class FakeSet : public EventSet {
+class CountingSet : public EventSet {
   public:
-    explicit FakeSet(std::function<double(int)> count) : count_(std::move(count)) {}
-    ~FakeSet() override { EXPECT_TRUE(on_its_thread()); }
+    explicit CountingSet(std::function<double(int)> count) : count_(std::move(count)) {}
+    ~CountingSet() override { EXPECT_TRUE(on_its_thread()); }
 
     void add(const std::string&) override {
         EXPECT_TRUE(on_its_thread());
@@ -44,7 +44,7 @@ class FakeSet : public EventSet {
 };
 
 MakeEventSet fake(const std::function<double(int)>& count) {
-    return [count] { return std::make_unique<FakeSet>(count); };
+    return [count] { return std::make_unique<CountingSet>(count); };
 }
 
 std::string error_of(const std::function<void()>& action) {

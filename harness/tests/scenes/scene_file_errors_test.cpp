@@ -138,7 +138,7 @@ TEST_P(BadSceneFile, IsRefusedWithItsPlace) {
 INSTANTIATE_TEST_SUITE_P(Table, BadSceneFile, testing::ValuesIn(bad_files),
                          [](const auto& file) { return file.param.name; });
 
-std::string refusal_of(const std::string& path) {
+std::string refusal_to_read(const std::string& path) {
     try {
         read_scene(path);
     } catch (const InputError& error) {
@@ -150,15 +150,15 @@ std::string refusal_of(const std::string& path) {
 TEST(UnreadableSceneFile, IsRefusedWithItsName) {
     const tests::TemporaryDirectory directory;
     const std::string missing = directory / "missing.in";
-    EXPECT_EQ(refusal_of(missing), missing + ": cannot be read, expected a readable file");
+    EXPECT_EQ(refusal_to_read(missing), missing + ": cannot be read, expected a readable file");
     const std::string folder = directory / ".";
-    EXPECT_EQ(refusal_of(folder), folder + ": cannot be read, expected a readable file");
+    EXPECT_EQ(refusal_to_read(folder), folder + ": cannot be read, expected a readable file");
 }
 
 TEST(UnreadableSceneFile, NamesTheFileOfABadLine) {
     const tests::TemporaryDirectory directory;
     const std::string path = directory.write("some scene.in", "two\n");
-    EXPECT_EQ(refusal_of(path), path + ":1: found 'two', expected the number of discs N, an integer");
+    EXPECT_EQ(refusal_to_read(path), path + ":1: found 'two', expected the number of discs N, an integer");
 }
 
 } // namespace

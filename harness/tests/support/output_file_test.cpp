@@ -17,7 +17,7 @@ namespace {
 using tests::content_of;
 using tests::TemporaryDirectory;
 
-std::string refusal_of(const std::string& path) {
+std::string refusal_to_write(const std::string& path) {
     try {
         OutputFile file(path);
         file.write("text");
@@ -90,7 +90,7 @@ TEST(OutputFile, WritesMoreThanTheSystemTakesAtOnce) {
 TEST(OutputFile, SaysWhyItCannotBeWritten) {
     const TemporaryDirectory directory;
     const std::string path = directory / "missing/result";
-    EXPECT_EQ(refusal_of(path),
+    EXPECT_EQ(refusal_to_write(path),
               path + ": cannot be written (No such file or directory), expected a writable place with room");
 }
 
@@ -98,7 +98,7 @@ TEST(OutputFile, ReplacesNoFolder) {
     const TemporaryDirectory directory;
     const std::string path = directory / "folder";
     std::filesystem::create_directory(path);
-    EXPECT_TRUE(refusal_of(path).starts_with(path + ": cannot be "));
+    EXPECT_TRUE(refusal_to_write(path).starts_with(path + ": cannot be "));
     EXPECT_TRUE(std::filesystem::is_directory(path));
     std::filesystem::remove(path);
     EXPECT_TRUE(directory.empty());
