@@ -52,7 +52,7 @@ def _parser() -> argparse.ArgumentParser:
         if name == "figures":
             which = command.add_mutually_exclusive_group()
             which.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
-            text = "read such lists from standard input; answer each line with the number of figures drawn"
+            text = "read such lists from standard input, draw as SVG, answer each with the number of figures"
             which.add_argument("--follow", action="store_true", help=text)
         command.set_defaults(run=run)
     compare = commands.add_parser(
@@ -82,7 +82,8 @@ def _figures(options: argparse.Namespace) -> int:
 
     if options.follow:
         for line in sys.stdin:
-            print(len(draw_all(options.results, line.strip().split(","))), flush=True)
+            # While a study runs: a first look, since the report draws them all.
+            print(len(draw_all(options.results, line.strip().split(","), formats=("svg",))), flush=True)
         return 0
     drawn = draw_all(options.results, options.experiment.split(",") if options.experiment else ())
     for figure in drawn:

@@ -30,7 +30,7 @@ from analysis.figures import (
     timeline,
 )
 from analysis.figures.captions import growth_sentence, linear_sentence, minimum_sentence
-from analysis.figures.style import Data, Drawing, Table, mark_partial, partial, save, styled
+from analysis.figures.style import FORMATS, Data, Drawing, Table, mark_partial, partial, save, styled
 from analysis.records.studies import Study
 from analysis.support.parallel import in_parallel
 
@@ -164,17 +164,19 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
 """How an experiment without a figure of its own is drawn, given its name and title, by its tag `figure`."""
 
 
-def draw(data: Data, folder: Path, prefix: str = "", wanted: Sequence[str] = ()) -> Iterator[Drawn]:
+def draw(
+    data: Data, folder: Path, prefix: str = "", wanted: Sequence[str] = (), formats: Sequence[str] = FORMATS
+) -> Iterator[Drawn]:
     """Draw every figure that the study has records for, or those of the experiments wanted, into the folder.
 
-    Each is written as SVG, PNG and PDF, and marked as partial where planned records are missing. Several are
-    drawn at once, one on each processor.
+    Each is written as SVG, PNG and PDF, or in the formats wanted, and marked as partial where planned records
+    are missing. Several are drawn at once, one on each processor.
     """
     known = [*FIGURES, *further(data.study)]
     entries = [entry for entry in known if not wanted or entry.experiment in wanted]
 
     def drawn(number: int) -> _Saved | None:
-        return _draw(entries[number], data, folder, f"{prefix}{entries[number].name}")
+        return _draw(entries[number], data, folder, f"{prefix}{entries[number].name}", formats)
 
     for entry, saved in zip(entries, in_parallel(drawn, len(entries)), strict=True):
         if saved is not None:
@@ -184,7 +186,7 @@ def draw(data: Data, folder: Path, prefix: str = "", wanted: Sequence[str] = ())
 _Saved = tuple[str, list[Path], pd.DataFrame | None, Sequence[Table]]
 
 
-def _draw(entry: Entry, data: Data, folder: Path, name: str) -> _Saved | None:
+def _draw(entry: Entry, data: Data, folder: Path, name: str, formats: Sequence[str]) -> _Saved | None:
     with styled(name):
         drawing = entry.draw(data)
     if drawing is None:
@@ -192,7 +194,7 @@ def _draw(entry: Entry, data: Data, folder: Path, name: str) -> _Saved | None:
     missing = partial(data.study, entry.experiment)
     mark_partial(drawing.figure, missing)
     caption = f"{drawing.caption} {missing[0].upper()}{missing[1:]}." if missing else drawing.caption
-    return caption, save(drawing, folder, name), drawing.verdicts, drawing.tables
+    return caption, save(drawing, folder, name, formats), drawing.verdicts, drawing.tables
 
 
 def further(study: Study) -> list[Entry]:

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from analysis.figures import Drawn, draw, experiments
-from analysis.figures.style import Data
+from analysis.figures.style import FORMATS, Data
 from analysis.records import published
 from analysis.records.reading import InputError, load
 from analysis.records.studies import Study, split
 
 
-def draw_all(results: Path, wanted: Sequence[str] = ()) -> list[Drawn]:
+def draw_all(results: Path, wanted: Sequence[str] = (), formats: Sequence[str] = FORMATS) -> list[Drawn]:
     """Load a results folder and draw into its `figures/`, all experiments or those wanted; return what was
     drawn.
 
@@ -23,16 +23,20 @@ def draw_all(results: Path, wanted: Sequence[str] = ()) -> list[Drawn]:
         if name not in names:
             raise InputError(f"--experiment: found {name!r}, expected one of {', '.join(names)}")
     studies = split(records)
-    return [figure for study in studies for figure in draw_study(study, studies, results, wanted)]
+    return [figure for study in studies for figure in draw_study(study, studies, results, wanted, formats)]
 
 
 def draw_study(
-    study: Study, studies: Sequence[Study], results: Path, wanted: Sequence[str] = ()
+    study: Study,
+    studies: Sequence[Study],
+    results: Path,
+    wanted: Sequence[str] = (),
+    formats: Sequence[str] = FORMATS,
 ) -> list[Drawn]:
     """Draw one study; the files of any but the first carry its name."""
     prefix = "" if study is studies[0] else f"{slug(study.name)}-"
     data = Data(study, studies, published.load(), results)
-    return list(draw(data, results / "figures", prefix, wanted))
+    return list(draw(data, results / "figures", prefix, wanted, formats))
 
 
 def slug(name: str) -> str:

@@ -192,14 +192,14 @@ def mark_partial(figure: Figure, text: str | None) -> None:
         figure.suptitle(text, x=0.995, ha="right", fontsize=7, color=VERMILLION, weight="bold")
 
 
-def save(drawing: Drawing, folder: Path, name: str) -> list[Path]:
-    """Write the figure in every format; return the files."""
+def save(drawing: Drawing, folder: Path, name: str, formats: Sequence[str] = FORMATS) -> list[Path]:
+    """Write the figure in these formats; return the files."""
     files = []
     with styled(name):
         # The layout is settled once, not once a format.
         drawing.figure.draw_without_rendering()
         drawing.figure.set_layout_engine("none")
-        for suffix in FORMATS:
+        for suffix in formats:
             target = folder / f"{name}.{suffix}"
             metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[suffix]
             with replacing(target) as part:
