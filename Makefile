@@ -86,8 +86,8 @@ test-slurm: environment ## the tests that need Slurm, which they unpack themselv
 
 # What g++'s build can measure is measured before another one is built. A point that failed (2) belongs in the report
 # and still fails the goal.
-run := $(python) experiments run $(study) $(results) $${BUDGET:+--budget "$$BUDGET"}
-experiments: environment build-gcc ## run the study, then report (STUDY= SCALE=quick|paper SITE= RESULTS= BUDGET=minutes)
+run := $(python) experiments run $(study) $(results) $${BUDGET:+--budget "$$BUDGET"} $${UNTIL:+"--until-$$UNTIL"}
+experiments: environment build-gcc ## run the study, then report (STUDY= SCALE=quick|paper SITE= RESULTS= BUDGET=minutes UNTIL=decided)
 	builds=$$($(python) experiments builds $(study)) || exit; \
 	case $$builds in *clang*) \
 		$(run) --builds gcc; case $$? in 0|2) ;; *) exit $$?;; esac; \

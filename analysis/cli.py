@@ -1,6 +1,7 @@
-"""The command line: `python -m analysis figures | report | compare | claims | performance | movie`."""
+"""The command line: `python -m analysis figures | report | claims | compare | movie ...`."""
 
 import argparse
+import json
 import os
 import sys
 from collections.abc import Sequence
@@ -43,6 +44,7 @@ def _parser() -> argparse.ArgumentParser:
         ("figures", _figures, "draw the figures of whatever records are there"),
         ("report", _report, "write report.html and report.pdf"),
         ("claims", _claims, "print each published claim with its verdict"),
+        ("follow", _follow, "answer each line of standard input, as a running study does: draw A,B or open"),
         ("performance", _performance, "print the ladder and the limits as Markdown tables"),
     ):
         command = commands.add_parser(name, help=text, description=text)
@@ -50,10 +52,7 @@ def _parser() -> argparse.ArgumentParser:
             "--results", type=Path, default=Path("results"), metavar="DIR", help="default: results"
         )
         if name == "figures":
-            which = command.add_mutually_exclusive_group()
-            which.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
-            text = "read such lists from standard input, draw as SVG, answer each with the number of figures"
-            which.add_argument("--follow", action="store_true", help=text)
+            command.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
         command.set_defaults(run=run)
     compare = commands.add_parser(
         "compare",
@@ -80,16 +79,28 @@ def _parser() -> argparse.ArgumentParser:
 def _figures(options: argparse.Namespace) -> int:
     from analysis.figures.studies import draw_all
 
-    if options.follow:
-        for line in sys.stdin:
-            # While a study runs: a first look, since the report draws them all.
-            print(len(draw_all(options.results, line.strip().split(","), formats=("svg",))), flush=True)
-        return 0
     drawn = draw_all(options.results, options.experiment.split(",") if options.experiment else ())
     for figure in drawn:
         print(figure.files[0])
     if not drawn:
         print(f"{options.results}: no records to draw yet", file=sys.stderr)
+    return 0
+
+
+def _follow(options: argparse.Namespace) -> int:
+    """Answer a line with a line: `draw A,B` with the number of figures drawn, `open` with what is open."""
+    from analysis.commands.open_questions import open_questions
+    from analysis.figures.studies import draw_all
+
+    for line in sys.stdin:
+        match line.split():
+            case ["draw", names]:
+                # A first look: the report draws all figures in every format.
+                print(len(draw_all(options.results, names.split(","), formats=("svg",))), flush=True)
+            case ["open"]:
+                print(json.dumps(open_questions(options.results)), flush=True)
+            case _:
+                raise InputError(f"follow: found {line.strip()!r}, expected `draw A,B` or `open`")
     return 0
 
 
@@ -103,6 +114,7 @@ def _report(options: argparse.Namespace) -> int:
 
 def _claims(options: argparse.Namespace) -> int:
     from analysis import claims
+    from analysis.claims import missing
     from analysis.records import published
     from analysis.records.reading import load
     from analysis.records.studies import split
@@ -112,7 +124,9 @@ def _claims(options: argparse.Namespace) -> int:
         raise InputError(f"{options.results}: no records yet (they are made by `make experiments`)")
     for study in studies:
         print(study.name)
-        for row in claims.evaluate(study, studies, published.load()).itertuples():
+        table = claims.evaluate(study, studies, published.load())
+        print("  " + ", ".join(f"{amount} {state}" for state, amount in missing.tally(table).items()))
+        for row in table.itertuples():
             detail = "; ".join(part for part in (row.measured, row.why) if part)
             print(f"  {row.id:27}{row.said:25} {detail}")
     return 0

@@ -16,8 +16,9 @@ from experiments.plan.question import load_questions
 from experiments.plan.scale import SCALES
 from experiments.plan.site import load_site
 from experiments.results.collect import collect
+from experiments.run.session import run
 from experiments.run.status import show_plan, show_status
-from experiments.run.study import Settings, run
+from experiments.run.study import Settings
 from experiments.slurm.jobs import folders
 from experiments.slurm.status import show_cluster_status
 from experiments.slurm.submit import resume, submit
@@ -118,10 +119,12 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     add("--builds", type=names, metavar="A,B", help=built)
     add("--questions", type=Path, help="folder of questions (default: this package's)")
     add("--blocks", type=positive_number, help="repeat every experiment so many times, whatever the budget")
-    budget = "time for the whole study (default: the scale's)"
+    budget = "time for the whole study, or further time for one that is finished (default: the scale's)"
     add("--budget", type=minutes, dest="budget_seconds", metavar="MINUTES", help=budget)
+    until = "measure until what can be decided is, instead of for a time (with --budget: at most so long)"
+    add("--until-decided", action="store_true", help=until)
     add("--seed", type=int, help="of the order within blocks (default: %(default)s)")
-    add("--no-figures", action="store_false", dest="figures", help="draw nothing")
+    add("--no-figures", action="store_false", dest="figures", help="draw nothing, look at no verdict")
     parser.set_defaults(**{field.name: field.default for field in fields(Settings)})
 
 

@@ -1,11 +1,23 @@
 """The claims of the published study, each tested again on the records."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 
 import pandas as pd
 
-from analysis.claims import compilers, counts, curves, family, machines, phases, ratios, scaling, schedules
+from analysis.claims import (
+    compilers,
+    counts,
+    curves,
+    family,
+    machines,
+    missing,
+    phases,
+    ratios,
+    scaling,
+    schedules,
+)
 from analysis.claims.entry import Claim, Evidence, load
 from analysis.claims.outcome import ELSEWHERE, OPEN, Compared, Outcome, Verdict
 from analysis.records.published import Published
@@ -32,7 +44,8 @@ TESTS: dict[str, Callable[..., Outcome]] = {
 
 def evaluate(study: Study, studies: Sequence[Study], published: Published) -> pd.DataFrame:
     """Return a row a claim: `id`, `claim`, `effect` and `claimed_threads` as published, `experiments`,
-    `tested_threads`, `verdict` with `said`, the same in words, `measured`, `why`, `figures` and `missing`.
+    `tested_threads`, `verdict` with `said`, the same in words, `measured`, `why`, `figures`, `missing`, the
+    `blocks` it rests on and, where more can settle it, how many are `needed`.
 
     Everything is judged on the records of `study`, except the claim about machines, which needs all of them.
     Those that may be decided at its scale are corrected for their number (see `family`).
@@ -43,15 +56,21 @@ def evaluate(study: Study, studies: Sequence[Study], published: Published) -> pd
         _at_scale(TESTS[one.test](evidence, **one.arguments), one, study.scale) for one in listed_claims
     ]
     outcomes = family.corrected(tested)
-    return pd.DataFrame(
-        [_row(claim, outcome, study) for claim, outcome in zip(listed_claims, outcomes, strict=True)]
-    )
+    open_claims = sum(map(missing.is_open, outcomes))
+    rows = []
+    for claim, alone, outcome in zip(listed_claims, tested, outcomes, strict=True):
+        wanted = missing.needed(alone, open_claims) if missing.is_open(outcome) else math.nan
+        rows.append({**_row(claim, outcome, study, wanted), "needed": wanted})
+    return pd.DataFrame(rows)
 
 
-def _row(claim: Claim, outcome: Outcome, study: Study) -> dict[str, object]:
+def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[str, object]:
     runs = study.runs[study.runs["experiment"].isin(claim.experiments)]
     tested = tuple(sorted(int(number) for number in runs["threads"].unique()))
     outcome = _with_failures(_at_threads(outcome, claim, tested), claim, study)
+    if not math.isnan(wanted):
+        told = missing.said(study, claim.experiments, outcome.blocks, wanted)
+        outcome = replace(outcome, why=f"{outcome.why}; {told}" if outcome.why else told)
     figures = (*_setting(claim, tested, runs), *outcome.figures)
     return {
         "id": claim.id,
@@ -78,7 +97,7 @@ def _at_scale(outcome: Outcome, claim: Claim, scale: str) -> Outcome:
     """A scale at which a claim may not be decided leaves what was measured, and no verdict."""
     if scale in claim.scales or (outcome.verdict == OPEN and not outcome.measured):
         return outcome
-    return replace(outcome, verdict=Verdict.OTHER_SCALE, why=claim.other_scales, p=None)
+    return replace(outcome, verdict=Verdict.OTHER_SCALE, why=claim.other_scales, p=None, blocks=0)
 
 
 def _with_failures(outcome: Outcome, claim: Claim, study: Study) -> Outcome:

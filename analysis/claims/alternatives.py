@@ -5,7 +5,9 @@ from dataclasses import dataclass, replace
 import pandas as pd
 
 from analysis.claims.outcome import FAILS, TOO_FEW, Outcome, judged
-from analysis.statistics.verdicts import ERROR, MARGIN, judge, not_faster
+from analysis.statistics.looks import ERROR
+from analysis.statistics.moderation import NOTHING_KNOWN, Prior
+from analysis.statistics.verdicts import MARGIN, judge, not_faster
 from analysis.support.wording import share
 
 
@@ -38,12 +40,12 @@ class Alternatives:
         return replace(found, why=why)
 
 
-def alternatives(pairs: pd.DataFrame) -> Alternatives:
+def alternatives(pairs: pd.DataFrame, prior: Prior = NOTHING_KNOWN) -> Alternatives:
     """Judge the alternatives; `pairs` has `name` and `log_ratio` = ln(alternative / choice).
 
     That nothing is faster needs evidence against every alternative (an intersection of tests, each at 5 %);
     that something is faster is Holm-corrected over the alternatives.
     """
-    behind = {name: not_faster(group["log_ratio"]) for name, group in pairs.groupby("name")}
-    table = judge(pairs, ["name"])
+    behind = {name: not_faster(group["log_ratio"], prior=prior) for name, group in pairs.groupby("name")}
+    table = judge(pairs, ["name"], prior=prior)
     return Alternatives(table.assign(behind=table["name"].map(behind)))

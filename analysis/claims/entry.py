@@ -6,8 +6,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from analysis.derived.noise_prior import prior
 from analysis.records.published import Published
 from analysis.records.studies import Study
+from analysis.statistics.moderation import Prior
 
 CLAIMS_FILE = Path(__file__).parent / "claims.toml"
 
@@ -56,6 +58,10 @@ class Evidence:
     study: Study
     studies: Sequence[Study]
     published: Published
+
+    def prior(self, experiment: str) -> Prior:
+        """Return what the study tells of the noise of an experiment's ratios."""
+        return prior(self.study, experiment)
 
 
 def load() -> list[Claim]:

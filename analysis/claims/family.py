@@ -14,7 +14,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, Outcome, Verdict
-from analysis.statistics.verdicts import ERROR, holm
+from analysis.statistics.looks import ERROR
+from analysis.statistics.verdicts import holm
 from analysis.support.wording import count, number
 
 ALONE = {HOLDS: "hold", FAILS: "not hold"}
@@ -34,6 +35,7 @@ def both(outcomes: Sequence[Outcome]) -> Outcome:
         tuple(dict.fromkeys(figure for outcome in outcomes for figure in outcome.figures)),
         all(outcome.missing for outcome in outcomes),
         (min(p) if verdict == FAILS else max(p)) if p else None,
+        min((outcome.blocks for outcome in decisive), default=0),
     )
 
 

@@ -3,10 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from math import isfinite
 from typing import Any
 
 from analysis.statistics.intervals import FEWEST
-from analysis.support.wording import count
+from analysis.statistics.verdicts import MARGIN
+from analysis.support.wording import count, percent
 
 
 class Verdict(StrEnum):
@@ -41,7 +43,9 @@ class Compared:
 class Outcome:
     """`measured` is the effect with its 95 % interval, empty if there is none; `why` is the reason in
     words. `missing` tells a claim without records from one that they do not decide. `p` is the p-value of the
-    verdict, or of the one best supported; None where nothing could be tested.
+    verdict, or of the one best supported; None where nothing could be tested. `blocks` is how many it rests
+    on, 0 where more of them would not help. `behind` are the alternatives, by series and x, of which nothing
+    but being faster is asked any more, each with the p-value of its not being so.
     """
 
     verdict: Verdict
@@ -50,6 +54,8 @@ class Outcome:
     figures: tuple[Compared, ...] = ()
     missing: bool = False
     p: float | None = None
+    blocks: int = 0
+    behind: tuple[tuple[str, float, float], ...] = ()
 
 
 def no_records(experiment: str, missing: str = "") -> Outcome:
@@ -65,6 +71,7 @@ def judged(
     figures: tuple[Compared, ...] = (),
     unsettled: str = TOO_FEW,
     unit: str = "block",
+    margin: float = MARGIN,
 ) -> Outcome:
     """Return what a verdict with its `p`, from so many `blocks` (or another unit), says of a claim that
     expects
@@ -72,7 +79,25 @@ def judged(
     """
     if row["blocks"] < FEWEST:
         why = f"rests on {count(row['blocks'], unit)}: a verdict needs at least {FEWEST}"
-        return Outcome(OPEN, measured, why, figures)
+        return Outcome(OPEN, measured, why, figures, blocks=row["blocks"])
     if row["verdict"] == "inconclusive":
-        return Outcome(OPEN, measured, unsettled, figures, p=row["p"])
-    return Outcome(HOLDS if row["verdict"] == expected else FAILS, measured, figures=figures, p=row["p"])
+        unsettled += _short(row, margin)
+        return Outcome(OPEN, measured, unsettled, figures, p=row["p"], blocks=row["blocks"])
+    verdict = HOLDS if row["verdict"] == expected else FAILS
+    return Outcome(verdict, measured, figures=figures, p=row["p"], blocks=row["blocks"])
+
+
+def _short(row: Mapping[str, Any], margin: float) -> str:
+    """Say by how much the interval of a ratio misses the verdict that it comes closest to; nothing of a row
+    without one.
+    """
+    if "low" not in row or not isfinite(row["low"]) or not isfinite(row["high"]):
+        return ""
+    least, most = 1 / (1 + margin), 1 + margin
+    by = {
+        "faster": row["high"] - least,
+        "slower": most - row["low"],
+        "equivalent": max(row["high"] - most, least - row["low"]),
+    }
+    nearest = min(by, key=lambda verdict: by[verdict])
+    return f" ({percent(by[nearest]).lstrip('+')} short of {nearest})" if by[nearest] > 0 else ""

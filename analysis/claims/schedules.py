@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analysis.claims.alternatives import alternatives
+from analysis.claims.alternatives import Alternatives, alternatives
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records
@@ -41,13 +41,14 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     if processes["threads"].max() < 2:
         return Outcome(OPEN, why=ONE_THREAD)
     pairs = pd.concat(
-        log_ratios(chosen, group).assign(name=f"{series} {x:g}")
+        log_ratios(chosen, group).assign(name=f"{series} {x:g}", series=series, x=x)
         for (series, x), group in others.groupby(["series", "x"])
     )
     if pairs.empty:
         return no_records(experiment, "any block with both sides")
-    average = judge_one(_average(pairs))
-    found = alternatives(pairs)
+    prior = evidence.prior(experiment)
+    average = judge_one(_average(pairs), prior=prior)
+    found = alternatives(pairs, prior)
     best, seconds = found.best, number(float(np.median(chosen["steps_seconds"])))
     measured = (
         f"{schedule} {chunk}: {seconds} s on {count(int(chosen['threads'].iloc[0]), 'thread')}; "
@@ -58,7 +59,18 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
         Compared("best other against the choice", _best_other(evidence, experiment, schedule, chunk),
                  f"{best['name']}: {change(best)}"),
     )  # fmt: skip
-    return replace(both([found.outcome(measured), _matters(average)]), figures=figures)
+    matters = _matters(average)
+    joined = replace(both([found.outcome(measured), matters]), figures=figures)
+    # The average needs every one of them, as long as it is open.
+    return joined if matters.verdict == OPEN else replace(joined, behind=_behind(found, pairs))
+
+
+def _behind(found: Alternatives, pairs: pd.DataFrame) -> tuple[tuple[str, float, float], ...]:
+    points = pairs.drop_duplicates("name").set_index("name")
+    return tuple(
+        (str(points.loc[row.name_, "series"]), float(points.loc[row.name_, "x"]), float(row.behind))
+        for row in found.table.rename(columns={"name": "name_"}).itertuples()
+    )
 
 
 def _average(pairs: pd.DataFrame) -> pd.Series:

@@ -7,11 +7,13 @@ from typing import Any
 import pandas as pd
 from matplotlib.axes import Axes
 
+from analysis.derived.noise_prior import prior
 from analysis.figures.captions import opening
 from analysis.figures.dots import dots
 from analysis.figures.pairs import Sides, bounded, pair_drawing
 from analysis.figures.style import BAND, BLUE, FAINT, INK, Data, Drawing, new_figure
 from analysis.statistics.bootstrap import summarise
+from analysis.statistics.moderation import NOTHING_KNOWN, Prior
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge
 from analysis.support.wording import change, exact
@@ -25,7 +27,7 @@ def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
     if times.empty:
         return None
     against = reference(times)
-    table = differences(times, against)
+    table = differences(times, against, prior(data.study, experiment))
     table["name"] = [f"{_label(row, table)} against {against}" for row in table.to_dict("records")]
     names = sorted(times["series"].unique(), key=lambda name: name == against)
     if len(names) == 2 and times["x"].nunique() == 1:
@@ -50,7 +52,7 @@ def reference(times: pd.DataFrame) -> str:
     return str(candidates[0] if len(candidates) == 1 else min(times["series"]))
 
 
-def differences(times: pd.DataFrame, against: str) -> pd.DataFrame:
+def differences(times: pd.DataFrame, against: str, noise: Prior = NOTHING_KNOWN) -> pd.DataFrame:
     """Return a row of `verdicts.judge` for every other series and x, compared within blocks with the series
     `against` at the same x, Holm-corrected over all of them.
     """
@@ -60,7 +62,8 @@ def differences(times: pd.DataFrame, against: str) -> pd.DataFrame:
         log_ratios(first, part, match=("x",)).assign(series=name) for name, part in others.groupby("series")
     ]
     columns = ["series", "x", "log_ratio"]
-    return judge(pd.concat(pairs) if pairs else pd.DataFrame(columns=columns), ["series", "x"])
+    table = pd.concat(pairs) if pairs else pd.DataFrame(columns=columns)
+    return judge(table, ["series", "x"], prior=noise)
 
 
 def differences_sentence(table: pd.DataFrame, against: str) -> str:

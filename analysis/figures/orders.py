@@ -3,6 +3,7 @@
 import pandas as pd
 
 from analysis.derived.ladder import per_disc_step
+from analysis.derived.noise_prior import prior
 from analysis.figures.captions import opening
 from analysis.figures.comparisons import differences, differences_sentence, reference
 from analysis.figures.curves import curve
@@ -21,6 +22,7 @@ from analysis.figures.style import (
     plain_ticks,
 )
 from analysis.statistics.bootstrap import summarise
+from analysis.statistics.moderation import Prior
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge
 from analysis.support.wording import change, exact
@@ -41,7 +43,7 @@ def row(data: Data) -> Drawing | None:
         curve(left, part, COLOURS.get(str(series), INK))
     left.set(xscale="log", xlabel="discs", ylabel="time per disc and step, ns")
     from_zero(left)
-    table = _row_ratio(times)
+    table = _row_ratio(times, prior(data.study, "row"))
     percent = table.assign(**{end: 100 * (table[end] - 1) for end in ("ratio", "low", "high")})
     right.axhspan(-100 * MARGIN, 100 * MARGIN, color=BAND, zorder=0, linewidth=0)
     right.axhline(0, color=FAINT, linewidth=0.7)
@@ -65,10 +67,10 @@ def row(data: Data) -> Drawing | None:
     return Drawing(figure, caption)
 
 
-def _row_ratio(times: pd.DataFrame) -> pd.DataFrame:
+def _row_ratio(times: pd.DataFrame, noise: Prior) -> pd.DataFrame:
     processes = process_medians(times)
     checkered, alternate = (processes[processes["order"] == order] for order in ("checkered", "row"))
-    return judge(log_ratios(checkered, alternate, match=("x",)), ["x"])
+    return judge(log_ratios(checkered, alternate, match=("x",)), ["x"], prior=noise)
 
 
 def sequential_orders(data: Data) -> Drawing | None:
@@ -96,7 +98,8 @@ def sequential_orders(data: Data) -> Drawing | None:
         )
     axes.set_xlabel("time of the steps, s")
     against = reference(times)
-    said = differences_sentence(differences(times, against), against)
+    table = differences(times, against, prior(data.study, "sequential_orders"))
+    said = differences_sentence(table, against)
     caption = opening(times, "The sequential resolve orders") + said
     return Drawing(
         figure,

@@ -7,6 +7,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from analysis.derived.noise_prior import prior
 from analysis.figures.captions import PROCESSES, SCENES, opening
 from analysis.figures.labels import label_ends
 from analysis.figures.style import (
@@ -53,7 +54,7 @@ def pair_drawing(data: Data, sides: Sides, work: bool = False) -> Drawing | None
     extra = work or not published.empty
     figure, axes = new_figure(2.4, columns=2 + extra, widths=[1.2, *([1.0] * extra), 1.1])
     _by_block(axes[0], {sides.names[0]: candidate, sides.names[1]: reference})
-    row = judge_one(log_ratios(reference, candidate)["log_ratio"])
+    row = judge_one(log_ratios(reference, candidate)["log_ratio"], prior=prior(data.study, sides.experiment))
     theirs = _published_panel(axes[1], published, sides) if not published.empty else None
     if work:
         _work(axes[1], data, sides)

@@ -26,7 +26,7 @@ from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.scalability import ScalabilityLaw
 from analysis.statistics.verdicts import judge
-from analysis.support.wording import change, count, exact, interval, number
+from analysis.support.wording import change, count, exact, interval, interval_of, number
 
 
 def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -61,7 +61,8 @@ def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
     ):
         axes.set_ylabel(label)
     key(panels[0], _entries(parts, shades, not published.empty, any(laws.values())))
-    said = "".join(_greatest(series, table, len(parts) > 1) for series, table in measured.items())
+    cores = data.study.cores or data.study.hardware_threads
+    said = "".join(_greatest(series, table, len(parts) > 1, cores) for series, table in measured.items())
     return Drawing(figure, opening(times, subject) + said + _sentences(laws, data.study, not published.empty))
 
 
@@ -193,11 +194,12 @@ def _law(panels: Sequence[Axes], law: ScalabilityLaw, most: float) -> None:
     panels[2].plot(n, law.speed_up(n) / n, color=VERMILLION, linewidth=0.9, zorder=2.5)
 
 
-def _greatest(series: str, speed_ups: pd.DataFrame, named: bool) -> str:
+def _greatest(series: str, speed_ups: pd.DataFrame, named: bool, cores: int) -> str:
     best = speed_ups.loc[speed_ups["speed_up"].idxmax()]
+    unlikely = scalability.doubt(best["speed_up"], min(best["x"], cores) / speed_ups["x"].min())
     return (
-        f" Greatest speed-up{f' of {series}' if named else ''} {number(best['speed_up'])} "
-        f"[{number(best['low'])}, {number(best['high'])}] with {exact(best['x'])} threads."
+        f" Greatest speed-up{f' of {series}' if named else ''} {interval_of(best, 'speed_up')} with "
+        f"{exact(best['x'])} threads{unlikely and f' ({unlikely})'}."
     )
 
 

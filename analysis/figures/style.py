@@ -179,10 +179,21 @@ def partial(study: Study, experiment: str) -> str | None:
     None.
     """
     runs = study.runs[study.runs["experiment"] == experiment]
-    planned = (runs["points_planned"] * runs["blocks_planned"]).max()
+    planned = _planned(runs)
     if runs.empty or np.isnan(planned) or len(runs) >= planned:
         return None
     return f"partial: {len(runs)} of {int(planned)} runs"
+
+
+def _planned(runs: pd.DataFrame) -> float:
+    """Return how many records were planned: later blocks may have fewer points than the first, since what is
+    settled stops. A block without any record is taken to be as the one before.
+    """
+    blocks = runs["blocks_planned"].max()
+    if np.isnan(blocks):
+        return np.nan
+    points = runs.groupby("block")["points_planned"].max().reindex(range(int(blocks)))
+    return float(points.ffill().bfill().sum())
 
 
 def mark_partial(figure: Figure, text: str | None) -> None:

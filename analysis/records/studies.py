@@ -15,7 +15,7 @@ CHECK_FAILED = 2
 """The program's exit code when a result fails its check."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Study:
     """The tables of one machine, source revision and scale; nothing here may be merged with another study."""
 

@@ -46,7 +46,7 @@ OUTSIDE = [
 IDENTITY = ["compiler_family", "node", "machine", "revision"]
 CONTEXT = [
     "file", "kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene", "scene_sha256", *SCENE,
-    *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment", "warm_ups", *IDENTITY,
+    *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment", "warm_ups", "in_turns", *IDENTITY,
 ]  # fmt: skip
 
 
@@ -79,6 +79,7 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
         "proc_bind": origin["openmp"]["proc_bind"],
         "environment": " ".join(f"{k}={v}" for k, v in sorted(origin["openmp"]["environment"].items())),
         "warm_ups": record["warm_ups"],
+        "in_turns": bool(record.get("turns")),
         "compiler_family": _compiler_family(origin["compiler"]),
         "node": slurm.get("SLURMD_NODENAME", origin["host"]),
         "machine": _machine(origin),

@@ -9,8 +9,10 @@ import pandas as pd
 from markupsafe import Markup
 
 from analysis import claims
+from analysis.claims import missing
 from analysis.derived.accuracy import MEASURES, errors
 from analysis.derived.ladder import headlines
+from analysis.derived.noise_prior import prior
 from analysis.figures import FIGURES, HARD_CASES, SPEED_AGAINST_ERROR, Drawn, experiments
 from analysis.figures.studies import draw_study
 from analysis.records import published
@@ -20,9 +22,10 @@ from analysis.report import provenance
 from analysis.report.horizons import horizons
 from analysis.statistics.intervals import RANKS_FROM
 from analysis.statistics.levels import in_order, levels, shifting
+from analysis.statistics.looks import ERROR
 from analysis.statistics.noise import needed_said, process_noise, warning
 from analysis.statistics.pairs import log_ratios, process_medians
-from analysis.statistics.verdicts import ERROR, MARGIN, judge_one
+from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.wording import blocks, change, count, number, share
 
 STYLE = Path(__file__).parent / "report.css"
@@ -75,6 +78,7 @@ def _study(study: Study, studies: Sequence[Study], results: Path) -> dict[str, A
         "noise": [_noise_row(row) for row in noise.to_dict("records")],
         "checks": provenance.checks(study),
         "claims": table.to_dict("records"),
+        "states": missing.tally(table),
         "tally": table["verdict"].value_counts().to_dict(),
     }
 
@@ -132,7 +136,7 @@ def _speeds(processes: pd.DataFrame) -> str:
 
 
 def _control_verdict(study: Study, processes: pd.DataFrame, sides: Sequence[pd.DataFrame]) -> str:
-    row = judge_one(log_ratios(*sides)["log_ratio"])
+    row = judge_one(log_ratios(*sides)["log_ratio"], prior=prior(study, CONTROL))
     sessions, beside = study.times["session"].nunique(), processes["session"].nunique()
     over = "the whole run" if beside == sessions else f"{beside} of {count(sessions, 'session')}"
     said = f"one variant, measured under two labels over {over}, differs by {change(row)} ({blocks(row)})"

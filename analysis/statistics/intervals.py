@@ -2,12 +2,14 @@
 
 The rule is by the number of blocks alone, never by the look of the data:
 
-* fewer than `RANKS_FROM` blocks: the t interval, the only one of the two that can reach 95 % with five
-  blocks and stay useful after Holm's correction; bursts of noise widen it (inconclusive), they do not make
-  it lie;
+* fewer than `RANKS_FROM` blocks: the t interval, the only one of the two that can reach what the looks and
+  Holm's correction leave of 5 %; its variance is moderated by that of other comparisons where a `Prior` is
+  given;
 * from `RANKS_FROM` blocks: the exact interval of the Wilcoxon signed-rank test around the Hodges-Lehmann
   estimate. The difference of two exchangeable processes is symmetric, which is all it assumes, and no
   single burst can move it far, so that nothing has to be dropped.
+
+By default the level is that of the look at so many blocks (see `looks`).
 
 Source: Hollander, Wolfe and Chicken, "Nonparametric Statistical Methods", 3rd edition, 2014, chapter 3.
 """
@@ -20,10 +22,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
+from analysis.statistics.looks import ERROR, LOOKS, share
+from analysis.statistics.moderation import NOTHING_KNOWN, Prior
+
 Floats = NDArray[np.float64]
 
-RANKS_FROM = 12
-FEWEST = 4
+RANKS_FROM = 14
+FEWEST = LOOKS[0]
 """Blocks below which nothing is decided: of two or three a single disturbed one makes any answer, and their
 deviation is hardly known.
 """
@@ -38,21 +43,28 @@ class Interval:
     high: float
 
 
-def centre(differences: ArrayLike, level: float = 0.95) -> Interval:
+def centre(differences: ArrayLike, level: float | None = None, prior: Prior = NOTHING_KNOWN) -> Interval:
     """Return the centre of the differences with its two-sided interval; NaN without any difference."""
     values = np.asarray(differences, dtype=float)
+    if level is None:
+        level = 1 - ERROR * share(len(values))
     if len(values) == 0:
         return Interval(np.nan, -np.inf, np.inf)
     if len(values) == 1:
         return Interval(float(values[0]), -np.inf, np.inf)
     if len(values) < RANKS_FROM:
-        return _student(values, level)
+        return _student(values, level, prior)
     return _signed_rank(values, level)
 
 
-def p_value(differences: ArrayLike, bound: float, alternative: Literal["less", "greater"]) -> float:
-    """Return the p-value of "the centre is not on the `alternative` side of `bound`"; 1 with fewer than two
-    values.
+def p_value(
+    differences: ArrayLike,
+    bound: float,
+    alternative: Literal["less", "greater"],
+    prior: Prior = NOTHING_KNOWN,
+) -> float:
+    """Return the p-value of "the centre is not on the `alternative` side of `bound`", of one look alone; 1
+    with fewer than two values.
     """
     values = np.asarray(differences, dtype=float) - bound
     if len(values) < 2:
@@ -62,20 +74,22 @@ def p_value(differences: ArrayLike, bound: float, alternative: Literal["less", "
     if len(values) >= RANKS_FROM:
         statistic = int(np.floor(_positive_ranks(values)))
         return float(_null_distribution(len(values))[statistic:].sum())
-    spread = _standard_error(values)
+    spread, freedom = _standard_error(values, prior)
     if spread == 0:
         return 0.0 if values.mean() > 0 else 1.0
-    return float(stats.t.sf(values.mean() / spread, len(values) - 1))
+    return float(stats.t.sf(values.mean() / spread, freedom))
 
 
-def _student(values: Floats, level: float) -> Interval:
+def _student(values: Floats, level: float, prior: Prior) -> Interval:
     mean = float(values.mean())
-    half = float(stats.t.ppf((1 + level) / 2, len(values) - 1)) * _standard_error(values)
+    spread, freedom = _standard_error(values, prior)
+    half = float(stats.t.ppf((1 + level) / 2, freedom)) * spread
     return Interval(mean, mean - half, mean + half)
 
 
-def _standard_error(values: Floats) -> float:
-    return float(values.std(ddof=1) / np.sqrt(len(values)))
+def _standard_error(values: Floats, prior: Prior) -> tuple[float, float]:
+    variance, freedom = prior.moderated(float(values.var(ddof=1)), len(values) - 1)
+    return float(np.sqrt(variance / len(values))), freedom
 
 
 def _signed_rank(values: Floats, level: float) -> Interval:

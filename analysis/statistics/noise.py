@@ -7,9 +7,11 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
+from analysis.statistics import looks
 from analysis.statistics.intervals import FEWEST, RANKS_FROM
+from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import PAIR, process_medians
-from analysis.statistics.verdicts import ERROR, MARGIN
+from analysis.statistics.verdicts import MARGIN
 from analysis.support.wording import count, share
 
 Floats = NDArray[np.float64]
@@ -107,11 +109,15 @@ def equivalence_rate(noise: float, blocks: int, margin: float = MARGIN) -> float
     """Return how often the t interval finds two equal configurations equivalent.
 
     The mean of the log ratios is normal and their deviation, independent of it, a scaled chi; the rate is the
-    chance that the 95 % interval lies within the margin, averaged over quantiles of the deviation.
+    chance that the interval of the look lies within the margin, averaged over quantiles of the deviation.
     """
     true_error = noise * np.sqrt(2 / blocks)
     quantiles = stats.chi2.ppf((np.arange(200) + 0.5) / 200, blocks - 1)
-    half_width = stats.t.ppf(1 - ERROR / 2, blocks - 1) * true_error * np.sqrt(quantiles / (blocks - 1))
+    half_width = (
+        stats.t.ppf(1 - ERROR * looks.share(blocks) / 2, blocks - 1)
+        * true_error
+        * np.sqrt(quantiles / (blocks - 1))
+    )
     room = np.maximum(np.log1p(margin) - half_width, 0)
     return float((2 * stats.norm.cdf(room / max(true_error, 1e-12)) - 1).mean())
 

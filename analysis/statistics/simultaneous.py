@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from analysis.statistics.intervals import Interval
+from analysis.statistics.looks import ERROR, share
 
 Floats = NDArray[np.float64]
 
@@ -21,25 +22,29 @@ class Differences:
     error: float
     freedom: int
 
-    def interval(self, one: int, other: int, level: float = 0.95) -> Interval:
-        """Return point `one` less point `other`; the intervals of all pairs hold together at the level."""
+    def interval(self, one: int, other: int) -> Interval:
+        """Return point `one` less point `other`; the intervals of all pairs, and of all looks, hold together
+        in 95 % of studies.
+        """
         difference = float(self.means[one] - self.means[other])
         if one == other:
             return Interval(0.0, 0.0, 0.0)
         if not self.freedom:
             return Interval(difference, -np.inf, np.inf)
+        level = 1 - ERROR * share(self.blocks)
         half = _studentized_range(level, len(self.means), self.freedom) * self.error
         return Interval(difference, difference - half, difference + half)
 
     def p_value(self, slack: float) -> float:
         """Return the p-value of a statement about differences that could be off by `slack` and still be
-        true.
+        true, over all looks.
         """
         if not self.freedom or slack <= 0:
             return 1.0
         if self.error == 0:
             return 0.0
-        return float(stats.studentized_range.sf(slack / self.error, len(self.means), self.freedom))
+        p = stats.studentized_range.sf(slack / self.error, len(self.means), self.freedom)
+        return float(p) / share(self.blocks)
 
 
 def differences(curves: Floats) -> Differences:

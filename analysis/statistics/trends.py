@@ -13,9 +13,10 @@ from scipy import stats
 
 from analysis.statistics.breaks import break_point
 from analysis.statistics.intervals import FEWEST, Interval, centre, p_value
+from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import PAIR, log_ratios
 from analysis.statistics.simultaneous import Differences, differences
-from analysis.statistics.verdicts import ERROR, MARGIN, judge_one, two_sided, verdict_row
+from analysis.statistics.verdicts import MARGIN, judge_one, two_sided, verdict_row
 
 Floats = NDArray[np.float64]
 

@@ -7,7 +7,8 @@ from numpy.typing import ArrayLike
 from scipy import stats
 
 from analysis.statistics.intervals import Interval
-from analysis.statistics.verdicts import ERROR, MARGIN, decide, verdict_row
+from analysis.statistics.looks import ERROR, share
+from analysis.statistics.verdicts import MARGIN, decide, verdict_row
 
 
 def judge_unpaired(reference: ArrayLike, candidate: ArrayLike, margin: float = MARGIN) -> dict[str, Any]:
@@ -33,5 +34,5 @@ def judge_unpaired(reference: ArrayLike, candidate: ArrayLike, margin: float = M
         equivalent=max(p_value(-bound, "greater"), p_value(bound, "less")),
         blocks=fewest,
     )
-    shown = stats.ttest_ind(second, first, equal_var=False).confidence_interval(1 - ERROR)
+    shown = stats.ttest_ind(second, first, equal_var=False).confidence_interval(1 - ERROR * share(fewest))
     return verdict_row(Interval(estimate, float(shown.low), float(shown.high)), fewest, p, verdict)

@@ -8,32 +8,34 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from analysis.statistics.intervals import FEWEST, Interval, centre, p_value
+from analysis.statistics.looks import ERROR, share
+from analysis.statistics.moderation import NOTHING_KNOWN, Prior
 
 MARGIN = 0.02
-ERROR = 0.05
-COLUMNS = ["ratio", "low", "high", "blocks", "p", "verdict"]
+COLUMNS = ["ratio", "low", "high", "blocks", "p", "verdict", "alone"]
 
 
 def judge(
-    pairs: pd.DataFrame, by: list[str], margin: float = MARGIN, value: str = "log_ratio"
+    pairs: pd.DataFrame, by: list[str], margin: float = MARGIN, prior: Prior = NOTHING_KNOWN
 ) -> pd.DataFrame:
     """Return one row a group of `by` with its ratio, interval and verdict, Holm-corrected over the whole
     table.
 
     Columns: `ratio` (candidate / reference) with its 95 % interval `low`, `high`, which decides and is shown,
-    `blocks`, `p`, `verdict`.
+    `blocks`, `p`, `verdict`; `alone` is p before the correction over the rows.
 
     *faster*: the interval lies below 1 / (1 + margin); *slower*: above 1 + margin; *equivalent*: between the
     two. A verdict is wrong only where the interval misses the truth, in at most 5 % of all, wherever that
     lies: the smallest effect that matters is a region, not two tests at 5 % each (Schuirmann, J.
     Pharmacokinet. Biopharm. 15, 1987, whose 90 % interval errs in 5 % on either side; Westlake, Biometrics
     32, 1976, whose 95 % interval is used here). `p` is the smallest error at which the interval decides; it
-    is corrected over the rows (Holm, Scand. J. Stat. 6, 1979). What is not established, and anything from
-    fewer than `FEWEST` blocks, is *inconclusive*.
+    is corrected over the looks (see `looks`), as the interval is, and over the rows (Holm, Scand. J. Stat. 6,
+    1979). What is not established, and anything from fewer than `FEWEST` blocks, is *inconclusive*. `prior`
+    is what other comparisons tell of the noise (see `moderation`).
     """
     rows: list[dict[str, Any]] = []
     for key, group in pairs.groupby(by, sort=True):
-        rows.append({**dict(zip(by, key, strict=True)), **judge_one(group[value], margin)})
+        rows.append({**dict(zip(by, key, strict=True)), **judge_one(group["log_ratio"], margin, prior)})
     table = pd.DataFrame(rows, columns=[*by, *COLUMNS])
     return corrected(table)
 
@@ -47,23 +49,31 @@ def corrected(table: pd.DataFrame) -> pd.DataFrame:
     return table.assign(p=p, verdict=verdicts)
 
 
-def judge_one(log_ratios: ArrayLike, margin: float = MARGIN) -> dict[str, Any]:
+def judge_one(log_ratios: ArrayLike, margin: float = MARGIN, prior: Prior = NOTHING_KNOWN) -> dict[str, Any]:
     """Return the row of one comparison standing alone: the columns that `judge` adds."""
     values = np.asarray(log_ratios, dtype=float)
     bound = np.log1p(margin)
     verdict, p = decide(
-        faster=p_value(values, -bound, "less"),
-        slower=p_value(values, bound, "greater"),
-        equivalent=max(p_value(values, -bound, "greater"), p_value(values, bound, "less")),
+        faster=p_value(values, -bound, "less", prior),
+        slower=p_value(values, bound, "greater", prior),
+        equivalent=max(p_value(values, -bound, "greater", prior), p_value(values, bound, "less", prior)),
         blocks=len(values),
     )
-    return verdict_row(centre(values, 1 - ERROR), len(values), p, verdict)
+    return verdict_row(centre(values, prior=prior), len(values), p, verdict)
 
 
 def verdict_row(log_ratio: Interval, blocks: int, p: float, verdict: str) -> dict[str, Any]:
     """Return the columns that `judge` adds, of an interval of a log ratio."""
     ratio, low, high = (float(np.exp(one)) for one in (log_ratio.estimate, log_ratio.low, log_ratio.high))
-    return {"ratio": ratio, "low": low, "high": high, "blocks": blocks, "p": p, "verdict": verdict}
+    return {
+        "ratio": ratio,
+        "low": low,
+        "high": high,
+        "blocks": blocks,
+        "p": p,
+        "verdict": verdict,
+        "alone": p,
+    }
 
 
 def decide(faster: float, slower: float, equivalent: float, blocks: int) -> tuple[str, float]:
@@ -79,18 +89,18 @@ def decide(faster: float, slower: float, equivalent: float, blocks: int) -> tupl
 
 
 def two_sided(p: float, blocks: int) -> float:
-    """Return the p-value at which the two-sided interval decides what a one-sided test gives `p` for; 1 from
-    fewer than `FEWEST` blocks.
+    """Return the p-value at which the two-sided interval decides what a one-sided test gives `p` for, over
+    all looks; 1 from fewer than `FEWEST` blocks. It is not cut at 1, so that it tells how far a verdict is.
     """
-    return min(1.0, 2 * p) if blocks >= FEWEST else 1.0
+    return 2 * p / share(blocks) if blocks >= FEWEST else 1.0
 
 
-def not_faster(log_ratios: ArrayLike, margin: float = MARGIN) -> float:
+def not_faster(log_ratios: ArrayLike, margin: float = MARGIN, prior: Prior = NOTHING_KNOWN) -> float:
     """Return the p-value of the candidate not being faster than the reference by more than the margin: at
     most `ERROR` where its interval lies above 1 / (1 + margin).
     """
     values = np.asarray(log_ratios, dtype=float)
-    return two_sided(p_value(values, -np.log1p(margin), "greater"), len(values))
+    return two_sided(p_value(values, -np.log1p(margin), "greater", prior), len(values))
 
 
 def holm(p_values: Sequence[float] | pd.Series) -> list[float]:

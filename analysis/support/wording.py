@@ -7,6 +7,7 @@ from typing import Any, Protocol
 import pandas as pd
 
 NO_BREAK = "\u00a0"
+NO_INTERVAL = "(too few blocks for an interval)"
 
 
 class Estimated(Protocol):
@@ -64,7 +65,7 @@ def share(fraction: float, digits: int = 0) -> str:
 
 
 def interval(value: Estimated, digits: int = 3) -> str:
-    """Return an estimate with its 95 % interval, e.g. `0.98 [0.95, 1.01]`."""
+    """Return an estimate with its 95 % interval, if it has one, e.g. `0.98 [0.95, 1.01]`."""
     return _between(value.estimate, value.low, value.high, digits)
 
 
@@ -74,11 +75,17 @@ def interval_of(row: Mapping[Hashable, Any] | pd.Series, value: str = "median") 
 
 
 def _between(estimate: float, low: float, high: float, digits: int) -> str:
+    if not math.isfinite(high):
+        return f"{number(estimate, digits)} {NO_INTERVAL}"
     return f"{number(estimate, digits)} [{number(low, digits)}, {number(high, digits)}]"
 
 
 def change(row: Mapping[str, Any]) -> str:
-    """Return a row of `verdicts.judge` as a change with its 95 % interval, e.g. `−4.6 % [−5.1 %, −4.0 %]`."""
+    """Return a row of `verdicts.judge` as a change with its 95 % interval, e.g. `−4.6 % [−5.1 %, −4.0 %]`,
+    if it has one.
+    """
+    if not math.isfinite(row["high"]):
+        return f"{percent(row['ratio'] - 1)} {NO_INTERVAL}"
     low, high = (percent(row[end] - 1) for end in ("low", "high"))
     return f"{percent(row['ratio'] - 1)} [{low}, {high}]"
 

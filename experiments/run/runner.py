@@ -24,13 +24,14 @@ from experiments.support.process import NOT_FOUND, Completed
 
 @dataclass(frozen=True)
 class Task:
-    """A point in one block of its experiment."""
+    """A point in one block of its experiment; planned are so many `blocks`, and `points` in this one."""
 
     experiment: Experiment
     point: Point
     block: int
     position: int
     blocks: int
+    points: int
 
     def tags(self, session: str) -> Tags:
         """Everything that the record remembers of the plan."""
@@ -41,7 +42,7 @@ class Task:
             "position": self.position,
             "session": session,
             "order_seed": self.experiment.order_seed,
-            "points_planned": len(self.experiment.points),
+            "points_planned": self.points,
             "blocks_planned": self.blocks,
         }
 

@@ -1,7 +1,7 @@
-"""How many blocks each experiment gets, what is still to be run, and when the control's blocks are due."""
+"""How many blocks each experiment has, what is still to be run, and who gets the next ones."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
@@ -9,14 +9,14 @@ from experiments.plan.question import CONTROL
 from experiments.results.store import Found, Store
 from experiments.run.budget import Load, allocate
 from experiments.run.costs import Costs
+from experiments.run.given import Given, given_before, keep
 from experiments.run.progress import Status
+from experiments.run.verdicts import Open, Verdicts
 from experiments.run.verify import representative
-
-PLAN = "plan.json"
 
 
 class Schedule:
-    """The number of blocks of each experiment, decided when its first block begins and kept from then on."""
+    """The number of blocks of each experiment: it grows, and is written down before a block begins."""
 
     def __init__(
         self,
@@ -25,10 +25,8 @@ class Schedule:
         found: Mapping[str, Found],
         costs: Costs,
         figure_seconds: float,
-        *,
-        more: bool = False,
     ) -> None:
-        """With `more`, what an earlier session decided is the least: the budget may give further blocks."""
+        """An experiment begins with its least number of blocks, or with what an earlier session gave it."""
         self.experiments = tuple(experiments)
         self.figure_seconds = figure_seconds
         self._store = store
@@ -36,48 +34,75 @@ class Schedule:
         self._costs = costs
         self._once_each = {one.name: _once_each(one, costs) for one in experiments}
         self._given_up: set[tuple[str, str]] = set()
-        self._decided = decided_blocks(store, experiments, found)
-        self._growing = set(self._decided) if more else set()
-        self.blocks = {one.name: one.question.blocks.minimum for one in experiments} | self._decided
+        self._begun = given_before(store, experiments, found)
+        least = {one.name: Given(one.question.blocks.minimum) for one in experiments}
+        self.given = least | self._begun
 
-    def decide(self, seconds_left: float) -> None:
-        """Share what is left of the budget among the experiments; those already begun keep what they have."""
+    def share(self, seconds_left: float, settled: Collection[str] = ()) -> None:
+        """Share the time left among the experiments that are not settled; none loses a block it was given."""
         once = self._once_seconds()
-        loads = [self._load(experiment, once[experiment.name]) for experiment in self.experiments]
-        self.blocks = allocate(loads, seconds_left)
+        loads = [self._load(one, once[one.name], stopped=one.name in settled) for one in self.experiments]
+        for name, blocks in allocate(loads, seconds_left).items():
+            self.given[name].blocks = blocks
+
+    def give(self, experiment: Experiment, found: Open) -> None:
+        """Give an experiment the blocks up to its next look, without the points of which nothing is asked."""
+        given = self.given[experiment.name]
+        for point in experiment.points:
+            if (point.series, point.x) in found.points_stopped:
+                given.stopped.setdefault(point.id, given.blocks)
+        given.blocks = max(given.blocks, found.next)
+
+    def cheapest(self, verdicts: Verdicts, seconds_left: float) -> Experiment | None:
+        """The experiment in which something is settled soonest, of those whose next look there is time for;
+        None if there is none.
+        """
+        best, least = None, math.inf
+        for one in self.experiments:
+            found = verdicts.open.get(one.name)
+            if found is None or any(self._is_given_up(one, point) for point in one.points):
+                continue
+            goes_on = [point for point in one.points if (point.series, point.x) not in found.points_stopped]
+            block = sum(map(self._costs.point, goes_on))
+            seconds = block * (found.needed - found.blocks)
+            if seconds < least and block * (found.next - found.blocks) <= seconds_left:
+                best, least = one, seconds
+        return best
+
+    def _is_given_up(self, experiment: Experiment, point: Point) -> bool:
+        return (experiment.name, point.id) in self._given_up
 
     def begin(self, experiment: Experiment) -> int:
         """The experiment's number of blocks, fixed and written down."""
-        blocks = self._decided[experiment.name] = self.blocks[experiment.name]
-        self._growing.discard(experiment.name)
-        plan = self._store.note(PLAN) or {}
-        entry = {
-            "blocks": blocks,
-            "order_seed": experiment.order_seed,
-            "points": [point.id for point in experiment.points],
-        }
-        of_scale = plan.setdefault(experiment.points[0].scale, {})
-        if of_scale.get(experiment.name) != entry:
-            of_scale[experiment.name] = entry
-            self._store.keep_note(PLAN, plan)
-        return blocks
+        given = self._begun[experiment.name] = self.given[experiment.name]
+        keep(self._store, experiment, given)
+        return given.blocks
 
     def promised(self, experiment: Experiment) -> int:
         """The blocks that the experiment gets for certain: those decided, until then the least."""
-        return self._decided.get(experiment.name, experiment.question.blocks.minimum)
+        begun = self._begun.get(experiment.name)
+        return begun.blocks if begun else experiment.question.blocks.minimum
+
+    def size(self, experiment: Experiment, block: int) -> int:
+        """How many points the block has."""
+        given = self.given[experiment.name]
+        return sum(given.includes(point, block) for point in experiment.points)
 
     def missing(self, experiment: Experiment, block: int) -> list[tuple[int, Point]]:
         """Position and point of what is still to be run in one block, in the block's order."""
-        seconds = self._found[experiment.name].seconds
+        seconds, given = self._found[experiment.name].seconds, self.given[experiment.name]
         return [
             (position, point)
             for position, point in enumerate(experiment.block(block))
-            if (point.id, block) not in seconds and (experiment.name, point.id) not in self._given_up
+            if given.includes(point, block)
+            and (point.id, block) not in seconds
+            and not self._is_given_up(experiment, point)
         ]
 
     def is_complete(self, experiment: Experiment) -> bool:
         """Whether nothing of it is still to be run."""
-        return not any(self.missing(experiment, block) for block in range(self.blocks[experiment.name]))
+        blocks = self.given[experiment.name].blocks
+        return not any(self.missing(experiment, block) for block in range(blocks))
 
     def finish(self, experiment: Experiment, point: Point, block: int, seconds: float | None) -> None:
         """A process ended after so many seconds; None if it failed, and then its point is not tried again."""
@@ -90,7 +115,7 @@ class Schedule:
     def status(self) -> Status:
         """How far the study is; what is left counts scenes, checks and figures too."""
         missing = self._all_missing()
-        planned = sum(len(one.points) * self.blocks[one.name] for one in self.experiments)
+        planned = sum(len(self.given[one.name].keys(one.points)) for one in self.experiments)
         return Status(
             planned=planned,
             done=planned - len(missing) - self._without_hope(),
@@ -101,24 +126,22 @@ class Schedule:
     def _without_hope(self) -> int:
         """How many processes of points that failed will not be run."""
         return sum(
-            (point.id, block) not in self._found[one.name].seconds and (one.name, point.id) in self._given_up
+            (point.id, block) not in self._found[one.name].seconds and self._is_given_up(one, point)
             for one in self.experiments
             for point in one.points
-            for block in range(self.blocks[one.name])
+            for block in range(self.given[one.name].blocks)
         )
 
     def control_due(self, control: Experiment) -> int:
         """How many of the control's blocks should be done by now: spread evenly over the study's time."""
         status = self.status()
         share = status.seconds_done / max(status.seconds_done + status.seconds_left, 1e-9)
-        return math.ceil(self.blocks[control.name] * share)
+        return math.ceil(self.given[control.name].blocks * share)
 
-    def _load(self, experiment: Experiment, once: float) -> Load:
+    def _load(self, experiment: Experiment, once: float, *, stopped: bool) -> Load:
         seconds = {point.id: self._costs.point(point) for point in experiment.points}
-        limits = experiment.question.blocks
-        minimum = self._decided.get(experiment.name, limits.minimum)
-        is_fixed = experiment.name in self._decided and experiment.name not in self._growing
-        wanted = minimum if is_fixed else limits.wanted
+        minimum = self.given[experiment.name].blocks
+        wanted = minimum if stopped else max(minimum, experiment.question.blocks.wanted)
         done = sum(seconds[point] for point, block in self._found[experiment.name].seconds if block < minimum)
         return Load(experiment.name, sum(seconds.values()), once - done, minimum, wanted)
 
@@ -144,7 +167,7 @@ class Schedule:
         return [
             point
             for one in self.experiments
-            for block in range(self.blocks[one.name])
+            for block in range(self.given[one.name].blocks)
             for _, point in self.missing(one, block)
         ]
 
@@ -161,23 +184,6 @@ def _once_each(experiment: Experiment, costs: Costs) -> list[tuple[str, object, 
             ((point.program.sha256, point.variant, first.scene), costs.check(first)),
         )
     ]
-
-
-def decided_blocks(
-    store: Store, experiments: Sequence[Experiment], found: Mapping[str, Found]
-) -> dict[str, int]:
-    """The number of blocks that an earlier session gave to the experiments that it began.
-
-    A question that now asks for more, or for fewer, has changed and is decided anew.
-    """
-    plan = store.note(PLAN) or {}
-    decided = {}
-    for experiment in experiments:
-        kept = plan.get(experiment.points[0].scale, {}).get(experiment.name)
-        limits = experiment.question.blocks
-        if kept and found[experiment.name].seconds and limits.minimum <= kept["blocks"] <= limits.wanted:
-            decided[experiment.name] = int(kept["blocks"])
-    return decided
 
 
 def split(experiments: Sequence[Experiment]) -> tuple[list[Experiment], Experiment | None]:

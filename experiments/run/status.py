@@ -8,7 +8,7 @@ from rich.table import Table
 
 from experiments.plan.plan import Experiment
 from experiments.results.store import Store
-from experiments.run.schedule import decided_blocks
+from experiments.run.given import Given, given_before
 from experiments.run.study import Settings, Study, summary
 
 
@@ -22,6 +22,7 @@ class Row:
     name: str
     points: int
     blocks: int
+    planned: int
     decided: bool
     done: int
     failed: int
@@ -31,26 +32,28 @@ class Row:
     @property
     def missing(self) -> int:
         """Processes that have neither a record nor a failed point."""
-        return self.points * self.blocks - self.done - self.failed
+        return self.planned - self.done - self.failed
 
 
 def rows(store: Store, experiments: Sequence[Experiment]) -> list[Row]:
     """The state of each experiment, read from the files alone."""
     found = {experiment.name: store.find(experiment) for experiment in experiments}
-    decided = decided_blocks(store, experiments, found)
+    decided = given_before(store, experiments, found)
     result = []
     for experiment in experiments:
         one = found[experiment.name]
         # A run that was told how many blocks to make may have made more than the question asks for.
         begun = 1 + max((block for _, block in one.seconds), default=-1)
-        blocks = max(begun, decided.get(experiment.name, experiment.question.blocks.minimum))
+        given = decided.get(experiment.name, Given(experiment.question.blocks.minimum))
+        given.blocks = max(begun, given.blocks)
         failed_points = {point for point, _ in one.failures}
-        keys = [(point.id, block) for point in experiment.points for block in range(blocks)]
+        keys = given.keys(experiment.points)
         result.append(
             Row(
                 name=experiment.name,
                 points=len(experiment.points),
-                blocks=blocks,
+                blocks=given.blocks,
+                planned=len(keys),
                 decided=experiment.name in decided,
                 done=sum(key in one.seconds for key in keys),
                 failed=sum(key not in one.seconds and key[0] in failed_points for key in keys),
@@ -87,7 +90,7 @@ def show_plan(settings: Settings) -> int:
         schedule = study.schedule(study.runner(), settle=False)
     table = new_table("experiment", "points", "blocks", "to be run", "figure", "claim", "title")
     for experiment in study.experiments:
-        blocks = schedule.blocks[experiment.name]
+        blocks = schedule.given[experiment.name].blocks
         missing = sum(len(schedule.missing(experiment, block)) for block in range(blocks))
         question = experiment.question
         counts = (len(experiment.points), blocks, missing)

@@ -1,15 +1,11 @@
-"""The whole study on this machine: plan, measure, draw; and go on where an earlier run stopped."""
+"""The study as the command line asks for it: its questions planned, its results folder, its schedule."""
 
-import math
 import sys
-import time
-from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
 from experiments.plan import question, site
 from experiments.plan.plan import SEED, Experiment, Surroundings, plan
-from experiments.plan.point import Point
 from experiments.plan.program import GENERATOR, Program, find_programs
 from experiments.plan.question import load_questions, with_blocks
 from experiments.plan.scale import find_scale
@@ -17,14 +13,13 @@ from experiments.plan.scenes import SceneFolder
 from experiments.plan.site import Machine
 from experiments.results.store import Store, new_session, seconds_by_point
 from experiments.run.costs import PROBE, Costs, Probe, kept_probes, probe, probe_key, to_probe
-from experiments.run.progress import Report, about, warn
-from experiments.run.runner import Outcome, Runner, Task
-from experiments.run.schedule import Schedule, split
-from experiments.run.together import together
+from experiments.run.progress import about
+from experiments.run.runner import Runner
+from experiments.run.schedule import Schedule
 from experiments.support.errors import InputError
-from experiments.support.process import NOT_FOUND, Coprocess
 
 COSTS = "costs.json"
+FINISHED = "finished.json"
 POINTS_FAILED = 2
 
 REPORT_SECONDS = 40.0
@@ -32,12 +27,6 @@ REPORT_SECONDS = 40.0
 
 FIGURE_SECONDS = 2.0
 """What drawing one experiment's figure takes, until one has been drawn."""
-
-DRAWING_PAUSE = 10.0
-"""Seconds between two drawings: what is complete sooner is drawn together, which takes less time."""
-
-DRAWING_LIMIT = 600.0
-"""Seconds after which a drawing is given up."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +42,7 @@ class Settings:
     questions: Path = question.FOLDER
     blocks: int | None = None
     budget_seconds: float | None = None
+    until_decided: bool = False
     seed: int = SEED
     figures: bool = True
 
@@ -85,9 +75,9 @@ class Study:
         )
         self.store = Store(settings.results, new_session())
 
-    def drawing_command(self) -> list[str]:
-        """What draws the figures of the experiments that it is told, some a line."""
-        return [sys.executable, "-m", "analysis", "figures", "--results", str(self.store.root), "--follow"]
+    def analysis_command(self) -> list[str]:
+        """What draws the figures of the experiments that it is told, and says what is open."""
+        return [sys.executable, "-m", "analysis", "follow", "--results", str(self.store.root)]
 
     def scenes(self) -> SceneFolder:
         """The generated scenes; the results folder must be held."""
@@ -103,10 +93,21 @@ class Study:
         found = {experiment.name: look(experiment) for experiment in self.experiments}
         costs = Costs(self._probes(runner), seconds_by_point(found.values()))
         figure_seconds = FIGURE_SECONDS if self.settings.figures else 0.0
-        more = self.settings.budget_seconds is not None
-        schedule = Schedule(self.store, self.experiments, found, costs, figure_seconds, more=more)
-        schedule.decide(self.measuring_seconds - schedule.status().seconds_done)
-        return schedule
+        return Schedule(self.store, self.experiments, found, costs, figure_seconds)
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether a session came to the end of these experiments: a further one has nothing to decide."""
+        return self._key in (self.store.note(FINISHED) or [])
+
+    def finish(self) -> None:
+        """Write down that a session came to the end."""
+        if not self.is_finished:
+            self.store.keep_note(FINISHED, [*(self.store.note(FINISHED) or []), self._key])
+
+    @property
+    def _key(self) -> str:
+        return f"{self.scale.name}: {', '.join(sorted(one.name for one in self.experiments))}"
 
     def _probes(self, runner: Runner) -> dict[str, Probe]:
         probes = kept_probes(self.store.note(COSTS))
@@ -124,18 +125,6 @@ class Study:
         return probes
 
 
-def run(settings: Settings) -> int:
-    """Run what is missing of the study. Returns the exit code: 0, or 2 where a point failed."""
-    study = Study(settings)
-    with study.store.opened(), Report() as report:
-        report.now("planning")
-        runner = study.runner()
-        schedule = study.schedule(runner, settle=True)
-        report.line(summary(schedule, study.budget_seconds))
-        with Coprocess(study.drawing_command()) as painter:
-            return _Session(study, runner, schedule, report, painter).run()
-
-
 def summary(schedule: Schedule, budget_seconds: float) -> str:
     """What is about to be run, in one line."""
     status = schedule.status()
@@ -149,116 +138,6 @@ def summary(schedule: Schedule, budget_seconds: float) -> str:
             f", although the budget is {about(budget_seconds)}: the least number of blocks takes that long"
             " (less: --study picks questions, --scale quick is the small study)"
         )
+    else:
+        text += f", then more of what is open, within {about(budget_seconds)}"
     return text
-
-
-class _Session:
-    """One invocation: a first block of every experiment, then one after the other, the control in between."""
-
-    def __init__(
-        self, study: Study, runner: Runner, schedule: Schedule, report: Report, painter: Coprocess
-    ) -> None:
-        self._study = study
-        self._runner = runner
-        self._schedule = schedule
-        self._report = report
-        self._painter = painter
-        self._failures: Counter[str] = Counter()
-        self._to_draw: list[str] = []
-        self._drawn_at = -math.inf
-        self._others, self._control = split(study.experiments)
-        self._until = time.monotonic() + study.measuring_seconds - schedule.status().seconds_done
-
-    def run(self) -> int:
-        """Run what is missing. First blocks come first: they tell what each block costs here, by which the
-        rest of the time is then shared out.
-        """
-        incomplete = [one for one in self._others if not self._schedule.is_complete(one)]
-        for experiment in incomplete:
-            self._run_control(everything=False)
-            self._block(experiment, 0)
-            self._decide()
-            if experiment.question.blocks.wanted == 1:
-                self._rest(experiment)
-        for experiment in incomplete:
-            if experiment.question.blocks.wanted > 1:
-                self._rest(experiment)
-        self._run_control(everything=True)
-        self._draw()
-        return self._conclude()
-
-    def _decide(self) -> None:
-        self._schedule.decide(self._until - time.monotonic())
-
-    def _rest(self, experiment: Experiment) -> None:
-        self._decide()
-        for block in range(self._schedule.begin(experiment)):
-            self._run_control(everything=False)
-            self._block(experiment, block)
-        self._complete(experiment)
-
-    def _run_control(self, *, everything: bool) -> None:
-        """The same thing under two labels, measured all along the study, must come out equal."""
-        control = self._control
-        if control is None or self._schedule.is_complete(control):
-            return
-        blocks = self._schedule.begin(control)
-        for block in range(blocks if everything else self._schedule.control_due(control)):
-            self._block(control, block)
-        if self._schedule.is_complete(control):
-            self._complete(control)
-
-    def _block(self, experiment: Experiment, block: int) -> None:
-        missing = self._schedule.missing(experiment, block)
-        blocks = self._schedule.promised(experiment)
-        what = f"{experiment.name}, block {block + 1} of {blocks}"
-        for group in together(experiment, block, missing):
-            self._report.now(what, self._schedule.status)
-            tasks = [Task(experiment, point, block, position, blocks) for position, point in group]
-            for (_, point), outcome in zip(group, self._runner.run(tasks), strict=True):
-                self._schedule.finish(experiment, point, block, outcome.seconds)
-                if outcome.seconds is None:
-                    self._tell(point, outcome)
-        if missing:
-            self._report.block(what, self._schedule.status)
-
-    def _tell(self, point: Point, failed: Outcome) -> None:
-        where = f"{point.experiment}, {point.series}, {point.x_name} {point.x:g}"
-        self._report.line(f"{where}: failed: {failed.reason}")
-        # A build that is not there is a gap with a remedy, not a wrong result.
-        if failed.exit_code != NOT_FOUND:
-            self._failures[point.experiment] += 1
-
-    def _complete(self, experiment: Experiment) -> None:
-        self._to_draw.append(experiment.name)
-        if time.monotonic() - self._drawn_at > DRAWING_PAUSE:
-            self._draw()
-
-    def _draw(self) -> None:
-        """Draw what was completed since the last time: together, on all processors; what fails, alone."""
-        names, self._to_draw = self._to_draw, []
-        if not names or not self._study.settings.figures:
-            return
-        self._report.now(f"{', '.join(names)}: drawing")
-        began = time.monotonic()
-        together = self._painter.ask(",".join(names), DRAWING_LIMIT)
-        for name in names:
-            done = together
-            if together.exit_code != 0 and len(names) > 1:
-                done = self._painter.ask(name, DRAWING_LIMIT)
-            if done.exit_code == 0:
-                self._report.line(f"{name}: complete, drawn into {self._study.store.root / 'figures'}")
-            else:
-                warn(f"{name}: complete, but its figure could not be drawn: {done.reason}")
-        self._drawn_at = time.monotonic()
-        self._schedule.figure_seconds = (self._drawn_at - began) / len(names)
-
-    def _conclude(self) -> int:
-        root = self._study.store.root
-        if not self._failures:
-            if self._study.is_whole:
-                self._report.line(f"the study is complete: {root / 'records'}")
-            return 0
-        points = ", ".join(f"{name} ({number})" for name, number in self._failures.items())
-        warn(f"points failed: {points}; the reasons are in {root / 'failures'} and in the report")
-        return POINTS_FAILED

@@ -48,7 +48,10 @@ class _Worker:
             if (experiment.name, block) in own:
                 hopeful = [one for one in missing if (experiment.name, one[1].id) not in self._failed]
                 for group in together(experiment, block, hopeful):
-                    tasks = [Task(experiment, point, block, at, _blocks(experiment)) for at, point in group]
+                    size = len(experiment.points)
+                    tasks = [
+                        Task(experiment, point, block, at, _blocks(experiment), size) for at, point in group
+                    ]
                     self._measure([one for one in tasks if not self._study.store.has(one.point, block)])
         return POINTS_FAILED if self._failed else 0
 

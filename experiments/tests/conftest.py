@@ -234,6 +234,12 @@ def generated(point: Point) -> Scene:
     return point.scene
 
 
+def finish(process: "subprocess.Popen[str]") -> tuple[int, str, str]:
+    """Exit code, standard output and standard error of a command that was started."""
+    output, error = process.communicate(timeout=300)
+    return process.returncode, output, error
+
+
 def hear_every_signal() -> None:
     """Tests may themselves run under `nohup`, or in the background of a shell."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):

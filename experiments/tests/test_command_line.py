@@ -3,19 +3,13 @@
 import os
 import re
 import signal
-import subprocess
 import time
 from pathlib import Path
 
 import pytest
 
 from experiments.__main__ import main
-from experiments.tests.conftest import Workplace, no_child_is_left
-
-
-def finish(process: "subprocess.Popen[str]") -> tuple[int, str, str]:
-    output, error = process.communicate(timeout=300)
-    return process.returncode, output, error
+from experiments.tests.conftest import Workplace, finish, no_child_is_left
 
 
 def wait_for(path: Path, pattern: str) -> None:
@@ -29,7 +23,8 @@ def test_a_run_tells_how_much_and_how_long(workplace: Workplace) -> None:
     code, output, error = finish(workplace.start("run", "--no-figures"))
     assert (code, error) == (0, "")
     lines = output.splitlines()
-    assert re.fullmatch(r"3 experiments, 7 points, 16 processes; 16 of them to be run: about \d+ s", lines[0])
+    told = r"3 experiments, 7 points, 16 processes; 16 of them to be run: about \d+ s, then more .*"
+    assert re.fullmatch(told, lines[0])
     assert re.fullmatch(r"chunks, block 1 of 2: 3 of 16 processes done, about \d+ s left", lines[1])
     assert lines[-1] == "the study is complete: results/records"
     assert "\x1b" not in output, "no terminal, no escape sequences"
@@ -141,6 +136,9 @@ def test_a_figure_is_drawn_as_soon_as_its_experiment_is_complete(workplace: Work
     (workplace.root / "analysis" / "__main__.py").write_text(
         "import sys, glob\n"
         "for line in sys.stdin:\n"
+        "    if line == 'open\\n':\n"
+        '        print(\'{"open": {}, "settled": [], "said": {}}\', flush=True)\n'
+        "        continue\n"
         f"    with open({os.fspath(log)!r}, 'a') as file:\n"
         "        records = glob.glob('results/records/*/*.json')\n"
         "        print(*sys.argv[1:], line.strip(), len(records), file=file)\n"
@@ -151,7 +149,7 @@ def test_a_figure_is_drawn_as_soon_as_its_experiment_is_complete(workplace: Work
     code, output, error = finish(workplace.start())
     assert code == 0
     drawn = [line.split() for line in log.read_text().splitlines()]
-    assert {tuple(words[:-2]) for words in drawn} == {("figures", "--results", "results", "--follow")}
+    assert {tuple(words[:-2]) for words in drawn} == {("follow", "--results", "results", "draw")}
     told = [words[-2] for words in drawn]
     assert told[0] == "chunks"
     together, late = ["pair,control", "pair", "control"], ["pair", "control"]

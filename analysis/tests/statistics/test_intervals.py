@@ -5,12 +5,13 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from analysis.statistics.intervals import RANKS_FROM, centre, p_value
+from analysis.statistics.looks import ERROR, share
 
 
 def test_few_blocks_use_the_t_interval_of_scipy() -> None:
     values = np.array([0.01, 0.03, -0.02, 0.05, 0.02])
     interval = centre(values)
-    expected = stats.ttest_1samp(values, 0).confidence_interval(0.95)
+    expected = stats.ttest_1samp(values, 0).confidence_interval(1 - ERROR * share(5))
     assert interval.low == pytest.approx(expected.low)
     assert interval.high == pytest.approx(expected.high)
     assert p_value(values, 0.01, "greater") == pytest.approx(
@@ -40,7 +41,7 @@ def test_the_rank_interval_holds_what_the_rank_test_does_not_reject(count: int, 
 @pytest.mark.parametrize("count", [5, 7, 16])
 def test_the_interval_covers_the_truth_at_its_rate(count: int) -> None:
     generator = np.random.default_rng(count)
-    intervals = [centre(generator.normal(0.03, 0.02, count)) for _ in range(1000)]
+    intervals = [centre(generator.normal(0.03, 0.02, count), 0.95) for _ in range(1000)]
     covered = sum(interval.low <= 0.03 <= interval.high for interval in intervals)
     assert 930 <= covered <= 975
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from experiments.results.collect import collect
-from experiments.run.study import run
+from experiments.run.session import run
 from experiments.support.errors import InputError
 from experiments.tests.conftest import PAIR, Workplace
 

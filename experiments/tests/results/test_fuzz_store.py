@@ -11,7 +11,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from experiments.run.study import Study, run
+from experiments.run.session import run
+from experiments.run.study import Study
 from experiments.support.schema import is_record
 from experiments.tests.conftest import PAIR, Workplace
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from experiments.run.study import POINTS_FAILED, run
+from experiments.run.session import run
+from experiments.run.study import POINTS_FAILED
 from experiments.support.schema import RECORD_SCHEMA
 from experiments.tests.conftest import PAIR, Workplace
 

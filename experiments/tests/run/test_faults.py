@@ -11,10 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from experiments.run.study import run
-from experiments.tests.conftest import CONTROL, PAIR, ROOT, Workplace
+from experiments.run.session import run
+from experiments.tests.conftest import CONTROL, PAIR, ROOT, Workplace, finish
 from experiments.tests.small_disk import run_on_small_disk
-from experiments.tests.test_command_line import finish
 
 # With its source named, the second mount does not repeat the first one's options, among them an owner whom
 # the namespace of an ordinary user does not know.

@@ -8,7 +8,7 @@ import time
 
 import jsonschema
 
-from experiments.run.study import run
+from experiments.run.session import run
 from experiments.support.schema import RECORD_SCHEMA
 from experiments.tests.conftest import CHUNKS, CONTROL, PAIR, Workplace, no_child_is_left
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from experiments.run.limits import FOLDER
-from experiments.run.study import run
+from experiments.run.session import run
 from experiments.tests.conftest import DAMAGES, PAIR, Workplace, damage
 
 LIMITS = PAIR.replace('figure = "comparison"', 'figure = "limits"\nverb = "profile"\nthreads = 1')

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from experiments.run.outside import FOLDER
-from experiments.run.study import run
+from experiments.run.session import run
 from experiments.tests.conftest import DAMAGES, ERRORS, PAIR, Workplace, damage
 
 

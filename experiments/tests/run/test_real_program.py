@@ -8,7 +8,8 @@ import jsonschema
 import pytest
 
 from experiments.plan.question import FOLDER, load_question
-from experiments.run.study import Settings, Study, run
+from experiments.run.session import run
+from experiments.run.study import Settings, Study
 from experiments.support import process
 from experiments.support.schema import RECORD_SCHEMA
 from experiments.tests.conftest import CHUNKS, CONTROL, ERRORS, PAIR, ROOT, Workplace

@@ -7,7 +7,8 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from experiments.run.study import Study, run
+from experiments.run.session import run
+from experiments.run.study import Study
 from experiments.support.errors import InputError
 from experiments.support.schema import RECORD_SCHEMA
 from experiments.tests.conftest import ERRORS, PAIR, Workplace
@@ -202,7 +203,7 @@ def test_a_program_that_changes_under_the_study_stops_it(
 ) -> None:
     study = Study(workplace.settings)
     workplace.build(extra="# built anew")
-    monkeypatch.setattr("experiments.run.study.Study", lambda _: study)
+    monkeypatch.setattr("experiments.run.session.Study", lambda _: study)
     with pytest.raises(InputError, match="was built anew while the study ran"):
         run(workplace.settings)
     assert not workplace.records()

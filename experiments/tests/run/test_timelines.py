@@ -2,7 +2,7 @@
 
 import json
 
-from experiments.run.study import run
+from experiments.run.session import run
 from experiments.tests.conftest import PAIR, Workplace
 
 PROFILED = PAIR.replace('figure = "comparison"', 'figure = "phases"\nverb = "profile"')

@@ -6,7 +6,8 @@ from collections.abc import Callable
 import pytest
 
 from experiments.plan.point import Point
-from experiments.run.study import POINTS_FAILED, Study, run
+from experiments.run.session import run
+from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import _bytes, together
 from experiments.tests.conftest import CHUNKS, ERRORS, FOUR_AND_NINE, PAIR, SCENE, Workplace
 

@@ -1,0 +1,57 @@
+"""What is missing where a claim is open: blocks, minutes, and the command that measures them."""
+
+import math
+from collections.abc import Sequence
+
+import pandas as pd
+
+from analysis.claims.outcome import ELSEWHERE, FAILS, HOLDS, OPEN, Outcome
+from analysis.records.studies import Study
+from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
+from analysis.support.wording import count, number
+
+DECIDED = frozenset({HOLDS, FAILS, *ELSEWHERE.values()})
+
+
+def is_open(outcome: Outcome) -> bool:
+    """Tell whether more blocks can settle it; nothing else that is undecided can be settled here."""
+    return outcome.verdict == OPEN and outcome.blocks > 0
+
+
+def needed(outcome: Outcome, open_claims: int) -> float:
+    """Return the blocks that are expected to settle an open claim, infinite if it is not in sight; NaN for a
+    claim that is not open. `outcome` is the claim standing alone, before it is corrected.
+    """
+    if outcome.blocks == 0:
+        return math.nan
+    return blocks_to_decide(1.0 if outcome.p is None else outcome.p, outcome.blocks, max(1, open_claims))
+
+
+def said(study: Study, experiments: Sequence[str], blocks: int, wanted: float) -> str:
+    """Say in numbers what is missing to settle what rests on so many blocks of some experiments."""
+    if not math.isfinite(wanted):
+        return f"not in sight: more than {MOST_BLOCKS} blocks, or the effect lies on the margin"
+    minutes = (wanted - blocks) * sum(map(seconds_per_block, [study] * len(experiments), experiments)) / 60
+    command = f"make experiments STUDY={','.join(experiments)} BUDGET={math.ceil(minutes) + 1}"
+    more = count(int(wanted) - blocks, "more block")
+    return f"open: {more} would be expected to settle it, {number(max(minutes, 0.1), 2)} min: `{command}`"
+
+
+def seconds_per_block(study: Study, experiment: str) -> float:
+    """Return the median time that a block of the experiment took, all its processes together; 0 without
+    any.
+    """
+    runs = study.runs[study.runs["experiment"] == experiment]
+    each = runs.groupby(["node", "block"])["process_seconds"].sum()
+    return float(each.median()) if len(each) else 0.0
+
+
+def tally(table: pd.DataFrame) -> dict[str, int]:
+    """Return how many claims are decided, open, and not to be decided here, of a table of `evaluate`."""
+    decided = int(table["verdict"].isin(DECIDED).sum())
+    still_open = int(table["needed"].notna().sum())
+    return {
+        "decided": decided,
+        "open": still_open,
+        "not decidable here": len(table) - decided - still_open,
+    }

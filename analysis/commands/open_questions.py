@@ -1,0 +1,94 @@
+"""What of a study is still open: for whoever measures on, experiment by experiment."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from analysis import claims
+from analysis.claims.missing import DECIDED
+from analysis.derived.noise_prior import prior
+from analysis.figures.comparisons import differences, reference
+from analysis.records import published
+from analysis.records.reading import load
+from analysis.records.studies import Study, split
+from analysis.statistics.forecast import blocks_to_decide
+from analysis.statistics.looks import ERROR, next_look
+from analysis.support.wording import change
+
+COMPARED = ("comparison", "control")
+"""Kinds of figures whose every difference has a verdict, also in a question that no claim is about."""
+
+
+def open_questions(results: Path) -> dict[str, Any]:
+    """Return `open`: experiment -> the `blocks` it has, the `next` number at which to look again, those that
+    are `needed` to settle the first thing that is open in it, and which points, by series and x, need no more
+    of them (`stopped`); `settled`: the experiments in which nothing is; `said`: name -> what was decided.
+
+    Of the first study in the folder. What is not in sight is neither open nor settled.
+    """
+    studies = split(load(results))
+    found: dict[str, Any] = {"open": {}, "settled": [], "said": {}}
+    if not studies:
+        return found
+    table = claims.evaluate(studies[0], studies, published.load())
+    decided = table[table["verdict"].isin(DECIDED)]
+    found["said"] = {row.id: f"{row.said}: {row.measured}" for row in decided.itertuples()}
+    stopped = _stopped(table)
+    items = [*_claims(table), *_comparisons(studies[0], found["said"])]
+    experiments = dict.fromkeys(experiment for experiment, _, _ in items)
+    for experiment in experiments:
+        own = [(blocks, needed) for name, blocks, needed in items if name == experiment]
+        in_sight = [(needed, blocks) for blocks, needed in own if math.isfinite(needed)]
+        if in_sight:
+            needed, blocks = min(in_sight)
+            found["open"][experiment] = {
+                "blocks": blocks,
+                "next": next_look(blocks),
+                "needed": int(needed),
+                "stopped": stopped.get(experiment, []),
+            }
+        elif all(math.isnan(needed) for _, needed in own):
+            found["settled"].append(experiment)
+    return found
+
+
+def _stopped(table: pd.DataFrame) -> dict[str, list[tuple[str, float]]]:
+    """Return the alternatives that are behind beyond doubt, by experiment: so far that the claim would still
+    stand, corrected for all that are open, if it rested on the weakest of them.
+    """
+    still_open = table[table["needed"].notna()]
+    enough = ERROR / max(1, len(still_open))
+    return {
+        row.experiments[0]: [(series, x) for series, x, p in row.behind if p <= enough]
+        for row in still_open.itertuples()
+        if row.behind
+    }
+
+
+def _claims(table: pd.DataFrame) -> Iterator[tuple[str, int, float]]:
+    """Yield experiment, blocks and needed blocks of each claim; NaN for one that is decided."""
+    for row in table.itertuples():
+        if row.verdict in DECIDED or not math.isnan(row.needed):
+            for experiment in row.experiments:
+                yield experiment, int(row.blocks), float(row.needed)
+
+
+def _comparisons(study: Study, said: dict[str, str]) -> Iterator[tuple[str, int, float]]:
+    """Yield the same of each difference that a comparison draws; add to `said` what is decided."""
+    claimed = {experiment for claim in claims.load() for experiment in claim.experiments}
+    for experiment, times in study.times.groupby("experiment"):
+        if experiment in claimed or times["figure"].iloc[0] not in COMPARED:
+            continue
+        against = reference(times)
+        table = differences(times, against, prior(study, str(experiment)))
+        undecided = int((table["verdict"] == "inconclusive").sum())
+        for row in table.to_dict("records"):
+            name = f"{experiment}: {row['series']} against {against}"
+            if row["verdict"] != "inconclusive":
+                said[name] = f"{row['verdict']}: {change(row)} of time"
+                yield str(experiment), row["blocks"], math.nan
+            else:
+                yield str(experiment), row["blocks"], blocks_to_decide(row["alone"], row["blocks"], undecided)

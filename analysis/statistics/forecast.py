@@ -1,0 +1,31 @@
+"""How many blocks a comparison that is still open would need, if its effect and its noise are as measured."""
+
+import math
+
+from scipy import stats
+
+from analysis.statistics.looks import ERROR, LOOKS, next_look, share
+
+MOST_BLOCKS = 1000
+"""Of more, an estimate would say nothing."""
+
+
+def blocks_to_decide(p: float, blocks: int, family: int = 1) -> float:
+    """Return at which look, beyond so many blocks, a verdict is expected; infinite if it is not in sight.
+
+    `p` is that of the verdict best supported, over all looks and not cut at 1 (`verdicts.judge_one`). The
+    statistic that it stands for grows with the square root of the blocks; it has to reach what the look asks,
+    corrected for `family` claims that are open.
+    """
+    if blocks < LOOKS[0]:
+        return LOOKS[0]
+    alone = p * share(blocks)
+    if not 0 < alone < 1:
+        return math.inf if alone else next_look(blocks)
+    per_block = stats.t.isf(alone / 2, blocks - 1) / math.sqrt(blocks)
+    look = next_look(blocks)
+    while look <= MOST_BLOCKS:
+        if per_block * math.sqrt(look) >= stats.t.isf(ERROR * share(look) / family / 2, look - 1):
+            return look
+        look = next_look(look)
+    return math.inf

@@ -1,0 +1,96 @@
+"""What is open, as a running study asks for it: blocks, the next look, and those that are needed."""
+
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from analysis.cli import main
+from analysis.commands.open_questions import open_questions
+from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
+from analysis.statistics.looks import LOOKS
+from analysis.statistics.verdicts import judge_one
+from analysis.tests.synthetic import write
+from analysis.tests.synthetic_noise import QUIET, Noise
+from analysis.tests.synthetic_study import study
+
+NOISY = Noise(process=0.03)
+
+
+def found(folder: Path, names: list[str], blocks: int, noise: Noise) -> dict[str, Any]:
+    write(folder, study(names, blocks=blocks, noise=noise, threads=20))
+    return open_questions(folder)
+
+
+def test_a_claim_that_is_decided_is_settled_and_said(tmp_path: Path) -> None:
+    answer = found(tmp_path, ["neighbourhood"], 9, QUIET)
+    assert answer["settled"] == ["neighbourhood"]
+    assert str(answer["said"]["four_boxes"]).startswith("holds: ")
+    assert answer["open"] == {}
+
+
+def test_a_claim_that_is_open_says_how_many_blocks_it_needs(tmp_path: Path) -> None:
+    answer = found(tmp_path, ["neighbourhood"], 4, NOISY)
+    one = answer["open"]["neighbourhood"]
+    assert (one["blocks"], one["next"]) == (4, 6)
+    assert one["needed"] >= 6
+    assert answer["settled"] == []
+
+
+def test_too_few_blocks_need_the_first_look(tmp_path: Path) -> None:
+    answer = found(tmp_path, ["neighbourhood", "control"], 2, QUIET)
+    expected = {"blocks": 2, "next": 4, "needed": 4, "stopped": []}
+    assert answer["open"] == {"neighbourhood": expected, "control": expected}
+
+
+def test_what_hardware_lacks_is_not_open(tmp_path: Path) -> None:
+    answer = found(tmp_path, ["machine"], 9, QUIET)
+    assert answer["open"] == {}, "a second machine is not made by more blocks"
+
+
+def test_an_empty_folder_has_nothing_open(tmp_path: Path) -> None:
+    (tmp_path / "records").mkdir()
+    assert open_questions(tmp_path) == {"open": {}, "settled": [], "said": {}}
+
+
+def test_the_conversation_is_a_line_for_a_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(tmp_path, study(["neighbourhood"], blocks=4, noise=QUIET, threads=20))
+    monkeypatch.setattr("sys.stdin", io.StringIO("open\ndraw neighbourhood\ndance\n"))
+    assert main(["follow", "--results", str(tmp_path)]) == 1
+    said = capsys.readouterr()
+    answer, drawn = said.out.splitlines()
+    assert set(json.loads(answer)) == {"open", "settled", "said"}
+    assert drawn == "1"
+    assert "found 'dance', expected `draw A,B` or `open`" in said.err
+    assert [path.name for path in (tmp_path / "figures").iterdir()] == ["neighbourhood.svg"]
+
+
+def test_the_forecast_is_what_a_larger_sample_alike_takes() -> None:
+    ratios = [0.04, 0.05, 0.02, 0.03, 0.06, 0.05]
+    row = judge_one(ratios)
+    assert row["verdict"] == "inconclusive"
+    needed = blocks_to_decide(row["p"], len(ratios))
+    assert needed in LOOKS
+    repeated = (ratios * 20)[: int(needed)]
+    assert judge_one(repeated)["verdict"] == "slower"
+    earlier = LOOKS[LOOKS.index(int(needed)) - 1]
+    assert judge_one((ratios * 20)[:earlier])["verdict"] == "inconclusive"
+    assert blocks_to_decide(row["p"], len(ratios), family=17) > needed
+    assert blocks_to_decide(100.0, 6) > MOST_BLOCKS, "on the border nothing is in sight"
+
+
+def test_of_many_alternatives_those_behind_stop_and_contenders_go_on(tmp_path: Path) -> None:
+    records = study(["schedule_find"], blocks=9, noise=Noise(process=0.01), threads=8)
+    for record in records:
+        tags = record["tags"]
+        pace = {("dynamic", 10): 1, ("guided", 4): 2}.get((tags["series"], tags["x"]))
+        for repetition in record["repetitions"] if pace else []:
+            repetition["steps_seconds"] = 0.7 * (1 + 0.03 * (pace * tags["block"] % 3))
+    write(tmp_path, records)
+    one = open_questions(tmp_path)["open"]["schedule_find"]
+    assert ("static", 10.0) in one["stopped"]
+    assert ("dynamic", 10.0) not in one["stopped"]

@@ -1,0 +1,109 @@
+"""Comparisons that are looked at until they are decided, and what other comparisons tell of their noise."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from analysis.statistics.intervals import centre
+from analysis.statistics.looks import ERROR, LOOKS, next_look, share
+from analysis.statistics.moderation import MOST_FREEDOM, NOTHING_KNOWN, Prior, fit
+from analysis.statistics.verdicts import MARGIN, judge_one
+
+Floats = NDArray[np.float64]
+
+COMPARISONS = 30
+LAST = LOOKS[-1]
+
+
+def normal(generator: np.random.Generator) -> Floats:
+    return generator.normal(0, 0.03, (COMPARISONS, LAST))
+
+
+def unlike(generator: np.random.Generator) -> Floats:
+    deviations = np.exp(generator.normal(np.log(0.02), 0.7, (COMPARISONS, 1)))
+    return deviations * generator.normal(0, 1, (COMPARISONS, LAST))
+
+
+def bursts(generator: np.random.Generator) -> Floats:
+    shape = (COMPARISONS, LAST)
+    return generator.normal(0, 0.015, shape) + generator.normal(0, 0.2, shape) * (
+        generator.random(shape) < 0.05
+    )
+
+
+def two_speeds(generator: np.random.Generator) -> Floats:
+    """Turns that both see the machine change its speed by 2.3, by chance not both at once."""
+    slow = generator.random((COMPARISONS, LAST, 2)) < 0.1
+    half_slow = np.log(2.3) / 2 * slow
+    return half_slow[..., 0] - half_slow[..., 1] + generator.normal(0, 0.02, (COMPARISONS, LAST))
+
+
+NOISES = (normal, unlike, bursts, two_speeds)
+
+
+def decide(logs: Floats, *, moderated: bool) -> list[tuple[str, int]]:
+    """Return each comparison's verdict and the blocks it took: all go on until theirs is settled."""
+    used = np.full(len(logs), LOOKS[-1])
+    verdicts = ["inconclusive"] * len(logs)
+    for look in LOOKS:
+        seen = [row[: min(look, blocks)] for row, blocks in zip(logs, used, strict=True)]
+        known = fit([one.var(ddof=1) for one in seen], [len(one) - 1 for one in seen])
+        for number, row in enumerate(logs):
+            if verdicts[number] == "inconclusive":
+                found = judge_one(row[:look], prior=known if moderated else NOTHING_KNOWN)
+                verdicts[number], used[number] = found["verdict"], look
+    return list(zip(verdicts, map(int, used), strict=True))
+
+
+@pytest.mark.parametrize("noise", NOISES)
+@pytest.mark.parametrize("effect", [0.0, 0.019, 0.021, 0.05])
+def test_looking_until_it_is_decided_errs_in_at_most_one_in_twenty(noise: object, effect: float) -> None:
+    generator = np.random.default_rng(5)
+    truth = "equivalent" if effect < MARGIN else "slower"
+    assert callable(noise)
+    found = [one for _ in range(4) for one in decide(noise(generator) + np.log1p(effect), moderated=True)]
+    wrong = sum(verdict not in (truth, "inconclusive") for verdict, _ in found)
+    assert wrong <= 0.05 * len(found)
+    if effect == 0.05:  # one and a half margins beyond the border
+        assert sum(verdict == "slower" for verdict, _ in found) >= 0.9 * len(found)
+
+
+def test_intervals_that_forget_the_looks_err_more_often_than_they_say() -> None:
+    """What the shares are for: the same looks, each at 95 % as if it were the only one."""
+    generator = np.random.default_rng(6)
+    logs = generator.normal(0, 0.03, (2000, LAST))
+
+    def misses(level: float | None) -> float:
+        looks = ([centre(row[:look], level) for look in LOOKS] for row in logs)
+        return float(np.mean([any(not one.low < 0 < one.high for one in found) for found in looks]))
+
+    assert misses(None) <= ERROR
+    assert misses(0.95) > 2 * ERROR
+
+
+def test_the_shares_of_all_looks_are_a_whole() -> None:
+    looks = [LOOKS[0]]
+    while looks[-1] < 1_000_000:
+        looks.append(next_look(looks[-1]))
+    assert tuple(looks[: len(LOOKS)]) == LOOKS
+    assert sum(map(share, looks)) == pytest.approx(1, abs=1e-6)
+    assert share(5) == share(4)
+
+
+def test_a_prior_is_that_of_its_comparisons() -> None:
+    generator = np.random.default_rng(7)
+    variances = 0.03**2 * 8 / generator.chisquare(8, 400)
+    found = fit(variances * generator.chisquare(3, 400) / 3, np.full(400, 3))
+    assert found.freedom == pytest.approx(8, rel=0.5)
+    assert found.variance == pytest.approx(0.03**2, rel=0.2)
+    alike = fit(0.03**2 * generator.chisquare(3, 400) / 3, np.full(400, 3))
+    assert alike.freedom == pytest.approx(MOST_FREEDOM, rel=0.5)
+    assert fit(variances[:7], np.full(7, 3)) == NOTHING_KNOWN
+
+
+def test_four_blocks_say_more_where_a_hundred_others_are_alike() -> None:
+    ratios = 0.08 + np.array([0.01, -0.02, 0.03, -0.01])
+    alone, helped = judge_one(ratios), judge_one(ratios, prior=Prior(15, 0.02**2))
+    assert (alone["verdict"], helped["verdict"]) == ("inconclusive", "slower")
+    far = judge_one(0.08 + 10 * (ratios - 0.08), prior=Prior(2, 0.02**2))
+    assert far["verdict"] == "inconclusive", "its own noise still counts"

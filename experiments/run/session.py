@@ -1,0 +1,195 @@
+"""The whole study on this machine: measure, decide, draw; and go on where an earlier run stopped."""
+
+import math
+import time
+from collections import Counter
+
+from experiments.plan.plan import Experiment
+from experiments.plan.point import Point
+from experiments.run.progress import Report, warn
+from experiments.run.runner import Outcome, Runner, Task
+from experiments.run.schedule import Schedule, split
+from experiments.run.study import POINTS_FAILED, Settings, Study, summary
+from experiments.run.together import together
+from experiments.run.verdicts import Verdicts, ask
+from experiments.support.process import NOT_FOUND, Coprocess
+
+DRAWING_PAUSE = 10.0
+"""Seconds between two drawings: what is complete sooner is drawn together, which takes less time."""
+
+DRAWING_LIMIT = 600.0
+"""Seconds after which a drawing is given up."""
+
+
+def run(settings: Settings) -> int:
+    """Run what is missing of the study. Returns the exit code: 0, or 2 where a point failed."""
+    study = Study(settings)
+    with study.store.opened(), Report() as report:
+        report.now("planning")
+        runner = study.runner()
+        schedule = study.schedule(runner, settle=True)
+        report.line(summary(schedule, study.budget_seconds))
+        with Coprocess(study.analysis_command()) as analysis:
+            return Session(study, runner, schedule, report, analysis).run()
+
+
+class Session:
+    """One invocation: the least number of blocks of every experiment, the control in between; then whatever
+    settles what is open; then the rest of the time shared out.
+    """
+
+    def __init__(
+        self, study: Study, runner: Runner, schedule: Schedule, report: Report, analysis: Coprocess
+    ) -> None:
+        self._study = study
+        self._runner = runner
+        self._schedule = schedule
+        self._report = report
+        self._analysis = analysis
+        self._failures: Counter[str] = Counter()
+        self._to_draw: list[str] = []
+        self._drawn_at = -math.inf
+        self._said: set[str] = set()
+        self._others, self._control = split(study.experiments)
+        self._incomplete = [one for one in self._others if not schedule.is_complete(one)]
+        self._has_more = bool(self._incomplete) or not study.is_finished
+        self._until = self._end()
+
+    def _end(self) -> float:
+        """When measuring stops. What is finished gets all of a budget that is given for it."""
+        study, now = self._study, time.monotonic()
+        given = study.settings.budget_seconds is not None
+        if study.settings.until_decided and not given:
+            return math.inf
+        done = self._schedule.status().seconds_done if self._has_more or not given else 0.0
+        return now + study.measuring_seconds - done
+
+    def run(self) -> int:
+        """Run what is missing. First blocks come first: they tell what each block costs here."""
+        for experiment in self._incomplete:
+            self._run_control(everything=False)
+            self._block(experiment, 0)
+            if experiment.question.blocks.wanted == 1:
+                self._rest(experiment)
+        for experiment in self._incomplete:
+            if experiment.question.blocks.wanted > 1:
+                self._rest(experiment)
+        settings = self._study.settings
+        if self._has_more or settings.until_decided or settings.budget_seconds is not None:
+            looks = settings.figures and settings.blocks is None
+            settled = self._settle() if looks else frozenset()
+            if not settings.until_decided:
+                self._share(settled)
+        self._run_control(everything=True)
+        self._draw()
+        return self._conclude()
+
+    def _settle(self) -> frozenset[str]:
+        """Measure what settles something soonest, and look again, as long as there is time; what is settled
+        gets no more. Returns the experiments in which nothing is open.
+        """
+        grown: dict[str, None] = {}
+        while True:
+            self._report.now("looking at what is decided", self._schedule.status)
+            verdicts = ask(self._analysis)
+            if isinstance(verdicts, str):
+                warn(f"what is open is not known, so that nothing is measured to settle it: {verdicts}")
+                return frozenset()
+            self._tell_decisions(verdicts)
+            chosen = self._schedule.cheapest(verdicts, self._until - time.monotonic())
+            if chosen is None:
+                self._to_draw += [name for name in grown if name not in self._to_draw]
+                return verdicts.settled
+            self._schedule.give(chosen, verdicts.open[chosen.name])
+            self._measure(chosen)
+            grown[chosen.name] = None
+
+    def _tell_decisions(self, verdicts: Verdicts) -> None:
+        for name, said in verdicts.said.items():
+            if name not in self._said:
+                self._report.line(f"decided: {name} {said}")
+        self._said.update(verdicts.said)
+
+    def _share(self, settled: frozenset[str]) -> None:
+        """Give the rest of the time to whatever is not settled, up to the blocks that it wants."""
+        self._schedule.share(self._until - time.monotonic(), settled)
+        for experiment in self._others:
+            if not self._schedule.is_complete(experiment):
+                self._schedule.share(self._until - time.monotonic(), settled)
+                self._rest(experiment)
+
+    def _rest(self, experiment: Experiment) -> None:
+        self._measure(experiment)
+        self._complete(experiment)
+
+    def _measure(self, experiment: Experiment) -> None:
+        for block in range(self._schedule.begin(experiment)):
+            self._run_control(everything=False)
+            self._block(experiment, block)
+
+    def _run_control(self, *, everything: bool) -> None:
+        """The same thing under two labels, measured all along the study, must come out equal."""
+        control = self._control
+        if control is None or self._schedule.is_complete(control):
+            return
+        blocks = self._schedule.begin(control)
+        for block in range(blocks if everything else self._schedule.control_due(control)):
+            self._block(control, block)
+        if self._schedule.is_complete(control):
+            self._complete(control)
+
+    def _block(self, experiment: Experiment, block: int) -> None:
+        missing = self._schedule.missing(experiment, block)
+        blocks, size = self._schedule.promised(experiment), self._schedule.size(experiment, block)
+        what = f"{experiment.name}, block {block + 1} of {blocks}"
+        for group in together(experiment, block, missing):
+            self._report.now(what, self._schedule.status)
+            tasks = [Task(experiment, point, block, position, blocks, size) for position, point in group]
+            for (_, point), outcome in zip(group, self._runner.run(tasks), strict=True):
+                self._schedule.finish(experiment, point, block, outcome.seconds)
+                if outcome.seconds is None:
+                    self._tell(point, outcome)
+        if missing:
+            self._report.block(what, self._schedule.status)
+
+    def _tell(self, point: Point, failed: Outcome) -> None:
+        where = f"{point.experiment}, {point.series}, {point.x_name} {point.x:g}"
+        self._report.line(f"{where}: failed: {failed.reason}")
+        # A build that is not there is a gap with a remedy, not a wrong result.
+        if failed.exit_code != NOT_FOUND:
+            self._failures[point.experiment] += 1
+
+    def _complete(self, experiment: Experiment) -> None:
+        self._to_draw.append(experiment.name)
+        if time.monotonic() - self._drawn_at > DRAWING_PAUSE:
+            self._draw()
+
+    def _draw(self) -> None:
+        """Draw what was completed since the last time: together, on all processors; what fails, alone."""
+        names, self._to_draw = self._to_draw, []
+        if not names or not self._study.settings.figures:
+            return
+        self._report.now(f"{', '.join(names)}: drawing")
+        began = time.monotonic()
+        together = self._analysis.ask(f"draw {','.join(names)}", DRAWING_LIMIT)
+        for name in names:
+            done = together
+            if together.exit_code != 0 and len(names) > 1:
+                done = self._analysis.ask(f"draw {name}", DRAWING_LIMIT)
+            if done.exit_code == 0:
+                self._report.line(f"{name}: complete, drawn into {self._study.store.root / 'figures'}")
+            else:
+                warn(f"{name}: complete, but its figure could not be drawn: {done.reason}")
+        self._drawn_at = time.monotonic()
+        self._schedule.figure_seconds = (self._drawn_at - began) / len(names)
+
+    def _conclude(self) -> int:
+        root = self._study.store.root
+        self._study.finish()
+        if not self._failures:
+            if self._study.is_whole:
+                self._report.line(f"the study is complete: {root / 'records'}")
+            return 0
+        points = ", ".join(f"{name} ({number})" for name, number in self._failures.items())
+        warn(f"points failed: {points}; the reasons are in {root / 'failures'} and in the report")
+        return POINTS_FAILED

@@ -1,0 +1,136 @@
+"""What is open is measured on until it is settled, as the analysis program says, and no further."""
+
+import json
+import os
+from dataclasses import replace
+
+import pytest
+
+from experiments.run.session import run
+from experiments.run.study import Study
+from experiments.run.verdicts import Open, Verdicts
+from experiments.tests.conftest import PAIR, Workplace, finish
+
+ANALYSIS = """
+import glob, json, sys
+for line in sys.stdin:
+    if line != "open\\n":
+        print(1, flush=True)
+        continue
+    records = [json.load(open(path)) for path in glob.glob("results/records/*/*.json")]
+    blocks = {}
+    for one in records:
+        name = one["tags"]["experiment"]
+        blocks[name] = max(blocks.get(name, 0), one["tags"]["block"] + 1)
+    answer = {"open": {}, "settled": [], "said": {}}
+    for name, needed in json.loads(open(NEEDED).read()).items():
+        if blocks[name] >= needed:
+            answer["settled"].append(name)
+            answer["said"][name] = f"holds from {blocks[name]} blocks"
+        else:
+            answer["open"][name] = {"blocks": blocks[name], "next": blocks[name] + 3, "needed": needed}
+    with open(LOG, "a") as file:
+        print(json.dumps(blocks), file=file)
+    print(json.dumps(answer), flush=True)
+"""
+
+
+@pytest.fixture
+def needing(workplace: Workplace) -> Workplace:
+    """A workplace whose analysis wants as many blocks as the file `needed` says."""
+    folder = workplace.root / "analysis"
+    folder.mkdir()
+    (folder / "__init__.py").touch()
+    needed, log = (repr(os.fspath(workplace.root / name)) for name in ("needed", "looks"))
+    (folder / "__main__.py").write_text(ANALYSIS.replace("NEEDED", needed).replace("LOG", log))
+    return workplace
+
+
+def blocks_of(workplace: Workplace, experiment: str) -> int:
+    return 1 + max(one["tags"]["block"] for one in workplace.records(experiment).values())
+
+
+def want(workplace: Workplace, **blocks: int) -> None:
+    (workplace.root / "needed").write_text(json.dumps(blocks))
+
+
+def test_what_is_open_goes_on_from_look_to_look_and_what_is_settled_stops(needing: Workplace) -> None:
+    want(needing, pair=7, chunks=2)
+    code, output, error = finish(needing.start("run", "--budget", "5"))
+    assert (code, error) == (0, "")
+    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (8, 2)
+    looks = [json.loads(line)["pair"] for line in (needing.root / "looks").read_text().splitlines()]
+    assert looks == [2, 5, 8], "nothing is looked at between two looks"
+    assert "decided: chunks holds from 2 blocks" in output
+    assert "decided: pair holds from 8 blocks" in output
+
+
+def test_a_finished_study_is_left_alone_until_a_budget_is_given(needing: Workplace) -> None:
+    want(needing, pair=2, chunks=2)
+    assert finish(needing.start("run", "--budget", "5"))[0] == 0
+    want(needing, pair=5, chunks=2)
+    assert finish(needing.start("run"))[0] == 0
+    assert blocks_of(needing, "pair") == 2
+    assert finish(needing.start("run", "--budget", "1"))[0] == 0
+    assert blocks_of(needing, "pair") == 5
+
+
+def test_until_it_is_decided(needing: Workplace) -> None:
+    want(needing, pair=20, chunks=11)
+    assert finish(needing.start("run", "--until-decided"))[0] == 0
+    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (20, 11)
+
+
+def test_a_killed_study_comes_to_the_same_decisions(needing: Workplace) -> None:
+    want(needing, pair=8, chunks=5)
+    needing.behave(FAKE_SECONDS="0.05")
+    process = needing.start("run", "--budget", "5")
+    while not (needing.root / "looks").exists():
+        assert process.poll() is None
+    process.kill()
+    process.wait()
+    code, output, _ = finish(needing.start("run", "--budget", "5"))
+    assert code == 0
+    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (8, 5)
+    assert "decided: pair holds from 8 blocks" in output
+
+
+def test_an_analysis_that_fails_leaves_the_budget_to_the_old_rule(needing: Workplace) -> None:
+    (needing.root / "analysis" / "__main__.py").write_text("import sys; sys.exit('no statistics')")
+    needing.question("pair", PAIR.replace("wanted = 2", "wanted = 4"))
+    code, _, error = finish(needing.start("run", "--budget", "5"))
+    assert code == 0
+    said = "what is open is not known, so that nothing is measured to settle it: no statistics"
+    assert said in error.splitlines()
+    assert blocks_of(needing, "pair") == 4
+
+
+def test_the_cheapest_to_settle_comes_first(workplace: Workplace) -> None:
+    run(replace(workplace.settings, figures=False))
+    study = Study(workplace.settings)
+    with study.store.opened():
+        schedule = study.schedule(study.runner(), settle=False)
+    one, other = Open(2, 4, 6), Open(2, 4, 40)
+    for first, pair, chunks in (("pair", one, other), ("chunks", other, one)):
+        chosen = schedule.cheapest(Verdicts({"pair": pair, "chunks": chunks}), 1e6)
+        assert chosen is not None
+        assert chosen.name == first
+    assert schedule.cheapest(Verdicts({"pair": one}), 0.0) is None, "there is no time for its next look"
+    assert schedule.cheapest(Verdicts(), 1e6) is None
+
+
+def test_points_of_which_nothing_is_asked_stop_and_stay_so(workplace: Workplace) -> None:
+    run(replace(workplace.settings, figures=False))
+    study = Study(workplace.settings)
+    [chunks] = [one for one in study.experiments if one.name == "chunks"]
+    last = chunks.points[-1]
+    with study.store.opened():
+        schedule = study.schedule(study.runner(), settle=False)
+        schedule.give(chunks, Open(2, 4, 6, [[last.series, last.x]]))
+        schedule.begin(chunks)
+        assert [schedule.size(chunks, block) for block in range(4)] == [3, 3, 2, 2]
+        again = study.schedule(study.runner(), settle=False)
+        assert last not in [point for _, point in again.missing(chunks, 2)]
+        assert len(again.missing(chunks, 2)) == 2
+    [row] = [one for name, one in workplace.rows().items() if name == "chunks"]
+    assert (row.planned, row.done, row.missing) == (10, 6, 4)
