@@ -206,7 +206,7 @@ Run simulate(const RunOptions& options, const Scene& scene, const Variant& varia
 
 void run(const RunOptions& options) {
     require_threads(options.simulation.tuning.threads);
-    const Scene scene = read_scene(options.simulation.scene);
+    const Scene scene = read_scene(options.simulation.scene, options.simulation.tuning.threads);
     const Variant& variant = require_variant(options.simulation.variant, scene);
     const Run result = simulate(options, scene, variant);
     const Summary summary = summarise(options.simulation, scene, variant, result);
