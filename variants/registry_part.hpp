@@ -22,7 +22,7 @@ namespace part_detail {
 template <Policies policies, class SomeProbe> class SimulationOf final : public Simulation {
   public:
     SimulationOf(const Scene& scene, const Tuning& tuning, SomeProbe& probe)
-        : state_(scene), tuning_(tuning), probe_(probe) {}
+        : state_(scene, tuning.threads), tuning_(tuning), probe_(probe) {}
 
     Tally step() override { return carom::step(state_, tuning_, probe_); }
 
