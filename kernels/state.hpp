@@ -46,9 +46,12 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
     Real radius;
     Grid grid;
 
-    explicit State(const Scene& scene)
-        : State(scene, Grid(scene.side, scene.radius, static_cast<int>(scene.discs.size()), policies.box_side,
-                            policies.box_side == BoxSide::wide ? rest_of(policies.order) : Rest::own_box)) {}
+    /// Built on as many threads as will step it.
+    explicit State(const Scene& scene, int threads = 1)
+        : State(scene,
+                Grid(scene.side, scene.radius, static_cast<int>(scene.discs.size()), policies.box_side,
+                     policies.box_side == BoxSide::wide ? rest_of(policies.order) : Rest::own_box),
+                threads) {}
 
     int count() const { return static_cast<int>(this->discs.size()); }
     Real reach_squared() const { return (2 * radius) * (2 * radius); }
@@ -63,8 +66,8 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
     }
 
   private:
-    State(const Scene& scene, const Grid& its_grid)
-        : Discs(scene, its_grid),
+    State(const Scene& scene, const Grid& its_grid, int threads)
+        : Discs(scene, its_grid, threads),
           OverlapsOf<policies.overlaps, Real>(its_grid, static_cast<int>(scene.discs.size())),
           side(static_cast<Real>(scene.side)), radius(static_cast<Real>(scene.radius)), grid(its_grid) {}
 };

@@ -2,24 +2,20 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 #include <vector>
 
 #include "grid.hpp"
+#include "parallel_for.hpp"
 #include "policies.hpp"
+#include "probe.hpp"
 #include "scene.hpp"
+#include "tally.hpp"
+#include "untouched.hpp"
 
 namespace carom {
 
 /// The discs and which box holds which, by `Policies::storage`.
 template <Storage storage, class Real> struct DiscsOf;
-
-template <class Real> std::vector<BasicDisc<Real>> discs_of(const Scene& scene) {
-    std::vector<BasicDisc<Real>> discs(scene.discs.size());
-    std::ranges::transform(scene.discs, discs.begin(),
-                           [](const Disc& disc) { return disc_cast<Real>(disc); });
-    return discs;
-}
 
 /// The published layout: disc i at index i, and for each box a growable list of the numbers of its discs.
 template <class Real> struct DiscsOf<Storage::numbered, Real> {
@@ -27,10 +23,12 @@ template <class Real> struct DiscsOf<Storage::numbered, Real> {
     std::vector<std::vector<int>> boxes;
     int boxes_ahead; ///< how many boxes hold about eight discs, at most twelve: see look_ahead.hpp
 
-    DiscsOf(const Scene& scene, const Grid& grid)
-        : discs(discs_of<Real>(scene)), boxes(static_cast<std::size_t>(grid.box_count())),
+    DiscsOf(const Scene& scene, const Grid& grid, int /*threads*/)
+        : discs(scene.discs.size()), boxes(static_cast<std::size_t>(grid.box_count())),
           boxes_ahead(static_cast<int>(std::clamp(
-              8.0 * grid.box_count() / std::max(static_cast<double>(discs.size()), 1.0), 1.0, 12.0))) {}
+              8.0 * grid.box_count() / std::max(static_cast<double>(discs.size()), 1.0), 1.0, 12.0))) {
+        std::ranges::transform(scene.discs, discs.begin(), disc_cast<Real, double>);
+    }
 
     const std::vector<int>& discs_in_box(int box) const { return boxes[static_cast<std::size_t>(box)]; }
     int number(int i) const { return i; }
@@ -58,25 +56,31 @@ struct Indices {
 /// Discs in the order of their boxes, row by row; in a box they keep the order that they had before. A box is
 /// a range of indices, and so is a run of neighbouring boxes of one row.
 template <class Real> struct DiscsOf<Storage::sorted, Real> {
-    std::vector<BasicDisc<Real>> discs;
-    std::vector<int> numbers;     ///< the number, in the scene, of the disc at each index
-    std::vector<int> box_of_disc; ///< written by the move, and then sorted with the discs
-    std::vector<int> box_begin;   ///< index of the first disc of each box; one more, the count, at the end
+    UntouchedVector<BasicDisc<Real>> discs;
+    UntouchedVector<int> numbers;     ///< the number, in the scene, of the disc at each index
+    UntouchedVector<int> box_of_disc; ///< written by the move, and then sorted with the discs
+    std::vector<int> box_begin; ///< index of the first disc of each box; one more, the count, at the end
 
     std::vector<float> near_x; ///< Search::filtered: positions in float, and four more that mean nothing
     std::vector<float> near_y; ///< ditto
 
-    std::vector<BasicDisc<Real>> spare_discs; ///< what the sort writes into, then swapped
-    std::vector<int> spare_numbers;
-    std::vector<int> spare_box_of_disc;
+    UntouchedVector<BasicDisc<Real>> spare_discs; ///< what the sort writes into, then swapped
+    UntouchedVector<int> spare_numbers;
+    UntouchedVector<int> spare_box_of_disc;
     std::vector<std::vector<int>>
         places; ///< of each part of the sort: for each box, its discs, then their place
 
-    DiscsOf(const Scene& scene, const Grid& grid)
-        : discs(discs_of<Real>(scene)), numbers(discs.size()), box_of_disc(discs.size()),
+    DiscsOf(const Scene& scene, const Grid& grid, int threads)
+        : discs(scene.discs.size()), numbers(discs.size()), box_of_disc(discs.size()),
           box_begin(static_cast<std::size_t>(grid.box_count()) + 1), spare_discs(discs.size()),
           spare_numbers(discs.size()), spare_box_of_disc(discs.size()) {
-        std::iota(numbers.begin(), numbers.end(), 0);
+        NoProbe probe;
+        parallel_for<Schedule::static_>(threads, static_cast<int>(discs.size()), 1, probe, [&](int i) {
+            const auto index = static_cast<std::size_t>(i);
+            discs[index] = disc_cast<Real>(scene.discs[index]);
+            numbers[index] = i;
+            return Tally{};
+        });
     }
 
     int begin_of(int box) const { return box_begin[static_cast<std::size_t>(box)]; }

@@ -20,8 +20,8 @@ class Simulation {
     /// One time step of dt = 1 / substeps.
     virtual Tally step() = 0;
 
-    /// The discs as they are now, disc i at index i.
-    virtual const std::vector<Disc>& discs() const = 0;
+    /// A copy of the discs as they are now, disc i at index i.
+    virtual std::vector<Disc> discs() const = 0;
 };
 
 /// One row of the table, with what it takes to run it.

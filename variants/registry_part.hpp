@@ -22,22 +22,14 @@ namespace part_detail {
 template <Policies policies, class SomeProbe> class SimulationOf final : public Simulation {
   public:
     SimulationOf(const Scene& scene, const Tuning& tuning, SomeProbe& probe)
-        : state_(scene), tuning_(tuning), probe_(probe) {}
+        : state_(scene, tuning.threads), tuning_(tuning), probe_(probe) {}
 
     Tally step() override { return carom::step(state_, tuning_, probe_); }
 
-    const std::vector<Disc>& discs() const override {
-        if constexpr (policies.storage == Storage::numbered && policies.precision == Precision::double_) {
-            return state_.discs;
-        } else {
-            by_number_ = discs_by_number(state_);
-            return by_number_;
-        }
-    }
+    std::vector<Disc> discs() const override { return discs_by_number(state_); }
 
   private:
     State<policies> state_;
-    mutable std::vector<Disc> by_number_; ///< a copy, made when asked for
     Tuning tuning_;
     SomeProbe& probe_;
 };

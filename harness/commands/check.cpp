@@ -15,7 +15,7 @@ namespace {
 
 void check(const SimulationOptions& options) {
     require_threads(options.tuning.threads);
-    const Scene scene = read_scene(options.scene);
+    const Scene scene = read_scene(options.scene, options.tuning.threads);
     const Variant& variant = require_variant(options.variant, scene);
     const auto simulation = variant.simulate(scene, options.tuning);
     const Run run = run_scene(scene, *simulation, options.tuning,

@@ -37,6 +37,16 @@ struct RunOptions {
     bool json = false;
 };
 
+/// Where the wall time of the process goes.
+struct Seconds {
+    double reading = 0;    ///< the scene's file
+    double setting_up = 0; ///< the state of the simulation
+    double steps = 0;
+    double process = 0; ///< from before main until all that is to be printed of it is known
+
+    double rest() const { return process - reading - setting_up - steps; }
+};
+
 /// What a run did, by the step and by the second.
 struct Summary {
     std::string scene;
@@ -46,8 +56,6 @@ struct Summary {
     int substeps;
     std::size_t particles;
     int steps;
-    double steps_seconds;
-    double process_seconds;
     double steps_per_second;
     double disc_steps_per_second;
     double overlaps_per_step;
@@ -57,27 +65,27 @@ struct Summary {
     double sweeps_per_step;
     std::optional<double> energy_drift; ///< empty if nothing moves at the start
     int discs_outside;
-    std::string state_hash;
+    std::string state_hash; ///< empty if it is not to be printed: it takes its time
+    Seconds seconds;
 };
 
-Summary summarise(const SimulationOptions& options, const Scene& scene, const Variant& variant,
-                  const Run& run) {
-    const double steps = static_cast<double>(scene.steps) * options.tuning.substeps;
+Summary summarise(const RunOptions& options, const Scene& scene, const Variant& variant, const Run& run,
+                  const Seconds& seconds) {
+    const Tuning& tuning = options.simulation.tuning;
+    const double steps = static_cast<double>(scene.steps) * tuning.substeps;
     const auto per_step = [steps](std::int64_t total) {
         return steps > 0 ? static_cast<double>(total) / steps : 0;
     };
     const auto per_second = [&run](double total) {
         return run.steps_seconds > 0 ? total / run.steps_seconds : 0;
     };
-    return {.scene = options.scene,
+    return {.scene = options.simulation.scene,
             .variant = variant.name,
             .policies = variant.policies,
-            .threads = options.tuning.threads,
-            .substeps = options.tuning.substeps,
+            .threads = tuning.threads,
+            .substeps = tuning.substeps,
             .particles = scene.discs.size(),
             .steps = scene.steps,
-            .steps_seconds = run.steps_seconds,
-            .process_seconds = process_seconds(),
             .steps_per_second = per_second(steps),
             .disc_steps_per_second = per_second(steps * static_cast<double>(scene.discs.size())),
             .overlaps_per_step = per_step(run.work.overlaps),
@@ -87,7 +95,11 @@ Summary summarise(const SimulationOptions& options, const Scene& scene, const Va
             .sweeps_per_step = per_step(run.work.sweeps),
             .energy_drift = energy_drift(scene, run.discs),
             .discs_outside = discs_outside(scene, run.discs),
-            .state_hash = state_hash(run.discs)};
+            .state_hash = options.json ? state_hash(run.discs) : "",
+            .seconds = {.reading = seconds.reading,
+                        .setting_up = seconds.setting_up,
+                        .steps = run.steps_seconds,
+                        .process = process_seconds()}};
 }
 
 nlohmann::ordered_json summary_json(const Summary& summary) {
@@ -98,8 +110,11 @@ nlohmann::ordered_json summary_json(const Summary& summary) {
             {"substeps", summary.substeps},
             {"particles", summary.particles},
             {"steps", summary.steps},
-            {"steps_seconds", summary.steps_seconds},
-            {"process_seconds", summary.process_seconds},
+            {"reading_seconds", summary.seconds.reading},
+            {"setting_up_seconds", summary.seconds.setting_up},
+            {"steps_seconds", summary.seconds.steps},
+            {"rest_seconds", summary.seconds.rest()},
+            {"process_seconds", summary.seconds.process},
             {"steps_per_second", summary.steps_per_second},
             {"disc_steps_per_second", summary.disc_steps_per_second},
             {"overlaps_per_step", summary.overlaps_per_step},
@@ -115,8 +130,10 @@ nlohmann::ordered_json summary_json(const Summary& summary) {
 void print_summary(const Summary& summary) {
     std::printf("%s: %zu discs, %d steps, variant %s, %d threads\n", summary.scene.c_str(), summary.particles,
                 summary.steps, std::string(summary.variant).c_str(), summary.threads);
-    std::printf("  steps           %12.6g s\n", summary.steps_seconds);
-    std::printf("  whole process   %12.6g s\n", summary.process_seconds);
+    std::printf("  reading         %12.6g s\n", summary.seconds.reading);
+    std::printf("  setting up      %12.6g s\n", summary.seconds.setting_up);
+    std::printf("  steps           %12.6g s\n", summary.seconds.steps);
+    std::printf("  whole process   %12.6g s\n", summary.seconds.process);
     std::printf("  steps/s         %12.6g\n", summary.steps_per_second);
     std::printf("  disc-steps/s    %12.6g\n", summary.disc_steps_per_second);
     std::printf("  overlaps        %12.6g a step\n", summary.overlaps_per_step);
@@ -177,22 +194,24 @@ std::string trajectory_lines(int step, const std::vector<Disc>& discs) {
     return text;
 }
 
-Run simulate(const RunOptions& options, const Scene& scene, const Variant& variant) {
+Run simulate(const RunOptions& options, const Scene& scene, const Variant& variant, Seconds& seconds) {
     const Tuning& tuning = options.simulation.tuning;
+    const double before = process_seconds();
     const auto simulation = variant.simulate(scene, tuning);
+    seconds.setting_up = process_seconds() - before;
     std::optional<OutputFile> trajectory;
     if (!options.trajectory.empty()) {
         trajectory.emplace(options.trajectory);
         trajectory->write(trajectory_lines(0, scene.discs));
     }
     ProgressBar progress("simulating", scene.steps);
-    Run run = run_scene(scene, *simulation, tuning, CheckScope::nothing,
-                        [&](int step, const std::vector<Disc>& discs) {
-                            progress.show(step);
-                            if (trajectory) {
-                                trajectory->write(trajectory_lines(step, discs));
-                            }
-                        });
+    Run run =
+        run_scene(scene, *simulation, tuning, CheckScope::nothing, [&](int step, const Simulation& now) {
+            progress.show(step);
+            if (trajectory) {
+                trajectory->write(trajectory_lines(step, now.discs()));
+            }
+        });
     progress.clear();
     if (run.violation) {
         throw CheckError(options.simulation.scene + ", variant " + std::string(variant.name) + ", " +
@@ -206,10 +225,13 @@ Run simulate(const RunOptions& options, const Scene& scene, const Variant& varia
 
 void run(const RunOptions& options) {
     require_threads(options.simulation.tuning.threads);
-    const Scene scene = read_scene(options.simulation.scene);
+    Seconds seconds;
+    const double before = process_seconds();
+    const Scene scene = read_scene(options.simulation.scene, options.simulation.tuning.threads);
+    seconds.reading = process_seconds() - before;
     const Variant& variant = require_variant(options.simulation.variant, scene);
-    const Run result = simulate(options, scene, variant);
-    const Summary summary = summarise(options.simulation, scene, variant, result);
+    const Run result = simulate(options, scene, variant, seconds);
+    const Summary summary = summarise(options, scene, variant, result, seconds);
     std::optional<ErrorMeasures> errors;
     if (options.errors) {
         errors = measure_errors(scene, variant, options.simulation.tuning);

@@ -42,7 +42,7 @@ double RunInParts::advance(int steps) {
         }
         if (on_step_) {
             stopwatch_.stop();
-            on_step_(done_, simulation_.discs());
+            on_step_(done_, simulation_);
             stopwatch_.start();
         }
     }

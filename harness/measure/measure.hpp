@@ -37,8 +37,8 @@ struct Run {
     std::optional<std::string> violation; ///< the first one found, with its step, or nothing
 };
 
-/// Called after each unit of time with its number, from 1, and the discs.
-using OnStep = std::function<void(int step, const std::vector<Disc>& discs)>;
+/// Called after each unit of time with its number, from 1.
+using OnStep = std::function<void(int step, const Simulation& simulation)>;
 
 /// A run from the scene's initial state, some steps at a time. The stopwatch runs while it steps, but not
 /// while the checker and `on_step` work or the checker's copy is made. A resolve given up at the sweep limit

@@ -1,9 +1,11 @@
 #include "harness/scenes/scene_file.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
 #include <vector>
 
+#include "harness/scenes/disc_lines.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/input_file.hpp"
 #include "harness/support/text.hpp"
@@ -16,7 +18,9 @@ constexpr std::string_view blank = " \t\r";
 /// Reads a text line by line and field by field, and knows where it is.
 class LineReader {
   public:
-    LineReader(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
+    /// `beyond` is how many bytes follow the text.
+    LineReader(std::string_view text, const std::string& name, std::size_t beyond = 0)
+        : rest_(text), name_(name), beyond_(beyond) {}
 
     [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
         throw InputError(name_ + ":" + std::to_string(line_number_) + ": found " + found + ", expected " +
@@ -65,7 +69,7 @@ class LineReader {
         }
     }
 
-    std::size_t bytes_left() const { return rest_.size(); }
+    std::size_t bytes_left() const { return rest_.size() + beyond_; }
 
   private:
     static std::string quoted(std::string_view text) {
@@ -92,6 +96,7 @@ class LineReader {
     std::string_view rest_;
     std::string_view line_;
     std::string name_;
+    std::size_t beyond_;
     std::size_t line_number_ = 0;
 };
 
@@ -117,6 +122,23 @@ std::size_t read_count(LineReader& reader) {
     return static_cast<std::size_t>(count);
 }
 
+/// The scene as its first four lines tell it, with room for its discs.
+Scene read_header(LineReader& reader, const std::string& name) {
+    const std::size_t count = read_count(reader);
+    Scene scene;
+    scene.side = sole_field<double>(reader, "the side of the box L, a number");
+    scene.radius = sole_field<double>(reader, "the radius r, a number");
+    require_radius(scene.radius, name + ":3");
+    require_side(scene.side, scene.radius, name + ":2");
+    scene.steps = sole_field<int>(reader, "the number of steps S, an integer");
+    if (scene.steps < 0) {
+        reader.fail(std::to_string(scene.steps), "a number of steps of at least 0");
+    }
+    scene.discs.resize(count);
+    return scene;
+}
+
+/// Line by line, which tells the first that is wrong.
 void read_discs(LineReader& reader, std::vector<Disc>& discs) {
     const std::size_t count = discs.size();
     std::vector<bool> seen(count);
@@ -156,23 +178,33 @@ void require_side(double side, double radius, const std::string& where) {
 
 Scene parse_scene(std::string_view text, const std::string& name) {
     LineReader reader(text, name);
-    const std::size_t count = read_count(reader);
-    Scene scene;
-    scene.side = sole_field<double>(reader, "the side of the box L, a number");
-    scene.radius = sole_field<double>(reader, "the radius r, a number");
-    require_radius(scene.radius, name + ":3");
-    require_side(scene.side, scene.radius, name + ":2");
-    scene.steps = sole_field<int>(reader, "the number of steps S, an integer");
-    if (scene.steps < 0) {
-        reader.fail(std::to_string(scene.steps), "a number of steps of at least 0");
+    Scene scene = read_header(reader, name);
+    const Pieces pieces{.size = text.size(), .at = [text](std::size_t offset, std::span<char> buffer) {
+                            return text.substr(offset, buffer.size());
+                        }};
+    if (!read_disc_lines(pieces, text.size() - reader.bytes_left(), scene.discs, 1)) {
+        read_discs(reader, scene.discs);
+        reader.end_text();
     }
-    scene.discs.resize(count);
-    read_discs(reader, scene.discs);
-    reader.end_text();
     return scene;
 }
 
-Scene read_scene(const std::filesystem::path& path) { return parse_scene(read_file(path), path.string()); }
+Scene read_scene(const std::filesystem::path& path, int threads) {
+    const InputFile file(path);
+    const Pieces pieces{.size = file.size(), .at = [&file](std::size_t offset, std::span<char> buffer) {
+                            return file.piece(offset, buffer);
+                        }};
+    std::array<char, 4096> buffer;
+    const std::string_view start = pieces.at(0, buffer);
+    if (start.size() <= file.size() && std::ranges::count(start, '\n') >= 4) {
+        LineReader reader(start, path.string(), file.size() - start.size());
+        Scene scene = read_header(reader, path.string());
+        if (read_disc_lines(pieces, file.size() - reader.bytes_left(), scene.discs, threads)) {
+            return scene;
+        }
+    }
+    return parse_scene(file.whole(), path.string());
+}
 
 std::string scene_text(const Scene& scene) {
     std::string text = std::to_string(scene.discs.size()) + "\n" + number_text(scene.side) + "\n" +

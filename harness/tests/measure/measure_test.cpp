@@ -28,7 +28,7 @@ class Leaky final : public Simulation {
         }
         return tally;
     }
-    const std::vector<Disc>& discs() const override { return steps_ == 0 ? right_->discs() : discs_; }
+    std::vector<Disc> discs() const override { return steps_ == 0 ? right_->discs() : discs_; }
 
   private:
     std::unique_ptr<Simulation> right_;
@@ -76,7 +76,8 @@ TEST(RunScene, ShowsTheStateOfEveryUnitOfTime) {
     for (const int substeps : {1, 4}) {
         std::vector<int> steps;
         std::vector<double> positions;
-        run_published(scene, {.substeps = substeps}, [&](int step, const std::vector<Disc>& discs) {
+        run_published(scene, {.substeps = substeps}, [&](int step, const Simulation& simulation) {
+            const std::vector<Disc> discs = simulation.discs();
             steps.push_back(step);
             positions.push_back(discs[0].x);
         });

@@ -9,23 +9,14 @@
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/text.hpp"
+#include "harness/tests/scenes/same_scene.hpp"
 #include "harness/tests/temporary_directory.hpp"
 #include "kernels/tests/scenes.hpp"
-#include "kernels/tests/simulate.hpp"
 
 namespace carom {
 namespace {
 
-using tests::same_bits;
-
-testing::AssertionResult same_scene(const Scene& one, const Scene& two) {
-    if (!same_bits(one.side, two.side) || !same_bits(one.radius, two.radius) || one.steps != two.steps) {
-        return testing::AssertionFailure()
-               << "L " << one.side << " against " << two.side << ", r " << one.radius << " against "
-               << two.radius << ", S " << one.steps << " against " << two.steps;
-    }
-    return same_bits(one.discs, two.discs);
-}
+using tests::same_scene;
 
 Scene parse(const std::string& text) { return parse_scene(text, "scene.in"); }
 

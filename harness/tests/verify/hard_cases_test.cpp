@@ -48,7 +48,8 @@ TEST_P(HardCases, PassesTheCheckerAtEveryStep) {
 /// Head-on, equal discs exchange their velocities: of five, one moves at a time.
 TEST_P(HardCases, CradleHasOneDiscMovingAtATime) {
     const Scene scene = scene_of("cradle");
-    run(scene, {}, [](int, const std::vector<Disc>& discs) {
+    run(scene, {}, [](int, const Simulation& simulation) {
+        const std::vector<Disc> discs = simulation.discs();
         int moving = 0;
         for (const Disc& disc : discs) {
             const double speed = std::hypot(disc.vx, disc.vy);
@@ -64,7 +65,8 @@ TEST_P(HardCases, CradleHasOneDiscMovingAtATime) {
 TEST_P(HardCases, CradleIsExactWhereStepsEndAtItsCollisions) {
     const Scene scene = scene_of("cradle");
     EventDriven<double> reference(scene);
-    run(scene, {.substeps = 4}, [&](int time, const std::vector<Disc>& discs) {
+    run(scene, {.substeps = 4}, [&](int time, const Simulation& simulation) {
+        const std::vector<Disc> discs = simulation.discs();
         ASSERT_TRUE(reference.advance(time));
         EXPECT_LE(tests::largest_distance(discs, tests::as_discs(reference)), 64 * epsilon()) << time;
     });
@@ -75,7 +77,8 @@ TEST_P(HardCases, CradleIsExactWhereStepsEndAtItsCollisions) {
 /// 5/4.
 TEST_P(HardCases, CradlePassesTheBlowOnOnceAStep) {
     const Scene scene = scene_of("cradle");
-    run(scene, {}, [](int time, const std::vector<Disc>& discs) {
+    run(scene, {}, [](int time, const Simulation& simulation) {
+        const std::vector<Disc> discs = simulation.discs();
         if (time <= 4) {
             EXPECT_NEAR(discs[static_cast<std::size_t>(time)].vx, 0.25, 16 * epsilon()) << time;
         }
@@ -86,7 +89,8 @@ TEST_P(HardCases, CradlePassesTheBlowOnOnceAStep) {
 TEST_P(HardCases, CornerIsExact) {
     const Scene scene = scene_of("corner");
     EventDriven<double> reference(scene);
-    const carom::Run done = run(scene, {}, [&](int time, const std::vector<Disc>& discs) {
+    const carom::Run done = run(scene, {}, [&](int time, const Simulation& simulation) {
+        const std::vector<Disc> discs = simulation.discs();
         ASSERT_TRUE(reference.advance(time));
         EXPECT_TRUE(same_bits(discs, tests::as_discs(reference))) << time;
     });
@@ -124,7 +128,8 @@ double asymmetry(const std::vector<Disc>& discs) {
 /// resolves one of the two discs behind the apex first.
 TEST_P(HardCases, RackBreakLosesItsSymmetry) {
     const Scene scene = scene_of("rack_break");
-    const carom::Run done = run(scene, {}, [](int time, const std::vector<Disc>& discs) {
+    const carom::Run done = run(scene, {}, [](int time, const Simulation& simulation) {
+        const std::vector<Disc> discs = simulation.discs();
         if (time <= 11) {
             EXPECT_EQ(asymmetry(discs), 0) << time;
         }
@@ -275,7 +280,8 @@ TEST_P(HardCases, OneDiscGoesToAndFro) {
             velocity = -velocity;
         }
     };
-    const carom::Run done = run(scene, {}, [&](int time, const std::vector<Disc>& discs) {
+    const carom::Run done = run(scene, {}, [&](int time, const Simulation& simulation) {
+        const std::vector<Disc> discs = simulation.discs();
         follow(expected.x, expected.vx);
         follow(expected.y, expected.vy);
         EXPECT_TRUE(same_bits(discs[0], expected)) << time;

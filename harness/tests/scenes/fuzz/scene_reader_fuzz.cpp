@@ -46,6 +46,30 @@ void require_one_line(std::string_view message) {
     }
 }
 
+/// The scene as text, or the error.
+std::string outcome(std::string_view text) {
+    try {
+        return scene_text(parse_scene(text, "scene"));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+}
+
+/// A first disc so far from its line's beginning that discs are read line by line: the outcome is the same.
+void require_same_line_by_line(std::string_view text) {
+    std::size_t header = 0;
+    for (int line = 0; line < 4 && header != text.npos; ++line) {
+        header = text.find('\n', header);
+        header += header == text.npos ? 0 : 1;
+    }
+    if (header >= text.size() || outcome(text).find("too short") != std::string::npos) {
+        return;
+    }
+    std::string indented(text);
+    indented.insert(header, 5000, ' ');
+    require(outcome(indented) == outcome(text), "how lines are read makes no difference");
+}
+
 } // namespace
 } // namespace carom
 
@@ -56,5 +80,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const carom::InputError& error) {
         carom::require_one_line(error.what());
     }
+    carom::require_same_line_by_line(text);
     return 0;
 }
