@@ -34,6 +34,10 @@ deviation is hardly known.
 """
 
 
+_ROUNDING = 1e-12
+"""Log ratios of equal counts are equal up to this."""
+
+
 @dataclass(frozen=True)
 class Interval:
     """An estimate with its interval; infinite ends where too few samples allow none."""
@@ -44,7 +48,10 @@ class Interval:
 
 
 def centre(differences: ArrayLike, level: float | None = None, prior: Prior = NOTHING_KNOWN) -> Interval:
-    """Return the centre of the differences with its two-sided interval; NaN without any difference."""
+    """Return the centre of the differences with its two-sided interval; NaN without any difference.
+
+    Of fewer than `FEWEST` differences there is an interval only if a prior makes up for what is missing.
+    """
     values = np.asarray(differences, dtype=float)
     if level is None:
         level = 1 - ERROR * share(len(values))
@@ -83,6 +90,8 @@ def p_value(
 def _student(values: Floats, level: float, prior: Prior) -> Interval:
     mean = float(values.mean())
     spread, freedom = _standard_error(values, prior)
+    if spread > _ROUNDING and freedom < FEWEST - 1:
+        return Interval(mean, -np.inf, np.inf)
     half = float(stats.t.ppf((1 + level) / 2, freedom)) * spread
     return Interval(mean, mean - half, mean + half)
 

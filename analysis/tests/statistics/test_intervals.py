@@ -6,6 +6,7 @@ from scipy import stats
 
 from analysis.statistics.intervals import RANKS_FROM, centre, p_value
 from analysis.statistics.looks import ERROR, share
+from analysis.statistics.moderation import Prior
 
 
 def test_few_blocks_use_the_t_interval_of_scipy() -> None:
@@ -57,6 +58,11 @@ def test_a_single_block_bounds_nothing() -> None:
     assert centre([0.1]).low == -np.inf
     assert p_value([0.1], 0, "greater") == 1
     assert np.isnan(centre([]).estimate)
+
+
+def test_two_blocks_bound_nothing_unless_others_tell_their_noise() -> None:
+    assert centre([0.1, 0.2]).high == np.inf
+    assert 0.25 < centre([0.1, 0.2], prior=Prior(8, 0.05**2)).high < 0.35
 
 
 def test_exact_counts_have_an_interval_of_no_width() -> None:
