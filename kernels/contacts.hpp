@@ -26,6 +26,13 @@ template <class Real> struct Contact {
     std::array<Real, 2> normal;
 };
 
+/// Two discs so near each other that they may have collided within the step; or a disc near a wall, as both.
+template <class Real> struct NearPair {
+    OverlappingDiscs discs;
+    Real last; ///< how long before the end of the step they last collided; infinity if they did not
+    Real time; ///< how long before it they came into contact, as they fly now; see impacts.hpp
+};
+
 /// Overlapping discs found so far. A search writes those that it finds beyond the end, where there is room
 /// for all that there may be, and then says where the new end is.
 class FoundPairs {
@@ -55,10 +62,20 @@ class FoundPairs {
 /// disc lies in the same strip or in the first row of the next.
 template <class Real> struct Strip {
     std::vector<Contact<Real>> contacts;
-    std::vector<int> block_begin; ///< of each block of boxes, its first contact; at the end, their number
-    FoundPairs found;             ///< of one block, while it is searched
+    std::vector<int> block_begin;     ///< of each block of boxes, its first contact; at the end, their number
+    FoundPairs found;                 ///< of one block, while it is searched
+    std::vector<NearPair<Real>> near; ///< Impact::at_contact: what the search finds, before contacts are made
+    std::vector<int> pending; ///< ditto: near pairs that are to collide, in a sweep; room for one more
+    int pending_count = 0;
     std::vector<int> blocks_to_look_at; ///< blocks of one row to look at, in a sweep; room for one more
     std::vector<int> colliding;         ///< contacts that may collide, in a sweep; room for one more
+};
+
+/// Of a disc, the earliest of the collisions that are known of it in a sweep.
+template <class Real> struct EarliestCollision {
+    Real time = 0;       ///< before the end of the step
+    int known_in = -1;   ///< the sweep in which it is known
+    int changed_in = -1; ///< the last sweep in which the disc collided
 };
 
 /// Which blocks of boxes have contacts to look at: with Worklist::all always all of them. A block is a run of

@@ -27,10 +27,11 @@ template <Policies policies> struct Candidates {
     float filter_reach_squared;
     bool sparse; ///< most discs overlap none: then it pays to ask first
 
-    explicit Candidates(const State<policies>& state)
+    /// Of centres within twice `radius`.
+    Candidates(const State<policies>& state, Real radius)
         : discs(state.discs.data()), x(state.near_x.data()), y(state.near_y.data()),
-          reach_squared(state.reach_squared()),
-          filter_reach_squared(carom::filter_reach_squared(state.side, state.radius)),
+          reach_squared((2 * radius) * (2 * radius)),
+          filter_reach_squared(carom::filter_reach_squared(state.side, radius)),
           sparse(static_cast<Real>(state.count()) * (state.radius * state.radius) <
                  state.side * state.side / 32) {}
 
@@ -61,31 +62,61 @@ template <Policies policies> struct Candidates {
     }
 };
 
-/// Turns the candidates that do overlap into contacts; returns the number of pairs. Coincident centres have
-/// no normal: such a pair never collides, and is no contact.
+/// Adds the contact of two discs if they overlap; returns whether they do. Coincident centres have no normal:
+/// such a pair never collides, and is no contact.
+template <Policies policies>
+[[gnu::always_inline]] inline bool add_contact(const State<policies>& state, OverlappingDiscs pair,
+                                               Strip<typename State<policies>::Real>& strip) {
+    using Real = typename State<policies>::Real;
+    constexpr bool surely_overlap = policies.search == Search::exact && policies.impact == Impact::step_end;
+    if (pair.at_wall()) {
+        constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
+        strip.contacts.push_back({pair, {nan, nan}});
+        return false;
+    }
+    const auto& first = state.discs[static_cast<std::size_t>(pair.first)];
+    const auto& second = state.discs[static_cast<std::size_t>(pair.second)];
+    const Real dx = second.x - first.x;
+    const Real dy = second.y - first.y;
+    const Real distance_squared = dx * dx + dy * dy;
+    if (!surely_overlap && distance_squared > state.reach_squared()) {
+        return false;
+    }
+    if (distance_squared >= coincident_squared<Real>) {
+        const Real per_distance = 1 / std::sqrt(distance_squared);
+        strip.contacts.push_back({pair, {dx * per_distance, dy * per_distance}});
+    }
+    return true;
+}
+
+/// Turns the candidates that do overlap into contacts; returns the number of pairs.
 template <Policies policies>
 Tally add_contacts(const State<policies>& state, Strip<typename State<policies>::Real>& strip) {
-    using Real = typename State<policies>::Real;
     Tally tally;
     for (const OverlappingDiscs pair : strip.found) {
-        if (pair.at_wall()) {
-            constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
-            strip.contacts.push_back({pair, {nan, nan}});
-            continue;
-        }
+        tally.overlaps += add_contact(state, pair, strip);
+    }
+    return tally;
+}
+
+/// Turns the candidates into pairs that are near each other; returns how many of them overlap.
+template <Policies policies>
+Tally add_near_pairs(const State<policies>& state, RealOf<policies.precision> search_reach_squared,
+                     Strip<RealOf<policies.precision>>& strip) {
+    using Real = typename State<policies>::Real;
+    constexpr Real never = std::numeric_limits<Real>::infinity();
+    Tally tally;
+    for (const OverlappingDiscs pair : strip.found) {
         const auto& first = state.discs[static_cast<std::size_t>(pair.first)];
         const auto& second = state.discs[static_cast<std::size_t>(pair.second)];
         const Real dx = second.x - first.x;
         const Real dy = second.y - first.y;
         const Real distance_squared = dx * dx + dy * dy;
-        if (policies.search == Search::filtered && distance_squared > state.reach_squared()) {
+        if (policies.search == Search::filtered && distance_squared > search_reach_squared) {
             continue;
         }
-        ++tally.overlaps;
-        if (distance_squared >= coincident_squared<Real>) {
-            const Real per_distance = 1 / std::sqrt(distance_squared);
-            strip.contacts.push_back({pair, {dx * per_distance, dy * per_distance}});
-        }
+        tally.overlaps += !pair.at_wall() && distance_squared <= state.reach_squared();
+        strip.near.push_back({pair, never, 0});
     }
     return tally;
 }
@@ -94,8 +125,8 @@ Tally add_contacts(const State<policies>& state, Strip<typename State<policies>:
 /// order the boxes of lower rows hold only discs before, and so does a disc's own box up to itself, so that
 /// half the neighbourhood is enough. Disc by disc, since most boxes hold one or none.
 template <Policies policies>
-void search_block(State<policies>& state, const Candidates<policies>& candidates, FoundPairs& found, int row,
-                  BoxRange columns) {
+void search_block(State<policies>& state, const Candidates<policies>& candidates,
+                  RealOf<policies.precision> radius, FoundPairs& found, int row, BoxRange columns) {
     found.clear();
     const Grid grid = state.grid; // a copy: its integers could alias those that are stored
     [[maybe_unused]] const ActiveBlocks::Block block = state.active.block(row, columns);
@@ -109,8 +140,10 @@ void search_block(State<policies>& state, const Candidates<policies>& candidates
         if constexpr (policies.worklist == Worklist::active) {
             state.blocks_of_disc[disc] = block.beside(column);
         }
-        if (grid.at_wall(row, column) && overlaps_wall(state.discs[disc], state.side, state.radius))
-            [[unlikely]] {
+        if constexpr (policies.impact == Impact::at_contact) {
+            state.earliest[disc] = {};
+        }
+        if (grid.at_wall(row, column) && overlaps_wall(state.discs[disc], state.side, radius)) [[unlikely]] {
             OverlappingDiscs* const pair = found.room(1);
             *pair = {i, i};
             found.end_at(pair + 1);
@@ -125,25 +158,43 @@ void search_block(State<policies>& state, const Candidates<policies>& candidates
     }
 }
 
-template <Policies policies> Tally find_in_strip(State<policies>& state, int index) {
+/// What the candidates become: contacts at once or, if collisions are taken back to their time of contact
+/// first, pairs that are near each other. Returns how many are known of the strip by now.
+template <Policies policies>
+int add_found(const State<policies>& state, const Candidates<policies>& candidates,
+              Strip<typename State<policies>::Real>& strip, Tally& tally) {
+    if constexpr (policies.impact == Impact::at_contact) {
+        tally += add_near_pairs(state, candidates.reach_squared, strip);
+        return static_cast<int>(strip.near.size());
+    } else {
+        tally += add_contacts(state, strip);
+        return static_cast<int>(strip.contacts.size());
+    }
+}
+
+template <Policies policies>
+Tally find_in_strip(State<policies>& state, int index, RealOf<policies.precision> radius) {
     constexpr int per_block = ActiveBlocks::boxes_per_block;
     Tally tally;
-    const Candidates<policies> candidates(state);
+    const Candidates<policies> candidates(state, radius);
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     strip.contacts.clear();
-    strip.block_begin.clear();
+    strip.near.clear();
+    strip.block_begin.assign(1, 0);
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
     for (int row = rows.first; row <= rows.last; ++row) {
         for (int column = 0; column < state.grid.boxes_per_side(); column += per_block) {
             const int last = std::min(column + per_block, state.grid.boxes_per_side()) - 1;
-            search_block(state, candidates, strip.found, row, {column, last});
-            strip.block_begin.push_back(static_cast<int>(strip.contacts.size()));
-            tally += add_contacts(state, strip);
+            search_block(state, candidates, radius, strip.found, row, {column, last});
+            strip.block_begin.push_back(add_found(state, candidates, strip, tally));
         }
     }
-    strip.block_begin.push_back(static_cast<int>(strip.contacts.size()));
     strip.blocks_to_look_at.resize(static_cast<std::size_t>(state.active.per_row()) + 1);
-    strip.colliding.resize(strip.contacts.size() + 1);
+    strip.colliding.resize(static_cast<std::size_t>(strip.block_begin.back()) + 1);
+    if constexpr (policies.impact == Impact::at_contact) {
+        strip.pending.resize(strip.near.size() + 1);
+        strip.pending_count = 0;
+    }
     for (int row = rows.first; row <= rows.last; ++row) {
         std::fill_n(state.active.row(row), state.active.per_row(), static_cast<unsigned char>(1));
     }
@@ -157,9 +208,15 @@ template <Policies policies> Tally find_in_strip(State<policies>& state, int ind
 template <Policies policies, class SomeProbe>
     requires(policies.overlaps == Overlaps::contacts)
 Tally find(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
+    using Real = typename State<policies>::Real;
+    const Real radius = state.search_radius(Real{1} / static_cast<Real>(tuning.substeps));
+    if constexpr (policies.impact == Impact::at_contact) {
+        state.earliest.resize(state.discs.size());
+        state.steps_flown = std::min(state.steps_flown + 1, 2);
+    }
     return parallel_for<policies.find_schedule>(
         tuning.threads, state.grid.strip_count(strip_height(policies.order)), tuning.find_chunk, probe,
-        [&](int strip) { return find_in_strip(state, strip); });
+        [&](int strip) { return find_in_strip(state, strip, radius); });
 }
 
 } // namespace carom

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "impacts.hpp"
 #include "policies.hpp"
 #include "state.hpp"
 #include "sweep.hpp"
@@ -8,13 +9,9 @@
 
 namespace carom {
 
-/// A parallel loop costs about as much as this many resolves. A sweep after one that changed less runs on one
-/// thread.
-inline constexpr int few_changes = 300;
-
 /// Changes velocities until no pair and no wall is colliding, or the sweep limit is reached.
 template <Policies policies, class SomeProbe>
-Tally resolve(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
+Tally resolve_in_place(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     [[maybe_unused]] Remembered remembered;
     [[maybe_unused]] Wavefront wavefront(
@@ -47,6 +44,17 @@ Tally resolve(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
         probe.sweep_end();
         total += last.work;
     }
+    return total;
+}
+
+/// The same, after collisions were taken back to their time of contact, if they are to be.
+template <Policies policies, class SomeProbe>
+Tally resolve(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
+    Tally total;
+    if constexpr (policies.impact == Impact::at_contact) {
+        total = collide_at_contact(state, tuning, probe);
+    }
+    total += resolve_in_place(state, tuning, probe);
     return total;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -29,11 +31,22 @@ template <class Real> struct OverlapsOf<Overlaps::contacts, Real> {
     std::vector<Strip<Real>> strips;
     std::vector<ActiveBlocks::Beside> blocks_of_disc;
     ActiveBlocks active;
+    std::vector<EarliestCollision<Real>> earliest; ///< Impact::at_contact: of each disc
+    int steps_flown = 0;                           ///< ditto: since the start, two at most
 
     OverlapsOf(const Grid& grid, int count)
         : strips(static_cast<std::size_t>(grid.strip_count(strip_height(Order::strips)))),
           blocks_of_disc(static_cast<std::size_t>(count)), active(grid.boxes_per_side()) {}
 };
+
+/// Root of the mean squared speed of the discs.
+inline double usual_speed(const Scene& scene) {
+    double sum = 0;
+    for (const Disc& disc : scene.discs) {
+        sum += disc.vx * disc.vx + disc.vy * disc.vy;
+    }
+    return std::sqrt(sum / static_cast<double>(std::max(scene.discs.size(), std::size_t{1})));
+}
 
 /// What a simulation knows between its phases.
 template <Policies policies = Policies{}>
@@ -44,17 +57,29 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
 
     Real side;
     Real radius;
+    Real speed; ///< Impact::at_contact: root of the mean squared speed, which collisions keep; else 0
     Grid grid;
 
     /// Built on as many threads as will step it.
     explicit State(const Scene& scene, int threads = 1)
         : State(scene,
-                Grid(scene.side, scene.radius, static_cast<int>(scene.discs.size()), policies.box_side,
+                Grid(scene.side, widest_search_radius(scene.radius), static_cast<int>(scene.discs.size()),
+                     policies.box_side,
                      policies.box_side == BoxSide::wide ? rest_of(policies.order) : Rest::own_box),
                 threads) {}
 
     int count() const { return static_cast<int>(this->discs.size()); }
     Real reach_squared() const { return (2 * radius) * (2 * radius); }
+
+    /// Discs whose centres are within twice this at the end of a step of dt are looked at.
+    /// Impact::at_contact: also those between which a typical way lies, that of a disc in the step, but an
+    /// eighth of their own size at most. They may have met and parted again, or a collision may move them
+    /// together.
+    Real search_radius(Real dt) const {
+        return policies.impact == Impact::at_contact
+                   ? std::min(radius + speed * dt / 2, static_cast<Real>(widest_search_radius(radius)))
+                   : radius;
+    }
 
     decltype(auto) discs_in(int row, int column) const {
         return Discs::discs_in_box(grid.box_of(row, column));
@@ -66,10 +91,16 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
     }
 
   private:
+    static double widest_search_radius(double radius) {
+        return policies.impact == Impact::at_contact ? radius * (1 + 0x1p-3) : radius;
+    }
+
     State(const Scene& scene, const Grid& its_grid, int threads)
         : Discs(scene, its_grid, threads),
           OverlapsOf<policies.overlaps, Real>(its_grid, static_cast<int>(scene.discs.size())),
-          side(static_cast<Real>(scene.side)), radius(static_cast<Real>(scene.radius)), grid(its_grid) {}
+          side(static_cast<Real>(scene.side)), radius(static_cast<Real>(scene.radius)),
+          speed(policies.impact == Impact::at_contact ? static_cast<Real>(usual_speed(scene)) : 0),
+          grid(its_grid) {}
 };
 
 template <Policies policies> using ApproachToleranceOf = ApproachTolerance<RealOf<policies.precision>>;

@@ -30,6 +30,10 @@ namespace carom {
 /// How many of the indices below `count` have this parity, 0 or 1.
 constexpr int every_other(int count, int parity) { return (count - parity + 1) / 2; }
 
+/// A parallel loop costs about as much as this many resolves. A sweep after one that changed less runs on one
+/// thread.
+inline constexpr int few_changes = 300;
+
 /// What a sweep did, or several that ran as one.
 struct Swept {
     Tally work{};

@@ -29,6 +29,20 @@
 
 namespace carom {
 
+/// The turns of some sweeps over strips, in each the even ones first.
+struct StripTurns {
+    int strips;
+
+    explicit StripTurns(int its_strips) : strips(its_strips) {}
+
+    int sweep(int turn) const { return turn / strips; }
+    int strip(int turn) const {
+        const int even = every_other(strips, 0);
+        const int k = turn % strips;
+        return k < even ? 2 * k : 2 * (k - even) + 1;
+    }
+};
+
 /// How far each strip has come in the resolve of one step.
 class Wavefront {
   public:
@@ -68,13 +82,9 @@ template <Policies policies, class SomeProbe>
 Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, int most, const Tuning& tuning,
                       const ApproachToleranceOf<policies>& approaching, SomeProbe& probe) {
     const int count = tuning.threads == 1 ? 1 : std::min({done + 1, most, most_sweeps_at_once});
-    const int strips = state.grid.strip_count(strip_height(policies.order));
-    const int even = every_other(strips, 0);
-    const auto sweep_of = [=](int turn) { return turn / strips; };
-    const auto strip_of = [=](int turn) {
-        const int k = turn % strips;
-        return k < even ? 2 * k : 2 * (k - even) + 1;
-    };
+    const StripTurns turns(state.grid.strip_count(strip_height(policies.order)));
+    const auto sweep_of = [=](int turn) { return turns.sweep(turn); };
+    const auto strip_of = [=](int turn) { return turns.strip(turn); };
     std::array<std::atomic<int>, most_sweeps_at_once> changes{};
     std::array<std::atomic<int>, most_sweeps_at_once> attempts{};
     const auto resolve_turn = [&](int turn) {
@@ -90,7 +100,7 @@ Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, in
     };
     Swept swept;
     swept.work = parallel_for<policies.resolve_schedule>(
-        tuning.threads, count * strips, tuning.resolve_chunk, probe, resolve_turn,
+        tuning.threads, count * turns.strips, tuning.resolve_chunk, probe, resolve_turn,
         [&](int turn) { return wavefront.can_begin(strip_of(turn), done + sweep_of(turn)); });
     const auto last = std::find(changes.begin(), changes.begin() + count - 1, 0);
     swept.work.sweeps = last - changes.begin() + 1;

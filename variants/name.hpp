@@ -35,6 +35,9 @@ constexpr std::string_view word(BoxSide value) { return value == BoxSide::snug ?
 constexpr std::string_view word(Overlaps value) { return value == Overlaps::contacts ? "contacts" : "lists"; }
 constexpr std::string_view word(Search value) { return value == Search::filtered ? "filtered" : "exact"; }
 constexpr std::string_view word(Worklist value) { return value == Worklist::active ? "active" : "all"; }
+constexpr std::string_view word(Impact value) {
+    return value == Impact::at_contact ? "at_contact" : "step_end";
+}
 constexpr std::string_view word(Precision value) { return value == Precision::float_ ? "float" : "double"; }
 
 /// The name of a variant, built at compile time.
@@ -50,7 +53,7 @@ class Name {
     constexpr std::string_view view() const { return {letters_.data(), size_}; }
 
   private:
-    std::array<char, 96> letters_{};
+    std::array<char, 128> letters_{};
     std::size_t size_ = 0;
 };
 
@@ -79,6 +82,7 @@ constexpr Name name_of(const Policies& policies) {
     add(policies.overlaps != published.overlaps, "", word(policies.overlaps));
     add(policies.search != published.search, "", word(policies.search));
     add(policies.worklist != published.worklist, "", word(policies.worklist));
+    add(policies.impact != published.impact, "", word(policies.impact));
     add(policies.precision != published.precision, "", word(policies.precision));
     if (name.empty()) {
         name += "published";

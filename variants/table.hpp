@@ -39,6 +39,9 @@ constexpr std::string_view impossible(const Policies& policies) {
     if (policies.worklist == Worklist::active && policies.overlaps != Overlaps::contacts) {
         return "only contacts can be active; of discs, the order track keeps account";
     }
+    if (policies.impact == Impact::at_contact && policies.worklist != Worklist::active) {
+        return "only active contacts are taken back to their time: a collision says which to ask anew";
+    }
     return "";
 }
 
@@ -56,6 +59,11 @@ inline constexpr auto ladder = climb(
     flip(&Policies::resolve_schedule, Schedule::dynamic),
     flip(&Policies::order, Order::wavefront));
 // clang-format on
+
+constexpr Policies at_contact(Policies policies) {
+    policies.impact = Impact::at_contact;
+    return policies;
+}
 
 /// The whole design space, the published best first. A row names what differs from it; one more line is one
 /// more variant.
@@ -84,7 +92,8 @@ inline constexpr auto table = [] {
         vary({.precision = float_}, &Policies::neighbourhood, four, nine),
         vary({.precision = float_}, &Policies::order, track),
         rows({{.order = row, .resolve_schedule = dynamic, .precision = float_}}),
-        vary(ladder.back(), &Policies::precision, float_));
+        vary(ladder.back(), &Policies::precision, float_),
+        vary(at_contact(ladder.back()), &Policies::precision, double_, float_));
     // clang-format on
 }();
 

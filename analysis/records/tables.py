@@ -22,7 +22,7 @@ PROVENANCE = [
 ]  # fmt: skip
 LATER_AXES = {
     "storage": "numbered", "box_side": "wide", "overlaps": "lists", "search": "exact", "worklist": "all",
-    "precision": "double",
+    "impact": "step_end", "precision": "double",
 }  # fmt: skip
 """Policies that not all records name, each with its value in those that do not."""
 COLUMN_OF = {"overlaps": "overlaps_kept"}

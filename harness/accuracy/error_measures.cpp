@@ -12,6 +12,7 @@
 #include "harness/support/errors.hpp"
 #include "harness/support/format.hpp"
 #include "harness/support/json.hpp"
+#include "harness/verify/at_contact.hpp"
 #include "harness/verify/checker.hpp"
 #include "kernels/exact/event_driven.hpp"
 
@@ -99,14 +100,20 @@ class Companion {
 /// Measures what is seen at every step of a run.
 class Watch {
   public:
-    Watch(const Scene& scene, const Rounding& rounding, const std::vector<Disc>& start)
+    Watch(const Scene& scene, const Rounding& rounding, Impact impact, double dt,
+          const std::vector<Disc>& start)
         : walls_{.side = rounding(scene.side), .radius = rounding(scene.radius), .rounding = rounding},
-          balance_(walls_), penetration_(overlapping_pairs(start, walls_.radius, rounding), walls_.radius),
-          before_(start) {}
+          impact_(impact), dt_(rounding(dt)),
+          balance_(impact == Impact::at_contact ? widened(walls_) : walls_),
+          penetration_(overlapping_pairs(start, walls_.radius, rounding), walls_.radius), before_(start) {}
 
     void step(const std::vector<Disc>& discs, const Tally& tally) {
         const auto pairs = overlapping_pairs(discs, walls_.radius, walls_.rounding);
-        balance_.add(before_, discs, pairs);
+        if (impact_ == Impact::at_contact) {
+            balance_at_contact(discs);
+        } else {
+            balance_.add(before_, discs, pairs);
+        }
         penetration_.add(discs, pairs);
         pair_resolves_ += tally.pair_resolves;
         before_ = discs;
@@ -137,7 +144,20 @@ class Watch {
     }
 
   private:
+    /// The walls were met where the discs flew freely, not where they are.
+    void balance_at_contact(const std::vector<Disc>& discs) {
+        std::vector<Disc> free = flown(before_, dt_, walls_);
+        const auto pairs = colliding_pairs(free, discs, walls_);
+        for (std::size_t i = 0; i < free.size(); ++i) {
+            free[i].vx = discs[i].vx;
+            free[i].vy = discs[i].vy;
+        }
+        balance_.add(before_, free, pairs);
+    }
+
     Walls walls_;
+    Impact impact_;
+    double dt_;
     MomentumBalance balance_;
     Penetration penetration_;
     std::vector<Disc> before_;
@@ -175,9 +195,10 @@ ErrorMeasures measure_errors(const Scene& scene, const Variant& variant, const T
                              std::int64_t most_events) {
     const auto simulation = variant.simulate(scene, tuning);
     const Rounding rounding = rounding_of(variant.policies);
-    const Checker checker(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, rounding);
+    const Checker checker(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, rounding,
+                          variant.policies.impact);
     Companion companion(scene, most_events);
-    Watch watch(scene, rounding, simulation->discs());
+    Watch watch(scene, rounding, variant.policies.impact, 1.0 / tuning.substeps, simulation->discs());
     ErrorMeasures measures;
     for (int time = 1; time <= scene.steps; ++time) {
         for (int substep = 1; substep <= tuning.substeps; ++substep) {

@@ -18,8 +18,7 @@ void check(const SimulationOptions& options) {
     const Scene scene = read_scene(options.scene, options.tuning.threads);
     const Variant& variant = require_variant(options.variant, scene);
     const auto simulation = variant.simulate(scene, options.tuning);
-    const Run run = run_scene(scene, *simulation, options.tuning,
-                              {CheckScope::every_step, rounding_of(variant.policies)});
+    const Run run = run_scene(scene, *simulation, options.tuning, {CheckScope::every_step, variant.policies});
     if (run.violation) {
         throw CheckError(options.scene + ", variant " + std::string(variant.name) + ", " + *run.violation);
     }

@@ -35,7 +35,7 @@ struct ProfileOptions {
 Run bare_run(const Measurement& measurement, CheckScope scope, Stopwatch stopwatch = {}) {
     const auto simulation = measurement.variant.simulate(measurement.scene, measurement.tuning);
     Run run = run_scene(measurement.scene, *simulation, measurement.tuning,
-                        {scope, rounding_of(measurement.variant.policies)}, nullptr, std::move(stopwatch));
+                        {scope, measurement.variant.policies}, nullptr, std::move(stopwatch));
     if (run.violation) {
         throw CheckError(measurement.scene_name + ", variant " + std::string(measurement.variant.name) +
                          ", " + *run.violation);
@@ -48,7 +48,7 @@ Run profiled_run(const Measurement& measurement, Profiler& profiler, const Run& 
     const auto simulation =
         measurement.variant.simulate_observed(measurement.scene, measurement.tuning, profiler);
     Run run = run_scene(measurement.scene, *simulation, measurement.tuning,
-                        {CheckScope::last_step, rounding_of(measurement.variant.policies)});
+                        {CheckScope::last_step, measurement.variant.policies});
     if (!run.violation && run.discs != bare.discs) {
         run.violation = "the profiled run ends in another state than the bare one";
     }

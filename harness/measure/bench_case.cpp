@@ -25,7 +25,7 @@ void BenchCase::run(benchmark::State& state) {
         const auto simulation = measurement_.variant.simulate(measurement_.scene, measurement_.tuning);
         Stopwatch stopwatch([&state] { state.ResumeTiming(); }, [&state] { state.PauseTiming(); });
         note(run_scene(measurement_.scene, *simulation, measurement_.tuning,
-                       Check(CheckScope::last_step, rounding_of(measurement_.variant.policies)), nullptr,
+                       Check(CheckScope::last_step, measurement_.variant.policies), nullptr,
                        std::move(stopwatch)));
         state.ResumeTiming();
         state.SetIterationTime(measurement_.repetitions.back().steps_seconds);

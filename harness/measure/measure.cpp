@@ -28,7 +28,8 @@ std::string unsettled(const Checker& checker, const std::vector<Disc>& discs, in
 RunInParts::RunInParts(const Scene& scene, Simulation& simulation, const Tuning& tuning, const Check& check,
                        OnStep on_step, Stopwatch stopwatch)
     : scene_(scene), simulation_(simulation), tuning_(tuning), scope_(check.scope),
-      checker_(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, check.rounding),
+      checker_(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, rounding_of(check.policies),
+               check.policies.impact),
       on_step_(std::move(on_step)), stopwatch_(std::move(stopwatch)) {}
 
 double RunInParts::advance(int steps) {

@@ -19,13 +19,13 @@ namespace carom {
 /// Which steps of a run the checker looks at.
 enum class CheckScope { nothing, last_step, every_step };
 
-/// What the checker looks at, and the precision it expects.
+/// What the checker looks at, and the policies whose precision and time of impact it expects.
 struct Check {
     CheckScope scope;
-    Rounding rounding;
+    Policies policies;
 
-    Check(CheckScope some_scope, const Rounding& some_rounding = Rounding()) // NOLINT(*-explicit-*)
-        : scope(some_scope), rounding(some_rounding) {}
+    Check(CheckScope some_scope, const Policies& some_policies = {}) // NOLINT(*-explicit-*)
+        : scope(some_scope), policies(some_policies) {}
 };
 
 /// A run of all S steps of a scene.

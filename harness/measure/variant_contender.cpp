@@ -13,7 +13,7 @@ double VariantContender::prepare() {
     if (!measurement_.violation) {
         simulation_ = measurement_.variant.simulate(measurement_.scene, measurement_.tuning);
         run_.emplace(measurement_.scene, *simulation_, measurement_.tuning,
-                     Check(CheckScope::last_step, rounding_of(measurement_.variant.policies)));
+                     Check(CheckScope::last_step, measurement_.variant.policies));
     }
     measurement_.own_seconds = measurement_.parse_seconds + process_seconds() - start;
     return seconds;

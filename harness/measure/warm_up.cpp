@@ -10,8 +10,7 @@ constexpr int fewest_steps = 2;
 
 Run untimed(const Measurement& measurement, CheckScope scope, const Scene& scene) {
     const auto simulation = measurement.variant.simulate(scene, measurement.tuning);
-    return run_scene(scene, *simulation, measurement.tuning,
-                     Check(scope, rounding_of(measurement.variant.policies)));
+    return run_scene(scene, *simulation, measurement.tuning, Check(scope, measurement.variant.policies));
 }
 
 } // namespace

@@ -20,6 +20,7 @@ inline nlohmann::ordered_json policies_json(const Policies& policies) {
                                 {"overlaps", word(policies.overlaps)},
                                 {"search", word(policies.search)},
                                 {"worklist", word(policies.worklist)},
+                                {"impact", word(policies.impact)},
                                 {"precision", word(policies.precision)}};
     if (policies.overlaps == Overlaps::lists) {
         json["direction"] = word(policies.direction);

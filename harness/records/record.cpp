@@ -51,7 +51,8 @@ Json turns_json(const std::optional<Turns>& turns) {
 Json errors_json(const Measurement& measurement, const Run& last) {
     const Scene& scene = measurement.scene;
     const Checker checker(scene.side, scene.radius, 1.0 / measurement.tuning.substeps,
-                          measurement.tuning.tolerance, rounding_of(measurement.variant.policies));
+                          measurement.tuning.tolerance, rounding_of(measurement.variant.policies),
+                          measurement.variant.policies.impact);
     return {{"energy_drift", number_or_null(energy_drift(scene, last.discs))},
             {"discs_outside", discs_outside(scene, last.discs)},
             {"unresolved_pairs", checker.count_colliding(last.discs)}};

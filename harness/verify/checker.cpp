@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "harness/support/format.hpp"
+#include "harness/verify/at_contact.hpp"
 #include "harness/verify/conservation.hpp"
 
 namespace carom {
@@ -26,30 +27,54 @@ double kinetic_energy(const std::vector<Disc>& discs) {
     });
 }
 
-Checker::Checker(double side, double radius, double dt, Tolerance tolerance, const Rounding& rounding)
+Checker::Checker(double side, double radius, double dt, Tolerance tolerance, const Rounding& rounding,
+                 Impact impact)
     : walls_{.side = rounding(side), .radius = rounding(radius), .rounding = rounding}, dt_(rounding(dt)),
-      tolerance_(tolerance), rounding_(rounding) {}
+      tolerance_(tolerance), rounding_(rounding), impact_(impact) {}
 
 std::optional<std::string> Checker::step(const std::vector<Disc>& before,
                                          const std::vector<Disc>& after) const {
     if (before.size() != after.size()) {
         return format("%zu discs became %zu", before.size(), after.size());
     }
-    if (auto violation = moved(before, after)) {
+    const std::vector<Disc> free = flown(before, dt_, walls_);
+    if (auto violation = moved(before, free, after)) {
         return violation;
     }
     const std::vector<OverlappingPair> pairs = overlapping_pairs(after, walls_.radius, rounding_);
+    if (auto violation = left_colliding(free, after, pairs)) {
+        return violation;
+    }
+    return impact_ == Impact::at_contact ? at_contact_violation(before, free, after, dt_, walls_)
+                                         : conservation_violation(free, after, pairs, walls_);
+}
+
+std::optional<std::string> Checker::left_colliding(const std::vector<Disc>& free,
+                                                   const std::vector<Disc>& after,
+                                                   const std::vector<OverlappingPair>& pairs) const {
+    const auto at = [](const std::vector<Disc>& discs, int i) { return discs[static_cast<std::size_t>(i)]; };
+    const auto was_moved = [&](int i) {
+        return at(after, i).x != at(free, i).x || at(after, i).y != at(free, i).y;
+    };
     for (const OverlappingPair& pair : pairs) {
-        if (auto violation = pair_colliding(after, pair)) {
+        const bool moved_together =
+            (was_moved(pair.first) || was_moved(pair.second)) &&
+            overlapping_pairs({at(free, pair.first), at(free, pair.second)}, walls_.radius, rounding_)
+                .empty();
+        auto violation = moved_together ? std::nullopt : pair_colliding(after, pair);
+        if (violation) {
             return violation;
         }
     }
     for (int i = 0; i < static_cast<int>(after.size()); ++i) {
-        if (auto violation = wall_colliding(after, i)) {
+        const bool moved_into_wall =
+            was_moved(i) && !walls_.touches(at(free, i).x) && !walls_.touches(at(free, i).y);
+        auto violation = moved_into_wall ? std::nullopt : wall_colliding(after, i);
+        if (violation) {
             return violation;
         }
     }
-    return conservation_violation(before, after, pairs, walls_);
+    return std::nullopt;
 }
 
 std::optional<std::string> Checker::colliding(const std::vector<Disc>& discs) const {
@@ -77,18 +102,16 @@ long Checker::count_colliding(const std::vector<Disc>& discs) const {
     return count;
 }
 
-std::optional<std::string> Checker::moved(const std::vector<Disc>& before,
+std::optional<std::string> Checker::moved(const std::vector<Disc>& before, const std::vector<Disc>& free,
                                           const std::vector<Disc>& after) const {
-    for (std::size_t i = 0; i < before.size(); ++i) {
-        const double x = rounding_(before[i].x + rounding_(before[i].vx * dt_));
-        const double y = rounding_(before[i].y + rounding_(before[i].vy * dt_));
-        if (after[i].x != x || after[i].y != y) {
+    for (std::size_t i = 0; i < free.size(); ++i) {
+        if (impact_ == Impact::step_end && (after[i].x != free[i].x || after[i].y != free[i].y)) {
             return format("disc %zu moved from (%.17g, %.17g) to (%.17g, %.17g) instead of to (%.17g, %.17g)",
-                          i, before[i].x, before[i].y, after[i].x, after[i].y, x, y);
+                          i, before[i].x, before[i].y, after[i].x, after[i].y, free[i].x, free[i].y);
         }
-        if (!std::isfinite(x + y + after[i].vx + after[i].vy)) {
-            return format("disc %zu has a state that is not finite: (%g, %g), velocity (%g, %g)", i, x, y,
-                          after[i].vx, after[i].vy);
+        if (!std::isfinite(after[i].x + after[i].y + after[i].vx + after[i].vy)) {
+            return format("disc %zu has a state that is not finite: (%g, %g), velocity (%g, %g)", i,
+                          after[i].x, after[i].y, after[i].vx, after[i].vy);
         }
     }
     return std::nullopt;

@@ -17,8 +17,8 @@ namespace carom {
 class Checker {
   public:
     /// `dt` is the step's length in time; `rounding` is that of the precision that the discs are kept in.
-    Checker(double side, double radius, double dt, Tolerance tolerance,
-            const Rounding& rounding = Rounding());
+    Checker(double side, double radius, double dt, Tolerance tolerance, const Rounding& rounding = Rounding(),
+            Impact impact = Impact::step_end);
 
     /// The first violation, named with its discs and numbers, or nothing:
     ///  - every disc was moved by exactly v dt (v before the step), and its state is finite;
@@ -28,6 +28,10 @@ class Checker {
     ///  - momentum and angular momentum are, likewise, in each group that no wall touches;
     ///  - a disc that overlaps no other keeps its velocity to the last bit, but for the sign of what a wall
     ///  turned.
+    ///
+    /// With Impact::at_contact discs that collided are not where they flew freely: what then holds of every
+    /// step stands in at_contact.hpp. Discs that were moved into others, or into a wall, that they did not
+    /// overlap before may be left colliding: the next step follows them back.
     std::optional<std::string> step(const std::vector<Disc>& before, const std::vector<Disc>& after) const;
 
     /// The first pair or wall left colliding, or nothing.
@@ -37,7 +41,10 @@ class Checker {
     long count_colliding(const std::vector<Disc>& discs) const;
 
   private:
-    std::optional<std::string> moved(const std::vector<Disc>& before, const std::vector<Disc>& after) const;
+    std::optional<std::string> moved(const std::vector<Disc>& before, const std::vector<Disc>& free,
+                                     const std::vector<Disc>& after) const;
+    std::optional<std::string> left_colliding(const std::vector<Disc>& free, const std::vector<Disc>& after,
+                                              const std::vector<OverlappingPair>& pairs) const;
     std::optional<std::string> pair_colliding(const std::vector<Disc>& discs,
                                               const OverlappingPair& pair) const;
     std::optional<std::string> wall_colliding(const std::vector<Disc>& discs, int i) const;
@@ -46,6 +53,7 @@ class Checker {
     double dt_;
     Tolerance tolerance_;
     Rounding rounding_;
+    Impact impact_;
 };
 
 /// Total kinetic energy, for unit mass: the sum of (vx^2 + vy^2) / 2.

@@ -20,8 +20,12 @@ struct GroupTotals {
     double energy_after = 0;
     double momentum_change_x = 0;
     double momentum_change_y = 0;
+    double centre_change_x = 0;
+    double centre_change_y = 0;
+    double centre_slack = 0;
     double angular_scale = 0;
     double angular_change = 0;
+    double angular_slack = 0;
 };
 
 double fastest(const std::vector<Disc>& discs) {
@@ -32,9 +36,10 @@ double fastest(const std::vector<Disc>& discs) {
     return speed > 0 ? speed : 1;
 }
 
-void add(GroupTotals& group, const Disc& before, const Disc& after, const Disc& lowest, double unit) {
-    const double old_x = before.vx / unit;
-    const double old_y = before.vy / unit;
+void add(GroupTotals& group, const Disc& free, const Disc& after, const Disc& lowest, double unit,
+         double epsilon) {
+    const double old_x = free.vx / unit;
+    const double old_y = free.vy / unit;
     const double new_x = after.vx / unit;
     const double new_y = after.vy / unit;
     const double lever_x = after.x - lowest.x;
@@ -46,8 +51,19 @@ void add(GroupTotals& group, const Disc& before, const Disc& after, const Disc& 
     group.energy_after += 0.5 * (new_x * new_x + new_y * new_y);
     group.momentum_change_x += new_x - old_x;
     group.momentum_change_y += new_y - old_y;
-    group.angular_scale += std::hypot(lever_x, lever_y) * (speed + std::hypot(new_x, new_y));
+    const double speeds = speed + std::hypot(new_x, new_y);
+    group.angular_scale += std::hypot(lever_x, lever_y) * speeds;
     group.angular_change += lever_x * (new_y - old_y) - lever_y * (new_x - old_x);
+    if (after.x != free.x || after.y != free.y) {
+        const double moved_x = after.x - free.x;
+        const double moved_y = after.y - free.y;
+        const double slack = 64 * epsilon * (std::abs(free.x) + std::abs(free.y));
+        group.centre_change_x += moved_x;
+        group.centre_change_y += moved_y;
+        group.centre_slack += slack;
+        group.angular_change += moved_x * old_y - moved_y * old_x;
+        group.angular_slack += slack * speeds;
+    }
 }
 
 std::optional<std::string> violation_of(const GroupTotals& group, int lowest, double tolerance) {
@@ -62,7 +78,13 @@ std::optional<std::string> violation_of(const GroupTotals& group, int lowest, do
                format(", away from walls, changed its momentum by %.17g of the sum of its discs' momenta",
                       momentum_change / group.speed_sum);
     }
-    if (!group.at_wall && !(std::abs(group.angular_change) <= tolerance * group.angular_scale)) {
+    const double centre_change = std::hypot(group.centre_change_x, group.centre_change_y);
+    if (!group.at_wall && !(centre_change <= group.centre_slack)) {
+        return who +
+               format(", away from walls, moved its centre of mass by %.17g / %d", centre_change, group.size);
+    }
+    if (!group.at_wall &&
+        !(std::abs(group.angular_change) <= tolerance * group.angular_scale + group.angular_slack)) {
         return who +
                format(", away from walls, changed its angular momentum by %.17g of the sum of its discs'",
                       group.angular_change / group.angular_scale);
@@ -71,40 +93,39 @@ std::optional<std::string> violation_of(const GroupTotals& group, int lowest, do
 }
 
 /// A disc that overlaps no other: nothing but a wall may have turned it.
-std::optional<std::string> violation_alone(const Disc& before, const Disc& after, int i, const Walls& walls) {
+std::optional<std::string> violation_alone(const Disc& free, const Disc& after, int i, const Walls& walls) {
     const auto kept = [](double old_velocity, double new_velocity, bool at_wall) {
         return new_velocity == old_velocity || (at_wall && new_velocity == -old_velocity);
     };
-    if (kept(before.vx, after.vx, walls.touches(after.x)) &&
-        kept(before.vy, after.vy, walls.touches(after.y))) {
+    if (kept(free.vx, after.vx, walls.touches(free.x)) && kept(free.vy, after.vy, walls.touches(free.y))) {
         return std::nullopt;
     }
     return format("disc %d overlaps no other, yet its velocity changed from (%.17g, %.17g) to (%.17g, %.17g)",
-                  i, before.vx, before.vy, after.vx, after.vy);
+                  i, free.vx, free.vy, after.vx, after.vy);
 }
 
 } // namespace
 
-std::optional<std::string> conservation_violation(const std::vector<Disc>& before,
+std::optional<std::string> conservation_violation(const std::vector<Disc>& free,
                                                   const std::vector<Disc>& after,
                                                   const std::vector<OverlappingPair>& pairs,
                                                   const Walls& walls) {
     const double tolerance = walls.rounding.is_double() ? 1e-10 : 1e-4;
     OverlapGroups groups(after.size(), pairs);
-    const double unit = fastest(before);
+    const double unit = fastest(free);
     std::vector<GroupTotals> totals(after.size());
     for (std::size_t i = 0; i < after.size(); ++i) {
         const auto lowest = static_cast<std::size_t>(groups.lowest(static_cast<int>(i)));
         GroupTotals& group = totals[lowest];
-        group.at_wall = group.at_wall || walls.touches(after[i].x) || walls.touches(after[i].y);
-        add(group, before[i], after[i], after[lowest], unit);
+        group.at_wall = group.at_wall || walls.touches(free[i].x) || walls.touches(free[i].y);
+        add(group, free[i], after[i], after[lowest], unit, walls.rounding.epsilon());
     }
     for (std::size_t i = 0; i < totals.size(); ++i) {
         const int lowest = static_cast<int>(i);
         if (totals[i].size == 0) {
             continue;
         }
-        auto violation = totals[i].size == 1 ? violation_alone(before[i], after[i], lowest, walls)
+        auto violation = totals[i].size == 1 ? violation_alone(free[i], after[i], lowest, walls)
                                              : violation_of(totals[i], lowest, tolerance);
         if (violation) {
             return violation;

@@ -95,15 +95,17 @@ TEST_P(EveryVariant, EndsInTheSameBitsUnderObservation) {
 }
 
 TEST_P(EveryVariant, RunsTheSimulationOfItsOwnPolicies) {
-    // Head-on, the pair settles in one visit: how many sweeps and resolves it takes tells the order and
-    // self-contained.
+    // Head-on, the pair settles in one visit: how many sweeps and resolves it takes tells the order,
+    // self-contained and the impact. Taking it back to its contact takes two sweeps before the others.
     const Scene scene{.side = 50, .radius = 1, .steps = 1, .discs = {{21, 22, 1, 0}, {23.5, 22, 0, 0}}};
     Tally work = run(GetParam(), scene).work;
     EXPECT_GE(work.pair_attempts, 2);
     work.pair_attempts = 0;
     const Policies& policies = GetParam().policies;
     const bool resolved_while_finding = policies.self_contained == SelfContained::on;
-    const int sweeps = resolved_while_finding || policies.order == Order::track ? 1 : 2;
+    const bool taken_back = policies.impact == Impact::at_contact;
+    const int sweeps =
+        resolved_while_finding || policies.order == Order::track ? 1 : (taken_back ? 2 + 1 : 2);
     EXPECT_EQ(work, (Tally{.overlaps = 1, .pair_resolves = 1, .sweeps = sweeps}));
 }
 

@@ -102,7 +102,8 @@ TEST(Impossible, GivesAReasonForContactsAndSnugBoxesWithoutWhatTheyNeed) {
                    .storage = Storage::sorted,
                    .overlaps = Overlaps::contacts},
           Policies{.order = Order::strips, .storage = Storage::sorted, .overlaps = Overlaps::contacts},
-          Policies{.search = Search::filtered}, Policies{.worklist = Worklist::active}}) {
+          Policies{.search = Search::filtered}, Policies{.worklist = Worklist::active},
+          Policies{.impact = Impact::at_contact}}) {
         EXPECT_NE(impossible(policies), "") << name_of(policies).view();
     }
 }
@@ -114,7 +115,7 @@ int differences(const Policies& one, const Policies& two) {
            differ(&Policies::direction) + differ(&Policies::find_schedule) +
            differ(&Policies::resolve_schedule) + differ(&Policies::storage) + differ(&Policies::box_side) +
            differ(&Policies::overlaps) + differ(&Policies::search) + differ(&Policies::worklist) +
-           differ(&Policies::precision);
+           differ(&Policies::impact) + differ(&Policies::precision);
 }
 
 TEST(Ladder, ClimbsFromThePublishedBestOnePolicyARung) {
@@ -124,6 +125,7 @@ TEST(Ladder, ClimbsFromThePublishedBestOnePolicyARung) {
         EXPECT_TRUE(in_table(rung));
         below = rung;
     }
+    EXPECT_EQ(below.impact, Impact::step_end) << "the published step is what is climbed with";
     EXPECT_EQ(below.precision, Precision::double_) << "accuracy is not for sale";
 }
 

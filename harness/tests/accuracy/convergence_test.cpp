@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -6,6 +9,7 @@
 
 #include "harness/accuracy/error_measures.hpp"
 #include "harness/scenes/generate.hpp"
+#include "harness/verify/rounding.hpp"
 #include "variants/tests/each_variant.hpp"
 
 namespace carom {
@@ -29,21 +33,26 @@ double fitted_order(const std::vector<double>& x, const std::vector<double>& y) 
     return covariance / variance;
 }
 
+/// Short enough that chaos, which multiplies an error at every further collision, has not begun.
+Scene short_scene() {
+    return generate({.count = 400,
+                     .side = 64,
+                     .radius = 1,
+                     .steps = 2,
+                     .least_velocity = 0.25,
+                     .largest_velocity = 0.75,
+                     .seed = 31,
+                     .placement = Placement::random,
+                     .isotropic = true});
+}
+
 class Convergence : public testing::TestWithParam<Variant> {};
+class ConvergenceAtContact : public testing::TestWithParam<Variant> {};
 
 /// A contact is seen up to dt late, up to v dt deep and under a normal that is off by up to v dt / 2r: the
-/// path after it errs in proportion to dt. So does the depth itself. Short enough that chaos, which
-/// multiplies an error at every further collision, has not begun.
+/// path after it errs in proportion to dt. So does the depth itself.
 TEST_P(Convergence, ErrorsFallWithTheStepInFirstOrder) {
-    const Scene scene = generate({.count = 400,
-                                  .side = 64,
-                                  .radius = 1,
-                                  .steps = 2,
-                                  .least_velocity = 0.25,
-                                  .largest_velocity = 0.75,
-                                  .seed = 31,
-                                  .placement = Placement::random,
-                                  .isotropic = true});
+    const Scene scene = short_scene();
     std::vector<double> steps;
     std::vector<double> distances;
     std::vector<double> depths;
@@ -61,8 +70,86 @@ TEST_P(Convergence, ErrorsFallWithTheStepInFirstOrder) {
     RecordProperty("order of the depth", std::to_string(fitted_order(steps, depths)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Registry, Convergence, testing::ValuesIn(variants().begin(), variants().end()),
+/// Collisions at their time of contact, in the order of time, are exact. What is not is what a step cannot
+/// see: discs that a collision moved into others not near them, and those that met and are no longer near.
+/// Both take several collisions of a disc, or a way as long as the disc, within one step.
+TEST_P(ConvergenceAtContact, IsExactInStepsOfAnEighth) {
+    const double rounding = 1e5 * rounding_of(GetParam().policies).epsilon();
+    const ErrorMeasures measures = measure_errors(short_scene(), GetParam(), {.substeps = 8});
+    ASSERT_TRUE(measures.reference) << measures.reference_reason;
+    EXPECT_GT(measures.collision_rate.value(), 0.1);
+    EXPECT_LT(measures.reference->trajectory.back().rms_distance, rounding);
+    EXPECT_EQ(measures.penetration_worst, 0);
+    EXPECT_EQ(measures.unresolved_pairs, 0);
+}
+
+std::vector<Variant> variants_with(Impact impact) {
+    std::vector<Variant> found;
+    std::ranges::copy_if(variants(), std::back_inserter(found),
+                         [=](const Variant& variant) { return variant.policies.impact == impact; });
+    return found;
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, Convergence, testing::ValuesIn(variants_with(Impact::step_end)),
                          tests::variant_test_name);
+INSTANTIATE_TEST_SUITE_P(Registry, ConvergenceAtContact, testing::ValuesIn(variants_with(Impact::at_contact)),
+                         tests::variant_test_name);
+
+const Variant& fastest() {
+    return *find_variant(
+        "nine-wavefront-self_contained_off-resolve_dynamic-sorted-snug-contacts-filtered-active");
+}
+
+const Variant& at_contact() { return *find_variant(std::string(fastest().name) + "-at_contact"); }
+
+/// How dense a scene is, and what is asked of it: of the error of the paths at time 1 with collisions at
+/// contact over that without, in steps of 1, 1/2 and 1/8; and of the rate of collisions in steps of 1.
+struct Density {
+    std::string name;
+    double side;
+    Placement placement;
+    double rate_within;
+};
+
+void PrintTo(const Density& density, std::ostream* stream) { *stream << density.name; }
+
+class AtContact : public testing::TestWithParam<Density> {
+  protected:
+    static ErrorMeasures errors(const Variant& variant, int steps, int substeps) {
+        const Scene scene = generate({.count = 2000,
+                                      .side = GetParam().side,
+                                      .radius = 16,
+                                      .steps = steps,
+                                      .least_velocity = 2,
+                                      .largest_velocity = 5,
+                                      .seed = 1,
+                                      .placement = GetParam().placement,
+                                      .isotropic = true});
+        return measure_errors(scene, variant, {.threads = 2, .substeps = substeps});
+    }
+
+    static double distance(const Variant& variant, int substeps) {
+        return errors(variant, 1, substeps).reference->trajectory.front().rms_distance;
+    }
+};
+
+TEST_P(AtContact, ErrsByAFractionOfWhatTheStepsEndErrsBy) {
+    EXPECT_LT(distance(at_contact(), 1), 0.1 * distance(fastest(), 1));
+    EXPECT_LT(distance(at_contact(), 2), 0.08 * distance(fastest(), 2));
+    EXPECT_LT(distance(at_contact(), 8), 0.02 * distance(fastest(), 8));
+}
+
+TEST_P(AtContact, CollidesAboutAsOftenAsTheReference) {
+    const ErrorMeasures measures = errors(at_contact(), 16, 1);
+    const double rate = measures.reference->collision_rate;
+    EXPECT_NEAR(measures.collision_rate.value(), rate, GetParam().rate_within * rate);
+}
+
+INSTANTIATE_TEST_SUITE_P(Densities, AtContact,
+                         testing::Values(Density{"Dilute", 4011, Placement::random, 0.03},
+                                         Density{"Medium", 2005, Placement::random, 0.03},
+                                         Density{"Dense", 1573, Placement::lattice, 0.09}),
+                         [](const auto& density) { return density.param.name; });
 
 } // namespace
 } // namespace carom

@@ -14,8 +14,7 @@ class CheckedVariant : public testing::TestWithParam<Variant> {
   protected:
     static std::string violation(const Scene& scene, const Tuning& tuning) {
         const auto simulation = GetParam().simulate(scene, tuning);
-        return run_scene(scene, *simulation, tuning,
-                         {CheckScope::every_step, rounding_of(GetParam().policies)})
+        return run_scene(scene, *simulation, tuning, {CheckScope::every_step, GetParam().policies})
             .violation.value_or("");
     }
 };

@@ -21,8 +21,7 @@ inline Scene scene_of(std::string_view name) { return find_hard_case(name)->scen
 inline Run checked_run(const Variant& variant, const Scene& scene, const Tuning& tuning = {},
                        const OnStep& on_step = nullptr) {
     const auto simulation = variant.simulate(scene, tuning);
-    Run run = run_scene(scene, *simulation, tuning, {CheckScope::every_step, rounding_of(variant.policies)},
-                        on_step);
+    Run run = run_scene(scene, *simulation, tuning, {CheckScope::every_step, variant.policies}, on_step);
     EXPECT_EQ(run.violation.value_or(""), "");
     return run;
 }

@@ -147,11 +147,13 @@ std::optional<std::string> against_reference(const Scene& scene, const std::vect
 }
 
 /// Runs one variant through one scene; the first thing that is wrong, or nothing. A float variant need not
-/// agree with what all pairs and this test compute in double: it answers to its checker alone.
+/// agree with what all pairs and this test compute in double, nor one that collides at contact with what all
+/// pairs do at the end of a step: they answer to their checker alone.
 std::optional<std::string> first_wrong(const Scene& scene, const Variant& variant, const Tuning& tuning) {
     const double dt = 1.0 / tuning.substeps;
     const Rounding rounding = rounding_of(variant.policies);
-    const Checker checker(scene.side, scene.radius, dt, tuning.tolerance, rounding);
+    const bool at_contact = variant.policies.impact == Impact::at_contact;
+    const Checker checker(scene.side, scene.radius, dt, tuning.tolerance, rounding, variant.policies.impact);
     const auto simulation = variant.simulate(scene, tuning);
     for (int step = 1; step <= scene.steps * tuning.substeps; ++step) {
         const std::vector<Disc> before = simulation->discs();
@@ -164,7 +166,8 @@ std::optional<std::string> first_wrong(const Scene& scene, const Variant& varian
                    std::to_string(moved.overlaps);
         }
         if (!tally.settled) {
-            const bool wedged = rounding.is_double() ? moved.wedged() : nearly_wedged(scene, after);
+            const bool wedged =
+                rounding.is_double() && !at_contact ? moved.wedged() : nearly_wedged(scene, after);
             return wedged ? std::nullopt : std::optional(where + endless);
         }
         if (const auto violation = checker.step(before, after)) {
@@ -175,6 +178,9 @@ std::optional<std::string> first_wrong(const Scene& scene, const Variant& varian
         }
         if (!tally.changed() && !same_bits(after, moved.discs)) {
             return where + "nothing was resolved, and yet velocities changed";
+        }
+        if (at_contact) {
+            continue;
         }
         for (const auto& group : moved.without_choice()) {
             if (const auto wrong = against_reference(scene, before, after, group, variant, tuning)) {

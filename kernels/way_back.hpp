@@ -1,0 +1,97 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "collide.hpp"
+#include "scene.hpp"
+
+// The collisions of Impact::at_contact: of one pair and of one disc with a wall, after a free flight through
+// them.
+
+namespace carom {
+
+/// How far back, in time, discs may be followed from the end of a step.
+template <class Real> struct WayBack {
+    Real step; ///< through this step: for discs that have met and part
+    Real all;  ///< through the step before as well, if there is one: for discs that move into each other,
+               ///< since a collision of that step may have moved them there
+};
+
+/// The motion of the second of two discs as the first one sees it: |d - v t|^2 = (2r)^2, with a = |v|^2, b =
+/// d.v, c = |d|^2 - (2r)^2, at the times t ago at which they were in contact.
+template <class Real> struct RelativeMotion {
+    Real a;
+    Real b;
+    Real c;
+
+    RelativeMotion(const BasicDisc<Real>& first, const BasicDisc<Real>& second, Real reach_squared) {
+        const Real dx = second.x - first.x;
+        const Real dy = second.y - first.y;
+        const Real vx = second.vx - first.vx;
+        const Real vy = second.vy - first.vy;
+        a = vx * vx + vy * vy;
+        b = dx * vx + dy * vy;
+        c = dx * dx + dy * dy - reach_squared;
+    }
+
+    /// Did they come into contact within the way back, if they fly as they do now? They are apart at its
+    /// beginning and, at its end or in between, nearer than 2r. Without a root, a quotient or a branch.
+    [[gnu::always_inline]] bool met(const WayBack<Real>& back) const {
+        const Real time = back.step + static_cast<Real>(b < 0) * (back.all - back.step);
+        const bool were_apart = c - time * (2 * b - a * time) > 0;
+        const bool met_and_parted = (b > 0) & (b < a * time) & (b * b > a * c);
+        return were_apart & ((c <= 0) | met_and_parted);
+    }
+
+    /// How long ago that was: the earlier moment, which is the larger root t = (b + sqrt(b^2 - a c)) / a.
+    /// Where b < 0 the sum cancels and is multiplied out with its conjugate (Goldberg, ACM Computing Surveys
+    /// 23, 5, 1991, section 1.4).
+    Real time_since_contact() const {
+        const Real root = std::sqrt(b * b - a * c);
+        return b < 0 ? -c / (root - b) : (b + root) / a;
+    }
+};
+
+/// The time since which a disc has been in a wall that it moves into, along one axis; below 0 if it is in
+/// none, or has been for longer than the way back.
+template <class Real>
+Real time_in_wall(Real position, Real velocity, Real side, Real radius, const WayBack<Real>& back) {
+    const bool inside = velocity < 0 ? position - radius <= 0 : velocity > 0 && position + radius >= side;
+    const Real depth = velocity < 0 ? radius - position : position + radius - side;
+    const Real time = depth / std::abs(velocity);
+    return inside && time <= back.all ? std::max(time, Real{0}) : -1;
+}
+
+/// Makes the collision that two discs had `time` ago, if they did approach; returns whether they did.
+template <class Real>
+bool collide_back(Real time, BasicDisc<Real>& first, BasicDisc<Real>& second,
+                  const ApproachTolerance<Real>& approaching) {
+    const Real vx = second.vx - first.vx;
+    const Real vy = second.vy - first.vy;
+    const Real dx = second.x - first.x - vx * time;
+    const Real dy = second.y - first.y - vy * time;
+    const Real distance_squared = dx * dx + dy * dy;
+    const Real approach = vx * dx + vy * dy;
+    const Real speed_squared =
+        first.vx * first.vx + first.vy * first.vy + (second.vx * second.vx + second.vy * second.vy);
+    if (!(approach < 0) || (!approaching.surely_counts(approach, distance_squared * speed_squared) &&
+                            !approaching.counts(approach, distance_squared, speed_squared))) {
+        return false;
+    }
+    const Real impulse_x = approach / distance_squared * dx;
+    const Real impulse_y = approach / distance_squared * dy;
+    first = {first.x + impulse_x * time, first.y + impulse_y * time, first.vx + impulse_x,
+             first.vy + impulse_y};
+    second = {second.x - impulse_x * time, second.y - impulse_y * time, second.vx - impulse_x,
+              second.vy - impulse_y};
+    return true;
+}
+
+/// Along one axis: turns a velocity, and the path since the wall was met.
+template <class Real> void bounce_back(Real& position, Real& velocity, Real side, Real radius) {
+    position = velocity < 0 ? 2 * radius - position : 2 * (side - radius) - position;
+    velocity = -velocity;
+}
+
+} // namespace carom
