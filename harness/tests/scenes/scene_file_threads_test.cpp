@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <random>
 #include <span>
@@ -167,7 +168,7 @@ TEST_F(LargeSceneFile, IsReadFromAPipe) {
 }
 
 TEST(ReadDiscLines, TakesGoodLinesHoweverTheyLieInBlocks) {
-    for (const std::size_t length : {16, 31, 32, 33, 1024, 4000}) {
+    for (const std::size_t length : std::initializer_list<std::size_t>{16, 31, 32, 33, 1024, 4000}) {
         std::vector<Disc> discs(500'000 / length);
         std::string text = "4 lines\n";
         for (std::size_t i = 0; i < discs.size(); ++i) {
