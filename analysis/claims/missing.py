@@ -47,11 +47,11 @@ def seconds_per_block(study: Study, experiment: str) -> float:
 
 
 def tally(table: pd.DataFrame) -> dict[str, int]:
-    """Return how many claims are decided, open, and not to be decided here, of a table of `evaluate`."""
-    decided = int(table["verdict"].isin(DECIDED).sum())
-    still_open = int(table["needed"].notna().sum())
-    return {
-        "decided": decided,
-        "open": still_open,
-        "not decidable here": len(table) - decided - still_open,
-    }
+    """Return how many claims are decided, open, not to be decided here, and not measured, of a table of
+    `evaluate`.
+    """
+    decided, still_open = table["verdict"].isin(DECIDED), table["needed"].notna()
+    unmeasured = table["missing"].astype(bool) & ~decided & ~still_open
+    states = {"decided": decided, "open": still_open, "not measured": unmeasured}
+    counted = {state: int(rows.sum()) for state, rows in states.items()}
+    return {**counted, "not decidable here": len(table) - sum(counted.values())}

@@ -113,7 +113,7 @@ def test_claims_are_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert main(["claims", "--results", str(tmp_path)]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 2 + 17
-    assert re.fullmatch(r"  \d+ decided, \d+ open, \d+ not decidable here", lines[1])
+    assert re.fullmatch(r"  \d+ decided, \d+ open, \d+ not measured, \d+ not decidable here", lines[1])
     assert sum(map(int, re.findall(r"\d+", lines[1]))) == 17
     assert any("four_boxes" in line and "holds" in line for line in lines)
 
