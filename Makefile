@@ -17,7 +17,7 @@ jobs := --parallel "$${JOBS:-$$(nproc)}"
 generator := CMAKE_GENERATOR="$${CMAKE_GENERATOR:-$$(command -v ninja >/dev/null && echo Ninja || echo Unix Makefiles)}"
 configure = CXX=$(CXX_$*) $(generator) cmake --preset release -B build/$* -DCAROM_WARNINGS_AS_ERRORS="$${WERROR:+ON}"
 sources := find kernels variants harness -name '*.[ch]pp'
-study := $${STUDY:+--study "$$STUDY"} $${SCALE:+--scale "$$SCALE"} $${SITE:+--site "$$SITE"}
+study := $${STUDY:+--study "$$STUDY"} $${SCALE:+--scale "$$SCALE"} $${SITE:+--site "$$SITE"} $${QUESTIONS:+--questions "$$QUESTIONS"}
 results := $${RESULTS:+--results "$$RESULTS"}
 dry_run := $${DRY_RUN:+--dry-run}
 
@@ -87,7 +87,7 @@ test-slurm: environment ## the tests that need Slurm, which they unpack themselv
 # What g++'s build can measure is measured before another one is built. A point that failed (2) belongs in the report
 # and still fails the goal.
 run := $(python) experiments run $(study) $(results) $${BUDGET:+--budget "$$BUDGET"} $${UNTIL:+"--until-$$UNTIL"}
-experiments: environment build-gcc ## run the study, then report (STUDY= SCALE=quick|paper SITE= RESULTS= BUDGET=minutes UNTIL=decided)
+experiments: environment build-gcc ## run the study, then report (STUDY= SCALE=quick|paper SITE= QUESTIONS= RESULTS= BUDGET=minutes UNTIL=decided)
 	builds=$$($(python) experiments builds $(study)) || exit; \
 	case $$builds in *clang*) \
 		$(run) --builds gcc; case $$? in 0|2) ;; *) exit $$?;; esac; \

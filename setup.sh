@@ -26,6 +26,7 @@ needed   libomp-dev         header_found clang++ omp.h
 needed   libbenchmark-dev   header_found g++ benchmark/benchmark.h
 needed   libpapi-dev        header_found g++ papi.h
 needed   libssl-dev         header_found g++ openssl/evp.h
+needed   zlib1g-dev         header_found g++ zlib.h
 needed   libcli11-dev       header_found g++ CLI/CLI.hpp
 needed   nlohmann-json3-dev header_found g++ nlohmann/json.hpp
 needed   libgtest-dev       header_found g++ gtest/gtest.h

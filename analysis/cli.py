@@ -124,7 +124,7 @@ def _claims(options: argparse.Namespace) -> int:
         raise InputError(f"{options.results}: no records yet (they are made by `make experiments`)")
     for study in studies:
         print(study.name)
-        table = claims.evaluate(study, studies, published.load())
+        table = claims.evaluate(study, studies, published.load(), claims.load(options.results))
         print("  " + ", ".join(f"{amount} {state}" for state, amount in missing.tally(table).items()))
         for row in table.itertuples():
             detail = "; ".join(part for part in (row.measured, row.why) if part)

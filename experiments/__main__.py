@@ -11,6 +11,7 @@ from types import FrameType
 from typing import NoReturn
 
 from experiments.plan import site
+from experiments.plan.new_question import new_question
 from experiments.plan.program import GENERATOR
 from experiments.plan.question import load_questions
 from experiments.plan.scale import SCALES
@@ -138,6 +139,12 @@ def _add_collect_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folders", type=Path, nargs="*", help="results folders (default: those of --site)")
 
 
+def _add_new_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", metavar="NAME", help="of the question")
+    told = "folder of your questions (default: %(default)s)"
+    parser.add_argument("--questions", type=Path, default=Path("questions"), help=told)
+
+
 def _add_work_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("job", type=Path, help="the job's list of blocks, a file *.json")
     parser.add_argument("task", type=int, help="the task's index in the array")
@@ -158,6 +165,11 @@ _VERBS = {
     ),
     "status": _Verb("say what is done, missing and failed", _status),
     "check": _Verb("read every question and site file", _check),
+    "new": _Verb(
+        "write a commented question to start from",
+        lambda options: new_question(options.name, options.questions),
+        _add_new_options,
+    ),
     "builds": _Verb("say which builds of the program the questions need", _builds),
     "submit": _Verb(
         "hand what is missing to a Slurm cluster",

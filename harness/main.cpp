@@ -40,6 +40,7 @@ int main(int count, char** arguments) {
     carom::add_check_command(program);
     carom::add_bench_command(program);
     carom::add_turns_command(program);
+    carom::add_processes_command(program);
     carom::add_profile_command(program);
     carom::add_generate_command(program);
     carom::add_reference_command(program);

@@ -21,6 +21,7 @@ from analysis.claims import (
 from analysis.claims.entry import Claim, Evidence, load
 from analysis.claims.outcome import ELSEWHERE, OPEN, Compared, Outcome, Verdict
 from analysis.records.published import Published
+from analysis.records.reading import InputError
 from analysis.records.studies import Study
 from analysis.support.wording import count, listed
 
@@ -41,27 +42,44 @@ TESTS: dict[str, Callable[..., Outcome]] = {
 }
 """Each a function of the evidence and of the claim's arguments."""
 
+COLUMNS = [
+    "id", "claim", "effect", "claimed_threads", "experiments", "tested_threads", "said", "verdict",
+    "measured", "why", "figures", "missing", "p", "blocks", "behind", "needed",
+]  # fmt: skip
 
-def evaluate(study: Study, studies: Sequence[Study], published: Published) -> pd.DataFrame:
-    """Return a row a claim: `id`, `claim`, `effect` and `claimed_threads` as published, `experiments`,
-    `tested_threads`, `verdict` with `said`, the same in words, `measured`, `why`, `figures`, `missing`, the
-    `blocks` it rests on and, where more can settle it, how many are `needed`.
+
+def evaluate(
+    study: Study, studies: Sequence[Study], published: Published, claimed: Sequence[Claim] | None = None
+) -> pd.DataFrame:
+    """Return a row a claim, of those that are `claimed`, or of the published ones.
+
+    Columns: `id`, `claim`, `effect` and `claimed_threads` as published, `experiments`, `tested_threads`,
+    `verdict` with `said`, the same in words, `measured`, `why`, `figures`, `missing`, the `blocks` it rests
+    on and, where more can settle it, how many are `needed`.
 
     Everything is judged on the records of `study`, except the claim about machines, which needs all of them.
-    Those that may be decided at its scale are corrected for their number (see `family`).
+    Those that may be decided at its scale are corrected for their number (see `family`). Raises InputError
+    for a test that there is not.
     """
     evidence = Evidence(study, studies, published)
-    listed_claims = load()
-    tested = [
-        _at_scale(TESTS[one.test](evidence, **one.arguments), one, study.scale) for one in listed_claims
-    ]
+    listed_claims = load() if claimed is None else claimed
+    tested = [_at_scale(_tested(evidence, one), one, study.scale) for one in listed_claims]
     outcomes = family.corrected(tested)
     open_claims = sum(map(missing.is_open, outcomes))
     rows = []
     for claim, alone, outcome in zip(listed_claims, tested, outcomes, strict=True):
         wanted = missing.needed(alone, open_claims) if missing.is_open(outcome) else math.nan
         rows.append({**_row(claim, outcome, study, wanted), "needed": wanted})
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=None if rows else COLUMNS)
+
+
+def _tested(evidence: Evidence, claim: Claim) -> Outcome:
+    if claim.test not in TESTS:
+        raise InputError(f'claim {claim.id}: test: found "{claim.test}", expected one of {", ".join(TESTS)}')
+    try:
+        return TESTS[claim.test](evidence, **claim.arguments)
+    except TypeError as error:
+        raise InputError(f"claim {claim.id}: arguments: {error}") from error
 
 
 def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[str, object]:

@@ -8,7 +8,8 @@ from typing import Any
 
 from analysis.derived.noise_prior import prior
 from analysis.records.published import Published
-from analysis.records.studies import Study
+from analysis.records.reading import InputError
+from analysis.records.studies import SCALES, Study
 from analysis.statistics.moderation import Prior
 
 CLAIMS_FILE = Path(__file__).parent / "claims.toml"
@@ -64,12 +65,35 @@ class Evidence:
         return prior(self.study, experiment)
 
 
-def load() -> list[Claim]:
-    """Read the claims; a key that is no field of `Claim` or `Origin` is an error."""
-    content = tomllib.loads(CLAIMS_FILE.read_text(encoding="utf-8"))
-    return [_claim(content["other_scales"], **table) for table in content["claim"]]
+def load(results: Path | None = None) -> list[Claim]:
+    """Read the claims that a results folder brings along, or else those of the published study.
+
+    Raises InputError for a file that is no list of claims: a key that is no field of `Claim` or `Origin`, or
+    one of them that is missing.
+    """
+    own = results / CLAIMS_FILE.name if results is not None else CLAIMS_FILE
+    path = own if own.exists() else CLAIMS_FILE
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        reasons = content.get("other_scales", {})
+        return [
+            _claim(path, number, reasons, table) for number, table in enumerate(content.get("claim", []), 1)
+        ]
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read: {error}") from error
 
 
-def _claim(reasons: Mapping[str, str], **table: Any) -> Claim:  # noqa: ANN401
-    origin, scales = Origin(**table.pop("published")), tuple(table.pop("scales"))
-    return Claim(published=origin, scales=scales, other_scales=reasons[table.pop("other_scales")], **table)
+def _claim(path: Path, number: int, reasons: Mapping[str, str], table: dict[str, Any]) -> Claim:
+    key = f"{path}: claim[{number}]"
+    try:
+        told = {"effect": "not stated", **table.pop("published", {})}
+        scales, why = tuple(table.pop("scales", SCALES)), table.pop("other_scales", None)
+        claim = Claim(
+            published=Origin(**told), scales=scales, other_scales=reasons.get(why, why or ""), **table
+        )
+    except TypeError as error:
+        said = str(error).partition(") ")[2] or str(error).partition("() ")[2] or str(error)
+        raise InputError(f"{key}: {said}; expected id, claim, test and arguments") from error
+    if not {"experiment", "experiments"} & set(claim.arguments):
+        raise InputError(f"{key}.arguments.experiment: missing; expected the name of a question")
+    return claim

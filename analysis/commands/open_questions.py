@@ -1,7 +1,7 @@
 """What of a study is still open: for whoever measures on, experiment by experiment."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -33,11 +33,12 @@ def open_questions(results: Path) -> dict[str, Any]:
     found: dict[str, Any] = {"open": {}, "settled": [], "said": {}}
     if not studies:
         return found
-    table = claims.evaluate(studies[0], studies, published.load())
+    table = claims.evaluate(studies[0], studies, published.load(), claims.load(results))
     decided = table[table["verdict"].isin(DECIDED)]
     found["said"] = {row.id: f"{row.said}: {row.measured}" for row in decided.itertuples()}
     stopped = _stopped(table)
-    items = [*_claims(table), *_comparisons(studies[0], found["said"])]
+    claimed = {experiment for claim in claims.load(results) for experiment in claim.experiments}
+    items = [*_claims(table), *_comparisons(studies[0], claimed, found["said"])]
     experiments = dict.fromkeys(experiment for experiment, _, _ in items)
     for experiment in experiments:
         own = [(blocks, needed) for name, blocks, needed in items if name == experiment]
@@ -76,9 +77,10 @@ def _claims(table: pd.DataFrame) -> Iterator[tuple[str, int, float]]:
                 yield experiment, int(row.blocks), float(row.needed)
 
 
-def _comparisons(study: Study, said: dict[str, str]) -> Iterator[tuple[str, int, float]]:
+def _comparisons(
+    study: Study, claimed: Collection[str], said: dict[str, str]
+) -> Iterator[tuple[str, int, float]]:
     """Yield the same of each difference that a comparison draws; add to `said` what is decided."""
-    claimed = {experiment for claim in claims.load() for experiment in claim.experiments}
     for experiment, times in study.times.groupby("experiment"):
         if experiment in claimed or times["figure"].iloc[0] not in COMPARED:
             continue

@@ -5,7 +5,7 @@ import pandas as pd
 from analysis.statistics.intervals import Interval
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.trends import growth, linearity, minimum
-from analysis.support.wording import change, count, exact, interval, number
+from analysis.support.wording import change, count, exact, interval, listed, number
 
 MEDIANS = "Dots are medians, bars their 95 % bootstrap intervals"
 PROCESSES = "A dot is the median of one process"
@@ -26,8 +26,23 @@ def opening(times: pd.DataFrame, subject: str, dots: str = MEDIANS) -> str:
     return (
         f"{subject[0].upper()}{subject[1:]} ({setting}). {dots}: {processes} in "
         f"{count(times['block'].nunique(), 'block')} and {count(sessions, 'session')}, "
-        f"{count(len(times), 'timed run')}, none left out."
+        f"{count(len(times), 'timed run')}, none left out.{_kind_of_time(times)}"
     )
+
+
+def time_axis(times: pd.DataFrame) -> str:
+    """Return what the axis of the times is called."""
+    return "time, s" if (times["kind"] == "process").any() else "time of the steps, s"
+
+
+def _kind_of_time(times: pd.DataFrame) -> str:
+    """Say which times they are, if not those of the steps."""
+    processes = times[times["kind"] == "process"]
+    if processes.empty:
+        return ""
+    own = sorted(processes.loc[processes["time_from"] != "outside", "series"].unique())
+    stated = f"; those of {listed(own)} are what the program says itself" if own else ""
+    return f" Times are of whole processes, from outside{stated}."
 
 
 def growth_sentence(times: pd.DataFrame) -> str:

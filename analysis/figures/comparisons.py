@@ -8,8 +8,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from analysis.derived.noise_prior import prior
-from analysis.figures.captions import opening
+from analysis.figures.captions import opening, time_axis
 from analysis.figures.dots import dots
+from analysis.figures.league import league
 from analysis.figures.pairs import Sides, bounded, pair_drawing
 from analysis.figures.style import BAND, BLUE, FAINT, INK, Data, Drawing, new_figure
 from analysis.statistics.bootstrap import summarise
@@ -27,21 +28,24 @@ def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
     if times.empty:
         return None
     against = reference(times)
-    table = differences(times, against, prior(data.study, experiment))
+    noise = prior(data.study, experiment)
+    table = differences(times, against, noise)
+    ranked = league(data.study, experiment, noise)
+    tables = [] if ranked is None else [ranked]
     table["name"] = [f"{_label(row, table)} against {against}" for row in table.to_dict("records")]
     names = sorted(times["series"].unique(), key=lambda name: name == against)
     if len(names) == 2 and times["x"].nunique() == 1:
         drawing = pair_drawing(data, Sides(experiment, names[0], names[1], subject, (names[0], names[1])))
-        return drawing and replace(drawing, verdicts=table)
+        return drawing and replace(drawing, verdicts=table, tables=tables)
     summary = summarise(times, ["series", "x"]).iloc[::-1]
     summary["name"] = [_label(row, summary) for row in summary.to_dict("records")]
     figure, (left, right) = new_figure(0.8 + 0.42 * len(summary), columns=2)
     dots(left, summary, "name")
-    left.set_xlabel("time of the steps, s")
+    left.set_xlabel(time_axis(times))
     _differences(right, table, summary)
     right.set_xlabel(f"time against {against}, %")
     said = differences_sentence(table, against)
-    return Drawing(figure, opening(times, subject) + said, table)
+    return Drawing(figure, opening(times, subject) + said, table, tables)
 
 
 def reference(times: pd.DataFrame) -> str:

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from analysis.derived.noise_prior import prior
-from analysis.figures.captions import PROCESSES, SCENES, opening
+from analysis.figures.captions import PROCESSES, SCENES, opening, time_axis
 from analysis.figures.labels import label_ends
 from analysis.figures.style import (
     BAND,
@@ -53,7 +53,7 @@ def pair_drawing(data: Data, sides: Sides, work: bool = False) -> Drawing | None
     published = data.published.experiment(sides.experiment)
     extra = work or not published.empty
     figure, axes = new_figure(2.4, columns=2 + extra, widths=[1.2, *([1.0] * extra), 1.1])
-    _by_block(axes[0], {sides.names[0]: candidate, sides.names[1]: reference})
+    _by_block(axes[0], {sides.names[0]: candidate, sides.names[1]: reference}, time_axis(times))
     row = judge_one(log_ratios(reference, candidate)["log_ratio"], prior=prior(data.study, sides.experiment))
     theirs = _published_panel(axes[1], published, sides) if not published.empty else None
     if work:
@@ -70,8 +70,8 @@ def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:
     return table.assign(steps_seconds=np.exp(table["steps_seconds"]))
 
 
-def _by_block(axes: Axes, curves: dict[str, pd.DataFrame]) -> None:
-    axes.set(xlabel="block", ylabel="time of the steps, s", title="measured")
+def _by_block(axes: Axes, curves: dict[str, pd.DataFrame], label: str) -> None:
+    axes.set(xlabel="block", ylabel=label, title="measured")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     labels = []
     both = pd.concat(curves)

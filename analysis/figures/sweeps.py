@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pandas as pd
 from matplotlib.axes import Axes
 
-from analysis.figures.captions import growth_sentence, opening
+from analysis.figures.captions import growth_sentence, opening, time_axis
 from analysis.figures.curves import colours, curve, published_curve
 from analysis.figures.style import (
     BLUE,
@@ -64,7 +64,7 @@ def trend(
     shades = colours(times)
     for series, part in summary.groupby("series"):
         curve(axes, part, shades[str(series)])
-    axes.set(xlabel=label or times["x_name"].iloc[0].replace("_", " "), ylabel="time of the steps, s")
+    axes.set(xlabel=label or times["x_name"].iloc[0].replace("_", " "), ylabel=time_axis(times))
     plain_ticks(axes.xaxis)
     from_zero(axes)
     if len(shades) > 1:

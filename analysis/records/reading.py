@@ -67,7 +67,7 @@ def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
         (warn or _warn_on_standard_error)(line)
     measured, limits, outside, failed = (
         [(path, record) for path, record in records if record["kind"] in kinds]
-        for kinds in (("bench", "profile"), ("limits",), ("outside",), ("failure",))
+        for kinds in (("bench", "profile", "process"), ("limits",), ("outside",), ("failure",))
     )
     return Records(
         runs=tables.runs(measured),

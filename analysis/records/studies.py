@@ -58,8 +58,8 @@ class Study:
         return self.times[self.times["experiment"] == experiment]
 
     def runs_of(self, experiment: str) -> pd.DataFrame:
-        """Return the records of one experiment whose check passed."""
-        return self.runs[(self.runs["experiment"] == experiment) & (self.runs["check_verdict"] == "passed")]
+        """Return the records of one experiment whose check did not fail."""
+        return self.runs[(self.runs["experiment"] == experiment) & (self.runs["check_verdict"] != "failed")]
 
     def failed_checks(self, experiment: str | None = None) -> int:
         """Return how many results failed their check, in one experiment or in all: records that say so, and

@@ -1,5 +1,6 @@
 """From validated records to flat tables; every table carries the same columns of context (see `context`)."""
 
+import shlex
 from typing import Any
 
 import pandas as pd
@@ -43,10 +44,13 @@ OUTSIDE = [
     "file", "machine", "scale", "experiment", "scene_name", "scene_sha256", "block", "session", "substeps",
     "engine", "seconds", "energy_drift",
 ]  # fmt: skip
+NO_SCENE: dict[str, Any] = {"name": "", "sha256": "", **dict.fromkeys(SCENE)}
+"""Of a program that is about something else than discs."""
 IDENTITY = ["compiler_family", "node", "machine", "revision"]
 CONTEXT = [
     "file", "kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene", "scene_sha256", *SCENE,
-    *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment", "warm_ups", "in_turns", *IDENTITY,
+    *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment", "warm_ups", "in_turns",
+    "time_from", "command", *IDENTITY,
 ]  # fmt: skip
 
 
@@ -57,7 +61,7 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
     partition with its CPU model (`node` then tells its nodes apart). `revision` is the commit with the hash
     of what was changed on top of it.
     """
-    tags, scene, origin = record["tags"], record["scene"], record["provenance"]
+    tags, scene, origin = record["tags"], record["scene"] or NO_SCENE, record["provenance"]
     slurm = origin["slurm"] or {}
     changes = f" with changes {str(origin['diff_sha256'])[:8]}" if origin["dirty"] else ""
     return {
@@ -68,7 +72,7 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
         "series": str(tags["series"]),
         "session": str(tags.get("session", "")),
         "scale": str(tags.get("scale", "unstated")),
-        **{column: record["axes"][column] for column in AXES},
+        **{column: record["axes"].get(column) for column in AXES},
         **{COLUMN_OF.get(name, name): record["axes"].get(name, old) for name, old in LATER_AXES.items()},
         "scene": scene["name"],
         "scene_sha256": scene["sha256"],
@@ -80,6 +84,8 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
         "environment": " ".join(f"{k}={v}" for k, v in sorted(origin["openmp"]["environment"].items())),
         "warm_ups": record["warm_ups"],
         "in_turns": bool(record.get("turns")),
+        "time_from": record.get("process", {}).get("time_from"),
+        "command": shlex.join(record["process"]["command"]) if record["kind"] == "process" else None,
         "compiler_family": _compiler_family(origin["compiler"]),
         "node": slurm.get("SLURMD_NODENAME", origin["host"]),
         "machine": _machine(origin),
@@ -109,14 +115,14 @@ def runs(records: Named) -> pd.DataFrame:
     rows = [
         {
             **context(name, record),
-            **{column: record["work"].get(column) for column in WORK},
-            **{column: (record["errors"] or {}).get(column) for column in ERRORS},
+            **{column: record.get("work", {}).get(column) for column in WORK},
+            **{column: (record.get("errors") or {}).get(column) for column in ERRORS},
             "has_errors": _has_errors(record),
             "check_verdict": record["check"]["verdict"],
             "check_scope": record["check"]["scope"],
             "check_reason": record["check"]["reason"],
             "repetitions": len(record["repetitions"]),
-            "parse_seconds": record["parse_seconds"],
+            "parse_seconds": record.get("parse_seconds"),
             "process_seconds": record["process_seconds"],
             "profile_cost": record.get("profile", {}).get("cost"),
         }
@@ -143,15 +149,17 @@ def trajectory(records: Named) -> pd.DataFrame:
 
 
 def _has_errors(record: dict[str, Any]) -> bool:
-    return "trajectory" in (record["errors"] or {})
+    return "trajectory" in (record.get("errors") or {})
 
 
 def times(records: Named) -> pd.DataFrame:
-    """One row a repetition of every timed run: context, `repetition`, `steps_seconds`, `cpu_seconds`."""
+    """One row a repetition of every timed run: context, `repetition`, `steps_seconds`, `cpu_seconds`. Of a
+    whole process these are its time, as seen from outside or as it says itself, and its CPU time.
+    """
     rows = [
         {**context(name, record), "repetition": number, **repetition}
         for name, record in records
-        if record["kind"] == "bench"
+        if record["kind"] in ("bench", "process")
         for number, repetition in enumerate(record["repetitions"])
     ]
     return _table(rows, ["repetition", "steps_seconds", "cpu_seconds"])

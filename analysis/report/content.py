@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from analysis import claims
 from analysis.claims import missing
+from analysis.claims.entry import CLAIMS_FILE
 from analysis.derived.accuracy import MEASURES, errors
 from analysis.derived.ladder import headlines
 from analysis.derived.noise_prior import prior
@@ -44,7 +45,7 @@ def content(records: Records, results: Path) -> dict[str, Any]:
         "records": len(records.runs),
         "latest": records.runs["recorded_at"].max() if len(records.runs) else None,
         "studies": parts,
-        "unmeasured": _unmeasured(records.runs),
+        "unmeasured": [] if (results / CLAIMS_FILE.name).exists() else _unmeasured(records.runs),
         "missing_counters": provenance.missing_counters(records.counters),
         "failures": records.failures.to_dict("records"),
         "wrong": records.runs[records.runs["check_verdict"] == "failed"].to_dict("records"),
@@ -56,7 +57,7 @@ def content(records: Records, results: Path) -> dict[str, Any]:
 
 def _study(study: Study, studies: Sequence[Study], results: Path) -> dict[str, Any]:
     drawn = draw_study(study, studies, results)
-    table = claims.evaluate(study, studies, published.load())
+    table = claims.evaluate(study, studies, published.load(), claims.load(results))
     if study is not studies[0]:
         table = table[~table["missing"]]
     noise = process_noise(study.times)

@@ -54,10 +54,13 @@ def checks(study: Study) -> str:
     passed = count(int((runs["check_verdict"] == "passed").sum()), "result")
     failed = study.failed_checks()
     said = f"{passed} passed and {count(failed, 'result')} failed the program's own check"
-    scopes = " and ".join(sorted(runs["check_scope"].unique()))
+    scopes = " and ".join(sorted(set(runs["check_scope"]) - {"nothing"}))
     energy = "" if pd.isna(drift) else f"; greatest relative drift of energy {drift:.1e}"
-    outside = f"; at most {count(int(runs['discs_outside'].max()), 'disc')} outside the box at the end"
-    return f"{said} ({scopes}){energy}{outside}."
+    discs = runs["discs_outside"].max()
+    outside = "" if pd.isna(discs) else f"; at most {count(int(discs), 'disc')} outside the box at the end"
+    unchecked = int((runs["check_verdict"] == "unchecked").sum())
+    unseen = f"; {count(unchecked, 'process')} of programs whose results are not checked" if unchecked else ""
+    return f"{said} ({scopes}){energy}{outside}{unseen}."
 
 
 def missing_counters(counters: pd.DataFrame) -> list[dict[str, str]]:
@@ -91,6 +94,8 @@ def commands(runs: pd.DataFrame) -> list[dict[str, Any]]:
 
 
 def _command(row: dict[str, Any]) -> str:
+    if row["kind"] == "process":
+        return f"{row['environment']} {row['command']}".strip()
     words = [f"build/{row['compiler_family']}/carom", row["kind"], row["scene"], "--variant", row["variant"]]
     words += [
         "--threads",

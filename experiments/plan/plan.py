@@ -1,15 +1,17 @@
 """From questions to points: what would be measured, on which machine, at which scale."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from experiments.plan.blocks import orders
+from experiments.plan.command import SCENE, Command, command_of
 from experiments.plan.point import Point
-from experiments.plan.program import Program, variants
-from experiments.plan.question import NamedScene, Question, Series, Threads
+from experiments.plan.program import GENERATOR, Program, variants
+from experiments.plan.question import NamedScene, Question, Threads
 from experiments.plan.scale import Scale
-from experiments.plan.scenes import Scene
+from experiments.plan.scenes import AnyScene, NoScene, Scene
+from experiments.plan.series import Series
 from experiments.plan.site import Machine, Site
 from experiments.support.errors import InputError, nearest
 
@@ -84,6 +86,8 @@ def _left_out(series: Series, around: Surroundings) -> bool:
 def _known(question: Question, number: int, series: Series, around: Surroundings) -> Series:
     """The series, once its program and its variant are known to exist."""
     key = f"{question.file}: series[{number}]"
+    if series.is_foreign:
+        return series
     if series.program not in around.programs:
         names = list(around.programs)
         raise InputError(
@@ -94,7 +98,7 @@ def _known(question: Question, number: int, series: Series, around: Surroundings
     if program.sha256 is not None and series.variant not in variants(program):
         raise InputError(
             f'{key}.variant: found "{series.variant}", expected a name out of `carom list --names`'
-            f"{nearest(series.variant, variants(program))}"
+            f"{nearest(str(series.variant), variants(program))}"
         )
     return series
 
@@ -129,8 +133,14 @@ def _point(
     }
     if parameter in run:
         x = run[parameter] = max(1, round(x))
-    elif parameter is not None and isinstance(scene, Scene):
+    elif parameter in Scene.__dataclass_fields__ or parameter == "area_fraction":
+        assert isinstance(scene, Scene)
         scene = _swept(question, scene, parameter, x)
+    command, program = None, around.programs.get(series.program)
+    if series.is_foreign:
+        of_run = {"threads": run["threads"], "substeps": run["substeps"]}
+        command, program = _command(question, number, series, (scene, of_run, x), around)
+    assert program is not None
     return Point(
         experiment=question.name,
         figure=question.figure,
@@ -145,9 +155,10 @@ def _point(
         site=around.site.name,
         machine=around.machine,
         verb=question.verb,
-        program=around.programs[series.program],
+        program=program,
         scene=scene,
         variant=series.variant,
+        command=command,
         tolerance=question.tolerance,
         warm_up=question.warm_up,
         repetitions=question.repetitions,
@@ -156,6 +167,40 @@ def _point(
         openmp=_openmp(question, run["threads"], around),
         **run,
     )
+
+
+def _command(
+    question: Question,
+    number: int,
+    series: Series,
+    at: tuple[AnyScene, dict[str, Any], float],
+    around: Surroundings,
+) -> tuple[Command, Program]:
+    """The series' command at a point, of which these are the scene, what else it says of the run, and x."""
+    scene, of_run, x = at
+    parameter = question.sweep.parameter
+    beginning = scene.beginning if isinstance(scene, Scene) else scene
+    values, checked = (
+        _placeholders(one, {**of_run, "x": _plain(x), **({parameter: _plain(x)} if parameter else {})})
+        for one in (scene, beginning)
+    )
+    if parameter == "steps":
+        checked["x"] = checked["steps"]
+    instrument = str(around.programs[GENERATOR].sha256)
+    key = f"{question.file}: series[{number}]"
+    return command_of(series, key, question.file.parent.absolute(), (values, checked), instrument)
+
+
+def _placeholders(scene: AnyScene, others: dict[str, Any]) -> dict[str, object]:
+    """What words may say of a point; the file of its scene is known only later."""
+    if isinstance(scene, NoScene):
+        return others
+    of_scene = asdict(scene) if isinstance(scene, Scene) else {"case": scene.case}
+    return {**others, SCENE: "", **of_scene}
+
+
+def _plain(value: float) -> float | int:
+    return int(value) if value == int(value) else value
 
 
 def _openmp(question: Question, threads: int, around: Surroundings) -> tuple[tuple[str, str], ...]:

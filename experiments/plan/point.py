@@ -7,12 +7,16 @@ from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from pathlib import Path
 
+from experiments.plan.command import Command, placed
 from experiments.plan.program import Program, tag_arguments
-from experiments.plan.scenes import AnyScene, HardCase, Scene
+from experiments.plan.scenes import AnyScene, HardCase, NoScene, Scene
 from experiments.plan.site import Machine
 from experiments.support.digest import digest
 
 Tags = dict[str, str | int | float]
+
+PROCESS = "process"
+"""The verb of points of which whole processes are timed."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +32,8 @@ class Measurement:
     verb: str
     program: Program
     scene: AnyScene
-    variant: str
+    variant: str | None
+    command: Command | None
     find_chunk: int | None
     resolve_chunk: int | None
     threads: int
@@ -44,8 +49,15 @@ class Measurement:
     def id(self) -> str:
         """`p` and 16 hexadecimal digits; equal ids are the same measurement in any figure."""
         content = {field.name: getattr(self, field.name) for field in fields(Measurement)}
+        if self.command is None:
+            del content["command"]  # so that ids of variants are what they were before others were measured
         # The letter keeps the id a text: the program takes a tag that reads as a number for one.
         return "p" + digest(json.dumps(content, sort_keys=True, default=_content))
+
+    @property
+    def is_checked(self) -> bool:
+        """Whether its steps can be verified before it is timed."""
+        return self.command is None or bool(self.command.trajectory)
 
     @property
     def axes(self) -> dict[str, str | int | None]:
@@ -106,18 +118,13 @@ class Point(Measurement):
             words += ["--simulated", "--simulated-steps", str(self.simulated)]
         return tuple(words)
 
-    def command(
+    def bench_words(
         self, scene: Path, record: Path, tags: Tags, timeline: Path | None = None, besides: Sequence[str] = ()
     ) -> tuple[str, ...]:
         """The command that measures the point once, does what else it is told to, and writes its record, and
         the timeline of a profile.
         """
-        words = [str(self.program.path), self.verb, str(scene)]
-        words += ["--variant", self.variant, "--threads", str(self.threads)]
-        words += ["--substeps", str(self.substeps), "--tolerance", self.tolerance]
-        for option, chunk in (("--find-chunk", self.find_chunk), ("--resolve-chunk", self.resolve_chunk)):
-            if chunk is not None:
-                words += [option, str(chunk)]
+        words = self._words(self.verb, scene)
         words += ["--warm-up", str(self.warm_up)]
         if self.verb == "bench":
             words += ["--repetitions", str(self.repetitions)]
@@ -126,14 +133,37 @@ class Point(Measurement):
             words += ["--timeline", str(timeline), "--timeline-chunks"]
         return (*words, "--record", str(record), *tag_arguments(tags))
 
+    def process_words(self, scene: Path | None, output: Path) -> tuple[str, ...]:
+        """The command of the process that is timed as a whole: the program's own words, or `carom run`. A
+        Google Benchmark writes what it found into `output`.
+        """
+        if self.command is None:
+            assert scene is not None
+            return tuple(self._words("run", scene))
+        words = placed(self.command.words, scene)
+        if self.command.benchmark is None:
+            return words
+        return (*words, f"--benchmark_out={output}", "--benchmark_out_format=json")
+
+    def _words(self, verb: str, scene: Path) -> list[str]:
+        words = [str(self.program.path), verb, str(scene)]
+        words += ["--variant", str(self.variant), "--threads", str(self.threads)]
+        words += ["--substeps", str(self.substeps), "--tolerance", self.tolerance]
+        for option, chunk in (("--find-chunk", self.find_chunk), ("--resolve-chunk", self.resolve_chunk)):
+            if chunk is not None:
+                words += [option, str(chunk)]
+        return words
+
 
 def _content(value: object) -> object:
     """What of a field that is no plain value decides the measurement: of a program not where it is."""
     match value:
         case Program():
             return value.name, value.sha256
-        case Scene() | HardCase():
+        case Scene() | HardCase() | NoScene():
             return value.arguments
+        case Command():
+            return asdict(value) | {"folder": None}
         case Machine():
             return asdict(value)
     raise TypeError(f"{value!r} has no place in an id")

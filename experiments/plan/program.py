@@ -8,6 +8,7 @@ from pathlib import Path
 from experiments.plan.scenes import AnyScene, sha256_of
 from experiments.plan.site import Site
 from experiments.support import process
+from experiments.support.digest import digest_of_hashes
 from experiments.support.errors import InputError
 
 CHECK_FAILED = 2
@@ -19,11 +20,23 @@ GENERATOR = "gcc"
 
 @dataclass(frozen=True)
 class Program:
-    """One build of the program; without a SHA-256 where it is not built."""
+    """One build of the program, or somebody else's; without a SHA-256 where it is not built."""
 
     name: str
     path: Path
     sha256: str | None
+    files: tuple[Path, ...] = ()
+    """What it is made of, where that is more than the one file."""
+
+    @property
+    def is_unchanged(self) -> bool:
+        """Whether its files are what they were. Raises InputError if one cannot be read."""
+        return digest_of_hashes([sha256_of(file) for file in self.sources]) == self.sha256
+
+    @property
+    def sources(self) -> tuple[Path, ...]:
+        """Every file that it is made of."""
+        return self.files or (self.path,)
 
     @property
     def remedy(self) -> str:
@@ -66,6 +79,14 @@ def check_command(
 ) -> tuple[str, ...]:
     """The command that verifies every step of a variant on a scene."""
     words = (str(program.path), "check", str(scene), str(threads), "--variant", variant)
+    return (*words, "--tolerance", tolerance)
+
+
+def check_trajectory_command(
+    program: Program, scene: Path, trajectory: Path, tolerance: str
+) -> tuple[str, ...]:
+    """The command that verifies every step of what another program wrote."""
+    words = (str(program.path), "check", str(scene), "--trajectory", str(trajectory))
     return (*words, "--tolerance", tolerance)
 
 

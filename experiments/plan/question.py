@@ -1,23 +1,28 @@
 """A question of the study: one TOML file, read, checked and frozen."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from experiments.plan.scenes import AnyScene, HardCase, Scene
+from experiments.plan.claims import CLAIMS, PUBLISHED_CLAIMS, require_claim
+from experiments.plan.scenes import AnyScene, HardCase, NoScene, Scene
+from experiments.plan.series import Series, read_series
 from experiments.support.errors import InputError, nearest
 from experiments.support.schema import read_toml
 
 FOLDER = Path(__file__).parents[1] / "questions"
 CONTROL = "control"
-
 _NUMBER = re.compile(r"\s*-?(0|[1-9]\d*)(\.\d+)?([eE][+-]?\d+)?\s*")
 _OF_THE_RUN = ("threads", "find_chunk", "resolve_chunk", "substeps")
 _OF_ERRORS = ("speed_against_error", "hard_cases")
 _OF_SCENES = (*_OF_ERRORS, "ladder", "limits")
+_OF_A_SCENE = (
+    "particles", "side", "radius", "steps", "min_velocity", "max_velocity", "area_fraction", "seed",
+)  # fmt: skip
 _WHOLE_NUMBERS = (*_OF_THE_RUN, "particles", "steps", "seed")
+_OF_SERIES = ("find_chunk", "resolve_chunk")
 
 Threads = int | Literal["cores", "hardware_threads"]
 
@@ -51,21 +56,6 @@ class Sweep:
 
 
 @dataclass(frozen=True)
-class Series:
-    """One curve: a variant, a build of the program, fixed chunks, and the swept values at both scales."""
-
-    name: str
-    variant: str
-    program: str = "gcc"
-    label: str | None = None
-    find_chunk: int | None = None
-    resolve_chunk: int | None = None
-    optional: bool = False
-    values: tuple[float, ...] = ()
-    quick_values: tuple[float, ...] = ()
-
-
-@dataclass(frozen=True)
 class Question:
     """One question: its name is that of its file, and that of the experiment in the records."""
 
@@ -77,7 +67,7 @@ class Question:
     series: tuple[Series, ...]
     sweep: Sweep = Sweep()
     claim: str | None = None
-    verb: Literal["bench", "profile"] = "bench"
+    verb: Literal["bench", "profile", "process"] = "bench"
     threads: Threads = "hardware_threads"
     bound: bool = True
     turns: bool = True
@@ -93,7 +83,7 @@ class Question:
     @property
     def programs(self) -> frozenset[str]:
         """The builds of the program that it cannot do without."""
-        return frozenset(one.program for one in self.series if not one.optional)
+        return frozenset(one.program for one in self.series if not one.is_foreign and not one.optional)
 
 
 def load_question(path: Path) -> Question:
@@ -101,12 +91,14 @@ def load_question(path: Path) -> Question:
     document = read_toml(path, FOLDER / "question.schema.json")
     sweep_table = document.pop("sweep", {})
     values = {key: tuple(sweep_table.pop(key, ())) for key in ("values", "quick_values")}
+    series = read_series(path, document.pop("series"), values)
     question = Question(
         name=path.stem,
         file=path,
         scenes=_scenes(path, document.pop("scene", None), document.pop("scenes", None)),
         sweep=Sweep(**{"x_name": sweep_table.get("parameter", Sweep.x_name), **sweep_table}),
-        series=tuple(_series(table, values) for table in document.pop("series")),
+        series=series,
+        verb=document.pop("verb", "process" if any(one.is_foreign for one in series) else "bench"),
         blocks=Blocks(**document.pop("blocks", {})),
         **document,
     )
@@ -119,7 +111,7 @@ def load_questions(folder: Path, names: Iterable[str] = ()) -> tuple[Question, .
 
     Raises InputError for a name that the folder does not have, and for a file that is not a valid question.
     """
-    files = {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    files = {path.stem: path for path in sorted(folder.glob("*.toml")) if path.name != CLAIMS}
     if not files:
         raise InputError(f"{folder}: has no question in it; expected files *.toml")
     chosen = list(dict.fromkeys(names)) or list(files)
@@ -141,7 +133,7 @@ def _scenes(
     if one is not None:
         return (_named_scene(one),)
     if several is None:
-        raise InputError(f"{path}: scene: missing; expected a table, or a list scenes of several")
+        return (NamedScene(NoScene()),)
     named: dict[str, NamedScene] = {}
     for number, table in enumerate(several, start=1):
         key = f"scenes[{number}]"
@@ -159,21 +151,16 @@ def _named_scene(table: dict[str, Any]) -> NamedScene:
     return NamedScene(HardCase(**table) if "case" in table else Scene(**table), **beside)
 
 
-def _series(table: Mapping[str, Any], of_sweep: Mapping[str, tuple[float, ...]]) -> Series:
-    """A series has the sweep's values unless it has its own; quick values default to the values."""
-    if "values" not in table:
-        return Series(**{**of_sweep, "quick_values": of_sweep["quick_values"] or of_sweep["values"], **table})
-    own = {key: tuple(table.get(key, table["values"])) for key in ("values", "quick_values")}
-    return Series(**{**table, **own})
-
-
 def _require_valid(question: Question) -> None:
     """What a schema cannot say: raises InputError for the first thing that is wrong, as the ones below do."""
     file, sweep, blocks = question.file, question.sweep, question.blocks
     if blocks.wanted < blocks.minimum:
         raise InputError(f"{file}: blocks.wanted: found {blocks.wanted}, expected at least {blocks.minimum}")
     _require_names(question)
+    if question.claim is not None:
+        require_claim(file, question.claim)
     _require_possible_scenes(question)
+    _require_what_processes_can(question)
     _require_what_errors_need(question)
     _require_published_tolerance(question)
     if sweep.parameter == "substeps" and question.substeps != 1:
@@ -201,8 +188,13 @@ def _require_possible_scenes(question: Question) -> None:
     parameter = question.sweep.parameter
     for number, named in enumerate(question.scenes, start=1):
         scene, key = named.scene, "scene" if len(question.scenes) == 1 else f"scenes[{number}]"
-        if isinstance(scene, HardCase):
-            if parameter is not None and parameter not in _OF_THE_RUN:
+        if isinstance(scene, NoScene):
+            if not all(series.is_foreign for series in question.series):
+                raise InputError(
+                    f"{question.file}: scene: missing; expected a table, or a list scenes of several"
+                )
+        elif isinstance(scene, HardCase):
+            if parameter in _OF_A_SCENE:
                 raise InputError(
                     f"{question.file}: sweep.parameter: found {parameter} over the hard case {scene.case}, "
                     f"which is as it is; expected one of {', '.join(_OF_THE_RUN)}"
@@ -212,6 +204,26 @@ def _require_possible_scenes(question: Question) -> None:
                 f"{question.file}: {key}.max_velocity: found {scene.max_velocity}, "
                 f"expected at least {scene.min_velocity}"
             )
+
+
+def _require_what_processes_can(question: Question) -> None:
+    """Of other programs nothing but whole processes can be timed, and nothing but theirs has other axes."""
+    file, parameter = question.file, question.sweep.parameter
+    foreign = [series for series in question.series if series.is_foreign]
+    if foreign and question.verb != "process":
+        raise InputError(f'{file}: verb: found {question.verb} beside programs of others, expected "process"')
+    known = (*_OF_THE_RUN, *_OF_A_SCENE)
+    if parameter is not None and parameter not in known and len(foreign) < len(question.series):
+        raise InputError(
+            f'{file}: sweep.parameter: found "{parameter}", expected one of {", ".join(known)}'
+            f"{nearest(parameter, known)}"
+        )
+    if parameter in _OF_A_SCENE and any(isinstance(named.scene, NoScene) for named in question.scenes):
+        raise InputError(f"{file}: sweep.parameter: found {parameter} without a scene, expected another name")
+    if question.verb == "process":
+        for key, default in (("repetitions", 1), ("errors", False), ("simulated", 0)):
+            if getattr(question, key) != default:
+                raise InputError(f"{file}: {key}: found for whole processes, expected for verb bench only")
 
 
 def _require_what_errors_need(question: Question) -> None:
@@ -234,7 +246,11 @@ def _require_what_errors_need(question: Question) -> None:
 
 def _require_published_tolerance(question: Question) -> None:
     """A published claim is about the published program, and so about its tolerance, unless that cannot be."""
-    if question.claim and question.tolerance != "published" and question.tolerance_reason is None:
+    if (
+        question.claim in PUBLISHED_CLAIMS
+        and question.tolerance != "published"
+        and question.tolerance_reason is None
+    ):
         raise InputError(
             f"{question.file}: tolerance: found {question.tolerance} for a published claim, expected "
             '"published", or a tolerance_reason'
@@ -255,7 +271,7 @@ def _require_values(question: Question, key: str, series: Series) -> None:
         raise InputError(f"{question.file}: {key}.values: found values, expected none without a sweep")
     if parameter is not None and not series.values:
         raise InputError(f"{question.file}: {key}.values: missing; expected the values of {parameter}")
-    if parameter in ("find_chunk", "resolve_chunk") and getattr(series, parameter) is not None:
+    if parameter in _OF_SERIES and getattr(series, parameter) is not None:
         raise InputError(f"{question.file}: {key}.{parameter}: found beside a sweep of it, expected either")
     if question.sweep.unit or parameter not in _WHOLE_NUMBERS:
         return

@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass, replace
 
-from experiments.plan.question import NamedScene, Question, Series
-from experiments.plan.scenes import AnyScene, HardCase
+from experiments.plan.question import NamedScene, Question
+from experiments.plan.scenes import AnyScene, Scene
+from experiments.plan.series import Series
 from experiments.support.errors import InputError, nearest
 
 FEWEST_BLOCKS = 2
@@ -50,7 +51,7 @@ class Scale:
 
     def _scene(self, scene: AnyScene) -> AnyScene:
         """A hard case has one size only."""
-        if isinstance(scene, HardCase):
+        if not isinstance(scene, Scene):
             return scene
         return replace(scene.shrunk(self.divisor), steps=max(1, scene.steps // self.steps_divisor))
 

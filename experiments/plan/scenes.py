@@ -9,6 +9,9 @@ from pathlib import Path
 from experiments.support.errors import InputError
 from experiments.support.files import write_text
 
+CHECKED_STEPS = 20
+"""How many steps of a generated scene are checked before it is timed; of a hard case all are."""
+
 _DIGITS = 12
 """How many of a scene's SHA-256 stand in the name of its file."""
 
@@ -59,6 +62,11 @@ class Scene:
         side = self.side * math.sqrt(particles / self.particles)
         return replace(self, particles=particles, side=max(round(side), math.ceil(2 * self.radius)))
 
+    @property
+    def beginning(self) -> "Scene":
+        """As much of it as is checked."""
+        return replace(self, steps=min(self.steps, CHECKED_STEPS))
+
 
 @dataclass(frozen=True)
 class HardCase:
@@ -77,7 +85,22 @@ class HardCase:
         return f"case-{self.case}"
 
 
-AnyScene = Scene | HardCase
+@dataclass(frozen=True)
+class NoScene:
+    """What a question has that is not about discs."""
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """None."""
+        return ()
+
+    @property
+    def name(self) -> str:
+        """None."""
+        return ""
+
+
+AnyScene = Scene | HardCase | NoScene
 
 
 @dataclass(frozen=True)

@@ -168,9 +168,9 @@ def unusable(record: Any, point: Point, block: int) -> str | None:  # noqa: ANN4
     """Why a record does not stand for this process of this point; None if it does."""
     if not is_record(record):
         return "it does not match the record schema"
-    if record["kind"] not in ("bench", "profile"):
+    if record["kind"] not in ("bench", "profile", "process"):
         return f"it is of the kind {record['kind']}"
-    if record["check"]["verdict"] != "passed":
+    if record["check"]["verdict"] == "failed":
         return "its result failed the check"
     if record["provenance"]["binary_sha256"] != point.program.sha256:
         return "it was measured with another program"

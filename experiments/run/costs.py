@@ -45,6 +45,8 @@ _PROBED = 3
 """Runs of a probe, of which the least counts: enough for one without a disturbance, and over in 0.1 s."""
 _UNPROBED_STEP, _UNPROBED_PROCESS = 0.01, 0.05
 """Seconds of a variant whose probe failed: several times what the published one takes."""
+_UNKNOWN_PROGRAM = 1.0
+"""Seconds of somebody else's program until it has run once: a guess."""
 
 SECONDS_PER_PROCESS = 0.03
 """What a process takes beside its own account of its time: its start, its end, the look at its record."""
@@ -90,6 +92,8 @@ class Costs:
         """The verification of every step of the point's variant on its scene."""
         if point.program.sha256 is None:
             return 0.0
+        if point.command is not None:
+            return _UNKNOWN_PROGRAM if point.is_checked else 0.0
         probe = self._probe(point)
         return probe.process + _reading(point.scene) + _RUNS_OF_A_CHECK * _run(point, probe)
 
@@ -101,7 +105,7 @@ class Costs:
         seconds = _RUNS_FOR_ERRORS * _run(point, probe) if point.errors else 0.0
         if point.simulated:
             scene = point.scene
-            share = 1.0 if isinstance(scene, HardCase) else min(point.simulated / scene.steps, 1.0)
+            share = min(point.simulated / scene.steps, 1.0) if isinstance(scene, Scene) else 1.0
             seconds += _SLOWED_BY_CACHEGRIND * (_run(point, probe) * share + 2 * _reading(point.scene))
         return seconds
 
@@ -124,6 +128,8 @@ class Costs:
         return self._corrections[experiment]
 
     def _modelled(self, point: Point) -> float:
+        if point.command is not None:
+            return _UNKNOWN_PROGRAM * (1 + point.warm_up)
         if point.id not in self._models:
             probe = self._probe(point)
             seconds = probe.process + _reading(point.scene) + _runs(point) * _run(point, probe)
@@ -141,7 +147,7 @@ def probe_key(point: Point) -> str:
 
 def probe(point: Point, scene: Path, record: Path, time_limit: float) -> Probe | None:
     """Time a short run of the point's variant; None if it fails, which the run proper will explain."""
-    words = [str(point.program.path), "bench", str(scene), "--variant", point.variant]
+    words = [str(point.program.path), "bench", str(scene), "--variant", str(point.variant)]
     words += ["--threads", str(point.threads), "--record", str(record), "--warm-up", "0"]
     words += ["--repetitions", str(_PROBED)]
     done = run_alone(words, point.openmp, time_limit)
@@ -155,7 +161,11 @@ def probe(point: Point, scene: Path, record: Path, time_limit: float) -> Probe |
 
 def to_probe(points: Iterable[Point], known: Mapping[str, object]) -> list[Point]:
     """One point for each probe that is still to be made."""
-    wanted = {probe_key(point): point for point in points if point.program.sha256 is not None}
+    wanted = {
+        probe_key(point): point
+        for point in points
+        if point.program.sha256 is not None and point.command is None
+    }
     return [point for key, point in wanted.items() if key not in known]
 
 
@@ -167,11 +177,14 @@ def _run(point: Point, probe: Probe) -> float:
     """Seconds of one run from the first step to the last."""
     if isinstance(point.scene, HardCase):
         return _SECONDS_OF_LONG_CASES.get(point.scene.case, _SECONDS_PER_HARD_CASE)
-    return point.scene.steps * point.substeps * probe.step * _work(point.scene) / _work(PROBE)
+    scene = point.scene
+    if not isinstance(scene, Scene):
+        return 0.0
+    return scene.steps * point.substeps * probe.step * _work(scene) / _work(PROBE)
 
 
 def _reading(scene: AnyScene) -> float:
-    return 0.0 if isinstance(scene, HardCase) else scene.particles * _SECONDS_PER_DISC_READ
+    return scene.particles * _SECONDS_PER_DISC_READ if isinstance(scene, Scene) else 0.0
 
 
 def _work(scene: Scene) -> float:

@@ -13,13 +13,19 @@ from experiments.support.errors import InputError
 from experiments.support.process import Completed
 
 
-def run_alone(command: Sequence[str], openmp: Iterable[tuple[str, str]], time_limit: float) -> Completed:
-    """Run a program to its end with these OpenMP variables and no others, while no other one computes.
+def run_alone(
+    command: Sequence[str],
+    openmp: Iterable[tuple[str, str]],
+    time_limit: float,
+    folder: Path | None = None,
+) -> Completed:
+    """Run a program to its end with these OpenMP variables and no others, in a folder or where this process
+    is, while no other one computes.
 
     The time limit, in seconds, counts from when it begins. Raises InputError like `host_lock`.
     """
     with host_lock():
-        return process.run(command, clean_environment(dict(openmp)), time_limit)
+        return process.run(command, clean_environment(dict(openmp)), time_limit, folder)
 
 
 @contextlib.contextmanager

@@ -8,18 +8,20 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from experiments.plan.plan import Experiment
-from experiments.plan.point import Point, Tags
+from experiments.plan.point import PROCESS, Point, Tags
 from experiments.plan.program import CHECK_FAILED, Program, generate
-from experiments.plan.scenes import AnyScene, SceneFile, SceneFolder, sha256_of
+from experiments.plan.scenes import AnyScene, NoScene, SceneFile, SceneFolder
 from experiments.results.store import Store, unusable
 from experiments.run.host_lock import run_alone
 from experiments.run.kept_records import KeptRecords
 from experiments.run.limits import measure_limits
 from experiments.run.outside import Outside
+from experiments.run.processes import Processes
 from experiments.run.verify import Verifier, representative
 from experiments.support.errors import InputError
 from experiments.support.files import move, read_json
 from experiments.support.process import NOT_FOUND, Completed
+from experiments.support.schema import is_record
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,10 @@ class Outcome:
     exit_code: int = 0
 
 
+Ready = tuple[Task, SceneFile | None]
+"""A task whose point may be measured, and its scene's file."""
+
+
 class Runner:
     """Runs tasks, one process at a time; each leaves a record or a failure in the store."""
 
@@ -64,7 +70,8 @@ class Runner:
         self._scenes = scenes
         self._generator = generator
         self._time_limit = time_limit
-        self._verifier = Verifier(store, time_limit)
+        self._verifier = Verifier(store, generator, time_limit)
+        self._processes = Processes(store, generator, time_limit)
         self._records = KeptRecords(store, time_limit)
         self._outside = Outside(self._records)
 
@@ -76,21 +83,27 @@ class Runner:
         """
         prepared = [self._prepare(task) for task in tasks]
         ready = [
-            (task, scene) for task, scene in zip(tasks, prepared, strict=True) if isinstance(scene, SceneFile)
+            (task, scene)
+            for task, scene in zip(tasks, prepared, strict=True)
+            if not isinstance(scene, Outcome)
         ]
         measured = iter(self._measure_all(ready))
-        return [next(measured) if isinstance(one, SceneFile) else one for one in prepared]
+        return [one if isinstance(one, Outcome) else next(measured) for one in prepared]
 
-    def _measure_all(self, ready: Sequence[tuple[Task, SceneFile]]) -> list[Outcome]:
+    def _measure_all(self, ready: Sequence[Ready]) -> list[Outcome]:
+        if ready and ready[0][0].point.verb == PROCESS:
+            return self._measure_processes(ready)
         if len(ready) > 1:
             outcomes = self._measure_in_turns(ready)
             if outcomes is not None:
                 return outcomes
         return [self._measure(task, scene) for task, scene in ready]
 
-    def _prepare(self, task: Task) -> SceneFile | Outcome:
-        """The point's scene once its variant is verified, or why it cannot be measured."""
+    def _prepare(self, task: Task) -> SceneFile | Outcome | None:
+        """The point's scene, if it has one, once what runs is verified; or why it cannot be measured."""
         point = task.point
+        if isinstance(point.scene, NoScene):
+            return None
         if point.program.sha256 is None:
             command = (str(point.program.path), point.verb)
             return self._fail(task, Completed(command, NOT_FOUND, "", point.program.remedy))
@@ -99,9 +112,10 @@ class Runner:
             checked = self.scene(representative(task.experiment, point).scene)
         except InputError as error:
             return self._fail(task, Completed((str(self._generator.path), "generate"), 1, "", str(error)))
-        verdict = self._verifier.check(representative(task.experiment, point), checked)
-        if verdict.exit_code != 0:
-            return self._fail(task, verdict)
+        if point.is_checked:
+            verdict = self._verifier.check(representative(task.experiment, point), checked)
+            if verdict.exit_code != 0:
+                return self._fail(task, verdict)
         limits = measure_limits(point, self._records)
         if limits is not None and limits.exit_code != 0:
             return self._fail(task, limits)
@@ -114,13 +128,22 @@ class Runner:
         """The scene's file, generated if need be."""
         return self._scenes.get(scene, lambda wanted, path: generate(self._generator, wanted, path))
 
-    def _measure_in_turns(self, ready: Sequence[tuple[Task, SceneFile]]) -> list[Outcome] | None:
+    def _measure_processes(self, ready: Sequence[Ready]) -> list[Outcome]:
+        """Whole processes, side by side in slices of time."""
+        points = [(task.point, scene, task.tags(self._store.session)) for task, scene in ready]
+        done, records = self._processes.measure(points, ready[0][0].block + 1)
+        return [
+            self._keep(task, record, Completed(done.command, done.exit_code, "", done.error))
+            for (task, _), record in zip(ready, records, strict=True)
+        ]
+
+    def _measure_in_turns(self, ready: Sequence[Ready]) -> list[Outcome] | None:
         """All of them in one process; None if it broke off: each must show alone what is wrong with it."""
         folder = self._store.temporary / "turns"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
         commands = [
-            task.point.command(scene.path, folder / f"{number}.json", task.tags(self._store.session))
+            task.point.bench_words(_path(scene), folder / f"{number}.json", task.tags(self._store.session))
             for number, (task, scene) in enumerate(ready)
         ]
         first = ready[0][0]
@@ -135,13 +158,13 @@ class Runner:
             for number, ((task, _), words) in enumerate(zip(ready, commands, strict=True))
         ]
 
-    def _measure(self, task: Task, scene: SceneFile) -> Outcome:
+    def _measure(self, task: Task, scene: SceneFile | None) -> Outcome:
         point = task.point
         scratch = self._store.temporary / "record.json"
         scratch.unlink(missing_ok=True)
         tags = task.tags(self._store.session)
         timeline = self._store.temporary / "timeline.json" if _is_drawn(task) else None
-        command = point.command(scene.path, scratch, tags, timeline, point.besides(task.block))
+        command = point.bench_words(_path(scene), scratch, tags, timeline, point.besides(task.block))
         done = run_alone(command, point.openmp, self._time_limit)
         outcome = self._keep(task, scratch, done)
         if outcome.seconds is not None and timeline is not None and timeline.exists():
@@ -151,7 +174,11 @@ class Runner:
     def _keep(self, task: Task, scratch: Path, done: Completed) -> Outcome:
         """Take in the record that a process left of a point, or the reason why there is none."""
         record = read_json(scratch)
-        if done.exit_code not in (0, CHECK_FAILED):
+        if is_record(record) and record["kind"] == "failure":
+            return self._fail(
+                task, Completed(tuple(record["command"]), record["exit_code"], "", record["reason"])
+            )
+        if done.exit_code not in (0, CHECK_FAILED) and task.point.verb != PROCESS:
             return self._fail(task, done)
         wrong = unusable(record, task.point, task.block)
         if wrong is None:
@@ -170,6 +197,11 @@ class Runner:
         return Outcome(None, done.reason, done.exit_code)
 
 
+def _path(scene: SceneFile | None) -> Path:
+    assert scene is not None
+    return scene.path
+
+
 def _is_drawn(task: Task) -> bool:
     """Whether the process leaves a timeline: one a point of the phases is enough to see who waits."""
     return task.point.verb == "profile" and task.point.figure == "phases" and task.block == 0
@@ -182,6 +214,7 @@ def _violation(record: object) -> str | None:
 
 
 def _require_unchanged(program: Program) -> None:
-    path: Path = program.path
-    if sha256_of(path) != program.sha256:
-        raise InputError(f"{path}: was built anew while the study ran; run the study again to go on with it")
+    if not program.is_unchanged:
+        raise InputError(
+            f"{program.path}: was built anew while the study ran; run the study again to go on with it"
+        )

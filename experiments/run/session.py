@@ -26,6 +26,7 @@ def run(settings: Settings) -> int:
     study = Study(settings)
     with study.store.opened(), Report() as report:
         report.now("planning")
+        study.keep_claims()
         runner = study.runner()
         schedule = study.schedule(runner, settle=True)
         report.line(summary(schedule, study.budget_seconds))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from experiments.plan import question, site
+from experiments.plan.claims import CLAIMS
 from experiments.plan.plan import SEED, Experiment, Surroundings, plan
 from experiments.plan.program import GENERATOR, Program, find_programs
 from experiments.plan.question import load_questions, with_blocks
@@ -17,6 +18,7 @@ from experiments.run.progress import about
 from experiments.run.runner import Runner
 from experiments.run.schedule import Schedule
 from experiments.support.errors import InputError
+from experiments.support.files import write_text
 
 COSTS = "costs.json"
 FINISHED = "finished.json"
@@ -78,6 +80,14 @@ class Study:
     def analysis_command(self) -> list[str]:
         """What draws the figures of the experiments that it is told, and says what is open."""
         return [sys.executable, "-m", "analysis", "follow", "--results", str(self.store.root)]
+
+    def keep_claims(self) -> None:
+        """Let the results say what is claimed of them, where the questions are not the published ones."""
+        folder = self.settings.questions
+        if folder.resolve() != question.FOLDER:
+            claims = folder / CLAIMS
+            told = claims.read_text(encoding="utf-8") if claims.exists() else "# Nothing is claimed.\n"
+            write_text(self.store.root / CLAIMS, told, self.store.temporary)
 
     def scenes(self) -> SceneFolder:
         """The generated scenes; the results folder must be held."""

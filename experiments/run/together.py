@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from experiments.plan.plan import Experiment
-from experiments.plan.point import Point
+from experiments.plan.point import PROCESS, Point
 from experiments.plan.scenes import Scene
 
 Position = tuple[int, Point]
@@ -19,6 +19,8 @@ _BYTES_PER_DISC = 400
 """Of the published layout, the largest: a disc 32, its list's header 24, and what the lists hold."""
 _BYTES_PER_BOX = 60
 """The header of a box's list, and the memory of the lists that have ever held a disc."""
+_PROGRAMS_TOGETHER = 8
+"""So many programs of others at once, each of which may take a thirty-second part of the memory."""
 
 
 def together(experiment: Experiment, block: int, missing: Sequence[Position]) -> list[list[Position]]:
@@ -35,16 +37,24 @@ def _process(point: Point) -> tuple[object, ...]:
     """Which process it can be in.
 
     Nothing is compared across a question's named scenes. And as many threads for all: a pool of threads that
-    shrinks and grows between turns would be timed too.
+    shrinks and grows between turns would be timed too. Whole processes keep their pools to themselves; what
+    is compared of them is at the same place of the sweep. Those that time themselves would count it as their
+    own while they stand still.
     """
+    if point.verb == PROCESS:
+        alone = point.command is not None and point.command.times_itself
+        return point.scene_name, point.x, point.id if alone else None
     return point.scene_name, point.program.sha256, point.openmp, point.threads
 
 
 def _may_take_turns(experiment: Experiment, block: int) -> bool:
     """Whether those compared are measured alike: no point of the block does anything but run once, and of one
-    scene as many take turns in each process, since a turn among many finds colder caches.
+    scene as many take turns in each process, since a turn among many finds colder caches. Whole processes do
+    nothing else.
     """
     points = experiment.points
+    if all(point.verb == PROCESS for point in points):
+        return experiment.question.turns
     once = all(
         point.verb == "bench" and point.repetitions == 1 and not point.besides(block) for point in points
     )
@@ -55,7 +65,7 @@ def _may_take_turns(experiment: Experiment, block: int) -> bool:
 
 def _fitting(group: Sequence[Position]) -> list[list[Position]]:
     """The group in as few parts as the machine's memory allows, since all of a part are in it at once."""
-    most = _SHARE_OF_MEMORY * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    most = _memory()
     parts: list[list[Position]] = [[]]
     used = 0.0
     for one in group:
@@ -68,9 +78,18 @@ def _fitting(group: Sequence[Position]) -> list[list[Position]]:
     return parts
 
 
+def _memory() -> float:
+    """What may be used, in bytes."""
+    return _SHARE_OF_MEMORY * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+
 def _bytes(point: Point) -> float:
-    """About how much memory a simulation of the point takes; a hard case takes little."""
+    """About how much memory a simulation of the point takes; a hard case takes little. What another program
+    takes is not known: several have room together.
+    """
     scene = point.scene
+    if point.command is not None:
+        return _memory() / _PROGRAMS_TOGETHER
     if not isinstance(scene, Scene):
         return 0.0
     boxes = max(scene.side / (4 * scene.radius + 1), scene.particles**0.5) ** 2

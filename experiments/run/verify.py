@@ -1,18 +1,20 @@
 """The steps of a variant checked, each of them, before anything of it is timed."""
 
+import json
 from dataclasses import replace
 
+from experiments.plan.command import placed
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
-from experiments.plan.program import CHECK_FAILED, check_command
-from experiments.plan.scenes import HardCase, SceneFile
+from experiments.plan.program import CHECK_FAILED, Program, check_command, check_trajectory_command
+from experiments.plan.scenes import Scene, SceneFile
 from experiments.results.store import Store
 from experiments.run.host_lock import run_alone
 from experiments.support.digest import digest
 from experiments.support.process import TIMED_OUT, Completed
 
-CHECKED_STEPS = 20
-"""How many steps of a generated scene are checked, each of them; of a hard case all are."""
+CRASHED = 1
+"""Of a program whose own exit code would be taken for a failed check."""
 
 
 def representative(experiment: Experiment, point: Point) -> Point:
@@ -21,20 +23,25 @@ def representative(experiment: Experiment, point: Point) -> Point:
     Checking a step costs as much as several, so neither every scene of a sweep nor every step is checked; the
     program checks the last step of each timed run besides.
     """
-    same = (point.program, point.variant, point.scene_name)
-    first = next(
-        other for other in experiment.points if (other.program, other.variant, other.scene_name) == same
-    )
-    if isinstance(first.scene, HardCase):
-        return first
-    return replace(first, scene=replace(first.scene, steps=min(first.scene.steps, CHECKED_STEPS)))
+    first = next(other for other in experiment.points if _checked_alike(other) == _checked_alike(point))
+    return replace(first, scene=first.scene.beginning) if isinstance(first.scene, Scene) else first
+
+
+def _checked_alike(point: Point) -> tuple[object, ...]:
+    """One check is enough for all of which this is the same; of other programs the series, since their words
+    may make them different things.
+    """
+    own = point.series if point.command is not None else None
+    return point.program, point.variant, own, point.scene_name
 
 
 class Verifier:
     """Runs `carom check`, once for each program, variant, tolerance and scene; verdicts are kept."""
 
-    def __init__(self, store: Store, time_limit: float) -> None:
+    def __init__(self, store: Store, checker: Program, time_limit: float) -> None:
+        """The checker is the program that looks at what other programs write."""
         self._store = store
+        self._checker = checker
         self._time_limit = time_limit
 
     def check(self, point: Point, scene: SceneFile) -> Completed:
@@ -42,13 +49,35 @@ class Verifier:
         kept = _verdict(self._store.note(note_of(point, scene)))
         if kept is not None:
             return kept
-        command = check_command(point.program, scene.path, point.variant, point.threads, point.tolerance)
-        done = run_alone(command, point.openmp, self._time_limit)
+        done = self._run(point, scene) if point.command is None else self._check_trajectory(point, scene)
         reason = "" if done.exit_code == 0 else f"check of each step: {done.reason}"
         if done.exit_code in (0, CHECK_FAILED):
-            verdict = {"command": list(command), "exit_code": done.exit_code, "reason": reason}
+            verdict = {"command": list(done.command), "exit_code": done.exit_code, "reason": reason}
             self._store.keep_note(note_of(point, scene), verdict)
-        return Completed(command, done.exit_code, "", reason if done.exit_code != TIMED_OUT else done.error)
+        said = reason if done.exit_code != TIMED_OUT else done.error
+        return Completed(done.command, done.exit_code, "", said)
+
+    def _run(self, point: Point, scene: SceneFile) -> Completed:
+        command = check_command(point.program, scene.path, str(point.variant), point.threads, point.tolerance)
+        return run_alone(command, point.openmp, self._time_limit)
+
+    def _check_trajectory(self, point: Point, scene: SceneFile) -> Completed:
+        """Of another program: what it writes, once and untimed."""
+        assert point.command is not None
+        output = self._store.temporary / "trajectory"
+        output.unlink(missing_ok=True)
+        words = placed(point.command.trajectory, scene.path.absolute(), output.absolute())
+        done = run_alone(words, point.openmp, self._time_limit, point.command.folder)
+        if done.exit_code != 0:
+            return (
+                Completed(done.command, CRASHED, "", done.reason) if done.exit_code == CHECK_FAILED else done
+            )
+        if not output.exists():
+            return Completed(done.command, CRASHED, "", f"left no trajectory in {output}")
+        command = check_trajectory_command(self._checker, scene.path, output, point.tolerance)
+        checked = run_alone(command, (), self._time_limit)
+        output.unlink()
+        return checked
 
 
 def _verdict(kept: object) -> Completed | None:
@@ -62,4 +91,6 @@ def _verdict(kept: object) -> Completed | None:
 def note_of(point: Point, scene: SceneFile) -> str:
     """The name under which the verdict on a variant, a tolerance and a scene is kept."""
     content = f"{point.program.sha256} {point.variant} {point.tolerance} {scene.sha256}"
+    if point.command is not None:
+        content += json.dumps([point.command.trajectory, point.command.instrument])
     return f"checks/{digest(content)}.json"

@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from types import TracebackType
 from typing import IO
 
@@ -40,14 +41,18 @@ class Completed:
 
 
 def run(
-    command: Sequence[str], environment: Mapping[str, str] | None = None, time_limit: float | None = None
+    command: Sequence[str],
+    environment: Mapping[str, str] | None = None,
+    time_limit: float | None = None,
+    folder: Path | None = None,
 ) -> Completed:
-    """Run a command to its end, without a shell. Whatever ends this call early kills the child first.
+    """Run a command to its end, in a folder or where this process is, without a shell. Whatever ends this
+    call early kills the child first.
 
     `communicate` waits in the kernel, so that nothing here takes the CPU from the process that is timed.
     """
     try:
-        child = _start(command, environment, subprocess.DEVNULL, subprocess.PIPE)
+        child = _start(command, environment, subprocess.DEVNULL, subprocess.PIPE, folder)
     except OSError as error:
         return Completed(tuple(command), NOT_FOUND, "", f"{command[0]}: cannot be run: {error.strerror}")
     with child:
@@ -114,10 +119,15 @@ class Coprocess:
 
 
 def _start(
-    command: Sequence[str], environment: Mapping[str, str] | None, stdin: int, stderr: int | IO[str]
+    command: Sequence[str],
+    environment: Mapping[str, str] | None,
+    stdin: int,
+    stderr: int | IO[str],
+    folder: Path | None = None,
 ) -> subprocess.Popen[str]:
     return subprocess.Popen(
         command,
+        cwd=folder,
         env=environment,
         stdin=stdin,
         stdout=subprocess.PIPE,

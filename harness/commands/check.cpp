@@ -9,11 +9,39 @@
 #include "harness/measure/measure.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/verify/trajectory.hpp"
 
 namespace carom {
 namespace {
 
-void check(const SimulationOptions& options) {
+struct CheckOptions {
+    SimulationOptions simulation;
+    std::string trajectory; ///< empty: of a run of the variant
+};
+
+/// Checks what somebody's program wrote, by the rules of the variant's precision and impact.
+void check_file(const CheckOptions& options) {
+    const SimulationOptions& simulation = options.simulation;
+    if (simulation.tuning.substeps != 1) {
+        throw InputError(
+            "--substeps: found beside --trajectory, whose states are whole steps apart; expected either");
+    }
+    const Scene scene = read_scene(simulation.scene, simulation.tuning.threads);
+    const Policies policies = require_variant(simulation.variant, scene).policies;
+    const Rounding rounding = rounding_of(policies);
+    const Checker checker(scene.side, scene.radius, 1, simulation.tuning.tolerance, rounding,
+                          policies.impact);
+    TrajectoryFile file(options.trajectory, scene.discs.size());
+    const CheckedTrajectory checked = check_trajectory(scene, file, checker, rounding);
+    if (checked.violation) {
+        throw CheckError(options.trajectory + ", " + *checked.violation);
+    }
+    std::printf("passed: %s, %d steps of %zu discs, energy drift %.2e, final state %s\n",
+                options.trajectory.c_str(), scene.steps, scene.discs.size(),
+                energy_drift(scene, checked.discs).value_or(0), state_hash(checked.discs).c_str());
+}
+
+void check_variant(const SimulationOptions& options) {
     require_threads(options.tuning.threads);
     const Scene scene = read_scene(options.scene, options.tuning.threads);
     const Variant& variant = require_variant(options.variant, scene);
@@ -30,11 +58,21 @@ void check(const SimulationOptions& options) {
 } // namespace
 
 void add_check_command(CLI::App& program) {
-    auto options = std::make_shared<SimulationOptions>();
+    auto options = std::make_shared<CheckOptions>();
     CLI::App* command = program.add_subcommand(
         "check", "Run and verify every step with an independent checker; exit 2 at the first violation");
-    add_simulation_options(*command, *options);
-    command->callback([options] { check(*options); });
+    add_simulation_options(*command, options->simulation);
+    command->add_option(
+        "--trajectory", options->trajectory,
+        "Check the steps in this file instead, lines `step i x y vx vy` that any program may have "
+        "written (gzip too); --variant says in which precision and with which impact");
+    command->callback([options] {
+        if (options->trajectory.empty()) {
+            check_variant(options->simulation);
+        } else {
+            check_file(*options);
+        }
+    });
 }
 
 } // namespace carom

@@ -11,6 +11,7 @@ void add_run_command(CLI::App& program);
 void add_check_command(CLI::App& program);
 void add_bench_command(CLI::App& program);
 void add_turns_command(CLI::App& program);
+void add_processes_command(CLI::App& program);
 void add_profile_command(CLI::App& program);
 void add_generate_command(CLI::App& program);
 void add_reference_command(CLI::App& program);

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from experiments.plan.command import Command
 from experiments.plan.plan import Surroundings, plan
 from experiments.plan.point import Point
 from experiments.plan.program import Program, check_command, find_programs
@@ -41,6 +42,17 @@ CONTENT: dict[str, st.SearchStrategy[Any]] = {
     )
     | st.builds(HardCase, st.sampled_from(["cradle", "corner"])),
     "variant": st.sampled_from(["published", "nine"]),
+    "command": st.none()
+    | st.builds(
+        Command,
+        words=st.sampled_from([("sort",), ("sort", "-r")]),
+        folder=st.just(Path("/")),
+        instrument=st.sampled_from(["0" * 64, "1" * 64]),
+        trajectory=st.sampled_from([(), ("write", "{out}")]),
+        pattern=st.sampled_from([None, "(.*)"]),
+        unit_seconds=st.sampled_from([1.0, 1e-3]),
+        benchmark=st.sampled_from([None, "BM_x"]),
+    ),
     "find_chunk": st.sampled_from([None, 1, 2]),
     "resolve_chunk": st.sampled_from([None, 1, 2]),
     "threads": st.integers(1, 4),
@@ -144,7 +156,7 @@ def test_a_variant_is_checked_with_the_tolerance_that_it_is_timed_with(workplace
         load_question(workplace.root / "questions" / "pair.toml"), surroundings(workplace)
     ).points
     assert point.tolerance == "published"
-    command = check_command(point.program, Path("s.in"), point.variant, point.threads, point.tolerance)
+    command = check_command(point.program, Path("s.in"), str(point.variant), point.threads, point.tolerance)
     assert command[-2:] == ("--tolerance", "published")
     scene = SceneFile(Path("s.in"), "0" * 64)
     assert note_of(point, scene) != note_of(replace(point, tolerance="relative"), scene)

@@ -1,0 +1,42 @@
+"""A comparison of programs as a league table: who is faster than whom, who was not checked, who failed."""
+
+from analysis.figures.style import Cell, Table
+from analysis.records.studies import Study
+from analysis.statistics.moderation import Prior
+from analysis.statistics.ranking import ranking
+from analysis.support.wording import number
+
+COLUMNS = ("place", "program", "time, s", "bracket", "results")
+UNCHECKED = "not checked"
+
+
+def league(study: Study, experiment: str, noise: Prior) -> Table | None:
+    """Return the table of an experiment of whole processes at one place of its sweep, None for any other."""
+    times, failures = (table[table["experiment"] == experiment] for table in (study.times, study.failures))
+    if times.empty or (times["kind"] != "process").any() or times["x"].nunique() > 1:
+        return None
+    verdicts = study.runs_of(experiment).groupby("series")["check_verdict"].first()
+    rows = [
+        (
+            Cell(_place(*row.place)),
+            Cell(row.series),
+            Cell(number(row.seconds)),
+            Cell(row.bracket),
+            Cell("", "") if verdicts[row.series] == "passed" else Cell(UNCHECKED, "open"),
+        )
+        for row in ranking(times, noise).itertuples()
+    ]
+    failed = failures[~failures["series"].isin(verdicts.index)].groupby("series")["reason"].first()
+    rows += [
+        (Cell("–"), Cell(str(series)), Cell("–"), Cell(""), Cell(f"failed: {reason}", "fails"))
+        for series, reason in failed.items()
+    ]
+    title = (
+        "In the order of their times. Programs with a letter in common cannot be told apart, or differ by "
+        "less than the margin; those without differ by more (all pairs, Holm-corrected)"
+    )
+    return Table(title, COLUMNS, rows)
+
+
+def _place(first: int, last: int) -> str:
+    return str(first) if first == last else f"{first} to {last}"

@@ -1,0 +1,77 @@
+"""Alternatives in the order of their times, those that cannot be told apart bracketed together."""
+
+from collections.abc import Collection, Sequence
+from itertools import combinations
+from string import ascii_lowercase
+
+import pandas as pd
+
+from analysis.statistics.moderation import NOTHING_KNOWN, Prior
+from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.verdicts import judge
+
+APART = ("faster", "slower")
+
+
+def ranking(times: pd.DataFrame, noise: Prior = NOTHING_KNOWN) -> pd.DataFrame:
+    """Return a row a series, the fastest first: `series`, `seconds` (median over processes), `bracket`, and
+    `place`, the least and the greatest that it may have.
+
+    All pairs are compared within blocks and corrected for their number (see `verdicts.judge`). Two series
+    without a letter of `bracket` in common differ by more than the margin; what has one in common cannot be
+    told apart, or differs by less (all pairs displayed as lines: Piepho, J. Comput. Graph. Stat. 13, 2004).
+    """
+    processes = process_medians(times)
+    seconds = processes.groupby("series")["steps_seconds"].median().sort_values(kind="stable")
+    names = [str(name) for name in seconds.index]
+    apart = _apart(processes, names, noise)
+    letters = brackets(names, apart)
+    rows = []
+    for name in names:
+        better = sum((other, name) in apart for other in names)
+        worse = sum((name, other) in apart for other in names)
+        place = (1 + better, len(names) - worse)
+        rows.append({"series": name, "seconds": seconds[name], "bracket": letters[name], "place": place})
+    return pd.DataFrame(rows, columns=["series", "seconds", "bracket", "place"])
+
+
+def _apart(processes: pd.DataFrame, names: Sequence[str], noise: Prior) -> set[tuple[str, str]]:
+    """Return the pairs of which the first is faster than the second beyond doubt."""
+    parts = {name: processes[processes["series"] == name] for name in names}
+    pairs = [
+        log_ratios(parts[one], parts[two], match=("x",)).assign(one=one, two=two)
+        for one, two in combinations(names, 2)
+    ]
+    if not pairs:
+        return set()
+    verdicts = judge(pd.concat(pairs), ["one", "two"], prior=noise)
+    decided = verdicts[verdicts["verdict"].isin(APART)]
+    return {
+        (row.one, row.two) if row.verdict == "slower" else (row.two, row.one) for row in decided.itertuples()
+    }
+
+
+def brackets(names: Sequence[str], apart: Collection[tuple[str, str]]) -> dict[str, str]:
+    """Return letters for each of the names, which are in order: a letter for each longest stretch in which no
+    two are apart.
+    """
+    different = {frozenset(pair) for pair in apart}
+    stretches: list[tuple[int, int]] = []
+    for first in range(len(names)):
+        last = first
+        while last + 1 < len(names) and not any(
+            frozenset((names[last + 1], names[one])) in different for one in range(first, last + 1)
+        ):
+            last += 1
+        if not stretches or last > stretches[-1][1]:
+            stretches.append((first, last))
+    return {
+        name: "".join(_letter(k) for k, (first, last) in enumerate(stretches) if first <= number <= last)
+        for number, name in enumerate(names)
+    }
+
+
+def _letter(number: int) -> str:
+    """Return a, b ... z, then a1, b1 ..."""
+    rounds, letter = divmod(number, len(ascii_lowercase))
+    return f"{ascii_lowercase[letter]}{rounds or ''}"

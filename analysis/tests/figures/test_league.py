@@ -1,0 +1,104 @@
+"""A comparison of programs: whole processes, a table in order, who failed, who was not checked."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analysis.figures import draw
+from analysis.figures.style import Data
+from analysis.records import published
+from analysis.records.reading import load
+from analysis.records.studies import split
+from analysis.report import write
+from analysis.tests.synthetic import Machine
+
+BLOCKS = 6
+MEANS = {"anna": 1.0, "bob": 1.001, "carl": 1.4}
+
+
+def tags(series: str, block: int) -> dict[str, Any]:
+    return {
+        "experiment": "hand_ins", "series": series, "series_number": 1, "x_name": "repetition", "x": 0,
+        "block": block, "session": "s", "scale": "paper", "site": "local", "figure": "comparison",
+        "title": "Who is fastest",
+    }  # fmt: skip
+
+
+def record(series: str, block: int, seconds: float) -> dict[str, Any]:
+    return {
+        "schema_version": 1,
+        "kind": "process",
+        "recorded_at": f"2024-01-01T00:00:{block:02d}Z",
+        "tags": tags(series, block),
+        "axes": {"threads": 2},
+        "scene": None,
+        "warm_ups": 0,
+        "repetitions": [{"steps_seconds": seconds, "cpu_seconds": seconds}],
+        "process_seconds": seconds,
+        "process": {
+            "command": ["./a b", series],
+            "folder": "/",
+            "sources": [],
+            "exit_code": 0,
+            "wall_seconds": seconds,
+            "user_seconds": seconds,
+            "system_seconds": 0,
+            "peak_memory_bytes": 1 << 20,
+            "time_from": "the program" if series == "carl" else "outside",
+            "counters": {},
+        },
+        "turns": None,
+        "check": {
+            "verdict": "passed" if series == "anna" else "unchecked",
+            "scope": "trajectory" if series == "anna" else "nothing",
+            "reason": None,
+        },
+        "provenance": Machine().provenance("GNU 12", 2),
+    }
+
+
+@pytest.fixture
+def results(tmp_path: Path) -> Path:
+    generator = np.random.default_rng(7)
+    folder = tmp_path / "records" / "hand_ins"
+    folder.mkdir(parents=True)
+    for block in range(BLOCKS):
+        for series, mean in MEANS.items():
+            one = record(series, block, mean * float(np.exp(0.003 * generator.standard_normal())))
+            (folder / f"{series}-b{block}.json").write_text(json.dumps(one))
+    failure = {
+        "schema_version": 1, "kind": "failure", "tags": tags("dora", 0), "command": ["./dora"],
+        "exit_code": 9, "reason": "exit code 9: no room", "recorded_at": "2024-01-01T00:00:00Z",
+    }  # fmt: skip
+    (tmp_path / "failures" / "hand_ins").mkdir(parents=True)
+    (tmp_path / "failures" / "hand_ins" / "dora-b0.json").write_text(json.dumps(failure))
+    (tmp_path / "claims.toml").write_text("")
+    return tmp_path
+
+
+def test_the_table_is_in_order_with_brackets_checks_and_failures(results: Path) -> None:
+    records = load(results)
+    studies = split(records)
+    data = Data(studies[0], studies, published.load(), results)
+    [drawn] = draw(data, results / "figures", formats=("svg",))
+    [table] = drawn.tables
+    assert [[cell.text for cell in row] for row in table.rows] == [
+        ["1 to 2", "anna", "1.00", "a", ""],
+        ["1 to 2", "bob", "1.00", "a", "not checked"],
+        ["3", "carl", "1.40", "b", "not checked"],
+        ["–", "dora", "–", "", "failed: exit code 9: no room"],
+    ]
+    assert (
+        "Times are of whole processes, from outside; those of carl are what the program says" in drawn.caption
+    )
+
+
+def test_the_report_names_commands_and_claims_nothing(results: Path) -> None:
+    [html, *_] = write(results)
+    text = html.read_text(encoding="utf-8")
+    assert "&#39;./a b&#39; anna" in text or "'./a b' anna" in text
+    assert "of programs whose results are not checked" in text
+    assert "Four boxes" not in text

@@ -1,0 +1,207 @@
+"""Somebody else's programs as series: what a file may say of them, and what each mistake is answered with."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from experiments.plan.point import Point
+from experiments.plan.question import load_question
+from experiments.plan.scenes import CHECKED_STEPS
+from experiments.run.study import Study
+from experiments.support.errors import InputError
+from experiments.tests.conftest import SCENE, Workplace
+
+BLOCKS = "[blocks]\nminimum = 2\nwanted = 2\n"
+HEAD = 'title = "Programs"\nfigure = "comparison"\n'
+SORT = '[[series]]\nname = "sort"\ncommand = ["sort", "--parallel={threads}", "--output=/dev/null"]\n'
+
+
+def program(folder: Path, name: str, first: str = "#!/bin/sh", mode: int = 0o755) -> Path:
+    path = folder / "questions" / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(f"{first}\nexit 0\n", encoding="utf-8")
+    path.chmod(mode)
+    return path
+
+
+def points(place: Workplace, text: str) -> list[Point]:
+    place.question("asked", text)
+    [experiment] = Study(place.settings).experiments
+    return list(experiment.points)
+
+
+def refusal(place: Workplace, text: str) -> str:
+    with pytest.raises(InputError) as refused:
+        points(place, text)
+    assert "\n" not in str(refused.value)
+    return str(refused.value)
+
+
+def words(point: Point) -> tuple[str, ...]:
+    assert point.command is not None
+    return point.command.words
+
+
+def test_a_question_needs_no_scene_and_fills_in_what_it_sweeps(empty_workplace: Workplace) -> None:
+    text = f'{HEAD}threads = 1\n[sweep]\nparameter = "lines"\nvalues = [10, 2.5]\n'
+    series = '[[series]]\nname = "a"\ncommand = ["sort", "{lines}", "{x} {{}}", "{threads}"]\n'
+    found = points(empty_workplace, f"{text}{series}{BLOCKS}")
+    assert [words(point)[1:] for point in found] == [("10", "10 {}", "1"), ("2.5", "2.5 {}", "1")]
+    assert {point.verb for point in found} == {"process"}
+    assert all(Path(words(point)[0]).name == "sort" for point in found)
+
+
+def test_of_a_scene_everything_can_be_said(empty_workplace: Workplace) -> None:
+    program(empty_workplace.root, "mine")
+    command = 'command = ["./mine", "{scene}", "{particles}", "{side}", "{radius}", "{steps}", "{seed}"]'
+    text = f'{HEAD}{SCENE}[[series]]\nname = "mine"\n{command}\n{BLOCKS}'
+    [point] = points(empty_workplace, text)
+    assert words(point)[1:] == ("{scene}", "100", "1000", "5", "10", "1")
+    assert point.process_words(Path("/a b/{x}.in"), Path("out"))[1] == "/a b/{x}.in"
+
+
+def test_what_is_checked_is_the_beginning_of_the_scene(empty_workplace: Workplace) -> None:
+    program(empty_workplace.root, "mine")
+    lines = 'command = ["./mine", "{steps}"]\ntrajectory = ["./mine", "{scene}", "{steps}", "{out}"]'
+    long = SCENE.replace("steps = 10", "steps = 1000")
+    [point] = points(empty_workplace, f'{HEAD}{long}[[series]]\nname = "mine"\n{lines}\n{BLOCKS}')
+    assert words(point)[1:] == ("1000",)
+    assert point.command is not None
+    assert point.command.trajectory[1:] == ("{scene}", str(CHECKED_STEPS), "{out}")
+    assert point.is_checked
+
+
+def test_a_variant_may_stand_beside_a_program(empty_workplace: Workplace) -> None:
+    variant = '[[series]]\nname = "published"\nvariant = "published"\n'
+    mine, published = points(empty_workplace, f"{HEAD}{SCENE}{SORT}{variant}{BLOCKS}")
+    assert published.verb == mine.verb == "process"
+    assert published.process_words(Path("s.in"), Path("out"))[1:3] == ("run", "s.in")
+    assert mine.variant is None
+    assert published.command is None
+
+
+@pytest.mark.parametrize("changed", ["the program", "its interpreter", "a file among its words"])
+def test_a_changed_program_is_another_point(
+    empty_workplace: Workplace, monkeypatch: pytest.MonkeyPatch, changed: str
+) -> None:
+    folder = empty_workplace.root
+    own = program(folder, "own-interpreter", f"#!{sys.executable}")
+    files = {
+        "the program": program(folder, "mine", f"#!/usr/bin/env -S {own.name} -x"),
+        "its interpreter": own,
+        "a file among its words": program(folder, "input.txt"),
+    }
+    monkeypatch.setenv("PATH", f"{own.parent}:/usr/bin:/bin")
+    text = f'{HEAD}[[series]]\nname = "mine"\ncommand = ["./mine", "input.txt", "other"]\n{BLOCKS}'
+    [before] = points(empty_workplace, text)
+    assert {path.name for path in before.program.files} == {"mine", "own-interpreter", "input.txt"}
+    assert before.program.is_unchanged
+    with files[changed].open("a", encoding="utf-8") as file:
+        file.write("# changed\n")
+    [after] = points(empty_workplace, text)
+    assert after.id != before.id
+    assert not before.program.is_unchanged
+
+
+def test_a_pattern_makes_a_series_of_each_file(empty_workplace: Workplace) -> None:
+    for name in ("subs/anna/sim", "subs/b {ob}/sim", "subs/notes.txt"):
+        program(empty_workplace.root, name)
+    lines = 'commands = "subs/*/sim"\ncommand = ["{program}", "{x}"]\ntrajectory = ["{folder}/sim", "{out}"]'
+    found = points(empty_workplace, f"{HEAD}{SCENE}[[series]]\n{lines}\n{BLOCKS}")
+    assert [point.series for point in found] == ["anna", "b {ob}"]
+    folder = empty_workplace.root / "questions" / "subs"
+    assert [words(point) for point in found] == [
+        (str(folder / "anna" / "sim"), "0"),
+        (str(folder / "b {ob}" / "sim"), "0"),
+    ]
+
+
+def test_a_benchmark_is_run_for_its_one_case(empty_workplace: Workplace) -> None:
+    program(empty_workplace.root, "bench")
+    table = 'benchmark = {program = "./bench", name = "BM_sort<int>/{x}"}'
+    text = f'{HEAD}[sweep]\nparameter = "size"\nvalues = [8]\n[[series]]\nname = "sort"\n{table}\n{BLOCKS}'
+    [point] = points(empty_workplace, text)
+    assert point.process_words(None, Path("report"))[1:] == (
+        "--benchmark_filter=^BM_sort<int>/8(/|$)",
+        "--benchmark_out=report",
+        "--benchmark_out_format=json",
+    )
+    assert point.command is not None
+    assert point.command.benchmark == "BM_sort<int>/8"
+    assert point.command.times_itself
+
+
+def test_a_filter_makes_a_series_of_each_case(empty_workplace: Workplace) -> None:
+    path = program(empty_workplace.root, "bench")
+    path.write_text('#!/bin/sh\necho "BM_a/8"; echo "BM_b"\n', encoding="utf-8")
+    table = 'benchmark = {program = "./bench", filter = "BM_.*"}'
+    found = points(empty_workplace, f"{HEAD}[[series]]\n{table}\n{BLOCKS}")
+    assert [point.series for point in found] == ["BM_a/8", "BM_b"]
+    path.write_text("#!/bin/sh\nexit 0\n", encoding="utf-8")
+    assert "benchmark.filter: found" in refusal(empty_workplace, f"{HEAD}[[series]]\n{table}\n{BLOCKS}")
+
+
+WRONG = {
+    'name = "a"\ncommand = ["./none"]': 'series[1].command: found "./none", which is not there',
+    'name = "a"\ncommand = ["no-such-program-anywhere"]': "expected a program on PATH",
+    'name = "a"\ncommand = ["./plain"]': 'found "./plain", which is not executable; `chmod +x`',
+    'name = "a"\ncommand = ["./folder/"]': 'found "./folder/", which is a folder',
+    'name = "a"\ncommand = ["sort", "{thread}"]': 'found "{thread}", expected one of {threads}',
+    'name = "a"\ncommand = ["sort", "{scene}"]': 'found "{scene}", expected one of {threads}',
+    'name = "a"\ncommand = ["sort", "{x:3}"]': 'series[1].command: found "{x}", expected one of',
+    'name = "a"\ncommand = ["sort", "{"]': "{{ stands for a brace",
+    'name = "a"\ncommand = []': "series[1].command: found [], expected a list of words",
+    'name = "a"\ncommand = ["sort"]\ntrajectory = ["sort", "{out}"]': "trajectory: found without a scene",
+    'name = "a"\ncommand = ["sort"]\nvariant = "nine"': "found variant and command, expected one of",
+    'name = "a"': "series[1]: found none of them, expected one of variant, command, benchmark",
+    'name = "a"\nvariant = "nine"\ntime = {stdout = "(a)"}': "time: found for a variant, expected for",
+    'name = "a"\ncommand = ["sort"]\nfind_chunk = 3': "find_chunk: found for a command, expected for",
+    'name = "a"\ncommand = ["sort"]\ntime = {stdout = "a"}': 'time.stdout: found "a" with 0 groups',
+    'name = "a"\ncommand = ["sort"]\ntime = {stdout = "("}': "expected a regular expression",
+    'name = "a"\ncommand = ["sort"]\ntime = {stdout = "(a)", unit = "h"}': "expected one of ns, us, ms, s",
+    'command = ["sort"]': "series[1].name: missing",
+    'commands = "none/*"\ncommand = ["{program}"]': 'commands: found "none/*", which no file matches',
+    'name = "a"\nbenchmark = {program = "sort"}': "benchmark: expected either name or filter",
+}
+
+
+@pytest.mark.parametrize(("lines", "expected"), WRONG.items())
+def test_a_mistake_is_told_with_file_key_and_what_was_expected(
+    empty_workplace: Workplace, lines: str, expected: str
+) -> None:
+    program(empty_workplace.root, "plain", mode=0o644)
+    (empty_workplace.root / "questions" / "folder").mkdir()
+    said = refusal(empty_workplace, f"{HEAD}[[series]]\n{lines}\n{BLOCKS}")
+    assert said.startswith(f"{empty_workplace.root / 'questions' / 'asked.toml'}: ")
+    assert expected in said
+
+
+def test_what_only_variants_can_do_is_refused(empty_workplace: Workplace) -> None:
+    assert 'verb: found bench beside programs of others, expected "process"' in refusal(
+        empty_workplace, f'{HEAD}verb = "bench"\n{SORT}{BLOCKS}'
+    )
+    assert "repetitions: found for whole processes" in refusal(
+        empty_workplace, f"{HEAD}repetitions = 2\n{SORT}{BLOCKS}"
+    )
+    variant = '[[series]]\nname = "b"\nvariant = "nine"\n'
+    swept = '[sweep]\nparameter = "lines"\nvalues = [1]\n'
+    assert 'sweep.parameter: found "lines", expected one of threads' in refusal(
+        empty_workplace, f"{HEAD}{SCENE}{swept}{SORT}{variant}{BLOCKS}"
+    )
+    assert "scene: missing" in refusal(empty_workplace, f"{HEAD}{SORT}{variant}{BLOCKS}")
+    swept = '[sweep]\nparameter = "particles"\nvalues = [1]\nquick_values = [2]\n'
+    assert "sweep.parameter: found particles without a scene" in refusal(
+        empty_workplace, f"{HEAD}{swept}{SORT}{BLOCKS}"
+    )
+
+
+def test_claims_of_a_folder_may_be_named(empty_workplace: Workplace) -> None:
+    text = f'claim = "mine_is_faster"\n{HEAD}{SORT}{BLOCKS}'
+    assert 'claim: found "mine_is_faster", expected one of' in refusal(empty_workplace, text)
+    claims = empty_workplace.root / "questions" / "claims.toml"
+    claims.write_text('[[claim]]\nid = "mine_is_faster"\n', encoding="utf-8")
+    assert load_question(empty_workplace.question("asked", text)).claim == "mine_is_faster"
+    assert [one.name for one in Study(empty_workplace.settings).experiments] == ["asked"]
+    claims.write_text("claim = 3\n", encoding="utf-8")
+    assert "is not a list of claims" in refusal(empty_workplace, text.replace("mine_is", "other_is"))

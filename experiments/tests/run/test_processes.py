@@ -1,0 +1,230 @@
+"""Anybody's programs beside a variant, under the real runner: measured, checked, failed, killed, resumed."""
+
+import json
+import os
+import signal
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from experiments.__main__ import main
+from experiments.run.session import run
+from experiments.run.study import POINTS_FAILED, Settings
+from experiments.support.schema import is_record
+from experiments.tests.conftest import ROOT, SCENE, Workplace, finish
+
+BUILD = ROOT / "build"
+
+pytestmark = pytest.mark.skipif(
+    not (BUILD / "gcc" / "carom").is_file(), reason="build/gcc/carom is not built (`make build` builds it)"
+)
+
+SIMULATION = """#!{python}
+\"\"\"Discs that meet nobody, as long as the scene lasts.\"\"\"
+import sys
+
+scene, output, share = sys.argv[1], sys.argv[2], float(sys.argv[3])
+lines = open(scene).read().splitlines()
+number, steps = int(lines[0]), int(lines[3])
+discs = [[float(word) for word in line.split()] for line in lines[4:]]
+with open(output, "w") as file:
+    for step in range(steps + 1):
+        for i, x, y, vx, vy in discs:
+            print(step, int(i), repr(x), repr(y), repr(vx), repr(vy), file=file)
+        discs = [[i, x + share * vx, y + share * vy, vx, vy] for i, x, y, vx, vy in discs]
+"""
+
+ALONE = SCENE.replace("particles = 100", "particles = 1").replace("steps = 10", "steps = 3")
+
+PROGRAMS = f"""
+title = "Programs of others"
+figure = "comparison"
+threads = 1
+{ALONE}
+[[series]]
+name = "right"
+command = ["./mine", "{{scene}}", "/dev/null", "1"]
+trajectory = ["./mine", "{{scene}}", "{{out}}", "1"]
+
+[[series]]
+name = "wrong"
+command = ["./mine", "{{scene}}", "/dev/null", "0.999"]
+trajectory = ["./mine", "{{scene}}", "{{out}}", "0.999"]
+
+[[series]]
+name = "crashes"
+command = ["./crash it's \\"here\\"", "{{scene}}"]
+
+[[series]]
+name = "says"
+command = ["echo", "it took 20 ms"]
+time = {{stdout = 'took (\\d+) ms', unit = "ms"}}
+
+[[series]]
+name = "benchmark"
+benchmark = {{program = "./bench", name = "BM_x"}}
+
+[[series]]
+name = "variant"
+variant = "published"
+
+[blocks]
+minimum = 2
+wanted = 2
+"""
+
+BENCHMARK = """#!/bin/sh
+for word in "$@"; do
+    case $word in --benchmark_out=*)
+        echo '{"benchmarks": [{"name": "BM_x", "real_time": 3, "time_unit": "ms", "rate": 7}]}' \\
+            > "${word#*=}";;
+    esac
+done
+"""
+
+
+def write_program(place: Workplace, name: str, text: str) -> Path:
+    path = place.root / "questions" / name
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    path.chmod(0o755)
+    return path
+
+
+@pytest.fixture
+def programs(empty_workplace: Workplace) -> Workplace:
+    write_program(empty_workplace, "mine", SIMULATION.replace("{python}", sys.executable))
+    write_program(empty_workplace, 'crash it\'s "here"', "#!/bin/sh\necho no room for >&2; exit 9\n")
+    write_program(empty_workplace, "bench", BENCHMARK)
+    empty_workplace.question("others", PROGRAMS)
+    return empty_workplace
+
+
+def settings(place: Workplace) -> Settings:
+    return replace(place.settings, build=BUILD)
+
+
+def test_every_kind_is_measured_or_fails_with_its_reason(programs: Workplace) -> None:
+    assert run(settings(programs)) == POINTS_FAILED
+    records = list(programs.records("others").values())
+    assert all(is_record(record) and record["kind"] == "process" for record in records)
+    by_series = {record["tags"]["series"]: record for record in records if record["tags"]["block"] == 1}
+    assert set(by_series) == {"right", "says", "benchmark", "variant"}
+    assert len(records) == 8
+    checks = {name: record["check"]["verdict"] for name, record in by_series.items()}
+    assert checks == {"right": "passed", "variant": "passed", "says": "unchecked", "benchmark": "unchecked"}
+    seconds = {name: record["repetitions"][0]["steps_seconds"] for name, record in by_series.items()}
+    assert seconds["says"] == pytest.approx(0.02)
+    assert seconds["benchmark"] == pytest.approx(0.003)
+    assert by_series["benchmark"]["process"]["counters"] == {"rate": 7}
+    assert seconds["right"] == by_series["right"]["process"]["wall_seconds"]
+    assert by_series["right"]["turns"]["contenders"] == 2, "with the variant; the others time themselves"
+    assert by_series["variant"]["process"]["command"][1] == "run"
+    assert by_series["right"]["scene"]["particles"] == 1
+    [wrong, crashed] = sorted(programs.failures(), key=lambda one: str(one["tags"]["series"]), reverse=True)
+    assert wrong["tags"]["series"] == "wrong"
+    assert "step 1: disc 0 moved from" in wrong["reason"]
+    assert wrong["exit_code"] == 2
+    assert crashed["reason"] == "exit code 9: no room for"
+    assert crashed["command"][0].endswith('crash it\'s "here"')
+
+
+def test_a_changed_program_is_measured_again_and_no_other(programs: Workplace) -> None:
+    run(settings(programs))
+    before = programs.records("others")
+    with (programs.root / "questions" / "mine").open("a") as file:
+        file.write("# another one\n")
+    run(settings(programs))
+    after = programs.records("others")
+    series = {record["tags"]["series"] for name, record in after.items() if name not in before}
+    assert series == {"right"}
+    assert len(after) == 8
+
+
+SLOW = """
+title = "Two that count"
+figure = "comparison"
+threads = 1
+
+[[series]]
+name = "one"
+command = ["./count", "40000"]
+
+[[series]]
+name = "two"
+command = ["./count", "50000"]
+
+[blocks]
+minimum = 4
+wanted = 4
+"""
+
+COUNT = "#!/bin/sh\ni=0\nwhile [ $i -lt $1 ]; do i=$((i+1)); done\n"
+
+
+def test_killed_and_resumed_it_measures_what_is_missing(empty_workplace: Workplace) -> None:
+    count = write_program(empty_workplace, "count", COUNT)
+    empty_workplace.question("counts", SLOW)
+    more = ("--build", str(BUILD), "--no-figures")
+    process = empty_workplace.start("run", *more)
+    until = time.monotonic() + 60
+    while not empty_workplace.records("counts"):
+        assert time.monotonic() < until
+        time.sleep(0.01)
+    process.send_signal(signal.SIGKILL)
+    finish(process)
+    while _running(count):
+        assert time.monotonic() < until, "a program outlived its runner"
+        time.sleep(0.01)
+    kept = {name: record["recorded_at"] for name, record in empty_workplace.records("counts").items()}
+    assert 0 < len(kept) < 8
+    code, _, _ = finish(empty_workplace.start("run", *more))
+    assert code == 0
+    records = empty_workplace.records("counts")
+    assert len(records) == 8
+    assert kept.items() <= {name: record["recorded_at"] for name, record in records.items()}.items()
+
+
+def _running(program: Path) -> bool:
+    """Whether any process that is no zombie runs the program."""
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            if os.fsencode(program) in (folder / "cmdline").read_bytes():
+                return True
+        except OSError:
+            continue
+    return False
+
+
+def test_turns_can_be_switched_off(empty_workplace: Workplace) -> None:
+    write_program(empty_workplace, "count", COUNT)
+    empty_workplace.question("counts", f"turns = false\n{SLOW}")
+    assert run(replace(settings(empty_workplace), blocks=1)) == 0
+    assert all(record["turns"] is None for record in empty_workplace.records("counts").values())
+
+
+def test_the_folder_of_the_questions_brings_its_claims_along(empty_workplace: Workplace) -> None:
+    write_program(empty_workplace, "count", COUNT)
+    empty_workplace.question("counts", SLOW)
+    run(replace(settings(empty_workplace), blocks=1))
+    kept = empty_workplace.results / "claims.toml"
+    assert kept.read_text() == "# Nothing is claimed.\n"
+    (empty_workplace.root / "questions" / "claims.toml").write_text('[[claim]]\nid = "a"\n')
+    run(replace(settings(empty_workplace), blocks=1))
+    assert kept.read_text() == '[[claim]]\nid = "a"\n'
+
+
+def test_a_new_question_runs_as_it_is(empty_workplace: Workplace) -> None:
+    empty_workplace.monkeypatch.chdir(empty_workplace.root)
+    assert main(["new", "sorting"]) == 0
+    assert main(["new", "sorting"]) == 1
+    assert main(["new", "3"]) == 1
+    assert run(replace(settings(empty_workplace), blocks=1)) == 0
+    assert {record["tags"]["series"] for record in empty_workplace.records("sorting").values()} == {
+        "one thread",
+        "two threads",
+    }
+    assert json.loads(next(empty_workplace.results.glob("records/sorting/*")).read_text())["scene"] is None

@@ -1,0 +1,137 @@
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/scenes/scene_file.hpp"
+#include "harness/tests/program.hpp"
+#include "harness/tests/temporary_directory.hpp"
+#include "kernels/tests/scenes.hpp"
+
+namespace carom {
+namespace {
+
+using Json = nlohmann::json;
+using tests::content_of;
+using tests::refused;
+using tests::run_carom;
+
+class ProcessesCommand : public testing::Test {
+  protected:
+    tests::ProgramResult processes(const Json& described, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> words{"processes", directory.write("processes.json", described.dump())};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_carom(words);
+    }
+
+    Json described(const std::string& script, const std::string& record) const {
+        return {
+            {"command", {"/bin/sh", "-c", script}}, {"record", directory / record}, {"sources", {"/bin/sh"}}};
+    }
+
+    Json record(const std::string& name) const { return Json::parse(content_of(directory / name)); }
+
+    tests::TemporaryDirectory directory;
+};
+
+TEST_F(ProcessesCommand, LeavesARecordOfEach) {
+    const std::string scene =
+        directory.write("scene.in", scene_text(tests::random_scene(50, 40, 1, 5, 1, 3)));
+    Json first =
+        described("i=0; while [ $i -lt 20000 ]; do i=$((i+1)); done; echo $OMP_NUM_THREADS > out", "one");
+    first.update({{"folder", directory / ""},
+                  {"environment", {{"OMP_NUM_THREADS", "3"}}},
+                  {"tags", {"a=1", "b=x"}},
+                  {"axes", {{"threads", 3}}},
+                  {"threads", 3},
+                  {"scene", scene},
+                  {"checked", "trajectory"}});
+    const auto result = processes({first, described("exit 0", "two")}, {"--slice", "0.002", "--seed", "9"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.output, "");
+    const Json one = record("one");
+    EXPECT_EQ(one["kind"], "process");
+    EXPECT_EQ(one["tags"], (Json{{"a", 1}, {"b", "x"}}));
+    EXPECT_EQ(one["axes"], (Json{{"threads", 3}}));
+    EXPECT_EQ(one["scene"]["particles"], 50);
+    EXPECT_EQ(one["check"]["verdict"], "passed");
+    EXPECT_EQ(one["check"]["scope"], "trajectory");
+    EXPECT_EQ(one["process"]["command"], first["command"]);
+    EXPECT_EQ(one["process"]["exit_code"], 0);
+    EXPECT_EQ(one["process"]["time_from"], "outside");
+    EXPECT_EQ(one["process"]["sources"][0]["path"], "/bin/sh");
+    EXPECT_EQ(one["process"]["sources"][0]["sha256"], one["provenance"]["binary_sha256"]);
+    EXPECT_EQ(one["provenance"]["openmp"]["environment"]["OMP_NUM_THREADS"], "3");
+    EXPECT_EQ(one["turns"]["contenders"], 2);
+    EXPECT_EQ(one["turns"]["seed"], 9);
+    EXPECT_GT(one["turns"]["seconds"].size(), 1);
+    EXPECT_EQ(one["repetitions"][0]["steps_seconds"], one["process_seconds"]);
+    EXPECT_EQ(content_of(directory / "out"), "3\n") << "it runs in its folder, with its environment";
+    const Json two = record("two");
+    EXPECT_TRUE(two["scene"].is_null());
+    EXPECT_EQ(two["check"]["verdict"], "unchecked");
+}
+
+TEST_F(ProcessesCommand, LeavesAFailureInThePlaceOfARecord) {
+    Json endless = described("sleep 60", "endless");
+    endless["most_seconds"] = 0.05;
+    Json missing = described("", "missing");
+    missing["command"] = {"/no/such/program"};
+    Json silent = described("echo nothing", "silent");
+    silent["pattern"] = "took ([0-9]+)";
+    const auto result = processes({described("echo first >&2; echo last >&2; exit 4", "exit"),
+                                   described("kill -ABRT $$", "signal"), endless, missing, silent,
+                                   described("exit 0", "right")});
+    EXPECT_TRUE(refused(result, 1, {"/bin/sh: exit code 4: last"}));
+    const auto failed = [this](const std::string& name) {
+        const Json failure = record(name);
+        EXPECT_EQ(failure["kind"], "failure");
+        return std::to_string(failure["exit_code"].get<int>()) + " " + failure["reason"].get<std::string>();
+    };
+    EXPECT_EQ(failed("exit"), "4 exit code 4: last");
+    EXPECT_EQ(failed("signal"), "-6 killed by SIGABRT");
+    EXPECT_EQ(failed("endless"), "124 took longer than 0.05 s and was stopped");
+    EXPECT_EQ(failed("missing"), "127 /no/such/program: cannot be run: No such file or directory");
+    EXPECT_EQ(failed("silent"), "1 time: 'took ([0-9]+)' matches 0 lines of standard output, expected one");
+    EXPECT_EQ(record("right")["kind"], "process");
+}
+
+TEST_F(ProcessesCommand, TakesTheTimeThatAProgramSays) {
+    Json printed = described("echo it took 250 ms", "printed");
+    printed.update({{"pattern", "took ([0-9]+) ms"}, {"unit_seconds", 1e-3}});
+    ASSERT_EQ(processes(Json::array({printed})).exit_code, 0);
+    EXPECT_DOUBLE_EQ(record("printed")["repetitions"][0]["steps_seconds"], 0.25);
+    EXPECT_EQ(record("printed")["process"]["time_from"], "the program");
+    EXPECT_TRUE(record("printed")["turns"].is_null());
+    const std::string json =
+        R"({"benchmarks": [{"name": "BM_x", "real_time": 3, "time_unit": "ms", "y": 7}]})";
+    Json benchmark = described("echo '" + json + "' > " + (directory / "report"), "benchmark");
+    benchmark.update({{"benchmark", "BM_x"}, {"output", directory / "report"}});
+    ASSERT_EQ(processes(Json::array({benchmark})).exit_code, 0);
+    EXPECT_DOUBLE_EQ(record("benchmark")["repetitions"][0]["steps_seconds"], 0.003);
+    EXPECT_EQ(record("benchmark")["process"]["counters"], (Json{{"y", 7.0}}));
+}
+
+TEST_F(ProcessesCommand, RunsUntimedBefore) {
+    Json counted = described("echo x >> " + (directory / "runs"), "counted");
+    counted["warm_ups"] = 2;
+    ASSERT_EQ(processes(Json::array({counted})).exit_code, 0);
+    EXPECT_EQ(content_of(directory / "runs"), "x\nx\nx\n");
+    EXPECT_EQ(record("counted")["warm_ups"], 2);
+}
+
+TEST_F(ProcessesCommand, RefusesWhatDescribesNoProcesses) {
+    for (const Json& wrong : {Json{}, Json::array(), Json{{"command", {"ls"}}}}) {
+        EXPECT_TRUE(refused(processes(wrong), 1, {"processes.json", "expected a JSON list"})) << wrong;
+    }
+    EXPECT_TRUE(refused(processes(Json::array({Json{{"command", {"ls"}}}})), 1, {"process 1", "record"}));
+    EXPECT_TRUE(refused(processes(Json::array({Json{{"command", Json::array()}, {"record", "r"}}})), 1,
+                        {"process 1", "command"}));
+    Json tagged = described("exit 0", "tagged");
+    tagged["tags"] = {"x"};
+    EXPECT_TRUE(refused(processes(Json::array({tagged})), 1, {"process 1", "--tag", "KEY=VALUE"}));
+}
+
+} // namespace
+} // namespace carom
