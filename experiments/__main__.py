@@ -19,7 +19,7 @@ from experiments.plan.site import load_site
 from experiments.results.collect import collect
 from experiments.run.session import run
 from experiments.run.status import show_plan, show_status
-from experiments.run.study import Settings
+from experiments.run.study import Settings, keep_claims
 from experiments.slurm.jobs import folders
 from experiments.slurm.status import show_cluster_status
 from experiments.slurm.submit import resume, submit
@@ -84,7 +84,9 @@ def _collect(options: argparse.Namespace) -> int:
     """From the folders named, or else from the partitions of the site."""
     settings = _settings(options)
     sources = options.folders or [folder.path for folder in folders(settings)]
-    return collect(sources, settings.results)
+    code = collect(sources, settings.results)
+    keep_claims(settings.questions, settings.results)
+    return code
 
 
 def _settings(options: argparse.Namespace) -> Settings:

@@ -65,6 +65,8 @@ def _processes(folder: Path, experiment: str | None) -> pd.DataFrame:
         scene_name=processes["scene_name"].fillna(""),
         find_chunk=processes["find_chunk"].fillna(0),
         resolve_chunk=processes["resolve_chunk"].fillna(0),
+        substeps=processes["substeps"].fillna(1),
+        tolerance=processes["tolerance"].fillna(""),
     )
 
 

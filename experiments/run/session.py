@@ -9,7 +9,7 @@ from experiments.plan.point import Point
 from experiments.run.progress import Report, warn
 from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.schedule import Schedule, split
-from experiments.run.study import POINTS_FAILED, Settings, Study, summary
+from experiments.run.study import POINTS_FAILED, Settings, Study, keep_claims, summary
 from experiments.run.together import together
 from experiments.run.verdicts import Verdicts, ask
 from experiments.support.process import NOT_FOUND, Coprocess
@@ -26,7 +26,7 @@ def run(settings: Settings) -> int:
     study = Study(settings)
     with study.store.opened(), Report() as report:
         report.now("planning")
-        study.keep_claims()
+        keep_claims(settings.questions, settings.results)
         runner = study.runner()
         schedule = study.schedule(runner, settle=True)
         report.line(summary(schedule, study.budget_seconds))

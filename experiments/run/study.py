@@ -81,14 +81,6 @@ class Study:
         """What draws the figures of the experiments that it is told, and says what is open."""
         return [sys.executable, "-m", "analysis", "follow", "--results", str(self.store.root)]
 
-    def keep_claims(self) -> None:
-        """Let the results say what is claimed of them, where the questions are not the published ones."""
-        folder = self.settings.questions
-        if folder.resolve() != question.FOLDER:
-            claims = folder / CLAIMS
-            told = claims.read_text(encoding="utf-8") if claims.exists() else "# Nothing is claimed.\n"
-            write_text(self.store.root / CLAIMS, told, self.store.temporary)
-
     def scenes(self) -> SceneFolder:
         """The generated scenes; the results folder must be held."""
         return SceneFolder(self.store.root / "scenes", self.store.temporary, str(self.generator.sha256))
@@ -133,6 +125,14 @@ class Study:
             content = {key: {"step": one.step, "process": one.process} for key, one in probes.items()}
             self.store.keep_note(COSTS, content)
         return probes
+
+
+def keep_claims(questions: Path, results: Path) -> None:
+    """Let the results say what is claimed of them, where the questions are not the published ones."""
+    if questions.resolve() != question.FOLDER:
+        claims = questions / CLAIMS
+        told = claims.read_text(encoding="utf-8") if claims.exists() else "# Nothing is claimed.\n"
+        write_text(results / CLAIMS, told, results)
 
 
 def summary(schedule: Schedule, budget_seconds: float) -> str:

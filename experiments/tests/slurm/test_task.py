@@ -20,6 +20,8 @@ from experiments.support.schema import RECORD_SCHEMA
 from experiments.tests.conftest import ROOT, Workplace, hear_every_signal
 from experiments.tests.slurm.test_script import site
 
+CAROM = ROOT / "build" / "gcc" / "carom"
+
 
 def folder_of(workplace: Workplace) -> PartitionFolder:
     return folders(replace(workplace.settings, site=site(workplace.root)))[0]
@@ -100,6 +102,21 @@ def test_a_failed_point_is_not_tried_again_by_its_task(workplace: Workplace) -> 
     assert len(records(workplace)) == 14
     failures = list(workplace.results.glob("slurm/cluster/xs/failures/pair/*.json"))
     assert len(failures) == 1
+
+
+@pytest.mark.skipif(not CAROM.is_file(), reason="build/gcc/carom is not built (`make build` builds it)")
+def test_programs_of_others_are_measured_on_a_node(empty_workplace: Workplace) -> None:
+    empty_workplace.program.unlink()
+    empty_workplace.program.symlink_to(CAROM)
+    one, two = (
+        '[[series]]\nname = "one"\ncommand = ["true"]\n',
+        '[[series]]\nname = "two"\ncommand = ["echo"]\n',
+    )
+    text = 'title = "Others"\nfigure = "comparison"\n'
+    empty_workplace.question("others", f"{text}{one}{two}[blocks]\nminimum = 2\nwanted = 2\n")
+    assert work(job_of(empty_workplace), 0) == 0
+    kinds = [json.loads(content)["kind"] for content in records(empty_workplace).values()]
+    assert kinds == ["process"] * 4
 
 
 def test_a_job_of_another_site_is_refused(workplace: Workplace) -> None:
