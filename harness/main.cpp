@@ -4,12 +4,12 @@
 #include <iostream>
 #include <memory>
 #include <new>
-#include <string>
 
 #include <CLI/CLI.hpp>
 
+#include "harness/command_line/help.hpp"
+#include "harness/command_line/usage_errors.hpp"
 #include "harness/commands/commands.hpp"
-#include "harness/commands/help.hpp"
 #include "harness/support/errors.hpp"
 
 namespace {
@@ -20,21 +20,7 @@ int fail(int code, const char* message) {
     return code;
 }
 
-bool is_verb(const CLI::App& program, const std::string& name) {
-    return !program.get_subcommands([&name](const CLI::App* verb) { return verb->get_name() == name; })
-                .empty();
-}
-
-} // namespace
-
-int main(int count, char** arguments) {
-    // A file that may not grow further is then told as a full disk is, in one line.
-    std::signal(SIGXFSZ, SIG_IGN);
-    CLI::App program("Carom: a performance study of colliding discs that checks itself", "carom");
-    program.formatter(std::make_shared<carom::WrappedHelp>());
-    program.require_subcommand(1);
-    program.set_version_flag("--version", "carom " CAROM_VERSION);
-    program.set_help_all_flag("--help-all", "Print the help of every verb");
+void add_verbs(CLI::App& program) {
     carom::add_list_command(program);
     carom::add_run_command(program);
     carom::add_check_command(program);
@@ -47,11 +33,27 @@ int main(int count, char** arguments) {
     carom::add_doctor_command(program);
     carom::add_limits_command(program);
     carom::add_outside_command(program);
-    if (count > 1 && arguments[1][0] != '-' && !is_verb(program, arguments[1])) {
-        return fail(
-            1, ("found '" + std::string(arguments[1]) + "', expected a verb out of `carom --help`").c_str());
-    }
+    carom::add_help_command(program);
+    program.footer(
+        "Exit codes: 0 done; 1 wrong usage or bad input, told in one line; 2 a result failed its check; "
+        "3 this build has not what was asked for. A scene of `-` is read from standard input.");
+}
+
+} // namespace
+
+int main(int count, char** arguments) {
+    // A file that may not grow further is then told as a full disk is, in one line.
+    std::signal(SIGXFSZ, SIG_IGN);
+    CLI::App program("Carom: a performance study of colliding discs that checks itself", "carom");
+    program.formatter(std::make_shared<carom::Help>());
+    program.require_subcommand(1);
+    program.set_version_flag("--version", "carom " CAROM_VERSION, "Print the version and exit");
+    program.set_help_all_flag("--help-all", "Print the help of every verb");
+    add_verbs(program);
     try {
+        if (count > 1 && arguments[1][0] != '-') {
+            carom::require_verb(program, arguments[1]);
+        }
         program.parse(count, arguments);
         if (!std::cout.flush()) {
             return fail(1, "standard output: writing broke off, expected room");
@@ -60,7 +62,7 @@ int main(int count, char** arguments) {
     } catch (const CLI::Success& help) {
         return program.exit(help);
     } catch (const CLI::ParseError& error) {
-        return fail(1, error.what());
+        return fail(1, carom::usage_message(program, error).c_str());
     } catch (const carom::InputError& error) {
         return fail(1, error.what());
     } catch (const carom::CheckError& error) {

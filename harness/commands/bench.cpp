@@ -7,14 +7,20 @@
 #include <benchmark/benchmark.h>
 
 #include "harness/accuracy/error_measures.hpp"
+#include "harness/command_line/usage_errors.hpp"
+#include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
+#include "harness/commands/google_benchmark.hpp"
 #include "harness/commands/measurement_options.hpp"
 #include "harness/commands/simulation_options.hpp"
+#include "harness/machine/disturbance.hpp"
 #include "harness/machine/provenance.hpp"
 #include "harness/machine/threads.hpp"
 #include "harness/measure/bench_case.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/output_file.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -35,10 +41,11 @@ void require_one_case(const BenchOptions& options) {
     }
 }
 
-/// Hands the --benchmark_* flags to Google Benchmark; whatever it does not know is an error.
-void initialize(const std::vector<std::string>& flags) {
-    static std::string program = "carom"; // Google Benchmark keeps the pointer and prints it much later
-    std::vector<std::string> texts;
+/// What the verb does not know itself must be flags of Google Benchmark.
+void require_benchmark_flags(const CLI::App& command, const std::vector<std::string>& flags) {
+    if (const auto unknown = unknown_option(command, flags)) {
+        throw InputError(*unknown);
+    }
     for (const std::string& flag : flags) {
         if (flag.starts_with("--benchmark_perf_counters")) {
             throw InputError(
@@ -46,21 +53,13 @@ void initialize(const std::vector<std::string>& flags) {
                        "`carom profile --counters` counts through PAPI");
         }
         if (!flag.starts_with("--benchmark_")) {
-            throw InputError("found '" + flag +
-                             "', expected an option of `carom bench --help` or a --benchmark_* flag");
+            throw InputError("found " + in_quotes(flag) +
+                             ", expected an option of `carom bench --help` or a --benchmark_* flag");
         }
-        texts.push_back(flag);
     }
-    std::vector<char*> pointers{program.data()};
-    for (std::string& text : texts) {
-        pointers.push_back(text.data());
-    }
-    int count = static_cast<int>(pointers.size());
-    benchmark::Initialize(&count, pointers.data());
-    if (count > 1) {
-        throw InputError("found '" + std::string(pointers[1]) +
-                         "', expected a flag that Google Benchmark knows");
-    }
+}
+
+void add_context() {
     const auto provenance = provenance_json(1);
     for (const char* field :
          {"commit", "compiler", "compiler_flags", "cpu_model", "affinity", "binary_sha256"}) {
@@ -111,6 +110,7 @@ void finish(std::deque<BenchCase>& cases, const BenchOptions& options) {
 }
 
 void bench(BenchOptions options, const std::vector<std::string>& flags) {
+    const DisturbanceWatch watch;
     if (options.threads.empty()) {
         options.threads.push_back(default_threads());
     }
@@ -120,7 +120,9 @@ void bench(BenchOptions options, const std::vector<std::string>& flags) {
         options.repetitions = std::max(options.repetitions, 1);
     }
     tags_json(options.measurement.tags);
-    initialize(flags);
+    require_writable(options.measurement.record);
+    initialize_google_benchmark(flags);
+    add_context();
     std::deque<LoadedScene> scenes;
     std::deque<BenchCase> cases;
     for (const std::string& path : options.scenes) {
@@ -135,9 +137,11 @@ void bench(BenchOptions options, const std::vector<std::string>& flags) {
             }
         }
     }
-    benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
+    const int most_threads_used = std::ranges::max(options.threads);
+    note_crowding(most_threads_used);
+    run_google_benchmark(flags, cases.front().name());
     finish(cases, options);
+    note_if_busy(watch, most_threads_used);
 }
 
 } // namespace
@@ -147,18 +151,19 @@ void add_bench_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "bench", "Time variants under Google Benchmark; --benchmark_* flags are handed through to it");
     command->allow_extras();
-    command->add_option("SCENE", options->scenes, "Scene files")->required();
+    command->add_option("SCENE", options->scenes, "Scene files; - is standard input")->required();
     command->add_option("--variant", options->variants, "Names from `carom list`; may be repeated")
         ->take_all()
-        ->capture_default_str();
+        ->default_str(options->variants.front());
     command->add_option("--threads", options->threads, "OpenMP thread counts; may be repeated")
         ->take_all()
-        ->check(CLI::Range(1, most_threads));
-    command
-        ->add_option("--repetitions", options->repetitions,
-                     "Runs to time, each reported (default: as many as Google Benchmark's own flags ask for; "
-                     "1 with --record)")
-        ->check(CLI::Range(1, 1'000'000));
+        ->transform(number_from(1, most_threads))
+        ->type_name("N")
+        ->default_str(number_text(default_threads()));
+    add_number(*command, "--repetitions", options->repetitions, 1, 1'000'000,
+               "Runs to time, each reported (default: as many as Google Benchmark's own flags ask for; "
+               "1 with --record)")
+        ->default_str("");
     add_measurement_options(*command, options->measurement);
     command
         ->add_flag(
@@ -166,7 +171,10 @@ void add_bench_command(CLI::App& program) {
             "Keep every error measure in the record, from one more run beside the event-driven reference")
         ->needs(command->get_option("--record"));
     add_tuning_options(*command, options->tuning);
-    command->callback([command, options] { bench(*options, command->remaining()); });
+    command->callback([command, options] {
+        require_benchmark_flags(*command, command->remaining());
+        bench(*options, command->remaining());
+    });
 }
 
 } // namespace carom

@@ -1,14 +1,20 @@
 #include <cstdio>
+#include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "harness/commands/commands.hpp"
 #include "harness/commands/simulation_options.hpp"
-#include "harness/machine/threads.hpp"
 #include "harness/measure/energy_drift.hpp"
 #include "harness/measure/measure.hpp"
-#include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/input_file.hpp"
+#include "harness/support/json.hpp"
+#include "harness/support/text.hpp"
 #include "harness/verify/trajectory.hpp"
 
 namespace carom {
@@ -16,43 +22,80 @@ namespace {
 
 struct CheckOptions {
     SimulationOptions simulation;
-    std::string trajectory; ///< empty: of a run of the variant
+    std::string trajectory; ///< empty: the steps are those of a run of the variant
+    bool json = false;
+};
+
+/// What came of a check.
+struct Verdict {
+    std::string what; ///< the scene and the variant, or the file that was checked
+    std::vector<Disc> discs;
+    std::optional<std::string> violation;
 };
 
 /// Checks what somebody's program wrote, by the rules of the variant's precision and impact.
-void check_file(const CheckOptions& options) {
-    const SimulationOptions& simulation = options.simulation;
-    if (simulation.tuning.substeps != 1) {
+Verdict check_file(const CheckOptions& options, const Scene& scene, const Variant& variant) {
+    const Tuning& tuning = options.simulation.tuning;
+    if (tuning.substeps != 1) {
         throw InputError(
             "--substeps: found beside --trajectory, whose states are whole steps apart; expected either");
     }
-    const Scene scene = read_scene(simulation.scene, simulation.tuning.threads);
-    const Policies policies = require_variant(simulation.variant, scene).policies;
-    const Rounding rounding = rounding_of(policies);
-    const Checker checker(scene.side, scene.radius, 1, simulation.tuning.tolerance, rounding,
-                          policies.impact);
+    const Rounding rounding = rounding_of(variant.policies);
+    const Checker checker(scene.side, scene.radius, 1, tuning.tolerance, rounding, variant.policies.impact);
     TrajectoryFile file(options.trajectory, scene.discs.size());
-    const CheckedTrajectory checked = check_trajectory(scene, file, checker, rounding);
-    if (checked.violation) {
-        throw CheckError(options.trajectory + ", " + *checked.violation);
-    }
-    std::printf("passed: %s, %d steps of %zu discs, energy drift %.2e, final state %s\n",
-                options.trajectory.c_str(), scene.steps, scene.discs.size(),
-                energy_drift(scene, checked.discs).value_or(0), state_hash(checked.discs).c_str());
+    CheckedTrajectory checked = check_trajectory(scene, file, checker, rounding);
+    return {options.trajectory, std::move(checked.discs), std::move(checked.violation)};
 }
 
-void check_variant(const SimulationOptions& options) {
-    require_threads(options.tuning.threads);
-    const Scene scene = read_scene(options.scene, options.tuning.threads);
-    const Variant& variant = require_variant(options.variant, scene);
-    const auto simulation = variant.simulate(scene, options.tuning);
-    const Run run = run_scene(scene, *simulation, options.tuning, {CheckScope::every_step, variant.policies});
-    if (run.violation) {
-        throw CheckError(options.scene + ", variant " + std::string(variant.name) + ", " + *run.violation);
+Verdict check_variant(const std::string& name, const Tuning& tuning, const Scene& scene,
+                      const Variant& variant) {
+    note_crowding(tuning.threads);
+    const auto simulation = variant.simulate(scene, tuning);
+    Run run = run_scene(scene, *simulation, tuning, {CheckScope::every_step, variant.policies});
+    return {name + ", variant " + std::string(variant.name), std::move(run.discs), std::move(run.violation)};
+}
+
+void print_json(const CheckOptions& options, const Scene& scene, const Variant& variant,
+                const Verdict& verdict) {
+    const Tuning& tuning = options.simulation.tuning;
+    const bool passed = !verdict.violation;
+    const nlohmann::ordered_json json{
+        {"verdict", passed ? "passed" : "failed"},
+        {"reason", or_null(verdict.violation)},
+        {"scene", shown_name(options.simulation.scene)},
+        {"trajectory", text_or_null(options.trajectory)},
+        {"variant", variant.name},
+        {"threads", tuning.threads},
+        {"substeps", tuning.substeps},
+        {"particles", scene.discs.size()},
+        {"steps", scene.steps},
+        {"energy_drift", passed ? number_or_null(energy_drift(scene, verdict.discs)) : nullptr},
+        {"state_hash", text_or_null(passed ? state_hash(verdict.discs) : "")}};
+    std::cout << json_text(json, 2) << '\n';
+}
+
+void print_line(const Scene& scene, const Verdict& verdict) {
+    std::printf("passed: %s, %s of %s, energy drift %.2e, final state %s\n", verdict.what.c_str(),
+                counted(scene.steps, "step").c_str(), counted(scene.discs.size(), "disc").c_str(),
+                energy_drift(scene, verdict.discs).value_or(0), state_hash(verdict.discs).c_str());
+}
+
+void check(CheckOptions options) {
+    const Scene scene = read_scene_and_settle_threads(options.simulation);
+    const Variant& variant = require_variant(options.simulation.variant, scene);
+    const std::string name = shown_name(options.simulation.scene);
+    const Verdict verdict = options.trajectory.empty()
+                                ? check_variant(name, options.simulation.tuning, scene, variant)
+                                : check_file(options, scene, variant);
+    if (options.json) {
+        print_json(options, scene, variant, verdict);
     }
-    std::printf("passed: %s, variant %s, %d steps of %zu discs, energy drift %.2e, final state %s\n",
-                options.scene.c_str(), std::string(variant.name).c_str(), scene.steps, scene.discs.size(),
-                energy_drift(scene, run.discs).value_or(0), state_hash(run.discs).c_str());
+    if (verdict.violation) {
+        throw CheckError(verdict.what + ", " + *verdict.violation);
+    }
+    if (!options.json) {
+        print_line(scene, verdict);
+    }
 }
 
 } // namespace
@@ -66,13 +109,8 @@ void add_check_command(CLI::App& program) {
         "--trajectory", options->trajectory,
         "Check the steps in this file instead, lines `step i x y vx vy` that any program may have "
         "written (gzip too); --variant says in which precision and with which impact");
-    command->callback([options] {
-        if (options->trajectory.empty()) {
-            check_variant(options->simulation);
-        } else {
-            check_file(*options);
-        }
-    });
+    command->add_flag("--json", options->json, "Print the verdict as one JSON object, also of what fails");
+    command->callback([options] { check(*options); });
 }
 
 } // namespace carom

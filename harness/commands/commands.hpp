@@ -6,6 +6,7 @@ namespace carom {
 
 /// Each adds one verb of the program with its options. The verb runs as the callback of its subcommand: it
 /// prints its result on standard output and throws one of the errors of harness/support/errors.hpp.
+void add_help_command(CLI::App& program);
 void add_list_command(CLI::App& program);
 void add_run_command(CLI::App& program);
 void add_check_command(CLI::App& program);

@@ -1,19 +1,21 @@
 #include "harness/scenes/generate.hpp"
 
+#include <cstdint>
 #include <cstdio>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/scenes/hard_cases.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/nearest.hpp"
 #include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
 
@@ -50,7 +52,12 @@ Scene scene_of_case(const std::string& name) {
     if (const HardCase* found = find_hard_case(name)) {
         return found->scene();
     }
-    throw InputError("--case: found '" + name + "', expected a name from `carom generate --cases`");
+    std::vector<std::string> names;
+    for (const HardCase& one : hard_cases()) {
+        names.emplace_back(one.name);
+    }
+    throw InputError("--case: found " + in_quotes(name) + ", expected a name from `carom generate --cases`" +
+                     did_you_mean(name, names));
 }
 
 void print_cases(bool json) {
@@ -67,25 +74,15 @@ void print_cases(bool json) {
     }
 }
 
-void write_scene(const Scene& scene, const std::string& output) {
-    const std::string text = scene_text(scene);
-    if (output.empty()) {
-        std::cout << text;
-        return;
-    }
-    OutputFile file(output);
-    file.write(text);
-    file.finish();
-}
-
 void run_generate(const GenerateOptions& options) {
+    require_writable(options.output);
     if (options.list_cases) {
         print_cases(options.json);
     } else if (!options.hard_case.empty()) {
-        write_scene(scene_of_case(options.hard_case), options.output);
+        write_text(options.output, scene_text(scene_of_case(options.hard_case)));
     } else {
         const Scene scene = random_scene(options.arguments);
-        write_scene(scene, options.output);
+        write_text(options.output, scene_text(scene));
         if (options.arguments.placement != Placement::overlapping) {
             std::fprintf(stderr, "carom: area fraction %.6f, no disc overlaps another\n",
                          area_fraction(scene));
@@ -95,30 +92,33 @@ void run_generate(const GenerateOptions& options) {
 
 /// N to VMAX, without which only a hard case can be written.
 std::vector<CLI::Option*> add_arguments(CLI::App& command, GeneratorArguments& arguments) {
-    const CLI::Range speeds(-largest_number, largest_number);
-    return {
-        command.add_option("N", arguments.count, "Number of discs")->check(CLI::Range(0, most_discs)),
-        command.add_option("L", arguments.side, "Side of the box"),
-        command.add_option("R", arguments.radius, "Radius of the discs"),
-        command.add_option("STEPS", arguments.steps, "Units of time to simulate")
-            ->check(CLI::Range(0, std::numeric_limits<int>::max())),
-        command.add_option("VMIN", arguments.least_velocity, "Least velocity component")->check(speeds),
-        command.add_option("VMAX", arguments.largest_velocity, "Largest velocity component")->check(speeds)};
+    CLI::Option* const count = command.add_option("N", arguments.count, "Number of discs");
+    CLI::Option* const side = command.add_option("L", arguments.side, "Side of the box");
+    CLI::Option* const radius = command.add_option("R", arguments.radius, "Radius of the discs");
+    CLI::Option* const steps = command.add_option("STEPS", arguments.steps, "Units of time to simulate");
+    CLI::Option* const least =
+        command.add_option("VMIN", arguments.least_velocity, "Least velocity component");
+    CLI::Option* const largest =
+        command.add_option("VMAX", arguments.largest_velocity, "Largest velocity component");
+    count->transform(number_from(0, most_discs));
+    steps->transform(number_from(0, std::numeric_limits<int>::max()));
+    side->transform(finite_number());
+    radius->transform(finite_number());
+    least->transform(number_from(-largest_number, largest_number));
+    largest->transform(number_from(-largest_number, largest_number));
+    return {count, side, radius, steps, least, largest};
 }
 
 std::vector<CLI::Option*> add_choices(CLI::App& command, GeneratorArguments& arguments) {
-    const std::map<std::string, Placement> placements{{"overlapping", Placement::overlapping},
-                                                      {"random", Placement::random},
-                                                      {"lattice", Placement::lattice}};
-    return {command.add_option("--seed", arguments.seed, "Seed of the 64-bit Mersenne Twister")
-                ->check(CLI::NonNegativeNumber)
-                ->capture_default_str(),
-            command
-                .add_option("--placement", arguments.placement,
-                            "overlapping: anywhere; random: one by one, none overlapping; lattice: jittered "
-                            "hexagonal, none overlapping")
-                ->transform(CLI::CheckedTransformer(placements).description(""))
-                ->default_str("overlapping"),
+    return {add_number(command, "--seed", arguments.seed, 0, std::numeric_limits<std::uint64_t>::max(),
+                       "Seed of the 64-bit Mersenne Twister"),
+            add_choice<Placement>(
+                command, "--placement", arguments.placement,
+                {{"overlapping", Placement::overlapping},
+                 {"random", Placement::random},
+                 {"lattice", Placement::lattice}},
+                "overlapping: anywhere; random: one by one, none overlapping; lattice: jittered "
+                "hexagonal, none overlapping"),
             command.add_flag("--isotropic", arguments.isotropic,
                              "Directions uniform over the circle, speeds uniform in [VMIN, VMAX]")};
 }
@@ -146,7 +146,8 @@ void add_generate_command(CLI::App& program) {
     command->callback([options, arguments] {
         for (const CLI::Option* argument : arguments) {
             if (argument->count() == 0 && options->hard_case.empty() && !options->list_cases) {
-                throw CLI::RequiredError(argument->get_name());
+                throw InputError("found no " + argument->get_name() +
+                                 ", expected N L R STEPS VMIN VMAX, or --case: `carom generate --help`");
             }
         }
         run_generate(*options);

@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
-#include "harness/commands/simulation_options.hpp"
 #include "harness/machine/machine.hpp"
 #include "harness/machine/provenance.hpp"
 #include "harness/machine/threads.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/json.hpp"
+#include "harness/support/output_file.hpp"
 
 namespace carom {
 namespace {
@@ -32,6 +33,7 @@ struct LimitsOptions {
 void limits(const LimitsOptions& options) {
     using Json = nlohmann::ordered_json;
     const Json tags = tags_json(options.tags);
+    require_writable(options.record);
     const std::int64_t most_bytes =
         options.memory_mebibytes ? *options.memory_mebibytes * mebibyte : read_machine().memory_bytes / 4;
     const Json found = limits_json(options.threads, options.seconds, most_bytes);
@@ -53,16 +55,14 @@ void add_limits_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "limits",
         "Measure what this machine can do at most: copy bandwidth and arithmetic, on 1 to T threads");
-    command->add_option("--threads", options->threads, "The greatest number of OpenMP threads")
-        ->check(CLI::Range(1, most_threads))
-        ->capture_default_str();
-    command->add_option("--seconds", options->seconds, "About how long each rate is measured")
-        ->check(CLI::Range(0.0, 60.0))
-        ->capture_default_str();
+    add_number(*command, "--threads", options->threads, 1, most_threads,
+               "The greatest number of OpenMP threads");
+    add_number(*command, "--seconds", options->seconds, 0.0, 60.0, "About how long each rate is measured");
     command
         ->add_option("--memory", options->memory_mebibytes,
                      "The most that a copy may take, in MiB; by itself a quarter of the machine's memory")
-        ->check(CLI::Range(1, 1 << 30));
+        ->transform(number_from(1, 1 << 30))
+        ->type_name("N");
     command->add_flag("--json", options->json, "Print the rates as one JSON object");
     command->add_option("--record", options->record, "File for the record of the rates");
     command->add_option("--tag", options->tags, "KEY=VALUE to keep in the record; may be repeated")

@@ -1,8 +1,8 @@
 #include "harness/commands/measurement_options.hpp"
 
 #include <filesystem>
-#include <map>
 
+#include "harness/command_line/values.hpp"
 #include "harness/records/record.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
@@ -13,34 +13,29 @@
 namespace carom {
 
 void add_measurement_options(CLI::App& command, MeasurementOptions& options) {
-    const std::map<std::string, CheckScope> scopes{{word(CheckScope::last_step), CheckScope::last_step},
-                                                   {word(CheckScope::every_step), CheckScope::every_step}};
     command.add_option("--record", options.record, "File for the record of this process (one case only)");
     command.add_option("--tag", options.tags, "KEY=VALUE to keep in the record; may be repeated")
         ->allow_extra_args(false);
-    command
-        .add_option("--warm-up", options.warm_ups,
-                    "Untimed whole runs before the first timed one; with none, two steps")
-        ->check(CLI::Range(0, 1000))
-        ->capture_default_str();
-    command
-        .add_option("--check", options.scope,
-                    "What is verified: last-step of each run, or every-step of one before")
-        ->transform(CLI::CheckedTransformer(scopes).description(""))
-        ->default_str("last-step");
+    add_number(command, "--warm-up", options.warm_ups, 0, 1000,
+               "Untimed whole runs before the first timed one; with none, two steps");
+    add_choice<CheckScope>(command, "--check", options.scope,
+                           {{word(CheckScope::last_step), CheckScope::last_step},
+                            {word(CheckScope::every_step), CheckScope::every_step}},
+                           "What is verified: last-step of each run, or every-step of one before");
 }
 
 LoadedScene load_scene(const std::string& path) {
     const std::string text = read_file(path);
+    const std::string shown = shown_name(path);
     const double start = process_seconds();
-    LoadedScene loaded{.scene = parse_scene(text, path),
-                       .name = std::filesystem::path(path).filename().string(),
+    LoadedScene loaded{.scene = parse_scene(text, shown),
+                       .name = std::filesystem::path(shown).filename().string(),
                        .sha256 = {},
                        .parse_seconds = 0};
     loaded.parse_seconds = process_seconds() - start;
     loaded.sha256 = sha256(text);
     if (loaded.scene.steps == 0) {
-        throw InputError(path + ":4: found 0 steps, expected at least one to time");
+        throw InputError(shown + ":4: found 0 steps, expected at least one to time");
     }
     return loaded;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/commands/measurement_options.hpp"
 #include "harness/machine/provenance.hpp"
@@ -12,6 +13,8 @@
 #include "harness/records/record.hpp"
 #include "harness/support/format.hpp"
 #include "harness/support/json.hpp"
+#include "harness/support/output_file.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -43,10 +46,12 @@ nlohmann::ordered_json outside_json(const OutsideOptions& options, const LoadedS
 
 void outside(const OutsideOptions& options) {
     tags_json(options.tags);
+    require_writable(options.record);
     const LoadedScene loaded = load_scene(options.scene);
     const ChipmunkRun run = run_chipmunk(loaded.scene, options.substeps, options.iterations);
-    std::cout << format("%s: %zu discs, %d steps, Chipmunk %s, 1 thread\n", loaded.name.c_str(),
-                        loaded.scene.discs.size(), loaded.scene.steps, run.version.c_str());
+    std::cout << format("%s: %s, %s, Chipmunk %s, 1 thread\n", loaded.name.c_str(),
+                        counted(loaded.scene.discs.size(), "disc").c_str(),
+                        counted(loaded.scene.steps, "step").c_str(), run.version.c_str());
     std::cout << format("  steps            %10.6g s\n", run.steps_seconds);
     if (const auto drift = energy_drift(loaded.scene, run.discs)) {
         std::cout << format("  energy drift     %10.3g relative\n", *drift);
@@ -63,13 +68,11 @@ void add_outside_command(CLI::App& program) {
     auto options = std::make_shared<OutsideOptions>();
     CLI::App* command = program.add_subcommand(
         "outside", "Simulate by Chipmunk, a general engine, to stand beside; only where built with it");
-    command->add_option("SCENE", options->scene, "Scene file")->required();
-    command->add_option("--substeps", options->substeps, "Steps per unit of time, dt = 1/K")
-        ->check(CLI::Range(1, 1'000'000'000))
-        ->capture_default_str();
-    command->add_option("--iterations", options->iterations, "Iterations of its solver in each step")
-        ->check(CLI::Range(1, 1'000'000))
-        ->capture_default_str();
+    command->add_option("SCENE", options->scene, "Scene file; - is standard input")->required();
+    add_number(*command, "--substeps", options->substeps, 1, 1'000'000'000,
+               "Steps per unit of time, dt = 1/K");
+    add_number(*command, "--iterations", options->iterations, 1, 1'000'000,
+               "Iterations of its solver in each step");
     command->add_option("--record", options->record, "File for the record of this process");
     command->add_option("--tag", options->tags, "KEY=VALUE to keep in the record; may be repeated")
         ->allow_extra_args(false);

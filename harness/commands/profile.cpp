@@ -5,18 +5,22 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/commands/measurement_options.hpp"
 #include "harness/commands/profile_table.hpp"
 #include "harness/commands/simulation_options.hpp"
 #include "harness/counters/cachegrind.hpp"
 #include "harness/counters/counters.hpp"
+#include "harness/machine/disturbance.hpp"
 #include "harness/machine/threads.hpp"
 #include "harness/measure/profiler.hpp"
 #include "harness/measure/timeline.hpp"
 #include "harness/records/profile_json.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/output_file.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -71,11 +75,16 @@ std::vector<CounterValue> all_counters(const ProfileOptions& options, const Meas
 }
 
 void profile(const ProfileOptions& options) {
+    const DisturbanceWatch watch;
     tags_json(options.measurement.tags);
+    require_writable(options.timeline);
+    require_writable(options.measurement.record);
     require_threads(options.simulation.tuning.threads);
+    const int threads = options.simulation.tuning.threads;
     const LoadedScene loaded = load_scene(options.simulation.scene);
     const Variant& variant = require_variant(options.simulation.variant, loaded.scene);
     Measurement measurement = measurement_of(loaded, variant, options.simulation.tuning, options.measurement);
+    note_crowding(threads);
 
     for (int k = 0; k < options.measurement.warm_ups; ++k) {
         bare_run(measurement, CheckScope::nothing);
@@ -96,7 +105,7 @@ void profile(const ProfileOptions& options) {
     if (!options.timeline.empty()) {
         write_timeline(options.timeline, profiler,
                        std::string(variant.name) + ", " + measurement.scene_name + ", " +
-                           std::to_string(measurement.tuning.threads) + " threads");
+                           counted(threads, "thread"));
     }
     if (!options.measurement.record.empty()) {
         measurement.repetitions.push_back(std::move(run));
@@ -106,6 +115,7 @@ void profile(const ProfileOptions& options) {
         record["profile"] = profile_json(result);
         write_record(options.measurement.record, record);
     }
+    note_if_busy(watch, threads);
 }
 
 } // namespace
@@ -123,9 +133,8 @@ void add_profile_command(CLI::App& program) {
         ->allow_extra_args(false);
     command->add_flag("--simulated", options->simulated,
                       "Also count under valgrind's cachegrind, on one thread");
-    command->add_option("--simulated-steps", options->simulated_steps, "Steps to run under cachegrind")
-        ->check(CLI::Range(1, 1'000'000))
-        ->capture_default_str();
+    add_number(*command, "--simulated-steps", options->simulated_steps, 1, 1'000'000,
+               "Steps to run under cachegrind");
     auto* timeline = command->add_option("--timeline", options->timeline,
                                          "File for the timeline in Trace Event format (open in Perfetto)");
     command->add_flag("--timeline-chunks", options->timeline_chunks, "Show chunks in the timeline, too")

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <string>
 #include <utility>
 
 #include "harness/measure/timeline.hpp"
+#include "harness/support/format.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -75,12 +78,20 @@ void print_counters(const Profile& profile) {
 
 } // namespace
 
+std::string cost_text(double cost) {
+    constexpr double least_credible = 0.97;
+    return format("profiling cost: the profiled run took %.3f of the bare run's time", cost) +
+           (cost < least_credible ? "; as looking on saves nothing, something else slowed the bare run" : "");
+}
+
 void print_profile(const Profile& profile, const Measurement& measurement) {
-    std::printf("%s: %zu discs, %d steps, variant %s, %d threads, %lld sweeps\n",
-                measurement.scene_name.c_str(), measurement.scene.discs.size(), measurement.scene.steps,
-                std::string(measurement.variant.name).c_str(), measurement.tuning.threads,
-                static_cast<long long>(profile.sweeps));
-    std::printf("profiling cost: the profiled run took %.3f of the bare run's time\n", profile.cost);
+    std::printf("%s: %s, %s, variant %s, %s, %s\n", measurement.scene_name.c_str(),
+                counted(measurement.scene.discs.size(), "disc").c_str(),
+                counted(std::int64_t{measurement.scene.steps} * measurement.tuning.substeps, "step").c_str(),
+                std::string(measurement.variant.name).c_str(),
+                counted(measurement.tuning.threads, "thread").c_str(),
+                counted(profile.sweeps, "sweep").c_str());
+    std::printf("%s\n", cost_text(profile.cost).c_str());
     print_phases(profile);
     print_threads(profile);
     print_counters(profile);

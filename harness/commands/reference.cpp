@@ -1,15 +1,14 @@
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <iostream>
 #include <memory>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
+#include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/input_file.hpp"
+#include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
 #include "kernels/exact/event_driven.hpp"
 
@@ -18,6 +17,7 @@ namespace {
 
 struct ReferenceOptions {
     std::string scene;
+    std::string output;
     double time = 0;
     bool extended = false;
     bool json = false;
@@ -65,22 +65,16 @@ template <class Real> void simulate(const ReferenceOptions& options, const Scene
     EventDriven<Real> reference(scene);
     const Real start = speeds_squared(reference.discs());
     if (!reference.advance(static_cast<Real>(options.time))) {
-        throw CheckError(options.scene + ": the collisions at time " +
+        throw CheckError(shown_name(options.scene) + ": the collisions at time " +
                          number_text(static_cast<double>(reference.time())) +
                          " do not come to an end: a disc is wedged");
     }
-    if (options.json) {
-        std::cout << counts_json(reference, scene, start).dump(2) << '\n';
-    } else {
-        std::cout << disc_lines(reference.discs());
-    }
+    write_text(options.output, options.json ? counts_json(reference, scene, start).dump(2) + "\n"
+                                            : disc_lines(reference.discs()));
 }
 
 void reference(const ReferenceOptions& options) {
-    if (!(options.time >= 0 && std::isfinite(options.time))) {
-        throw InputError("--time: found " + number_text(options.time) +
-                         ", expected a finite time of at least 0");
-    }
+    require_writable(options.output);
     const Scene scene = read_scene(options.scene);
     if (options.extended) {
         simulate<long double>(options, scene);
@@ -95,9 +89,12 @@ void add_reference_command(CLI::App& program) {
     auto options = std::make_shared<ReferenceOptions>();
     CLI::App* command = program.add_subcommand(
         "reference", "Simulate exactly, event by event, and print `i x y vx vy` for every disc");
-    command->add_option("SCENE", options->scene, "Scene file")->required();
-    command->add_option("--time", options->time, "Time at which to print the state")->required();
+    command->add_option("SCENE", options->scene, "Scene file; - is standard input")->required();
+    add_number(*command, "--time", options->time, 0.0, largest_number, "Time at which to print the state")
+        ->required()
+        ->default_str("");
     command->add_flag("--extended", options->extended, "Compute in long double instead of double");
+    command->add_option("--output", options->output, "File to write instead of standard output");
     command->add_flag("--json", options->json, "Print collision counts, wall impulse and pressure instead");
     command->callback([options] { reference(*options); });
 }

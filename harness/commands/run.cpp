@@ -15,12 +15,13 @@
 #include "harness/accuracy/error_measures.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/commands/simulation_options.hpp"
-#include "harness/machine/threads.hpp"
+#include "harness/machine/disturbance.hpp"
 #include "harness/measure/energy_drift.hpp"
 #include "harness/measure/measure.hpp"
 #include "harness/records/policies_json.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/input_file.hpp"
 #include "harness/support/json.hpp"
 #include "harness/support/output_file.hpp"
 #include "harness/support/process_clock.hpp"
@@ -55,7 +56,8 @@ struct Summary {
     int threads;
     int substeps;
     std::size_t particles;
-    int steps;
+    int units_of_time;  ///< the scene's S
+    std::int64_t steps; ///< of dt = 1/substeps; what is told by the step and by the second is told of these
     double steps_per_second;
     double disc_steps_per_second;
     double overlaps_per_step;
@@ -72,22 +74,24 @@ struct Summary {
 Summary summarise(const RunOptions& options, const Scene& scene, const Variant& variant, const Run& run,
                   const Seconds& seconds) {
     const Tuning& tuning = options.simulation.tuning;
-    const double steps = static_cast<double>(scene.steps) * tuning.substeps;
+    const std::int64_t steps = std::int64_t{scene.steps} * tuning.substeps;
     const auto per_step = [steps](std::int64_t total) {
-        return steps > 0 ? static_cast<double>(total) / steps : 0;
+        return steps > 0 ? static_cast<double>(total) / static_cast<double>(steps) : 0;
     };
     const auto per_second = [&run](double total) {
         return run.steps_seconds > 0 ? total / run.steps_seconds : 0;
     };
-    return {.scene = options.simulation.scene,
+    return {.scene = shown_name(options.simulation.scene),
             .variant = variant.name,
             .policies = variant.policies,
             .threads = tuning.threads,
             .substeps = tuning.substeps,
             .particles = scene.discs.size(),
-            .steps = scene.steps,
-            .steps_per_second = per_second(steps),
-            .disc_steps_per_second = per_second(steps * static_cast<double>(scene.discs.size())),
+            .units_of_time = scene.steps,
+            .steps = steps,
+            .steps_per_second = per_second(static_cast<double>(steps)),
+            .disc_steps_per_second =
+                per_second(static_cast<double>(steps) * static_cast<double>(scene.discs.size())),
             .overlaps_per_step = per_step(run.work.overlaps),
             .pair_resolves_per_step = per_step(run.work.pair_resolves),
             .wall_resolves_per_step = per_step(run.work.wall_resolves),
@@ -109,7 +113,8 @@ nlohmann::ordered_json summary_json(const Summary& summary) {
             {"threads", summary.threads},
             {"substeps", summary.substeps},
             {"particles", summary.particles},
-            {"steps", summary.steps},
+            {"steps", summary.units_of_time},
+            {"steps_simulated", summary.steps},
             {"reading_seconds", summary.seconds.reading},
             {"setting_up_seconds", summary.seconds.setting_up},
             {"steps_seconds", summary.seconds.steps},
@@ -127,9 +132,16 @@ nlohmann::ordered_json summary_json(const Summary& summary) {
             {"state_hash", summary.state_hash}};
 }
 
+/// "60 steps", or "60 units of time in 480 steps".
+std::string steps_text(const Summary& summary) {
+    const std::string steps = counted(summary.steps, "step");
+    return summary.substeps == 1 ? steps : counted(summary.units_of_time, "unit") + " of time in " + steps;
+}
+
 void print_summary(const Summary& summary) {
-    std::printf("%s: %zu discs, %d steps, variant %s, %d threads\n", summary.scene.c_str(), summary.particles,
-                summary.steps, std::string(summary.variant).c_str(), summary.threads);
+    std::printf("%s: %s, %s, variant %s, %s\n", summary.scene.c_str(),
+                counted(summary.particles, "disc").c_str(), steps_text(summary).c_str(),
+                std::string(summary.variant).c_str(), counted(summary.threads, "thread").c_str());
     std::printf("  reading         %12.6g s\n", summary.seconds.reading);
     std::printf("  setting up      %12.6g s\n", summary.seconds.setting_up);
     std::printf("  steps           %12.6g s\n", summary.seconds.steps);
@@ -174,7 +186,8 @@ void print_errors(const ErrorMeasures& errors) {
          "units of time");
     if (errors.reference) {
         for (const DistanceAt& at : errors.reference->trajectory) {
-            std::printf("  distance after %6d steps %21.6g r (root mean square)\n", at.time, at.rms_distance);
+            std::printf("  distance after %6d units of time %13.6g r (root mean square)\n", at.time,
+                        at.rms_distance);
         }
     }
     for (const std::string& reason : {errors.pressure_reason, errors.reference_reason}) {
@@ -214,8 +227,8 @@ Run simulate(const RunOptions& options, const Scene& scene, const Variant& varia
         });
     progress.clear();
     if (run.violation) {
-        throw CheckError(options.simulation.scene + ", variant " + std::string(variant.name) + ", " +
-                         *run.violation);
+        throw CheckError(shown_name(options.simulation.scene) + ", variant " + std::string(variant.name) +
+                         ", " + *run.violation);
     }
     if (trajectory) {
         trajectory->finish();
@@ -223,13 +236,14 @@ Run simulate(const RunOptions& options, const Scene& scene, const Variant& varia
     return run;
 }
 
-void run(const RunOptions& options) {
-    require_threads(options.simulation.tuning.threads);
+void run(RunOptions options) {
+    const DisturbanceWatch watch;
     Seconds seconds;
     const double before = process_seconds();
-    const Scene scene = read_scene(options.simulation.scene, options.simulation.tuning.threads);
+    const Scene scene = read_scene_and_settle_threads(options.simulation);
     seconds.reading = process_seconds() - before;
     const Variant& variant = require_variant(options.simulation.variant, scene);
+    note_crowding(options.simulation.tuning.threads);
     const Run result = simulate(options, scene, variant, seconds);
     const Summary summary = summarise(options, scene, variant, result, seconds);
     std::optional<ErrorMeasures> errors;
@@ -242,12 +256,13 @@ void run(const RunOptions& options) {
             json["errors"] = error_measures_json(*errors);
         }
         std::cout << json_text(json, 2) << '\n';
-        return;
+    } else {
+        print_summary(summary);
+        if (errors) {
+            print_errors(*errors);
+        }
     }
-    print_summary(summary);
-    if (errors) {
-        print_errors(*errors);
-    }
+    note_if_busy(watch, summary.threads);
 }
 
 } // namespace

@@ -1,13 +1,19 @@
 #include "harness/commands/simulation_options.hpp"
 
 #include <algorithm>
-#include <map>
-#include <numeric>
+#include <array>
+#include <cstddef>
+#include <cstdlib>
 #include <string_view>
 #include <vector>
 
+#include "harness/command_line/values.hpp"
 #include "harness/machine/threads.hpp"
+#include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/nearest.hpp"
+#include "harness/support/note.hpp"
+#include "harness/support/text.hpp"
 #include "harness/verify/rounding.hpp"
 #include "variants/fastest.hpp"
 
@@ -16,30 +22,34 @@ namespace {
 
 constexpr int most = 1'000'000'000;
 
-/// Levenshtein's distance: the fewest letters to insert, delete or replace.
-std::size_t edit_distance(std::string_view one, std::string_view two) {
-    std::vector<std::size_t> row(two.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (const char letter : one) {
-        std::size_t diagonal = row[0]++;
-        for (std::size_t k = 0; k < two.size(); ++k) {
-            const std::size_t replaced = diagonal + (letter != two[k]);
-            diagonal = row[k + 1];
-            row[k + 1] = std::min({diagonal + 1, row[k] + 1, replaced});
-        }
+/// Below so many discs a step takes no longer than the threads' waiting for each other in it.
+constexpr std::size_t fewest_discs_for_threads = 500;
+
+std::vector<std::string> variant_names() {
+    std::vector<std::string> names{automatic};
+    for (const Variant& variant : variants()) {
+        names.emplace_back(variant.name);
     }
-    return row.back();
+    return names;
+}
+
+/// The variant that may have been meant.
+std::string suggested_variant(const std::string& name) {
+    constexpr std::array<std::string_view, 4> superlatives{"fastest", "automatic", "best", "default"};
+    return std::ranges::find(superlatives, name) != superlatives.end() ? automatic
+                                                                       : nearest(name, variant_names());
 }
 
 } // namespace
 
 void add_simulation_options(CLI::App& command, SimulationOptions& options) {
     options.tuning.threads = default_threads();
-    command.add_option("SCENE", options.scene, "Scene file: N, L, r, S, then N lines `i x y vx vy`")
+    command
+        .add_option("SCENE", options.scene,
+                    "Scene file: N, L, r, S, then N lines `i x y vx vy`; - is standard input")
         ->required();
-    command.add_option("THREADS,--threads", options.tuning.threads, "OpenMP threads")
-        ->check(CLI::Range(1, most_threads))
-        ->capture_default_str();
+    add_number(command, "THREADS,--threads", options.tuning.threads, 1, most_threads, "OpenMP threads")
+        ->each([&options](const std::string& /*value*/) { options.threads_given = true; });
     command
         .add_option("--variant", options.variant,
                     "Name from `carom list`, or auto: the fastest for the scene")
@@ -48,31 +58,45 @@ void add_simulation_options(CLI::App& command, SimulationOptions& options) {
 }
 
 void add_tuning_options(CLI::App& command, Tuning& tuning) {
-    const std::map<std::string, Tolerance> tolerances{{"relative", Tolerance::relative},
-                                                      {"published", Tolerance::published}};
-    const auto add = [&command](const char* name, int& value, const char* help) {
-        command.add_option(name, value, help)->check(CLI::Range(1, most))->capture_default_str();
-    };
-    add("--find-chunk", tuning.find_chunk, "Boxes a thread takes at a time, if find has a chunk");
-    add("--resolve-chunk", tuning.resolve_chunk,
-        "Boxes or rows a thread takes at a time, if resolve has a chunk");
-    add("--substeps", tuning.substeps, "Steps per unit of time, dt = 1/K");
-    add("--sweep-limit", tuning.sweep_limit, "Sweeps after which a resolve is given up");
-    command
-        .add_option("--tolerance", tuning.tolerance,
-                    "What counts as approaching: relative or published (1e-7)")
-        ->transform(CLI::CheckedTransformer(tolerances).description(""))
-        ->default_str("relative");
+    add_number(command, "--find-chunk", tuning.find_chunk, 1, most,
+               "Boxes a thread takes at a time, if find has a chunk");
+    add_number(command, "--resolve-chunk", tuning.resolve_chunk, 1, most,
+               "Boxes or rows a thread takes at a time, if resolve has a chunk");
+    add_number(command, "--substeps", tuning.substeps, 1, most, "Steps per unit of time, dt = 1/K");
+    add_number(command, "--sweep-limit", tuning.sweep_limit, 1, most,
+               "Sweeps after which a resolve is given up");
+    add_choice<Tolerance>(command, "--tolerance", tuning.tolerance,
+                          {{"relative", Tolerance::relative}, {"published", Tolerance::published}},
+                          "What counts as approaching: relative, or published (1e-7)");
+}
+
+Scene read_scene_and_settle_threads(SimulationOptions& options) {
+    int& threads = options.tuning.threads;
+    const bool asked = options.threads_given || std::getenv("OMP_NUM_THREADS") != nullptr;
+    if (asked) {
+        require_threads(threads);
+    }
+    Scene scene = read_scene(options.scene, threads);
+    if (!asked && scene.discs.size() < fewest_discs_for_threads) {
+        threads = 1;
+    }
+    require_threads(threads);
+    return scene;
+}
+
+void note_crowding(int threads) {
+    if (threads > usable_processors()) {
+        note(counted(threads, "thread") + " on " + counted(usable_processors(), "processor") +
+             ": they take turns, and wait for each other the longer");
+    }
 }
 
 const Variant& require_variant(const std::string& name) {
     if (const Variant* variant = find_variant(name)) {
         return *variant;
     }
-    const auto nearest = std::ranges::min_element(
-        variants(), {}, [&name](const Variant& variant) { return edit_distance(name, variant.name); });
-    throw InputError("--variant: found '" + name + "', expected a name from `carom list`, such as '" +
-                     std::string(nearest->name) + "'");
+    throw InputError("--variant: found " + in_quotes(name, 100) +
+                     ", expected a name from `carom list`, such as '" + suggested_variant(name) + "'");
 }
 
 const Variant& require_variant(const std::string& name, const Scene& scene) {

@@ -15,6 +15,7 @@ struct SimulationOptions {
     std::string scene;
     std::string variant = "published";
     Tuning tuning;
+    bool threads_given = false; ///< on the command line
 };
 
 /// The name that stands for the fastest variant for the scene.
@@ -26,7 +27,15 @@ void add_simulation_options(CLI::App& command, SimulationOptions& options);
 /// Adds the tunings alone: chunks, substeps, tolerance and sweep limit.
 void add_tuning_options(CLI::App& command, Tuning& tuning);
 
-/// The variant of that name; throws InputError with the nearest names if there is none.
+/// Reads the scene of a verb that does not measure, and settles on its threads: those asked for, on the
+/// command line or by OMP_NUM_THREADS, or else as many as the scene has work for. The result is the same on
+/// any number. Throws InputError.
+Scene read_scene_and_settle_threads(SimulationOptions& options);
+
+/// Says so if these are more threads than the processors that this process may use.
+void note_crowding(int threads);
+
+/// The variant of that name; throws InputError with the nearest name if there is none.
 const Variant& require_variant(const std::string& name);
 
 /// The same, or, for `automatic`, the fastest for the scene.

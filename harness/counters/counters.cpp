@@ -44,6 +44,15 @@ std::vector<Alternatives> wanted_events(std::vector<std::string> events) {
     return wanted;
 }
 
+/// Why an event cannot be counted. That there is none of that name is not the machine's fault.
+Explanation why_missing(const PerfAccess& access, const std::string& source, const Uncountable& missing) {
+    if (!knows_event(missing.event)) {
+        return {"PAPI " + papi_version() + " knows no event of that name on this machine",
+                "a name from `papi_avail` or `papi_native_avail`"};
+    }
+    return explain(access, source, missing.error);
+}
+
 void plan_source(const std::string& source, const std::vector<Alternatives>& wanted, const MakeEventSet& make,
                  CounterPlan& plan) {
     const EventGroups found = group_events(wanted, make);
@@ -55,7 +64,7 @@ void plan_source(const std::string& source, const std::vector<Alternatives>& wan
     }
     const PerfAccess access = read_perf_access();
     for (const Uncountable& missing : found.missing) {
-        const Explanation why = explain(access, source, missing.error);
+        const Explanation why = why_missing(access, source, missing);
         plan.missing.push_back({missing.event, {}, {}, source, why.reason, why.remedy});
     }
 }

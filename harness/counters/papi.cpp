@@ -11,6 +11,7 @@
 #include <pthread.h>
 
 #include "harness/counters/access.hpp"
+#include "harness/support/silence.hpp"
 
 // LeakSanitizer, where it is built in, asks for these: PAPI 7.0 leaves texts of its last unknown event
 // behind, with or without PAPI_shutdown.
@@ -64,6 +65,7 @@ class SoftwareEventsAlone {
 
 /// Why PAPI cannot be used, or an empty text.
 std::string initialize_papi() {
+    const Silence silence;
     const SoftwareEventsAlone guard;
     PAPI_set_debug(PAPI_QUIET);
     const int version = PAPI_library_init(PAPI_VER_CURRENT);
@@ -81,6 +83,12 @@ std::string initialize_papi() {
                (component == nullptr ? "" : std::string(": ") + component->disabled_reason);
     }
     return "";
+}
+
+/// What that said, at the first call.
+const std::string& papi_error() {
+    static const std::string error = initialize_papi();
+    return error;
 }
 
 class PapiEventSet : public EventSet {
@@ -168,13 +176,17 @@ std::string papi_version() {
            "." + std::to_string(PAPI_VERSION_REVISION(version));
 }
 
+bool knows_event(const std::string& event) {
+    int code = 0;
+    return !papi_error().empty() || PAPI_event_name_to_code(event.c_str(), &code) == PAPI_OK;
+}
+
 bool is_software_event(const std::string& event) {
     return std::ranges::find(software_events, event) != software_events.end();
 }
 
 std::unique_ptr<EventSet> papi_event_set(CountedMode mode) {
-    static const std::string error = initialize_papi();
-    if (!error.empty()) {
+    if (const std::string& error = papi_error(); !error.empty()) {
         throw CounterError(error);
     }
     return std::make_unique<PapiEventSet>(mode);

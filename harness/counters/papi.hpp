@@ -10,6 +10,10 @@ namespace carom {
 /// The version of PAPI as 7.0.0.
 std::string papi_version();
 
+/// Whether PAPI has an event of that name, countable or not, on this machine; true if PAPI cannot be used at
+/// all.
+bool knows_event(const std::string& event);
+
 /// Whether the kernel counts PAPI's event by itself, such as perf::TASK-CLOCK.
 bool is_software_event(const std::string& event);
 

@@ -17,6 +17,7 @@
 #include "harness/machine/topology.hpp"
 #include "harness/support/child_process.hpp"
 #include "harness/support/json.hpp"
+#include "harness/support/silence.hpp"
 
 namespace carom {
 namespace {
@@ -144,6 +145,7 @@ Json noise_json(double seconds) {
 } // namespace
 
 Json doctor_json(double noise_seconds) {
+    const Silence silence;
     const Json provenance = provenance_json(1);
     const auto picked = [&provenance](std::initializer_list<const char*> fields) {
         Json json = Json::object();

@@ -46,16 +46,16 @@ Json limits_json(int threads, double seconds, std::int64_t most_bytes) {
 }
 
 std::string limits_text(const Json& limits) {
-    std::string text = "best rates, 1e9 a second\n";
+    std::string text = "best rates\n";
     for (const Json& row : limits["copy"]) {
         text +=
             format("copy within %7lld KiB, %-6s %s %s\n", row["working_set_bytes"].get<long long>() / 1024,
                    row["level"].get<std::string>().c_str(), threads_text(row).c_str(),
-                   rate_text(row["bytes_per_second"], "GB").c_str());
+                   rate_text(row["bytes_per_second"], "GB/s").c_str());
     }
     for (const Json& row : limits["arithmetic"]) {
         text += format("x * a + b, %d at once           %s %s\n", row["lanes"].get<int>(),
-                       threads_text(row).c_str(), rate_text(row["operations_per_second"], "Gflop").c_str());
+                       threads_text(row).c_str(), rate_text(row["operations_per_second"], "Gflop/s").c_str());
     }
     return text;
 }

@@ -44,8 +44,6 @@ int turns_of_a_millisecond() {
     return std::max(1, static_cast<int>(trial * 1e-3 / fastest));
 }
 
-std::optional<CpuTime> cpu_time() { return parse_cpu_time(first_line("/proc/stat").value_or("")); }
-
 } // namespace
 
 std::optional<CpuTime> parse_cpu_time(std::string_view line) {
@@ -60,6 +58,16 @@ std::optional<CpuTime> parse_cpu_time(std::string_view line) {
         time.stolen = ticks;
     }
     return name == "cpu" && count == 8 ? std::optional(time) : std::nullopt;
+}
+
+std::optional<CpuTime> read_cpu_time() { return parse_cpu_time(first_line("/proc/stat").value_or("")); }
+
+std::optional<double> stolen_share(const std::optional<CpuTime>& before,
+                                   const std::optional<CpuTime>& after) {
+    if (!before || !after || after->total <= before->total) {
+        return std::nullopt;
+    }
+    return (after->stolen - before->stolen) / (after->total - before->total);
 }
 
 Noise spread(std::vector<double> durations) {
@@ -78,17 +86,14 @@ Noise spread(std::vector<double> durations) {
 
 Noise measure_noise(double seconds) {
     const int turns = turns_of_a_millisecond();
-    const auto before = cpu_time();
+    const auto before = read_cpu_time();
     const auto start = Clock::now();
     std::vector<double> durations;
     do {
         durations.push_back(timed_spin(turns));
     } while (seconds_since(start) < seconds);
-    const auto after = cpu_time();
     Noise noise = spread(std::move(durations));
-    if (before && after && after->total > before->total) {
-        noise.steal = (after->stolen - before->stolen) / (after->total - before->total);
-    }
+    noise.steal = stolen_share(before, read_cpu_time());
     return noise;
 }
 

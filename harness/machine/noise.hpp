@@ -31,4 +31,10 @@ struct CpuTime {
 /// From the first line of /proc/stat (man proc_stat); empty if it is no such line.
 std::optional<CpuTime> parse_cpu_time(std::string_view line);
 
+/// Reads it now; empty if the system does not tell.
+std::optional<CpuTime> read_cpu_time();
+
+/// The share of the time between that was stolen; empty if either is, or if no time has passed.
+std::optional<double> stolen_share(const std::optional<CpuTime>& before, const std::optional<CpuTime>& after);
+
 } // namespace carom

@@ -12,7 +12,11 @@
 
 namespace carom {
 
-int default_threads() { return std::clamp(omp_get_max_threads(), 1, most_threads); }
+int default_threads() {
+    return std::clamp(std::min(omp_get_max_threads(), omp_get_thread_limit()), 1, most_threads);
+}
+
+int usable_processors() { return omp_get_num_procs(); }
 
 void require_threads(int threads) {
     // The limit is asked for first: LLVM's runtime prints a warning of its own where it refuses a thread.

@@ -6,6 +6,7 @@
 #include <hwloc.h>
 
 #include "harness/machine/topology.hpp"
+#include "harness/support/silence.hpp"
 
 namespace carom {
 namespace {
@@ -53,6 +54,7 @@ class Hwloc {
 } // namespace
 
 Topology read_topology() {
+    const Silence silence; // it warns of what a virtual machine's system tells wrongly
     const Hwloc hwloc;
     Topology topology{.source = "hwloc",
                       .packages = hwloc.count(HWLOC_OBJ_PACKAGE),

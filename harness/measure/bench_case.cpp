@@ -16,6 +16,7 @@ void BenchCase::run(benchmark::State& state) {
     if (!std::exchange(warm_, true)) {
         warm_up(measurement_);
     }
+    double seconds = 0;
     for (auto iteration : state) {
         static_cast<void>(iteration);
         if (measurement_.violation) {
@@ -29,11 +30,12 @@ void BenchCase::run(benchmark::State& state) {
                        std::move(stopwatch)));
         state.ResumeTiming();
         state.SetIterationTime(measurement_.repetitions.back().steps_seconds);
+        seconds += measurement_.repetitions.back().steps_seconds;
     }
     if (measurement_.violation) {
         state.SkipWithError(measurement_.violation->c_str());
     } else {
-        set_counters(state);
+        set_counters(state, seconds / static_cast<double>(state.iterations()));
     }
 }
 
@@ -52,13 +54,12 @@ void BenchCase::note(Run run) {
     }
 }
 
-void BenchCase::set_counters(benchmark::State& state) const {
+void BenchCase::set_counters(benchmark::State& state, double mean_seconds) const {
     const Scene& scene = measurement_.scene;
     const Run& run = measurement_.repetitions.back();
     const double steps = static_cast<double>(scene.steps) * measurement_.tuning.substeps;
     state.counters["steps"] = steps;
-    state.counters["disc_steps_per_second"] =
-        static_cast<double>(scene.discs.size()) * steps / run.steps_seconds;
+    state.counters["disc_steps_per_second"] = static_cast<double>(scene.discs.size()) * steps / mean_seconds;
     state.counters["overlaps"] = static_cast<double>(run.work.overlaps);
     state.counters["pair_resolves"] = static_cast<double>(run.work.pair_resolves);
     state.counters["wall_resolves"] = static_cast<double>(run.work.wall_resolves);

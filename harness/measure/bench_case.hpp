@@ -28,7 +28,8 @@ class BenchCase {
 
   private:
     void note(Run run);
-    void set_counters(benchmark::State& state) const;
+    /// Of the runs of one measurement, which took so long on average; they all did the same work.
+    void set_counters(benchmark::State& state, double mean_seconds) const;
 
     Measurement measurement_;
     bool warm_ = false;

@@ -100,6 +100,7 @@ void Profiler::loop_begin(int thread) {
     one.loop_begin = begin;
     one.waited = 0;
     one.next_index = -1;
+    one.iterations_before = current(one).iterations;
     ++current(one).loops;
 }
 
@@ -149,6 +150,10 @@ void Profiler::keep_chunk(Track& track, double end) {
 
 void Profiler::loop_end(int thread) {
     Track& one = track(thread);
+    if (current(one).iterations == one.iterations_before) {
+        one.loop_end = one.loop_begin; // it got nothing, and has waited for the others from the beginning
+        return;
+    }
     one.loop_end = now();
     if (timeline_.chunks) {
         keep_chunk(one, one.loop_end);

@@ -17,8 +17,9 @@ inline constexpr std::size_t phase_count = 4;
 
 /// What one thread did in one phase, summed over all steps.
 struct ThreadWork {
-    double busy_seconds = 0;    ///< in iterations of parallel loops; for the master also in serial code
-    double waiting_seconds = 0; ///< at barriers, for other iterations, and while the master runs serial code
+    double busy_seconds = 0; ///< in iterations of parallel loops; for the master also in serial code
+    double waiting_seconds =
+        0; ///< at barriers, for other iterations or any, and while the master runs serial code
     std::int64_t iterations = 0;
     std::int64_t chunks = 0;
     std::int64_t loops = 0;
@@ -90,6 +91,7 @@ class Profiler final : public Probe {
         double chunk_begin = 0;
         std::int64_t chunk_first = 0;
         std::int64_t next_index = -1;
+        std::int64_t iterations_before = 0; ///< the loop, in this phase
     };
 
     double now() const;

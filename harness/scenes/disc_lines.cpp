@@ -129,15 +129,18 @@ std::size_t end_of_lines(const Pieces& text, std::size_t begin, std::span<char> 
 } // namespace
 
 bool read_disc_lines(const Pieces& text, std::size_t begin, std::span<Disc> discs, int threads) {
+    const std::size_t blocks = (text.size - std::min(begin, text.size) + block_size - 1) / block_size;
+    const int needed =
+        static_cast<int>(std::clamp<std::size_t>(blocks, 1, static_cast<std::size_t>(threads)));
     const auto buffers =
-        std::make_unique_for_overwrite<char[]>(static_cast<std::size_t>(threads) * buffer_size);
+        std::make_unique_for_overwrite<char[]>(static_cast<std::size_t>(needed) * buffer_size);
     const auto buffer = [&buffers](int thread) {
         return std::span(&buffers[static_cast<std::size_t>(thread) * buffer_size], buffer_size);
     };
     DiscLines lines(text, begin, end_of_lines(text, begin, buffer(0)), discs);
     std::atomic<std::size_t> next = 0;
     std::atomic<bool> good = true;
-    on_each_thread(threads, [&](int thread) {
+    on_each_thread(needed, [&](int thread) {
         for (std::size_t block = next++; block < lines.blocks() && good; block = next++) {
             if (!lines.read_block(block, buffer(thread))) {
                 good = false;

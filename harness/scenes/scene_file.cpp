@@ -41,7 +41,7 @@ class LineReader {
         const std::string_view text = next_field();
         const auto value = parse_number<Number>(text);
         if (!value) {
-            fail(text.empty() ? "the end of the line" : quoted(text), expected);
+            fail(text.empty() ? "the end of the line" : in_quotes(text), expected);
         }
         return *value;
     }
@@ -56,7 +56,7 @@ class LineReader {
 
     void end_line() {
         if (const std::string_view text = next_field(); !text.empty()) {
-            fail(quoted(text), "the end of the line");
+            fail(in_quotes(text), "the end of the line");
         }
     }
 
@@ -64,7 +64,7 @@ class LineReader {
         while (!rest_.empty()) {
             next_line("");
             if (const std::string_view text = next_field(); !text.empty()) {
-                fail(quoted(text), "the end of the file after the last disc");
+                fail(in_quotes(text), "the end of the file after the last disc");
             }
         }
     }
@@ -72,14 +72,6 @@ class LineReader {
     std::size_t bytes_left() const { return rest_.size() + beyond_; }
 
   private:
-    static std::string quoted(std::string_view text) {
-        std::string shown = "'";
-        for (const char letter : text.substr(0, 40)) {
-            shown += letter >= ' ' && letter <= '~' ? letter : '?';
-        }
-        return shown + (text.size() > 40 ? "...'" : "'");
-    }
-
     std::string_view next_field() {
         const auto start = line_.find_first_not_of(blank);
         if (start == std::string_view::npos) {
@@ -197,13 +189,13 @@ Scene read_scene(const std::filesystem::path& path, int threads) {
     std::array<char, 4096> buffer;
     const std::string_view start = pieces.at(0, buffer);
     if (start.size() <= file.size() && std::ranges::count(start, '\n') >= 4) {
-        LineReader reader(start, path.string(), file.size() - start.size());
-        Scene scene = read_header(reader, path.string());
+        LineReader reader(start, shown_name(path), file.size() - start.size());
+        Scene scene = read_header(reader, shown_name(path));
         if (read_disc_lines(pieces, file.size() - reader.bytes_left(), scene.discs, threads)) {
             return scene;
         }
     }
-    return parse_scene(file.whole(), path.string());
+    return parse_scene(file.whole(), shown_name(path));
 }
 
 std::string scene_text(const Scene& scene) {

@@ -23,8 +23,8 @@ inline constexpr int most_discs = 100'000'000;
 /// expected; nothing is allocated for discs that the text is too short to hold.
 Scene parse_scene(std::string_view text, const std::string& name);
 
-/// Reads and parses a scene file, on so many threads of OpenMP; the scene, or the error, is the same on any
-/// number. Throws InputError.
+/// Reads and parses a scene file, or standard input for "-", on at most so many threads of OpenMP; the scene,
+/// or the error, is the same on any number. Throws InputError.
 Scene read_scene(const std::filesystem::path& path, int threads = 1);
 
 /// The text that `parse_scene` reads back as the same scene, to the last bit.

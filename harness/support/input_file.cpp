@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstring>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -21,18 +22,40 @@ template <class Read> ssize_t uninterrupted(const Read& read_some) {
     return count;
 }
 
+int open_to_read(const std::filesystem::path& path) {
+    return is_standard_input(path) ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                                   : open(path.c_str(), O_RDONLY | O_CLOEXEC);
+}
+
+[[noreturn]] void refuse(const std::string& path, const char* what, int error) {
+    throw InputError(path + ": " + what + " (" + std::strerror(error) + "), expected a readable file");
+}
+
 } // namespace
 
+bool is_standard_input(const std::filesystem::path& path) { return path == "-"; }
+
+std::string shown_name(const std::filesystem::path& path) {
+    return is_standard_input(path) ? "standard input" : path.string();
+}
+
 InputFile::InputFile(const std::filesystem::path& path)
-    : path_(path.string()), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-    struct stat status{};
-    if (descriptor_ < 0 || fstat(descriptor_, &status) != 0 || S_ISDIR(status.st_mode)) {
-        if (descriptor_ >= 0) {
-            close(descriptor_);
-        }
-        throw InputError(path_ + ": cannot be read, expected a readable file");
+    : path_(shown_name(path)), descriptor_(open_to_read(path)) {
+    if (descriptor_ < 0) {
+        refuse(path_, "cannot be read", errno);
     }
-    size_ = S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) : 0;
+    struct stat status{};
+    int error = fstat(descriptor_, &status) == 0 ? 0 : errno;
+    if (S_ISDIR(status.st_mode)) {
+        error = EISDIR;
+    }
+    if (error != 0) {
+        close(descriptor_);
+        refuse(path_, "cannot be read", error);
+    }
+    // Some of standard input may have been read by somebody else: it has no beginning to go back to.
+    const bool plain = S_ISREG(status.st_mode) && !is_standard_input(path);
+    size_ = plain ? static_cast<std::size_t>(status.st_size) : 0;
 }
 
 InputFile::~InputFile() { close(descriptor_); }
@@ -61,7 +84,7 @@ std::string InputFile::whole() const {
         text.append(buffer.data(), static_cast<std::size_t>(count));
     }
     if (count < 0) {
-        throw InputError(path_ + ": reading broke off, expected a readable file");
+        refuse(path_, "reading broke off", errno);
     }
     return text;
 }

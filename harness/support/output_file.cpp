@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <iostream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -17,6 +18,10 @@ namespace carom {
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     std::error_code absent;
     const auto status = std::filesystem::status(path_, absent);
+    if (std::filesystem::is_directory(status)) {
+        errno = EISDIR;
+        refuse("cannot be written");
+    }
     const bool special = std::filesystem::is_other(status);
     if (!special) {
         temporary_ = path_.string() + ".part" + std::to_string(getpid());
@@ -59,6 +64,26 @@ void OutputFile::finish() {
 void OutputFile::refuse(const char* what) const {
     throw InputError(path_.string() + ": " + what + " (" + std::strerror(errno) +
                      "), expected a writable place with room");
+}
+
+bool is_standard_output(const std::filesystem::path& path) { return path.empty() || path == "-"; }
+
+void require_writable(const std::filesystem::path& path) {
+    std::error_code absent;
+    // Opening a pipe would wait for whoever reads it.
+    if (!is_standard_output(path) && !std::filesystem::is_other(std::filesystem::status(path, absent))) {
+        const OutputFile probe(path);
+    }
+}
+
+void write_text(const std::filesystem::path& path, std::string_view text) {
+    if (is_standard_output(path)) {
+        std::cout << text;
+        return;
+    }
+    OutputFile file(path);
+    file.write(text);
+    file.finish();
 }
 
 } // namespace carom

@@ -26,4 +26,14 @@ class OutputFile {
     int descriptor_ = -1;
 };
 
+/// Whether the path is empty or "-", which stands for standard output where a text may go there.
+bool is_standard_output(const std::filesystem::path& path);
+
+/// Throws InputError if no file can be written there, if it is one: to be asked before the work whose result
+/// it will hold.
+void require_writable(const std::filesystem::path& path);
+
+/// Writes a text to a file, or to standard output. Throws InputError.
+void write_text(const std::filesystem::path& path, std::string_view text);
+
 } // namespace carom

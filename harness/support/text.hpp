@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,6 +32,21 @@ template <class Number> std::string number_text(Number value) {
     std::string text;
     append_number(text, value);
     return text;
+}
+
+/// What was found, to stand in a message of one line: between quotes, not too long, letters that cannot be
+/// printed as question marks.
+inline std::string in_quotes(std::string_view found, std::size_t longest = 40) {
+    std::string shown = "'";
+    for (const char letter : found.substr(0, longest)) {
+        shown += letter >= ' ' && letter <= '~' ? letter : '?';
+    }
+    return shown + (found.size() > longest ? "...'" : "'");
+}
+
+/// "1 disc", "2 discs".
+template <class Count> std::string counted(Count count, const std::string& one) {
+    return number_text(count) + " " + one + (count == 1 ? "" : "s");
 }
 
 } // namespace carom

@@ -1,6 +1,8 @@
 #include "harness/tests/program.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
 #include <system_error>
 
 #include <fcntl.h>
@@ -23,22 +25,35 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
     return pointers;
 }
 
+std::string name_of(const std::string& setting) { return setting.substr(0, setting.find('=')); }
+
 std::vector<std::string> environment_with(const std::vector<std::string>& settings) {
-    std::vector<std::string> all = settings;
+    std::vector<std::string> all;
+    std::ranges::copy_if(settings, std::back_inserter(all),
+                         [](const auto& setting) { return setting.find('=') != std::string::npos; });
     for (char** entry = environ; *entry != nullptr; ++entry) {
-        const std::string name = std::string(*entry).substr(0, std::string(*entry).find('=') + 1);
+        const std::string name = name_of(*entry);
         if (std::ranges::none_of(settings,
-                                 [&name](const auto& setting) { return setting.starts_with(name); })) {
+                                 [&name](const auto& setting) { return name_of(setting) == name; })) {
             all.emplace_back(*entry);
         }
     }
     return all;
 }
 
+/// Parts what the program wrote to standard error into notes and the rest.
+void part(const std::string& text, ProgramResult& result) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        const bool ended = !lines.eof();
+        (line.starts_with("carom: note: ") ? result.notes : result.error) += line + (ended ? "\n" : "");
+    }
+}
+
 } // namespace
 
 ProgramResult run_carom(std::vector<std::string> arguments, const std::vector<std::string>& environment,
-                        const std::string& standard_output) {
+                        const std::string& standard_output, const std::string& standard_input) {
     const TemporaryDirectory directory;
     const std::string output = standard_output.empty() ? directory / "output" : standard_output;
     const std::string error = directory / "error";
@@ -47,7 +62,7 @@ ProgramResult run_carom(std::vector<std::string> arguments, const std::vector<st
 
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, standard_input.c_str(), O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
                                      0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, error.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
@@ -65,7 +80,7 @@ ProgramResult run_carom(std::vector<std::string> arguments, const std::vector<st
     ProgramResult result;
     result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
     result.output = standard_output.empty() ? content_of(output) : "";
-    result.error = content_of(error);
+    part(content_of(error), result);
     return result;
 }
 

@@ -1,6 +1,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "harness/measure/measure.hpp"
 #include "harness/scenes/scene_file.hpp"
@@ -54,6 +55,42 @@ TEST_F(CheckCommand, NamesTheFirstViolation) {
                             {jammed, std::string("variant ") + variant,
                              "step 1: the resolve did not end within 30 sweeps: disc"}));
     }
+}
+
+TEST_F(CheckCommand, GivesItsVerdictAsJson) {
+    const Scene busy = tests::random_scene(150, 50, 1, 6, 2, 171);
+    const std::string scene = directory.write("scene.in", scene_text(busy));
+    const ProgramResult passed = run_carom({"check", scene, "2", "--variant", "published", "--json"});
+    EXPECT_EQ(passed.exit_code, 0);
+    EXPECT_EQ(passed.error, "");
+    const auto json = nlohmann::json::parse(passed.output);
+    EXPECT_EQ(json["verdict"], "passed");
+    EXPECT_TRUE(json["reason"].is_null());
+    EXPECT_EQ(json["scene"], scene);
+    EXPECT_EQ(json["variant"], "published");
+    EXPECT_EQ(json["threads"], 2);
+    EXPECT_EQ(json["particles"], 150);
+    EXPECT_EQ(json["steps"], 6);
+    EXPECT_EQ(json["state_hash"], state_hash(tests::simulate<Policies{}>(busy).discs));
+}
+
+TEST_F(CheckCommand, GivesTheVerdictOfAFailureAsJsonAndInALine) {
+    const std::string jammed = directory.write("jammed.in", "2\n4\n1\n9\n0 1 2 0 0\n1 2 2 1 0\n");
+    const ProgramResult failed = run_carom({"check", jammed, "1", "--sweep-limit", "30", "--json"});
+    EXPECT_EQ(failed.exit_code, 2);
+    const auto json = nlohmann::json::parse(failed.output);
+    EXPECT_EQ(json["verdict"], "failed");
+    EXPECT_TRUE(json["state_hash"].is_null());
+    const std::string reason = json["reason"];
+    EXPECT_TRUE(reason.starts_with("step 1: the resolve did not end within 30 sweeps"));
+    EXPECT_EQ(failed.error, "carom: " + jammed + ", variant published, " + reason + "\n");
+}
+
+TEST_F(CheckCommand, ReadsTheSceneFromStandardInput) {
+    const std::string scene = directory.write("scene.in", scene_text(tests::corner()));
+    const ProgramResult result = run_carom({"check", "-"}, {}, "", scene);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_TRUE(result.output.starts_with("passed: standard input, variant published, ")) << result.output;
 }
 
 TEST_F(CheckCommand, NamesTheSubstepOfTheViolation) {

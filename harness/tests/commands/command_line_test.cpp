@@ -46,7 +46,7 @@ TEST_F(CommandLine, HelpsWithTheProgramAndEveryVerb) {
     EXPECT_EQ(help.error, "");
     EXPECT_LE(width(help.output), 80);
     for (const std::string verb : {"list", "run", "check", "bench", "profile", "generate", "reference",
-                                   "doctor", "limits", "outside"}) {
+                                   "doctor", "limits", "outside", "help"}) {
         EXPECT_NE(help.output.find("\n  " + verb + ' '), std::string::npos) << verb;
         const ProgramResult verb_help = run_carom({verb, "--help"});
         EXPECT_EQ(verb_help.exit_code, 0) << verb;

@@ -66,6 +66,10 @@ TEST(GenerateCommand, WritesAFileThatRunReads) {
     EXPECT_EQ(run_carom({"check", path}).exit_code, 0);
 }
 
+TEST(GenerateCommand, WritesToStandardOutputIfToldSo) {
+    EXPECT_EQ(generate_with({"--output", "-"}).output, expected_text(1));
+}
+
 TEST(GenerateCommand, RefusesWhatNoSceneCanHave) {
     EXPECT_TRUE(refused(generate_with(1, "-1"), 1, {"N"}));
     EXPECT_TRUE(refused(generate_with(1, "1.5"), 1, {"N"}));
@@ -83,7 +87,7 @@ TEST(GenerateCommand, RefusesWhatNoSceneCanHave) {
     EXPECT_TRUE(refused(generate_with(6, "nan"), 1, {"VMAX"}));
     EXPECT_TRUE(refused(generate_with(6, "1e61"), 1, {"VMAX"}));
     EXPECT_TRUE(refused(generate_with({"--seed", "-1"}), 1, {"--seed"}));
-    EXPECT_TRUE(refused(run_carom({"generate", "40", "100"}), 1, {"required"}));
+    EXPECT_TRUE(refused(run_carom({"generate", "40", "100"}), 1, {"found no R"}));
 }
 
 TEST(GenerateCommand, LeavesNoFileWhereItIsRefused) {
@@ -153,7 +157,7 @@ TEST(GenerateCommand, RefusesAMixtureOfRandomSceneAndHardCase) {
     EXPECT_TRUE(refused(run_carom({"generate", "--case", "cradle", "--seed", "3"}), 1, {"--seed"}));
     EXPECT_TRUE(refused(run_carom({"generate", "--case", "cradle", "--cases"}), 1, {"--cases"}));
     EXPECT_TRUE(refused(run_carom({"generate", "--case", "cradle", "--json"}), 1, {"--json"}));
-    EXPECT_TRUE(refused(run_carom({"generate"}), 1, {"N is required"}));
+    EXPECT_TRUE(refused(run_carom({"generate"}), 1, {"found no N"}));
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/machine/threads.hpp"
 #include "harness/measure/energy_drift.hpp"
 #include "harness/measure/measure.hpp"
 #include "harness/scenes/scene_file.hpp"
@@ -210,6 +211,43 @@ TEST_F(RunCommand, SummarisesASceneWhoseNameIsNoUtf8) {
     const std::string path = directory.write("\xff.in", scene_text(busy));
     const auto json = summary({path});
     EXPECT_EQ(json["particles"], 150);
+}
+
+TEST_F(RunCommand, TellsStepsFromUnitsOfTime) {
+    const std::string text = run_carom({"run", scene, "2", "--substeps", "8"}).output;
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "150 discs, 6 units of time in 48 steps, variant ", text);
+    const auto json = summary({scene, "--substeps", "8"});
+    EXPECT_EQ(json["steps"], 6);
+    EXPECT_EQ(json["steps_simulated"], 48);
+    EXPECT_NEAR(json["steps_per_second"].get<double>() * json["steps_seconds"].get<double>(), 48, 1e-6);
+}
+
+TEST_F(RunCommand, CountsOneWithoutAPlural) {
+    const std::string one = directory.write("one.in", "1\n10\n1\n1\n0 5 5 1 0\n");
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, ": 1 disc, 1 step, variant ",
+                        run_carom({"run", one, "1"}).output);
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, ", 1 thread\n", run_carom({"run", one, "1"}).output);
+}
+
+TEST_F(RunCommand, TakesOneThreadByItselfForFewDiscs) {
+    EXPECT_EQ(summary({scene}, {"OMP_NUM_THREADS"})["threads"], 1);
+    EXPECT_EQ(summary({scene, "2"}, {"OMP_NUM_THREADS"})["threads"], 2);
+    EXPECT_EQ(summary({scene, "--threads", "2"}, {"OMP_NUM_THREADS"})["threads"], 2);
+    const std::string many =
+        directory.write("many.in", scene_text(tests::random_scene(3000, 900, 1, 1, 2, 5)));
+    EXPECT_EQ(summary({many}, {"OMP_NUM_THREADS"})["threads"], usable_processors());
+}
+
+TEST_F(RunCommand, ReadsTheSceneFromStandardInput) {
+    const ProgramResult result = run_carom({"run", "-", "2", "--json"}, {}, "", scene);
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const auto json = nlohmann::json::parse(result.output);
+    EXPECT_EQ(json["scene"], "standard input");
+    EXPECT_EQ(json["state_hash"], summary({scene})["state_hash"]);
+    const std::string bad = directory.write("bad.in", "1\n10\n1\n5\n0 5 five 0 0\n");
+    EXPECT_TRUE(refused(run_carom({"run", "-"}, {}, "", bad), 1,
+                        {"carom: standard input:5: found 'five', expected a position y"}));
+    EXPECT_TRUE(refused(run_carom({"run", "-"}), 1, {"standard input:1: found the end of the file"}));
 }
 
 } // namespace

@@ -7,8 +7,6 @@
 namespace carom {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::int64_t kibi = 1024;
 constexpr std::int64_t mebi = 1024 * kibi;
 constexpr std::int64_t gibi = 1024 * mebi;
@@ -97,8 +95,8 @@ TEST(Arithmetic, OfAWholeRegisterIsFasterThanOfOneDouble) {
 }
 
 /// The rates as an example that needs no measuring.
-Json example() {
-    const Json rate{{"best", 12.5e9}, {"median", 12e9}, {"repetitions", 7}};
+nlohmann::ordered_json example() {
+    const nlohmann::ordered_json rate{{"best", 12.5e9}, {"median", 12e9}, {"repetitions", 7}};
     return {{"copy",
              {{{"level", "memory"},
                {"working_set_bytes", 256 * mebi},
@@ -109,9 +107,9 @@ Json example() {
 
 TEST(LimitsText, SaysWhatWasMeasuredAndInWhichUnits) {
     EXPECT_EQ(limits_text(example()),
-              "best rates, 1e9 a second\n"
-              "copy within  262144 KiB, memory   2 threads      12.5 GB (median 12 of 7)\n"
-              "x * a + b, 2 at once             1 thread       12.5 Gflop (median 12 of 7)\n");
+              "best rates\n"
+              "copy within  262144 KiB, memory   2 threads      12.5 GB/s (median 12 of 7)\n"
+              "x * a + b, 2 at once             1 thread       12.5 Gflop/s (median 12 of 7)\n");
 }
 
 TEST(LimitsCommand, MeasuresEveryNumberOfThreadsAndRecordsWhatItPrints) {
@@ -120,7 +118,7 @@ TEST(LimitsCommand, MeasuresEveryNumberOfThreadsAndRecordsWhatItPrints) {
         tests::run_carom({"limits", "--threads", "2", "--seconds", "0", "--memory", "4", "--json", "--record",
                           directory / "limits.json", "--tag", "site=local"});
     EXPECT_EQ(result.exit_code, 0) << result.error;
-    const Json printed = Json::parse(result.output, nullptr, false);
+    const nlohmann::ordered_json printed = nlohmann::ordered_json::parse(result.output, nullptr, false);
     ASSERT_TRUE(printed.is_object()) << result.output;
     for (const char* part : {"copy", "arithmetic"}) {
         EXPECT_EQ(printed[part].front()["threads"], 1);
@@ -128,7 +126,8 @@ TEST(LimitsCommand, MeasuresEveryNumberOfThreadsAndRecordsWhatItPrints) {
     }
     EXPECT_EQ(printed["copy"].front()["working_set_bytes"], 32 * kibi);
     EXPECT_EQ(printed["copy"].back()["working_set_bytes"], 4 * mebi);
-    const Json record = Json::parse(tests::content_of(directory / "limits.json"), nullptr, false);
+    const nlohmann::ordered_json record =
+        nlohmann::ordered_json::parse(tests::content_of(directory / "limits.json"), nullptr, false);
     ASSERT_TRUE(record.is_object());
     EXPECT_EQ(record["kind"], "limits");
     EXPECT_EQ(record["tags"]["site"], "local");

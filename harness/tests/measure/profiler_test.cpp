@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <thread>
 #include <vector>
@@ -170,6 +171,22 @@ TEST(Profiler, CountsTheWaitForOtherIterationsAsWaiting) {
     EXPECT_TRUE(std::ranges::equal(spans, expected, {}, &Span::kind));
     EXPECT_EQ(spans[0].end, spans[1].begin) << "the first chunk ends where the wait begins";
     EXPECT_GE(spans[2].begin, spans[1].end);
+}
+
+TEST(Profiler, CountsALoopThatGaveAThreadNothingAsWaiting) {
+    Profiler profiler({}, {.threads = 1}, {.spans = true});
+    profiler.phase_begin(Phase::find);
+    profiler.loop_begin(0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    profiler.loop_end(0);
+    profiler.barrier_end(0);
+    profiler.phase_end(Phase::find);
+    const ThreadWork& work = profiler.work(Phase::find, 0);
+    EXPECT_GE(work.waiting_seconds, 0.02);
+    EXPECT_LT(work.busy_seconds, profiler.phase_time(Phase::find).wall_seconds - 0.02 + 1e-9);
+    EXPECT_EQ(work.loops, 1);
+    using enum Span::Kind;
+    EXPECT_TRUE(std::ranges::equal(profiler.spans(0), std::initializer_list{wait, phase}, {}, &Span::kind));
 }
 
 TEST(Profiler, LeavesOutSpansBeyondTheLimitAndSaysHowMany) {

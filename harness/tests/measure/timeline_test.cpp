@@ -98,7 +98,8 @@ TEST(Timeline, ShowsPhasesSweepsLoopsAndWaits) {
     }
     EXPECT_EQ(count_named(tracks.at(0), "sweep"), sweeps);
     for (const int thread : {0, 1}) {
-        EXPECT_EQ(count_named(tracks.at(thread), "resolve loop"), 4 * sweeps);
+        EXPECT_LE(count_named(tracks.at(thread), "resolve loop"), 4 * sweeps) << "none where it got no box";
+        EXPECT_GT(count_named(tracks.at(thread), "resolve loop"), 0);
         EXPECT_EQ(count_named(tracks.at(thread), "wait"), 4 * sweeps + 20);
         EXPECT_EQ(count_named(tracks.at(thread), "resolve chunk"), 0);
     }

@@ -150,9 +150,11 @@ std::string refusal_to_read(const std::string& path) {
 TEST(UnreadableSceneFile, IsRefusedWithItsName) {
     const tests::TemporaryDirectory directory;
     const std::string missing = directory / "missing.in";
-    EXPECT_EQ(refusal_to_read(missing), missing + ": cannot be read, expected a readable file");
+    EXPECT_EQ(refusal_to_read(missing),
+              missing + ": cannot be read (No such file or directory), expected a readable file");
     const std::string folder = directory / ".";
-    EXPECT_EQ(refusal_to_read(folder), folder + ": cannot be read, expected a readable file");
+    EXPECT_EQ(refusal_to_read(folder),
+              folder + ": cannot be read (Is a directory), expected a readable file");
 }
 
 TEST(UnreadableSceneFile, NamesTheFileOfABadLine) {

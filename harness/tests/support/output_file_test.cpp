@@ -98,10 +98,23 @@ TEST(OutputFile, ReplacesNoFolder) {
     const TemporaryDirectory directory;
     const std::string path = directory / "folder";
     std::filesystem::create_directory(path);
-    EXPECT_TRUE(refusal_to_write(path).starts_with(path + ": cannot be "));
+    EXPECT_TRUE(refusal_to_write(path).starts_with(path + ": cannot be written (Is a directory)"));
     EXPECT_TRUE(std::filesystem::is_directory(path));
     std::filesystem::remove(path);
     EXPECT_TRUE(directory.empty());
+}
+
+TEST(OutputFile, IsRefusedBeforeTheWorkThatItIsFor) {
+    const TemporaryDirectory directory;
+    EXPECT_THROW(require_writable(directory / "missing/result"), InputError);
+    require_writable(directory / "result");
+    EXPECT_TRUE(directory.empty());
+    const std::string there = directory.write("result", "old");
+    require_writable(there);
+    EXPECT_EQ(content_of(there), "old");
+    const std::string pipe = directory / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    require_writable(pipe); // waits for no reader
 }
 
 TEST(OutputFile, ReplacesNoDeviceOrPipe) {

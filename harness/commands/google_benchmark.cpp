@@ -1,0 +1,129 @@
+#include "harness/commands/google_benchmark.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <streambuf>
+#include <string_view>
+
+#include <benchmark/benchmark.h>
+
+#include "harness/support/errors.hpp"
+#include "harness/support/note.hpp"
+#include "harness/support/text.hpp"
+
+namespace carom {
+namespace {
+
+/// While it lives, std::cerr is read line by line; what is neither explained nor kept is passed on.
+class Messages : public std::streambuf {
+  public:
+    explicit Messages(bool keep_all) : keep_all_(keep_all), outside_(std::cerr.rdbuf(this)) {}
+    ~Messages() override {
+        std::cerr.rdbuf(outside_);
+        if (!line_.empty()) {
+            std::cerr << line_;
+        }
+    }
+    Messages(const Messages&) = delete;
+    Messages& operator=(const Messages&) = delete;
+
+    /// The lines that were kept, as one.
+    const std::string& kept() const { return kept_; }
+
+  protected:
+    int overflow(int letter) override {
+        if (letter == '\n') {
+            take_line();
+        } else if (letter != traits_type::eof()) {
+            line_ += static_cast<char>(letter);
+        }
+        return traits_type::not_eof(letter);
+    }
+
+  private:
+    bool has(std::string_view part) const { return line_.find(part) != std::string::npos; }
+
+    void take_line() {
+        if (keep_all_ || has("match any benchmarks") || has("compile benchmark re")) {
+            kept_ += (kept_.empty() ? "" : " ") + line_;
+        } else if (has("Library was built as DEBUG")) {
+            note("Google Benchmark was built as DEBUG, as Debian's package is: it only asks for runs "
+                 "here, and the "
+                 "times are those of carom's own clock");
+        } else {
+            const std::string line = line_ + '\n';
+            outside_->sputn(line.data(), static_cast<std::streamsize>(line.size()));
+        }
+        line_.clear();
+    }
+
+    bool keep_all_;
+    std::streambuf* outside_;
+    std::string line_;
+    std::string kept_;
+};
+
+struct Words {
+    std::string_view flag;
+    std::string_view expected;
+    std::array<std::string_view, 4> words;
+};
+
+/// The flags whose other values make Google Benchmark print how it is used.
+constexpr std::array<Words, 3> flags_of_words{
+    {{"--benchmark_format", "console, json or csv", {"console", "json", "csv", "console"}},
+     {"--benchmark_out_format", "console, json or csv", {"console", "json", "csv", "json"}},
+     {"--benchmark_time_unit", "ns, us, ms or s", {"ns", "us", "ms", "s"}}}};
+
+void require_words(const std::string& flag) {
+    const auto equals = std::min(flag.find('='), flag.size());
+    const std::string value = flag.substr(std::min(equals + 1, flag.size()));
+    for (const Words& one : flags_of_words) {
+        if (flag.substr(0, equals) == one.flag && std::ranges::find(one.words, value) == one.words.end()) {
+            throw InputError(std::string(one.flag) + ": found " + in_quotes(value) + ", expected " +
+                             std::string(one.expected));
+        }
+    }
+    if (flag == "--benchmark_color=" || flag == "--benchmark_help") {
+        throw InputError("found '" + flag +
+                         "', expected another flag of Google Benchmark, as `carom bench --help` "
+                         "hands them on");
+    }
+}
+
+} // namespace
+
+void initialize_google_benchmark(const std::vector<std::string>& flags) {
+    static std::string program = "carom"; // Google Benchmark keeps the pointer and prints it much later
+    std::vector<std::string> texts = flags;
+    std::vector<char*> pointers{program.data()};
+    for (std::string& text : texts) {
+        require_words(text);
+        pointers.push_back(text.data());
+    }
+    int count = static_cast<int>(pointers.size());
+    const Messages messages(true);
+    benchmark::Initialize(&count, pointers.data());
+    if (count > 1) {
+        throw InputError("found " + in_quotes(pointers[1]) + ", expected a flag that Google Benchmark knows" +
+                         (messages.kept().empty() ? "" : "; it says: " + messages.kept()));
+    }
+}
+
+void run_google_benchmark(const std::vector<std::string>& flags, const std::string& example) {
+    const Messages messages(false);
+    const auto cases = benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+    if (cases > 0) {
+        return;
+    }
+    constexpr std::string_view name = "--benchmark_filter=";
+    const auto filter = std::ranges::find_if(flags, [](const auto& flag) { return flag.starts_with(name); });
+    throw InputError("--benchmark_filter: found " +
+                     (filter == flags.end() ? "none that fits" : in_quotes(filter->substr(name.size()))) +
+                     ", expected a regular expression that is found in a case's name, such as '" + example +
+                     "'");
+}
+
+} // namespace carom
