@@ -59,13 +59,16 @@ def command_of(
         {name: "{scene}" if name == SCENE else _text(value) for name, value in one.items()} for one in values
     )
     words = _filled(series.command, f"{key}.command", known)
-    program = _program(words, f"{key}.command", folder)
+    if not series.is_one_of_many:
+        _require_executable(words[0], f"{key}.command", folder)
+    program = _program(words, folder)
     trajectory = _filled(series.trajectory, f"{key}.trajectory", {**checked, OUTPUT: "{out}"})
     if trajectory:
         if SCENE not in checked:
             raise InputError(f"{key}.trajectory: found without a scene, expected a table scene beside it")
-        path = _executable(trajectory[0], f"{key}.trajectory", folder)
-        trajectory = (os.fspath(path), *trajectory[1:])
+        if not series.is_one_of_many:
+            _require_executable(trajectory[0], f"{key}.trajectory", folder)
+        trajectory = (os.fspath(_found(trajectory[0], folder)), *trajectory[1:])
     benchmark = series.benchmark
     return Command(
         words=(os.fspath(program.path), *words[1:]),
@@ -112,9 +115,13 @@ def _filled(words: Sequence[str], key: str, known: Mapping[str, str]) -> tuple[s
     return tuple(filled)
 
 
-def _executable(word: str, key: str, folder: Path) -> Path:
+def _found(word: str, folder: Path) -> Path:
     """The file that a first word names: below the folder if it has a slash, else on PATH."""
-    found = folder / word if "/" in word else Path(shutil.which(word) or word)
+    return (folder / word if "/" in word else Path(shutil.which(word) or word)).absolute()
+
+
+def _require_executable(word: str, key: str, folder: Path) -> None:
+    found = _found(word, folder)
     if not found.exists():
         where = "a program" if "/" in word else "a program on PATH"
         raise InputError(f'{key}: found "{word}", which is not there; expected {where}')
@@ -122,11 +129,10 @@ def _executable(word: str, key: str, folder: Path) -> Path:
         raise InputError(f'{key}: found "{word}", which is a folder; expected a program')
     if not os.access(found, os.X_OK):
         raise InputError(f'{key}: found "{word}", which is not executable; `chmod +x` makes it so')
-    return found.absolute()
 
 
-def _program(words: Sequence[str], key: str, folder: Path) -> Program:
-    path = _executable(words[0], key, folder)
+def _program(words: Sequence[str], folder: Path) -> Program:
+    path = _found(words[0], folder)
     others = [folder / word for word in words[1:] if word and len(word) < os.pathconf("/", "PC_PATH_MAX")]
     files = (path, *_interpreter(path), *(file for file in others if _is_file(file)))
     return Program(path.name, path, digest_of_hashes([sha256_of(file) for file in files]), files)

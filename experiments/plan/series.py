@@ -52,6 +52,8 @@ class Series:
     find_chunk: int | None = None
     resolve_chunk: int | None = None
     optional: bool = False
+    is_one_of_many: bool = False
+    """Found by a pattern: if it cannot be run, that is its own failure and not one of the question."""
     values: tuple[float, ...] = ()
     quick_values: tuple[float, ...] = ()
 
@@ -150,7 +152,7 @@ def _of_pattern(path: Path, key: str, series: Series, pattern: str) -> Iterator[
             tuple(_placed(word, there) for word in words) for words in (series.command, series.trajectory)
         )
         prefix = f"{series.name} " if series.name else ""
-        yield replace(series, name=prefix + name, command=command, trajectory=trajectory)
+        yield replace(series, name=prefix + name, command=command, trajectory=trajectory, is_one_of_many=True)
 
 
 def _placed(word: str, values: Mapping[str, str]) -> str:

@@ -12,7 +12,7 @@ from experiments.run.schedule import Schedule, split
 from experiments.run.study import POINTS_FAILED, Settings, Study, keep_claims, summary
 from experiments.run.together import together
 from experiments.run.verdicts import Verdicts, ask
-from experiments.support.process import NOT_FOUND, Coprocess
+from experiments.support.process import Coprocess
 
 DRAWING_PAUSE = 10.0
 """Seconds between two drawings: what is complete sooner is drawn together, which takes less time."""
@@ -157,7 +157,7 @@ class Session:
         where = f"{point.experiment}, {point.series}, {point.x_name} {point.x:g}"
         self._report.line(f"{where}: failed: {failed.reason}")
         # A build that is not there is a gap with a remedy, not a wrong result.
-        if failed.exit_code != NOT_FOUND:
+        if point.program.sha256 is not None:
             self._failures[point.experiment] += 1
 
     def _complete(self, experiment: Experiment) -> None:

@@ -69,9 +69,7 @@ class Verifier:
         words = placed(point.command.trajectory, scene.path.absolute(), output.absolute())
         done = run_alone(words, point.openmp, self._time_limit, point.command.folder)
         if done.exit_code != 0:
-            return (
-                Completed(done.command, CRASHED, "", done.reason) if done.exit_code == CHECK_FAILED else done
-            )
+            return Completed(done.command, CRASHED, "", done.reason)
         if not output.exists():
             return Completed(done.command, CRASHED, "", f"left no trajectory in {output}")
         command = check_trajectory_command(self._checker, scene.path, output, point.tolerance)

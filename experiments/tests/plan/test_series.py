@@ -117,6 +117,14 @@ def test_a_pattern_makes_a_series_of_each_file(empty_workplace: Workplace) -> No
     ]
 
 
+def test_one_of_many_that_cannot_be_run_is_a_point_as_the_others(empty_workplace: Workplace) -> None:
+    program(empty_workplace.root, "subs/anna/sim")
+    program(empty_workplace.root, "subs/bob/sim", mode=0o644)
+    lines = 'commands = "subs/*/sim"\ncommand = ["{program}"]'
+    found = points(empty_workplace, f"{HEAD}[[series]]\n{lines}\n{BLOCKS}")
+    assert [point.series for point in found] == ["anna", "bob"]
+
+
 def test_a_benchmark_is_run_for_its_one_case(empty_workplace: Workplace) -> None:
     program(empty_workplace.root, "bench")
     table = 'benchmark = {program = "./bench", name = "BM_sort<int>/{x}"}'
