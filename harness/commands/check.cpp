@@ -48,7 +48,7 @@ void print_line(const std::string& name, const Scene& scene, const Variant& vari
 void check(CheckOptions options) {
     const Tuning& tuning = options.simulation.tuning;
     const std::string name = shown_name(options.simulation.scene);
-    const Scene scene = read_scene_and_settle_threads(options.simulation);
+    const Scene scene = read_scene_and_settle_threads(options.simulation, AskedThreads::exactly);
     const Variant& variant = require_variant(options.simulation.variant, scene);
     note_crowding(tuning.threads);
     const auto simulation = variant.simulate(scene, tuning);
