@@ -10,6 +10,7 @@
 #include "harness/command_line/help.hpp"
 #include "harness/command_line/usage_errors.hpp"
 #include "harness/commands/commands.hpp"
+#include "harness/machine/waiting.hpp"
 #include "harness/support/errors.hpp"
 
 namespace {
@@ -42,6 +43,7 @@ void add_verbs(CLI::App& program) {
 } // namespace
 
 int main(int count, char** arguments) {
+    carom::settle_waiting();
     // A file that may not grow further is then told as a full disk is, in one line.
     std::signal(SIGXFSZ, SIG_IGN);
     CLI::App program("Carom: a performance study of colliding discs that checks itself", "carom");

@@ -54,6 +54,7 @@ struct Summary {
     std::string_view variant;
     Policies policies;
     int threads;
+    int threads_asked = 0; ///< or taken for granted; there may be fewer
     int substeps;
     std::size_t particles;
     int units_of_time;  ///< the scene's S
@@ -111,6 +112,7 @@ nlohmann::ordered_json summary_json(const Summary& summary) {
             {"variant", summary.variant},
             {"policies", policies_json(summary.policies)},
             {"threads", summary.threads},
+            {"threads_asked", summary.threads_asked},
             {"substeps", summary.substeps},
             {"particles", summary.particles},
             {"steps", summary.units_of_time},
@@ -138,10 +140,17 @@ std::string steps_text(const Summary& summary) {
     return summary.substeps == 1 ? steps : counted(summary.units_of_time, "unit") + " of time in " + steps;
 }
 
+/// "2 threads", or "1 thread (of 2)".
+std::string threads_text(const Summary& summary) {
+    const bool fewer = summary.threads < summary.threads_asked;
+    return counted(summary.threads, "thread") +
+           (fewer ? " (of " + number_text(summary.threads_asked) + ")" : "");
+}
+
 void print_summary(const Summary& summary) {
     std::printf("%s: %s, %s, variant %s, %s\n", summary.scene.c_str(),
                 counted(summary.particles, "disc").c_str(), steps_text(summary).c_str(),
-                std::string(summary.variant).c_str(), counted(summary.threads, "thread").c_str());
+                std::string(summary.variant).c_str(), threads_text(summary).c_str());
     std::printf("  reading         %12.6g s\n", summary.seconds.reading);
     std::printf("  setting up      %12.6g s\n", summary.seconds.setting_up);
     std::printf("  steps           %12.6g s\n", summary.seconds.steps);
@@ -240,12 +249,14 @@ void run(RunOptions options) {
     const DisturbanceWatch watch;
     Seconds seconds;
     const double before = process_seconds();
-    const Scene scene = read_scene_and_settle_threads(options.simulation);
+    const int asked = options.simulation.tuning.threads;
+    const Scene scene = read_scene_and_settle_threads(options.simulation, AskedThreads::at_most);
     seconds.reading = process_seconds() - before;
     const Variant& variant = require_variant(options.simulation.variant, scene);
     note_crowding(options.simulation.tuning.threads);
     const Run result = simulate(options, scene, variant, seconds);
-    const Summary summary = summarise(options, scene, variant, result, seconds);
+    Summary summary = summarise(options, scene, variant, result, seconds);
+    summary.threads_asked = asked;
     std::optional<ErrorMeasures> errors;
     if (options.errors) {
         errors = measure_errors(scene, variant, options.simulation.tuning);
@@ -262,7 +273,9 @@ void run(RunOptions options) {
             print_errors(*errors);
         }
     }
-    note_if_busy(watch, summary.threads);
+    if (summary.threads == asked) {
+        note_if_busy(watch, asked);
+    }
 }
 
 } // namespace

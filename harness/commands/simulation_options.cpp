@@ -22,8 +22,11 @@ namespace {
 
 constexpr int most = 1'000'000'000;
 
-/// Below so many discs a step takes no longer than the threads' waiting for each other in it.
+/// Below so many discs a step takes no longer on one thread than on two (docs/performance.md).
 constexpr std::size_t fewest_discs_for_threads = 500;
+
+/// From so many on, threads work so long between two waits that they gain even where they share processors.
+constexpr std::size_t fewest_discs_to_share_processors = 50'000;
 
 std::vector<std::string> variant_names() {
     std::vector<std::string> names{automatic};
@@ -70,15 +73,26 @@ void add_tuning_options(CLI::App& command, Tuning& tuning) {
                           "What counts as approaching: relative, or published (1e-7)");
 }
 
-Scene read_scene_and_settle_threads(SimulationOptions& options) {
+Scene read_scene_and_settle_threads(SimulationOptions& options, AskedThreads meaning) {
     int& threads = options.tuning.threads;
     const bool asked = options.threads_given || std::getenv("OMP_NUM_THREADS") != nullptr;
+    const bool fixed = threads > usable_processors() || std::getenv("OMP_DYNAMIC") != nullptr ||
+                       (asked && meaning == AskedThreads::exactly);
+    const int free = free_processors();
+    if (free < threads) {
+        wait_asleep();
+    }
     if (asked) {
         require_threads(threads);
     }
     Scene scene = read_scene(options.scene, threads);
-    if (!asked && scene.discs.size() < fewest_discs_for_threads) {
+    const std::size_t discs = scene.discs.size();
+    if (!fixed && discs < fewest_discs_for_threads) {
         threads = 1;
+    } else if (!fixed && free < threads && discs < fewest_discs_to_share_processors) {
+        note("other programs have the processors: " + counted(free, "thread") + " in place of " +
+             number_text(threads) + " (OMP_DYNAMIC=false for exactly " + number_text(threads) + ")");
+        threads = free;
     }
     require_threads(threads);
     return scene;

@@ -27,10 +27,15 @@ void add_simulation_options(CLI::App& command, SimulationOptions& options);
 /// Adds the tunings alone: chunks, substeps, tolerance and sweep limit.
 void add_tuning_options(CLI::App& command, Tuning& tuning);
 
-/// Reads the scene of a verb that does not measure, and settles on its threads: those asked for, on the
-/// command line or by OMP_NUM_THREADS, or else as many as the scene has work for. The result is the same on
-/// any number. Throws InputError.
-Scene read_scene_and_settle_threads(SimulationOptions& options);
+/// What a number of threads means that was asked for, on the command line or by OMP_NUM_THREADS.
+enum class AskedThreads { exactly, at_most };
+
+/// Reads the scene of a verb that does not measure, and settles on its threads: those asked for, or fewer,
+/// which it may take if nobody asked or so many are the most: one for a scene too small to gain by a second,
+/// and no more than there are processors that other programs leave, unless the scene is large. More than the
+/// machine has, and any number if OMP_DYNAMIC is set, is taken as it is. The result is the same on any.
+/// Throws InputError.
+Scene read_scene_and_settle_threads(SimulationOptions& options, AskedThreads meaning);
 
 /// Says so if these are more threads than the processors that this process may use.
 void note_crowding(int threads);

@@ -1,22 +1,73 @@
 #include "harness/machine/threads.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
+#include <cstdlib>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <omp.h>
+#include <unistd.h>
 
+#include "harness/machine/machine.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/text.hpp"
 #include "kernels/parallel_for.hpp"
 
+/// LLVM's runtime, where the program is linked with it; in milliseconds.
+extern "C" [[gnu::weak]] void kmp_set_blocktime(int milliseconds); // NOLINT(readability-identifier-naming)
+
 namespace carom {
+namespace {
+
+/// Threads of other programs that run or are ready to, and stay for a millisecond.
+int others_running() {
+    constexpr int looks = 4;
+    int fewest = most_threads;
+    for (int look = 0; look < looks && fewest > 0; ++look) {
+        if (look > 0) {
+            std::this_thread::sleep_for(std::chrono::microseconds(300));
+        }
+        fewest = std::min(fewest, parse_running(first_line("/proc/loadavg").value_or("")).value_or(1) - 1);
+    }
+    return std::max(fewest, 0);
+}
+
+} // namespace
 
 int default_threads() {
     return std::clamp(std::min(omp_get_max_threads(), omp_get_thread_limit()), 1, most_threads);
 }
 
 int usable_processors() { return omp_get_num_procs(); }
+
+int free_processors() {
+    const auto online = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+    return std::clamp(online - others_running(), 1, usable_processors());
+}
+
+std::optional<int> parse_running(std::string_view line) {
+    std::size_t begin = 0;
+    for (int average = 0; average < 3; ++average) {
+        begin = line.find(' ', begin) + 1;
+        if (begin == 0) {
+            return std::nullopt;
+        }
+    }
+    const std::size_t slash = line.find('/', begin);
+    return slash == std::string_view::npos ? std::nullopt
+                                           : parse_number<int>(line.substr(begin, slash - begin));
+}
+
+void wait_asleep() {
+    const auto is_set = [](const char* name) { return std::getenv(name) != nullptr; };
+    if (kmp_set_blocktime != nullptr && !is_set("OMP_WAIT_POLICY") && !is_set("KMP_BLOCKTIME") &&
+        !is_set("KMP_LIBRARY")) {
+        kmp_set_blocktime(0);
+    }
+}
 
 void require_threads(int threads) {
     // The limit is asked for first: LLVM's runtime prints a warning of its own where it refuses a thread.

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string_view>
+
 namespace carom {
 
 inline constexpr int most_threads = 1024;
@@ -9,6 +12,19 @@ int default_threads();
 
 /// How many processors this process may use.
 int usable_processors();
+
+/// How many of them are not taken by other programs now, at least one. Who is gone in a moment is not
+/// counted. To be called while this process has one thread.
+int free_processors();
+
+/// How many threads of all programs run or are ready to, from the line of /proc/loadavg (man proc_loadavg);
+/// empty if it is no such line.
+std::optional<int> parse_running(std::string_view line);
+
+/// From now on threads that wait for each other sleep at once, where the runtime can still be told, which is
+/// LLVM's: for a machine whose processors other programs have. The other way it knows is to look out for
+/// whole milliseconds. What the user has set (OMP_WAIT_POLICY, KMP_BLOCKTIME, KMP_LIBRARY) stays.
+void wait_asleep();
 
 /// Throws InputError if OpenMP grants fewer threads: nothing may be reported of threads that never ran.
 void require_threads(int threads);

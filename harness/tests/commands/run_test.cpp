@@ -5,11 +5,13 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "harness/machine/threads.hpp"
 #include "harness/measure/energy_drift.hpp"
 #include "harness/measure/measure.hpp"
 #include "harness/scenes/scene_file.hpp"
+#include "harness/tests/busy_processes.hpp"
 #include "harness/tests/program.hpp"
 #include "harness/tests/temporary_directory.hpp"
 #include "kernels/tests/scenes.hpp"
@@ -229,13 +231,33 @@ TEST_F(RunCommand, CountsOneWithoutAPlural) {
     EXPECT_PRED_FORMAT2(testing::IsSubstring, ", 1 thread\n", run_carom({"run", one, "1"}).output);
 }
 
-TEST_F(RunCommand, TakesOneThreadByItselfForFewDiscs) {
-    EXPECT_EQ(summary({scene}, {"OMP_NUM_THREADS"})["threads"], 1);
-    EXPECT_EQ(summary({scene, "2"}, {"OMP_NUM_THREADS"})["threads"], 2);
-    EXPECT_EQ(summary({scene, "--threads", "2"}, {"OMP_NUM_THREADS"})["threads"], 2);
+/// As a user runs it: this test's own environment fixes the threads.
+const std::vector<std::string> free_to_choose{"OMP_DYNAMIC", "OMP_NUM_THREADS"};
+
+TEST_F(RunCommand, TakesOneThreadForFewDiscs) {
+    EXPECT_EQ(summary({scene}, free_to_choose)["threads"], 1);
+    const auto json = summary({scene, "2"}, free_to_choose);
+    EXPECT_EQ(json["threads"], 1);
+    EXPECT_EQ(json["threads_asked"], 2);
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, ", 1 thread (of 2)\n",
+                        run_carom({"run", scene, "2"}, free_to_choose).output);
+    EXPECT_EQ(summary({scene, "--threads", "2"}, {"OMP_DYNAMIC=false"})["threads"], 2);
+    EXPECT_EQ(summary({scene, "999"}, free_to_choose)["threads"], 999) << "more than there are are meant";
+}
+
+TEST_F(RunCommand, TakesNoMoreThreadsThanOtherProgramsLeaveProcessors) {
+    if (usable_processors() < 2) {
+        GTEST_SKIP() << "one processor: there are no fewer threads than one";
+    }
     const std::string many =
         directory.write("many.in", scene_text(tests::random_scene(3000, 900, 1, 1, 2, 5)));
-    EXPECT_EQ(summary({many}, {"OMP_NUM_THREADS"})["threads"], usable_processors());
+    const std::string threads = std::to_string(usable_processors());
+    const tests::BusyProcesses busy(static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));
+    const ProgramResult result = run_carom({"run", many, threads, "--json"}, free_to_choose);
+    EXPECT_EQ(nlohmann::json::parse(result.output)["threads"], 1);
+    EXPECT_PRED_FORMAT2(testing::IsSubstring,
+                        "other programs have the processors: 1 thread in place of " + threads, result.notes);
+    EXPECT_EQ(summary({many, threads}, {"OMP_DYNAMIC=false"})["threads"], usable_processors());
 }
 
 TEST_F(RunCommand, ReadsTheSceneFromStandardInput) {
