@@ -44,13 +44,24 @@ def _parser() -> argparse.ArgumentParser:
         ("figures", _figures, "draw the figures of whatever records are there"),
         ("report", _report, "write report.html and report.pdf"),
         ("claims", _claims, "print each published claim with its verdict"),
-        ("follow", _follow, "answer each line of standard input, as a running study does: draw A,B or open"),
+        (
+            "follow",
+            _follow,
+            "answer each line of standard input, as a running study asks: draw, open, report",
+        ),
         ("performance", _performance, "print the ladder and the limits as Markdown tables"),
     ):
         command = commands.add_parser(name, help=text, description=text)
         command.add_argument(
             "--results", type=Path, default=Path("results"), metavar="DIR", help="default: results"
         )
+        if name in ("report", "follow"):
+            command.add_argument(
+                "--study",
+                metavar="A,B",
+                default="",
+                help="the questions that were asked, which lead the report",
+            )
         if name == "figures":
             command.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
         command.set_defaults(run=run)
@@ -88,9 +99,12 @@ def _figures(options: argparse.Namespace) -> int:
 
 
 def _follow(options: argparse.Namespace) -> int:
-    """Answer a line with a line: `draw A,B` with the number of figures drawn, `open` with what is open."""
+    """Answer a line with a line: `draw A,B` with the number of figures drawn, `open` with what is open,
+    `report HOW FAR` with the report of what is there.
+    """
     from analysis.commands.open_questions import open_questions
     from analysis.figures.studies import draw_all
+    from analysis.report import write_meanwhile
 
     for line in sys.stdin:
         match line.split():
@@ -99,17 +113,25 @@ def _follow(options: argparse.Namespace) -> int:
                 print(len(draw_all(options.results, names.split(","), formats=("svg",))), flush=True)
             case ["open"]:
                 print(json.dumps(open_questions(options.results)), flush=True)
+            case ["report", *how_far]:
+                print(write_meanwhile(options.results, _asked(options), " ".join(how_far)), flush=True)
             case _:
-                raise InputError(f"follow: found {line.strip()!r}, expected `draw A,B` or `open`")
+                raise InputError(
+                    f"follow: found {line.strip()!r}, expected `draw A,B`, `open` or `report ...`"
+                )
     return 0
 
 
 def _report(options: argparse.Namespace) -> int:
     from analysis.report import write
 
-    for path in write(options.results):
+    for path in write(options.results, _asked(options)):
         print(path)
     return 0
+
+
+def _asked(options: argparse.Namespace) -> list[str]:
+    return [name for name in options.study.replace(",", " ").split() if name]
 
 
 def _claims(options: argparse.Namespace) -> int:
@@ -160,7 +182,12 @@ def _compare(options: argparse.Namespace) -> int:
     said = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
     print(f"\n{options.second} against {options.first}: {said} (margin 2 %, Holm-corrected per experiment).")
     print("The folders were not interleaved: a change of the machine between them shows as a change of time.")
-    return comparison.exit_code(table)
+    code = comparison.exit_code(table)
+    if code == comparison.SLOWER:
+        print(f"Slower: exit code {code}.")
+    elif code == comparison.UNDECIDED:
+        print(f"Undecided, for which more blocks or a quieter machine are needed: exit code {code}.")
+    return code
 
 
 def _movie(options: argparse.Namespace) -> int:

@@ -32,7 +32,8 @@ def said(study: Study, experiments: Sequence[str], blocks: int, wanted: float) -
     if not math.isfinite(wanted):
         return f"not in sight: more than {MOST_BLOCKS} blocks, or the effect lies on the margin"
     minutes = (wanted - blocks) * sum(map(seconds_per_block, [study] * len(experiments), experiments)) / 60
-    command = f"make experiments STUDY={','.join(experiments)} BUDGET={math.ceil(minutes) + 1}"
+    scale = "" if study.scale == "paper" else f" SCALE={study.scale}"
+    command = f"make experiments STUDY={','.join(experiments)}{scale} BUDGET={math.ceil(minutes) + 1}"
     more = count(int(wanted) - blocks, "more block")
     return f"open: {more} would be expected to settle it, {number(max(minutes, 0.1), 2)} min: `{command}`"
 

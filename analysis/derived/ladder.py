@@ -15,7 +15,7 @@ from analysis.records.tables import COLUMN_OF, LATER_AXES
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import COLUMNS, judge
-from analysis.support.wording import exact, number
+from analysis.support.wording import number, scene_in_words
 
 RUNG = ["scene_name", "series_number"]
 POLICIES = [
@@ -106,7 +106,7 @@ def headlines(study: Study, experiment: str = "ladder") -> list[str]:
 def scene_title(runs: pd.DataFrame, scene: str) -> str:
     """Return what tells a scene from the others: discs and area fraction."""
     one = runs[runs["scene_name"] == scene].iloc[0]
-    return f"{exact(one['particles'])} discs at area fraction {one['area_fraction']:.2f}"
+    return scene_in_words(one["particles"], one["area_fraction"])
 
 
 def _name(runs: pd.DataFrame, rung: float) -> str:

@@ -191,7 +191,7 @@ def _draw(entry: Entry, data: Data, folder: Path, name: str, formats: Sequence[s
         drawing = entry.draw(data)
     if drawing is None:
         return None
-    missing = partial(data.study, entry.experiment)
+    missing = partial(data, entry.experiment)
     mark_partial(drawing.figure, missing)
     caption = f"{drawing.caption} {missing[0].upper()}{missing[1:]}." if missing else drawing.caption
     return caption, save(drawing, folder, name, formats), drawing.verdicts, drawing.tables

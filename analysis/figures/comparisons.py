@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from analysis.derived.noise_prior import prior
 from analysis.figures.captions import opening, time_axis
 from analysis.figures.dots import dots
+from analysis.figures.hover import Told, tell
 from analysis.figures.league import league
 from analysis.figures.pairs import Sides, bounded, pair_drawing
 from analysis.figures.style import BAND, BLUE, FAINT, INK, Data, Drawing, new_figure
@@ -92,7 +93,8 @@ def _differences(axes: Axes, table: pd.DataFrame, rows: pd.DataFrame) -> None:
         height = heights[row["series"], row["x"]]
         estimate, low, high = (100 * (row[end] - 1) for end in ("ratio", "low", "high"))
         axes.plot([low, high], [height, height], color=BLUE, linewidth=1.4)
-        axes.plot(estimate, height, "o", color=BLUE, markersize=5)
+        (dot,) = axes.plot(estimate, height, "o", color=BLUE, markersize=5)
+        tell(dot, [Told(f"{_label(row, table)}: {row['verdict']}", change(row))])
         axes.annotate(
             row["verdict"], (estimate, height), xytext=(0, 6), textcoords="offset points", ha="center",
             fontsize=7, color=INK,

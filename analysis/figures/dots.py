@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import pandas as pd
 from matplotlib.axes import Axes
 
+from analysis.figures.hover import Told, tell
 from analysis.figures.style import BLUE, lighten
 from analysis.support.wording import interval_of
 
@@ -14,9 +15,11 @@ def dots(axes: Axes, summary: pd.DataFrame, name: str, colour: str = BLUE) -> No
     for height, row in enumerate(summary.to_dict("records")):
         if "low" in row:
             axes.plot([row["low"], row["high"]], [height, height], color=colour, linewidth=1.4)
-        axes.plot(row["median"], height, "o", color=colour, markersize=5)
+        (dot,) = axes.plot(row["median"], height, "o", color=colour, markersize=5)
+        said = f"{interval_of(row)} s" if "low" in row else f"{row['median']:.2f} s"
+        tell(dot, [Told(str(row[name]), said)])
         axes.annotate(
-            f"{interval_of(row)} s" if "low" in row else f"{row['median']:.2f} s",
+            said,
             (row["median"], height),
             xytext=(0, 6),
             textcoords="offset points",

@@ -1,6 +1,8 @@
 """The hard cases: how far each variant stays from the bound of each case, and the table of all verdicts."""
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from textwrap import fill
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -9,6 +11,7 @@ from matplotlib.ticker import FuncFormatter
 
 from analysis.derived import hard_cases as cases
 from analysis.derived.hard_cases import FAILS, HOLDS, LIMIT, UNMEASURED
+from analysis.figures.hover import Told, tell
 from analysis.figures.speed_against_error import power_of_ten
 from analysis.figures.style import BLUE, FAINT, INK, VERMILLION, Cell, Data, Drawing, Table, key, new_figure
 from analysis.support.wording import count
@@ -16,6 +19,9 @@ from analysis.support.wording import count
 COLOURS = {"double": BLUE, "float": VERMILLION}
 MARKS = {HOLDS: "holds", FAILS: "fails", LIMIT: "open", UNMEASURED: "open"}
 SIGNS = {HOLDS: "✓", FAILS: "✗", LIMIT: "!", UNMEASURED: "–"}
+LABEL_WIDTH = 36
+"""Letters in a line of what a row measures."""
+
 WIDEST = 6
 """Variants side by side in one table, so that it fits a printed page."""
 
@@ -35,6 +41,7 @@ def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
     ]
     figure, (axes,) = new_figure(0.9 + 0.22 * max(1, len(drawn)))
     _dots(axes, table, drawn)
+    _name_measures(axes, [expected[name].label if name in expected else "" for name in drawn])
     present = [precision for precision in COLOURS if (table["precision"] == precision).any()]
     key(axes, [*((f"● {one}", COLOURS[one]) for one in present), ("| bound", INK)])
     labels = {name: expected[name].label if name in expected else "" for name in table["case"]}
@@ -58,13 +65,14 @@ def _dots(axes: Axes, table: pd.DataFrame, names: list[str]) -> None:
         height = heights[row["case"]] - (0.14 if row["precision"] == "float" else -0.14)
         value = max(row["value"], zero)
         inside = "white" if row["verdict"] == LIMIT else colour
-        axes.plot(value, height, "o", color=colour, markerfacecolor=inside, markersize=3.5, zorder=3)
+        (dot,) = axes.plot(value, height, "o", color=colour, markerfacecolor=inside, markersize=3.5, zorder=3)
+        tell(dot, [Told(f"{row['case']}, {row['series']}: {row['verdict']}", _against_bound(row))])
         if pd.notna(row["bound"]):
             axes.plot([max(row["bound"], zero)] * 2, [height - 0.14, height + 0.14], color=INK, linewidth=1.1)
     axes.set_xscale("log")
     axes.set_yticks(list(heights.values()), [name.replace("_", " ") for name in heights])
     axes.tick_params(axis="y", length=0)
-    axes.set_xlabel("the measure of the case, which the table names: relative, or in radii")
+    axes.set_xlabel("what stands to the right of each case; relative where it has no unit")
     powers = range(round(np.log10(zero)) + 1, int(np.floor(np.log10(axes.get_xlim()[1]))) + 1)
     axes.set_xticks([zero, *(10.0**power for power in powers if power % 2 == 0)])
     axes.xaxis.set_major_formatter(
@@ -73,6 +81,22 @@ def _dots(axes: Axes, table: pd.DataFrame, names: list[str]) -> None:
     axes.minorticks_off()
     for height in heights.values():
         axes.axhline(height - 0.5, color=FAINT, linewidth=0.3, zorder=1)
+
+
+def _against_bound(row: Mapping[Hashable, Any]) -> str:
+    bound = "" if pd.isna(row["bound"]) else f" (bound {row['bound']:.1e})"
+    return f"{row['value']:.1e}{bound}"
+
+
+def _name_measures(axes: Axes, labels: Sequence[str]) -> None:
+    """Write to the right of each row what its axis measures."""
+    right = axes.twinx()
+    right.set_ylim(axes.get_ylim())
+    lines = [fill(label, LABEL_WIDTH) for label in labels]
+    right.set_yticks([-float(line) for line in range(len(lines))], lines, fontsize=6, color=FAINT)
+    right.tick_params(axis="y", length=0)
+    right.set_zorder(axes.get_zorder() - 1)
+    axes.patch.set_visible(False)
 
 
 def _tables(table: pd.DataFrame, labels: dict[str, str]) -> Iterable[Table]:

@@ -1,10 +1,19 @@
-"""Names written at the ends of curves, moved apart where they would overlap."""
+"""Names written at the ends of curves, and beside points, so that none lies on another."""
 
 from collections.abc import Sequence
 
 from matplotlib.axes import Axes
 
 LINE_POINTS = 9.0
+
+DIGIT_WIDTH, DIGIT_HEIGHT = 0.66, 1.0
+"""Of a label beside a point, in sizes of its font."""
+
+CORNERS = ((-1, -1), (1, -1), (-1, 1), (1, 1))
+"""Where a label may stand beside its point, the best place first."""
+
+BESIDE = 3.0
+"""Points between a point and its label."""
 
 
 def label_ends(axes: Axes, labels: Sequence[tuple[str, float, str]], size: float = 7) -> None:
@@ -28,6 +37,37 @@ def label_ends(axes: Axes, labels: Sequence[tuple[str, float, str]], size: float
             color=colour,
             fontsize=size,
         )
+
+
+def label_points(axes: Axes, labels: Sequence[tuple[str, float, float]], colour: str, size: float = 6) -> int:
+    """Write each label (text, x, y) into a corner of its point where it lies on no other; leave out one that
+    has no room. Return how many were written.
+
+    Call it last: it needs the final limits and layout of the axes.
+    """
+    figure = axes.figure.get_figure(root=True)
+    figure.draw_without_rendering()
+    taken: list[tuple[float, float, float, float]] = []
+    for text, x, y in labels:
+        at = axes.transData.transform((x, y)) * 72 / figure.dpi
+        width, height = DIGIT_WIDTH * size * len(text), DIGIT_HEIGHT * size
+        for right, up in CORNERS:
+            left = at[0] + (BESIDE if right > 0 else -BESIDE - width)
+            bottom = at[1] + (BESIDE if up > 0 else -BESIDE - height)
+            box = (left, bottom, left + width, bottom + height)
+            if not any(_overlap(box, other) for other in taken):
+                taken.append(box)
+                axes.annotate(
+                    text, (x, y), xytext=(right * BESIDE, up * BESIDE), textcoords="offset points",
+                    ha="left" if right > 0 else "right", va="bottom" if up > 0 else "top",
+                    fontsize=size, color=colour, zorder=4,
+                )  # fmt: skip
+                break
+    return len(taken)
+
+
+def _overlap(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> bool:
+    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
 
 
 def spread(positions: Sequence[float], gap: float) -> list[float]:

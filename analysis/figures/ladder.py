@@ -9,19 +9,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from analysis.derived.ladder import claims, factors, named, rungs, scene_title, speed_up, totals
+from analysis.figures.hover import Told, tell
 from analysis.figures.style import (
     FAINT,
     GREEN,
     INK,
     VERMILLION,
     WIDTH,
+    Cell,
     Data,
     Drawing,
+    Table,
     lighten,
     logarithmic_ticks,
 )
 from analysis.statistics.verdicts import MARGIN
-from analysis.support.wording import count, number, share
+from analysis.support.wording import count, interval_of, number, share
 
 Row = Mapping[Hashable, Any]
 
@@ -51,7 +54,17 @@ def waterfall(data: Data, experiment: str, subject: str) -> Drawing | None:
         _figures(margin, rows, names, total)
         axes.set_title(scene_title(runs, scene), pad=13)
     failed = data.study.failed_checks(experiment)
-    return Drawing(figure, _caption(subject, runs, times, table, failed), _verdicts(steps, table, runs))
+    caption = _caption(subject, runs, times, table, failed)
+    return Drawing(figure, caption, _verdicts(steps, table, runs), [_short_names(table)])
+
+
+def _short_names(table: pd.DataFrame) -> Table:
+    """Return the short name of each rung beside what it changes and the name of its variant."""
+    rows = table.drop_duplicates("series_number").sort_values("series_number")
+    columns = ["series", "change", "variant"]
+    cells = [[Cell(str(row[column])) for column in columns] for row in rows.to_dict("records")]
+    title = "The rungs by their short names, with the names by which the program knows them:"
+    return Table(title, ["Rung", "Changes", "Variant (carom list)"], cells)
 
 
 def _rows(table: pd.DataFrame, steps: pd.DataFrame, scene: str, names: pd.Series) -> list[Row]:
@@ -90,7 +103,8 @@ def _bars(axes: Axes, rows: list[Row], names: pd.Series, has_both_ends: bool) ->
             left, right = sorted((row["before"], row["nanoseconds"]))
             axes.barh(height, right - left, left=left, color=colour, height=0.55, zorder=2)
         axes.plot([row["low"], row["high"]], [height, height], color=INK, linewidth=1.4, zorder=3)
-        axes.plot(row["nanoseconds"], height, "o", color=INK, markersize=3, zorder=4)
+        (dot,) = axes.plot(row["nanoseconds"], height, "o", color=INK, markersize=3, zorder=4)
+        tell(dot, [Told(names[row["series_number"]], interval_of(row, "nanoseconds"))])
     if has_both_ends:
         first, last = rows[0]["nanoseconds"], rows[-1]["nanoseconds"]
         left, width = min(first, last), abs(first - last)

@@ -10,10 +10,12 @@ from matplotlib.figure import Figure
 from analysis.derived.ladder import named, scene_title
 from analysis.derived.limits import ARITHMETIC, COPY, against_limits
 from analysis.derived.unavoidable import PHASES
+from analysis.figures.hover import Told, tell
 from analysis.figures.style import BLUE, FAINT, INK, ORANGE, WIDTH, Data, Drawing, key, lighten, plain_ticks
 from analysis.support.wording import count, number, share
 
 LIMITS = {COPY: (BLUE, "<"), ARITHMETIC: (ORANGE, "d")}
+NAMES = {COPY: "least by copying", ARITHMETIC: "least by arithmetic", "wall": "measured"}
 KEY = [
     ("◂ least by copying", BLUE),
     ("◆ least by arithmetic", ORANGE),
@@ -71,8 +73,8 @@ def _panel(axes: Axes, table: pd.DataFrame, rows: list[tuple[str, str]]) -> None
         )
         for limit, (colour, marker) in LIMITS.items():
             if row[limit] > 0:
-                axes.plot(row[limit], height, marker, color=colour, markersize=4, zorder=3)
-        axes.plot(row["wall"], height, "o", color=INK, markersize=4, zorder=4)
+                _dot(axes, row, height, limit, marker, colour)
+        _dot(axes, row, height, "wall", "o", INK)
         beside: Any = {"xycoords": "data", "textcoords": "offset points", "va": "center", "fontsize": 6.5}
         axes.annotate(_percent(row["reached"]), (row["wall"], height), xytext=(5, 0), **beside)
         waiting = 1 - row["busy"] / row["wall"]
@@ -80,6 +82,13 @@ def _panel(axes: Axes, table: pd.DataFrame, rows: list[tuple[str, str]]) -> None
     axes.set_xlim(axes.get_xlim()[0], axes.get_xlim()[1] * 6)
     axes.set_xlabel("time per disc and step, ns")
     plain_ticks(axes.xaxis)
+
+
+def _dot(
+    axes: Axes, row: Mapping[Hashable, Any], height: float, column: str, marker: str, colour: str
+) -> None:
+    (dot,) = axes.plot(row[column], height, marker, color=colour, markersize=4, zorder=4)
+    tell(dot, [Told(f"{row['series']}, {row['phase']}: {NAMES[column]}", number(row[column]))])
 
 
 def _percent(fraction: float) -> str:

@@ -64,7 +64,8 @@ def row(data: Data) -> Drawing | None:
         + f" Time of row against checkered: {said} (Holm-corrected, margin shaded). The published study "
         "states that row wins on large scenes, without a number."
     )
-    return Drawing(figure, caption)
+    names = [f"row against checkered, {exact(x)} discs" for x in table["x"]]
+    return Drawing(figure, caption, table.assign(name=names))
 
 
 def _row_ratio(times: pd.DataFrame, noise: Prior) -> pd.DataFrame:
@@ -105,4 +106,5 @@ def sequential_orders(data: Data) -> Drawing | None:
         figure,
         caption
         + " Lighter: the published medians with self-contained resolves, scaled so that track is level.",
+        table.assign(name=[f"{series} against {against}" for series in table["series"]]),
     )

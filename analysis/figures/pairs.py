@@ -9,6 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from analysis.derived.noise_prior import prior
 from analysis.figures.captions import PROCESSES, SCENES, opening, time_axis
+from analysis.figures.hover import Told, tell
 from analysis.figures.labels import label_ends
 from analysis.figures.style import (
     BAND,
@@ -25,7 +26,7 @@ from analysis.figures.style import (
 from analysis.statistics.intervals import RANKS_FROM
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge_one
-from analysis.support.wording import blocks, change, exact
+from analysis.support.wording import blocks, change, exact, number
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,8 @@ def pair_drawing(data: Data, sides: Sides, work: bool = False) -> Drawing | None
         _work(axes[1], data, sides)
     ratio_panel(axes[-1], row, theirs, sides.names)
     dots = SCENES if times["x"].nunique() > 1 else PROCESSES
-    return Drawing(figure, opening(times, sides.subject, dots) + _sentences(row, theirs, sides))
+    verdicts = pd.DataFrame([{**row, "name": f"{sides.names[0]} against {sides.names[1]}"}])
+    return Drawing(figure, opening(times, sides.subject, dots) + _sentences(row, theirs, sides), verdicts)
 
 
 def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:
@@ -79,7 +81,7 @@ def _by_block(axes: Axes, curves: dict[str, pd.DataFrame], label: str) -> None:
     both["position"] = 1 + both.groupby(PAIR).ngroup()
     for name, colour in zip(curves, (BLUE, VERMILLION), strict=True):
         ordered = both.loc[name].sort_values("position")
-        axes.plot(ordered["position"], ordered["steps_seconds"], color=colour, marker="o", linewidth=0.8)
+        _runs(axes, ordered["position"], ordered["steps_seconds"], name, colour)
         labels.append((name, ordered["steps_seconds"].iloc[-1], colour))
     axes.margins(y=0.15)
     label_ends(axes, labels)
@@ -96,13 +98,18 @@ def _published_panel(axes: Axes, published: pd.DataFrame, sides: Sides) -> dict[
         (sides.candidate, sides.reference), sides.names, (BLUE, VERMILLION), strict=True
     ):
         run = published[published["series"] == series]
-        axes.plot(run["x"], run["seconds"], color=lighten(colour), marker="o", linewidth=0.8)
+        _runs(axes, run["x"], run["seconds"], f"{name}, published", lighten(colour))
         labels.append((name, run["seconds"].iloc[-1], lighten(colour, 0.35)))
         runs[series] = run.assign(node="", block=run["x"], session="")
     axes.margins(y=0.15)
     label_ends(axes, labels)
     pairs = log_ratios(runs[sides.reference], runs[sides.candidate], value="seconds")
     return judge_one(pairs["log_ratio"])
+
+
+def _runs(axes: Axes, x: pd.Series, seconds: pd.Series, name: str, colour: str) -> None:
+    (line,) = axes.plot(x, seconds, color=colour, marker="o", linewidth=0.8)
+    tell(line, [Told(name, exact(one), number(other)) for one, other in zip(x, seconds, strict=True)])
 
 
 def ratio_panel(
@@ -115,7 +122,10 @@ def ratio_panel(
     for height, (name, row, colour) in zip((1.0, 0.0), entries, strict=False):
         estimate, low, high = (100 * (row[end] - 1) for end in ("ratio", "low", "high"))
         axes.plot([low, high], [height, height], color=colour, linewidth=2.6, zorder=2)
-        axes.plot(estimate, height, "o", color=colour, markersize=5, markeredgecolor="white", zorder=3)
+        (dot,) = axes.plot(
+            estimate, height, "o", color=colour, markersize=5, markeredgecolor="white", zorder=3
+        )
+        tell(dot, [Told(f"{name}: {row['verdict']}", change(row))])
         axes.annotate(
             f"{name}: {row['verdict']}",
             (0, height),

@@ -14,7 +14,7 @@ from analysis.figures.style import (
     lighten,
     new_figure,
 )
-from analysis.support.wording import count, number, share
+from analysis.support.wording import count, number, scene_in_words, share
 
 PHASE_COLOURS = {"move": ORANGE, "bin": GREEN, "find": BLUE, "resolve": VERMILLION}
 
@@ -116,11 +116,16 @@ def _caption(subject: str, table: pd.DataFrame, shares: pd.DataFrame, threads: p
     seconds = table[table["series"] == first][["serial_seconds", "wall_seconds"]].sum()
     serial = seconds["serial_seconds"] / seconds["wall_seconds"]
     runs = count(table["file"].nunique(), "profiled run")
+    where = "; ".join(
+        scene_in_words(particles, fraction)
+        for particles, fraction in table[["particles", "area_fraction"]].drop_duplicates().to_numpy()
+    )
+    threads_used = count(int(table["threads"].max()), "thread")
     uneven = imbalance(threads)
     series, phase = uneven.idxmax()
     return (
-        f"{subject}, from {runs} apart from the timed ones (medians). {first}: {said}; "
-        f"{share(serial)} of it outside parallel loops. Right: busy time against waiting at barriers. "
-        f"Greatest load imbalance (maximum over mean of the threads): {number(uneven.max())} in {phase} of "
-        f"{series}."
+        f"{subject} ({where}, {threads_used}), from {runs} apart from the timed ones (medians). {first}: "
+        f"{said}; {share(serial)} of it outside parallel loops. Right: busy time against waiting at "
+        f"barriers. Greatest load imbalance (maximum over mean of the threads): {number(uneven.max())} in "
+        f"{phase} of {series}."
     )

@@ -75,9 +75,11 @@ def _series(panels: Sequence[Axes], times: pd.DataFrame, colour: str) -> pd.Data
     efficiency = speed_ups.assign(
         **{end: speed_ups[end] * first / speed_ups["x"] for end in ("speed_up", "low", "high")}
     )
-    curve(panels[0], relative, colour)
-    curve(panels[1], speed_ups, colour, "speed_up")
-    curve(panels[2], efficiency, colour, "speed_up")
+    series = times["series"].iloc[0]
+    for axes, table, value in zip(
+        panels, (relative, speed_ups, efficiency), ("median", "speed_up", "speed_up"), strict=True
+    ):
+        curve(axes, table.assign(series=series), colour, value)
     return speed_ups
 
 

@@ -58,9 +58,8 @@ def schedule(data: Data, experiment: str, subject: str, chosen: Choice | None = 
 def _panel(axes: Axes, table: pd.DataFrame, ours: bool, shades: Mapping[str, str]) -> None:
     for kind, rows in table.groupby("series"):
         colour = shades.get(str(kind), INK)
-        rows = rows.assign(x=rows["x"] * ASIDE.get(str(kind), 1.0))
         if ours:
-            curve(axes, rows, colour)
+            curve(axes, rows, colour, aside=ASIDE.get(str(kind), 1.0))
         else:
             rows = rows.sort_values("x")
             published_curve(axes, rows["x"].to_list(), rows["median"].to_list(), colour)

@@ -1,7 +1,9 @@
 """Time against error: a figure an error measure, a panel a scene, all from the same records."""
 
 import re
+from collections.abc import Hashable, Mapping
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,6 +13,8 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from analysis.derived import accuracy
 from analysis.derived.accuracy import SMALL, Choice, Measure
 from analysis.figures.captions import opening
+from analysis.figures.hover import Told, tell
+from analysis.figures.labels import label_points
 from analysis.figures.style import (
     FAINT,
     INK,
@@ -25,6 +29,9 @@ from analysis.figures.style import (
 )
 from analysis.statistics.intervals import Interval
 from analysis.support.wording import NO_BREAK, exact, interval, number
+
+Label = tuple[str, float, float]
+"""A text beside a point: the text, and the point's x and y."""
 
 MILLI = 1e3
 OTHERS = 2
@@ -46,12 +53,13 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     if not outside.empty:
         outside = outside[outside["scene_name"].isin(scenes)]
     zero = 10 ** np.floor(np.log10(table.loc[table["error"] > 0, "error"].min()) - 1)
+    labels: dict[str, list[Label]] = {}
     for axes, (scene, part) in zip(panels, scenes.items(), strict=True):
-        _front(axes, part, zero)
+        labels[str(scene)] = _front(axes, part, zero)
         for series, line in part.groupby("series"):
             _line(axes, line, zero, *looks[str(series)])
         if not outside.empty and scene in set(outside["scene_name"]):
-            _outside(axes, outside[outside["scene_name"] == scene], zero)
+            labels[str(scene)] += _outside(axes, outside[outside["scene_name"] == scene], zero)
         axes.set(xscale="log", yscale="log")
         axes.annotate(
             _panel_name(str(scene), part), (1, 1), xycoords="axes fraction", ha="right", va="top",
@@ -64,6 +72,8 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     if not outside.empty:
         entries += [(f"◆ {engine}", INK) for engine in outside["engine"].unique()]
     key(panels[0], [*entries, ("▬ Pareto front (substeps)", FAINT)])
+    for axes, beside in zip(panels, labels.values(), strict=True):
+        label_points(axes, beside, INK)
     timed = accuracy.times(data.study, experiment)
     tables = [_advice(table, timed, measure)]
     if measure.converges:
@@ -89,38 +99,50 @@ def _line(axes: Axes, part: pd.DataFrame, zero: float, colour: str, mark: str) -
     rows = part.sort_values("x")
     error = rows["error"].clip(lower=zero)
     double = mark == "●"
-    axes.errorbar(
+    points, *_ = axes.errorbar(
         error, MILLI * rows["median"],
         xerr=[error - rows["error_low"].clip(lower=zero), rows["error_high"].clip(lower=zero) - error],
         yerr=[MILLI * (rows["median"] - rows["low"]).clip(lower=0), MILLI * (rows["high"] - rows["median"])],
         color=colour, linestyle="-" if double else "--", marker="o", linewidth=0.9, elinewidth=0.9, zorder=3,
         markerfacecolor=colour if double else "white",
     )  # fmt: skip
+    tell(points, [_told(row) for row in rows.to_dict("records")])
 
 
-def _front(axes: Axes, part: pd.DataFrame, zero: float) -> None:
-    """Draw the Pareto front as a broad line behind the curves, each point with its substeps."""
+def _told(row: Mapping[Hashable, Any]) -> Told:
+    """Say a point's error and time."""
+    time, low, high = (number(MILLI * row[end]) for end in ("median", "low", "high"))
+    return Told(run_label(str(row["series"]), row["x"]), f"{row['error']:.2g}", f"{time} [{low}, {high}]")
+
+
+def _front(axes: Axes, part: pd.DataFrame, zero: float) -> list[Label]:
+    """Draw the Pareto front as a broad line behind the curves; return the substeps of each point, from the
+    cheapest, as labels.
+    """
     rows = part[part["on_front"]].sort_values("error")
     x, y = rows["error"].clip(lower=zero), MILLI * rows["median"]
     axes.plot(x, y, color=lighten(FAINT, 0.6), linewidth=5, solid_capstyle="round", zorder=1)
-    for one, other, substeps in zip(x, y, rows["substeps"], strict=True):
-        axes.annotate(
-            f"{substeps:g}", (one, other), xytext=(-4, -4), textcoords="offset points", ha="right", va="top",
-            fontsize=6, color=INK, zorder=4,
-        )  # fmt: skip
+    return [
+        (f"{substeps:g}", one, other) for one, other, substeps in zip(x, y, rows["substeps"], strict=True)
+    ][::-1]
 
 
-def _outside(axes: Axes, rows: pd.DataFrame, zero: float) -> None:
-    """Draw a general engine's points: a dotted line of diamonds, its least and most substeps named."""
+def _outside(axes: Axes, rows: pd.DataFrame, zero: float) -> list[Label]:
+    """Draw a general engine's points, a dotted line of diamonds; return its least and most substeps as
+    labels.
+    """
     rows = rows.sort_values("substeps")
     x, y = rows["error"].clip(lower=zero), MILLI * rows["median"]
     spread = [MILLI * (rows["median"] - rows["low"]), MILLI * (rows["high"] - rows["median"])]
-    axes.errorbar(x, y, yerr=spread, color=INK, linestyle=":", marker="D", markersize=3.5, linewidth=0.8)
-    for end in {0, len(rows) - 1}:
-        axes.annotate(
-            f"{rows['substeps'].iloc[end]:g}", (x.iloc[end], y.iloc[end]), xytext=(4, 3),
-            textcoords="offset points", fontsize=6, color=INK,
-        )  # fmt: skip
+    points, *_ = axes.errorbar(
+        x, y, yerr=spread, color=INK, linestyle=":", marker="D", markersize=3.5, linewidth=0.8
+    )
+    named = rows.assign(series=rows["engine"], x=rows["substeps"])
+    tell(points, [_told(row) for row in named.to_dict("records")])
+    return [
+        (f"{rows['substeps'].iloc[end]:g}", x.iloc[end], y.iloc[end])
+        for end in dict.fromkeys((0, len(rows) - 1))
+    ]
 
 
 def _outside_sentence(outside: pd.DataFrame, table: pd.DataFrame) -> str:

@@ -17,6 +17,8 @@ from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
+from analysis.figures.hover import identify, with_titles
+from analysis.records.plans import planned_runs
 from analysis.records.published import Published
 from analysis.records.studies import Study
 from analysis.support.files import replacing
@@ -174,12 +176,14 @@ def from_zero(axes: Axes) -> None:
     axes.set_ylim(0, axes.get_ylim()[1] * 1.02)
 
 
-def partial(study: Study, experiment: str) -> str | None:
+def partial(data: Data, experiment: str) -> str | None:
     """Return `partial: n of m runs` if the study lacks some of the experiment's planned records, else
-    None.
+    None. What is planned the runner wrote down last; records tell what it was when they were made.
     """
+    study = data.study
     runs = study.runs[study.runs["experiment"] == experiment]
-    planned = _planned(runs)
+    known = planned_runs(data.folder, study.scale, experiment, set(runs["point"]))
+    planned = _planned(runs) if known is None else float(known)
     if runs.empty or np.isnan(planned) or len(runs) >= planned:
         return None
     return f"partial: {len(runs)} of {int(planned)} runs"
@@ -210,10 +214,14 @@ def save(drawing: Drawing, folder: Path, name: str, formats: Sequence[str] = FOR
         # The layout is settled once, not once a format.
         drawing.figure.draw_without_rendering()
         drawing.figure.set_layout_engine("none")
+        lines = identify(drawing.figure)
         for suffix in formats:
             target = folder / f"{name}.{suffix}"
             metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[suffix]
             with replacing(target) as part:
                 drawing.figure.savefig(part, format=suffix, dpi=200, metadata=metadata)
+                if suffix == "svg":
+                    text = part.read_text(encoding="utf-8")
+                    part.write_text(with_titles(text, drawing.figure, lines), encoding="utf-8")
             files.append(target)
     return files

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 
 from analysis.figures.captions import growth_sentence, opening, time_axis
 from analysis.figures.curves import colours, curve, published_curve
+from analysis.figures.hover import Told, tell
 from analysis.figures.style import (
     BLUE,
     FAINT,
@@ -22,6 +23,7 @@ from analysis.figures.style import (
     plain_ticks,
 )
 from analysis.statistics.bootstrap import summarise
+from analysis.support.wording import exact, number
 
 SAME_RANGE = 0.75
 
@@ -40,7 +42,8 @@ def density(data: Data) -> Drawing | None:
     from_zero(left)
     runs = data.study.runs_of("density")
     resolves = (runs["pair_resolves"] / (runs["particles"] * runs["steps"])).groupby(runs["x"]).median()
-    right.plot(resolves.index, resolves, color=GREEN, marker="o")
+    (line,) = right.plot(resolves.index, resolves, color=GREEN, marker="o")
+    tell(line, [Told("", exact(float(str(x))), number(count)) for x, count in resolves.items()])
     right.set(xlabel="area fraction of the discs, N π r² / L²", ylabel="pair resolves per disc and step")
     from_zero(right)
     return Drawing(

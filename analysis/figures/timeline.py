@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from analysis.figures.phases import PHASE_COLOURS
 from analysis.figures.style import FAINT, INK, WIDTH, Data, Drawing, key, lighten
 from analysis.records import timelines
-from analysis.support.wording import count, number, share
+from analysis.support.wording import count, number, scene_in_words, share
 
 MOST = 6
 MANY = 400
@@ -26,6 +26,7 @@ def timeline(data: Data) -> Drawing | None:
     found = timelines.load(data.folder)[:MOST] if data.study is next(profiled, data.studies[0]) else []
     if not found:
         return None
+    titles = [_in_words(one.title, data.study.runs) for one in found]
     steps = [timelines.one_step(one.spans) for one in found]
     longest = 1e3 * max(step["end"].max() for step in steps)
     rows = [int(step["thread"].nunique()) for step in steps]
@@ -33,17 +34,29 @@ def timeline(data: Data) -> Drawing | None:
     grid = figure.subplots(len(found), 1, squeeze=False, sharex=True, gridspec_kw={"height_ratios": rows})[
         :, 0
     ]
-    for axes, one, step in zip(grid, found, steps, strict=True):
+    for axes, title, step in zip(grid, titles, steps, strict=True):
         _gantt(axes, step, longest)
         axes.set_title(" ", pad=3)
-        axes.annotate(one.title, (0, 1), xycoords="axes fraction", xytext=(0, 3), textcoords="offset points")
+        axes.annotate(title, (0, 1), xycoords="axes fraction", xytext=(0, 3), textcoords="offset points")
     entries = [(f"■ {phase}", colour) for phase, colour in PHASE_COLOURS.items()]
     key(grid[0], [*entries, ("■ waiting", FAINT), ("pale: serial part of the phase", INK)], raised=16)
     grid[-1].set_xlabel("time since the step began, ms")
-    said = "; ".join(f"{one.title}: {_sentence(step)}" for one, step in zip(found, steps, strict=True))
+    said = "; ".join(f"{title}: {_sentence(step)}" for title, step in zip(titles, steps, strict=True))
     return Drawing(
         figure, f"The step of median length of {count(len(found), 'profiled run')}, thread by thread. {said}."
     )
+
+
+def _in_words(title: str, runs: pd.DataFrame) -> str:
+    """Return a timeline's title with what other figures call its scene, instead of its file, where the
+    records know it.
+    """
+    variant, _, rest = title.partition(", ")
+    file, _, threads = rest.rpartition(", ")
+    known = runs.loc[runs["scene"] == file, ["particles", "area_fraction"]].drop_duplicates()
+    if len(known) != 1:
+        return title
+    return f"{variant}, {scene_in_words(*known.iloc[0])}, {threads}"
 
 
 def _gantt(axes: Axes, step: pd.DataFrame, longest: float) -> None:

@@ -77,8 +77,9 @@ def split(records: Records) -> list[Study]:
     """Return the studies in the records, the one to show first at the front: published sizes, then most
     records.
 
-    Where a series was measured with several programs, each makes a study of its own. A failure does not tell
-    its machine: it belongs to every study of its scale and site.
+    Where a series was measured with several programs, each makes a study of its own. A failure belongs to the
+    studies of its scale, machine and program; one that does not tell its machine to those of its site, one
+    whose program left no record to all of its machine.
     """
     keys = ["machine", "revision", "scale"]
     studies = [
@@ -88,7 +89,7 @@ def split(records: Records) -> list[Study]:
             scale,
             program,
             **_parts(records, runs),
-            failures=_failures(records, scale, runs),
+            failures=_failures(records, machine, scale, runs),
             limits=records.limits[records.limits["machine"] == machine],
             outside=records.outside[
                 (records.outside["machine"] == machine) & (records.outside["scale"] == scale)
@@ -117,9 +118,13 @@ def _scale_order(scale: str) -> int:
     return SCALES.index(scale) if scale in SCALES else len(SCALES)
 
 
-def _failures(records: Records, scale: str, runs: pd.DataFrame) -> pd.DataFrame:
-    table = records.failures
-    return table[(table["scale"] == scale) & table["site"].isin(runs["site"])].reset_index(drop=True)
+def _failures(records: Records, machine: str, scale: str, runs: pd.DataFrame) -> pd.DataFrame:
+    table = records.failures[records.failures["scale"] == scale]
+    owner, program = table["owner"], table["program_sha256"]
+    here = (owner == machine.partition(": ")[0]) | (owner.isna() & table["site"].isin(runs["site"]))
+    alike = records.runs[(records.runs["machine"] == machine) & (records.runs["scale"] == scale)]
+    nowhere = program.isna() | ~program.isin(alike["binary_sha256"])
+    return table[here & (nowhere | program.isin(runs["binary_sha256"]))].reset_index(drop=True)
 
 
 def _parts(records: Records, runs: pd.DataFrame) -> dict[str, pd.DataFrame]:

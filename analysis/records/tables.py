@@ -236,7 +236,9 @@ def outside(records: Named) -> pd.DataFrame:
 
 
 def failures(records: Named) -> pd.DataFrame:
-    """One row a failed point: its tags, `command` (one line), `exit_code`, `reason`, `recorded_at`."""
+    """One row a failed point: its tags, `command` (one line), `exit_code`, `reason`, `recorded_at`; `owner`,
+    the partition or host that it failed on, and `program_sha256`, where the record tells them.
+    """
     rows = [
         {
             "file": name,
@@ -245,10 +247,13 @@ def failures(records: Named) -> pd.DataFrame:
             "exit_code": record["exit_code"],
             "reason": record["reason"],
             "recorded_at": record["recorded_at"],
+            "owner": record["tags"].get("partition") or record["tags"].get("host"),
+            "program_sha256": record["tags"].get("program_sha256"),
         }
         for name, record in records
     ]
-    return pd.DataFrame(rows, columns=["file", *TAGS, "command", "exit_code", "reason", "recorded_at"])
+    columns = ["command", "exit_code", "reason", "recorded_at", "owner", "program_sha256"]
+    return pd.DataFrame(rows, columns=["file", *TAGS, *columns])
 
 
 def _profile_rows(records: Named, part: str) -> list[dict[str, Any]]:

@@ -1,7 +1,9 @@
 """The report: one self-contained HTML page, and the same as PDF."""
 
 import sys
+from collections.abc import Sequence
 from contextlib import redirect_stdout
+from datetime import UTC, datetime
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -16,14 +18,14 @@ TEMPLATE = "report.html.jinja"
 REMEDY = "apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 
 
-def write(results: Path) -> list[Path]:
+def write(results: Path, asked: Sequence[str] = ()) -> list[Path]:
     """Write `report.html` and `report.pdf` into the results folder from whatever records are there; return
-    what was written.
+    what was written. Questions that were `asked` by name lead.
 
     Draws the figures on the way. Without the libraries that the PDF needs, one line on standard error says so
     and an earlier, now outdated PDF is removed. Raises InputError if there is no such folder.
     """
-    gathered = content(load(results), results)
+    gathered = content(load(results), results, asked)
     html, pdf = results / "report.html", results / "report.pdf"
     with replacing(html) as part:
         part.write_text(_page(gathered), encoding="utf-8")
@@ -41,6 +43,19 @@ def write(results: Path) -> list[Path]:
     return [html, pdf]
 
 
+def write_meanwhile(results: Path, asked: Sequence[str], how_far: str) -> Path:
+    """Write `report.html` alone, with what a study that goes on has so far, and say when and `how_far` it
+    was; return it. An earlier PDF would be outdated, and is removed.
+    """
+    gathered = content(load(results), results, asked, formats=("svg",))
+    html = results / "report.html"
+    with replacing(html) as part:
+        moment = f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC"
+        part.write_text(_page(gathered, goes_on=f"{moment}, {how_far}"), encoding="utf-8")
+    (results / "report.pdf").unlink(missing_ok=True)
+    return html
+
+
 def _pdf(page: str, folder: Path) -> bytes:
     # Imported late, and in silence: without Pango the import fails, and prints a banner first.
     with redirect_stdout(StringIO()):
@@ -49,13 +64,15 @@ def _pdf(page: str, folder: Path) -> bytes:
     return data
 
 
-def render(results: Path) -> str:
+def render(results: Path, asked: Sequence[str] = ()) -> str:
     """Return the report as one HTML page that needs nothing but itself."""
-    return _page(content(load(results), results))
+    return _page(content(load(results), results, asked))
 
 
-def _page(gathered: dict[str, Any], *, images: bool = False) -> str:
-    """Return the page; with `images`, figures are files beside it, quicker to lay out for a PDF."""
+def _page(gathered: dict[str, Any], *, images: bool = False, goes_on: str = "") -> str:
+    """Return the page; with `images`, figures are the PNG files beside it, which a PDF takes many times
+    faster than SVG. `goes_on` tells when and how far it was written while the study goes on.
+    """
     environment = Environment(
         loader=PackageLoader("analysis.report", "."),
         autoescape=select_autoescape(default=True),
@@ -63,4 +80,4 @@ def _page(gathered: dict[str, Any], *, images: bool = False) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template(TEMPLATE).render(gathered, images=images)
+    return environment.get_template(TEMPLATE).render(gathered, images=images, goes_on=goes_on)

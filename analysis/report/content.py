@@ -1,7 +1,6 @@
 """Everything that the report says, gathered from the records; the template only lays it out."""
 
-import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,16 +10,17 @@ from markupsafe import Markup
 from analysis import claims
 from analysis.claims import missing
 from analysis.claims.entry import CLAIMS_FILE
-from analysis.derived.accuracy import MEASURES, errors
 from analysis.derived.ladder import headlines
 from analysis.derived.noise_prior import prior
-from analysis.figures import FIGURES, HARD_CASES, SPEED_AGAINST_ERROR, Drawn, experiments
+from analysis.figures import FIGURES, Drawn, experiments
 from analysis.figures.studies import draw_study
+from analysis.figures.style import FORMATS
 from analysis.records import published
 from analysis.records.reading import Records
 from analysis.records.studies import Study, split
-from analysis.report import provenance
-from analysis.report.horizons import horizons
+from analysis.report import graphs, provenance
+from analysis.report.parts import contents, parts
+from analysis.report.provenance import CONTROL
 from analysis.statistics.intervals import RANKS_FROM
 from analysis.statistics.levels import in_order, levels, shifting
 from analysis.statistics.looks import ERROR
@@ -30,13 +30,24 @@ from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.wording import blocks, change, count, number, share
 
 STYLE = Path(__file__).parent / "report.css"
-CONTROL = "control"
 
 
-def content(records: Records, results: Path) -> dict[str, Any]:
-    """Return the template's variables; draws the figures into the results folder."""
+def content(
+    records: Records, results: Path, asked: Sequence[str] = (), formats: Sequence[str] = FORMATS
+) -> dict[str, Any]:
+    """Return the template's variables; draws the figures into the results folder, in these formats.
+
+    Questions that were `asked` by name lead; without any, all of them were.
+    """
     studies = split(records)
-    parts = [_study(study, studies, results) for study in studies]
+    own = (results / CLAIMS_FILE.name).exists()
+    found = [_study(study, studies, results, asked, formats) for study in studies]
+    # A study that has what was asked comes before one that has not.
+    found.sort(key=lambda study: bool(asked) and not study["asked"])
+    for position, study in enumerate(found, start=1):
+        study["anchor"] = f"study-{position}"
+        study["contents"] = contents(study)
+    shown = [part for study in reversed(found) for part in (*study["asked"], *study["parts"])]
     return {
         "style": Markup(STYLE.read_text(encoding="utf-8")),
         "margin": share(MARGIN),
@@ -44,64 +55,76 @@ def content(records: Records, results: Path) -> dict[str, Any]:
         "ranks_from": RANKS_FROM,
         "records": len(records.runs),
         "latest": records.runs["recorded_at"].max() if len(records.runs) else None,
-        "studies": parts,
-        "unmeasured": [] if (results / CLAIMS_FILE.name).exists() else _unmeasured(records.runs),
+        "studies": found,
+        "own": own,
+        "graphs": [] if own else graphs.rows({part.experiment: part.anchor for part in shown}),
+        "unmeasured": [] if own else _unmeasured(records.runs),
         "missing_counters": provenance.missing_counters(records.counters),
         "failures": records.failures.to_dict("records"),
         "wrong": records.runs[records.runs["check_verdict"] == "failed"].to_dict("records"),
         "skipped": records.skipped,
-        "verbs": provenance.verbs(records.runs),
+        "verbs": provenance.verbs(records),
+        "scale": _scale(records.runs),
         "commands": provenance.commands(records.runs),
     }
 
 
-def _study(study: Study, studies: Sequence[Study], results: Path) -> dict[str, Any]:
-    drawn = draw_study(study, studies, results)
+def _study(
+    study: Study, studies: Sequence[Study], results: Path, asked: Collection[str], formats: Sequence[str]
+) -> dict[str, Any]:
+    drawn = draw_study(study, studies, results, formats=formats)
+    shown = parts(study, drawn)
     table = claims.evaluate(study, studies, published.load(), claims.load(results))
-    if study is not studies[0]:
-        table = table[~table["missing"]]
-    noise = process_noise(study.times)
+    noise, settled = process_noise(study.times), _settled(table, drawn)
     return {
         "name": study.name,
         "machine": provenance.machine(study),
-        "figures": [
-            _figure(figure)
-            for figure in drawn
-            if figure.entry.experiment not in (CONTROL, "phases") and not figure.entry.kind
-        ],
-        "errors": _errors(study, drawn),
-        "hard_cases": [_figure(figure) for figure in drawn if figure.entry.kind == HARD_CASES],
-        "trust": [_figure(figure) for figure in drawn if figure.entry.experiment == CONTROL],
-        "phases": [_figure(figure) for figure in drawn if figure.entry.experiment == "phases"],
+        "asked": [part for part in shown if part.experiment in asked and part.experiment != CONTROL],
+        "parts": [part for part in shown if part.experiment not in (*asked, CONTROL)],
+        "trust": [part for part in shown if part.experiment == CONTROL],
         "control": control_sentence(study),
         "headlines": headlines(study),
-        "warning": warning(noise),
-        "noise": [_noise_row(row) for row in noise.to_dict("records")],
+        "warning": warning(noise, settled),
+        "noise": [_noise_row(row, settled) for row in noise.to_dict("records")],
         "checks": provenance.checks(study),
-        "claims": table.to_dict("records"),
-        "states": missing.tally(table),
-        "tally": table["verdict"].value_counts().to_dict(),
+        "states": missing.tally(table if study is studies[0] else table[~table["missing"]]),
+        **_claims(table, {part.experiment: (part.anchor, part.title) for part in shown}, asked),
+        "without_records": _without_records(table) if study is studies[0] else None,
     }
 
 
-def _errors(study: Study, drawn: Sequence[Drawn]) -> list[dict[str, Any]]:
-    """Return for each experiment of speed against error how far paths can be compared, its figures, and the
-    measures that were 0 throughout and so have no figure.
+def _claims(
+    table: pd.DataFrame, places: dict[str, tuple[str, str]], asked: Collection[str]
+) -> dict[str, Any]:
+    """Return the claims that have records, those that were asked about first, each with the places of its
+    figures, and how many have each verdict.
     """
-    figures = [figure for figure in drawn if figure.entry.kind == SPEED_AGAINST_ERROR]
-    parts = []
-    for experiment in dict.fromkeys(figure.entry.experiment for figure in figures):
-        own = [figure for figure in figures if figure.entry.experiment == experiment]
-        measured = errors(study, experiment)
-        zeros = [measure.title for measure in MEASURES if (measured[measure.key] == 0).all()]
-        parts.append(
-            {
-                "horizons": horizons(study, experiment),
-                "zeros": zeros,
-                "figures": [_figure(one) for one in own],
-            }
-        )
-    return parts
+    rows = [
+        {**row, "places": [places[name] for name in row["experiments"] if name in places]}
+        for row in table[~table["missing"].astype(bool)].to_dict("records")
+    ]
+    rows.sort(key=lambda row: bool(asked) and not set(row["experiments"]) & set(asked))
+    return {"claims": rows, "tally": pd.Series([row["verdict"] for row in rows]).value_counts().to_dict()}
+
+
+def _without_records(table: pd.DataFrame) -> dict[str, Any] | None:
+    """Return the names of the claims that have no records, and the questions that would make them."""
+    rows = table[table["missing"].astype(bool)]
+    names = dict.fromkeys(name for row in rows["experiments"] for name in row)
+    return {"claims": list(rows["id"]), "questions": list(names)} if len(rows) else None
+
+
+def _settled(table: pd.DataFrame, drawn: Sequence[Drawn]) -> set[str]:
+    """Return the experiments that have verdicts, in a figure or of a claim, none of which is open."""
+    decided = table[table["verdict"].isin(missing.DECIDED)]
+    still_open = table[table["needed"].notna()]
+    settled = {name for row in decided["experiments"] for name in row}
+    unsettled = {name for row in still_open["experiments"] for name in row}
+    for figure in drawn:
+        if figure.verdicts is not None and len(figure.verdicts):
+            inconclusive = (figure.verdicts["verdict"] == "inconclusive").any()
+            (unsettled if inconclusive else settled).add(figure.entry.experiment)
+    return settled - unsettled
 
 
 def control_sentence(study: Study) -> str:
@@ -153,46 +176,24 @@ def _control_verdict(study: Study, processes: pd.DataFrame, sides: Sequence[pd.D
     )
 
 
-def _noise_row(row: dict[str, Any]) -> dict[str, Any]:
-    return {**row, "noise": share(row["noise"], 2), "needed": needed_said(row["needed"])}
+def _noise_row(row: dict[str, Any], settled: Collection[str]) -> dict[str, Any]:
+    if row["enough"]:
+        said = "enough"
+    elif not row["small"]:
+        said = "a trend"
+    else:
+        said = "settled all the same" if row["experiment"] in settled else "too few for small differences"
+    return {**row, "noise": share(row["noise"], 2), "needed": needed_said(row["needed"]), "said": said}
 
 
-def _figure(figure: Drawn) -> dict[str, Any]:
-    return {
-        "name": figure.files[0].stem,
-        "title": figure.entry.title,
-        "caption": figure.caption,
-        "verdicts": _verdicts(figure),
-        "tables": figure.tables,
-        "svg": Markup(inline(figure.files[0].read_text(encoding="utf-8"), figure.files[0].stem)),
-    }
-
-
-def _verdicts(figure: Drawn) -> list[dict[str, str]]:
-    rows = [] if figure.verdicts is None else figure.verdicts.to_dict("records")
-    return [
-        {"name": row["name"], "change": change(row), "blocks": blocks(row), "verdict": row["verdict"]}
-        for row in rows
-    ]
-
-
-def inline(svg: str, name: str) -> str:
-    """Return an SVG file's root element, free to take the width that the page gives it.
-
-    Its identifiers get the figure's name in front, since a page may hold each only once.
-    """
-    root = svg[svg.index("<svg") :]
-    end = root.index(">")
-    head = re.sub(r'\s(width|height)="[^"]*"', "", root[:end])
-    return head + re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{name}-", root[end:])
+def _scale(runs: pd.DataFrame) -> str:
+    """Return ` SCALE=` where all records are of one scale that is not the default."""
+    scales = set(runs["scale"])
+    return "" if len(scales) != 1 or scales <= {"paper", "unstated"} else f" SCALE={min(scales)}"
 
 
 def _unmeasured(runs: pd.DataFrame) -> list[dict[str, str]]:
-    """Return the experiments without any record, with the command that would measure each."""
+    """Return the name and the title of each published question without any record."""
     titles = {entry.experiment: entry.title for entry in reversed(FIGURES)}
     present = set(runs["experiment"])
-    return [
-        {"title": titles[name], "command": f"make experiments STUDY={name}"}
-        for name in experiments()
-        if name not in present
-    ]
+    return [{"name": name, "title": titles[name]} for name in experiments() if name not in present]

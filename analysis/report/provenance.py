@@ -5,9 +5,12 @@ from typing import Any
 
 import pandas as pd
 
+from analysis.figures import experiments
+from analysis.records.reading import Records
 from analysis.records.studies import Study
 from analysis.support.wording import count, exact, number
 
+CONTROL = "control"
 UNTOLD = "not told by the system"
 
 
@@ -73,12 +76,25 @@ def missing_counters(counters: pd.DataFrame) -> list[dict[str, str]]:
     ]
 
 
-def verbs(runs: pd.DataFrame) -> list[str]:
-    """Return the project's own commands that repeat the whole study, in order."""
-    families = set(runs["compiler_family"])
+def verbs(records: Records) -> list[str]:
+    """Return the project's own commands that repeat the whole of it, in order."""
+    families = set(records.runs["compiler_family"])
     builds = [f"make build COMPILER={name}" for name in ("gcc", "clang") if name in families]
-    scales = [f"make experiments SCALE={name}" for name in sorted(set(runs["scale"]) - {"unstated"})]
-    return ["make setup", *(builds or ["make build"]), *(scales or ["make experiments"]), "make report"]
+    scales = sorted(set(records.runs["scale"]) - {"unstated"})
+    studies = [f"make experiments{_study(records, scale)} SCALE={scale}" for scale in scales]
+    return ["make setup", *(builds or ["make build"]), *(studies or ["make experiments"]), "make report"]
+
+
+def _study(records: Records, scale: str) -> str:
+    """Return ` STUDY=` with the questions of that scale, nothing if all of the published ones are among
+    them; the control is among them in any case.
+    """
+    tables = (records.runs, records.failures)
+    present = {name for table in tables for name in table.loc[table["scale"] == scale, "experiment"]}
+    if present.issuperset(experiments()):
+        return ""
+    asked = sorted(present - {CONTROL}) or [CONTROL]
+    return f" STUDY={','.join(asked)}"
 
 
 def commands(runs: pd.DataFrame) -> list[dict[str, Any]]:

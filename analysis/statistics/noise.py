@@ -1,6 +1,7 @@
 """How noisy the machine was, what that allows to decide, and what to do about it."""
 
 from bisect import bisect_left
+from collections.abc import Collection
 
 import numpy as np
 import pandas as pd
@@ -12,7 +13,7 @@ from analysis.statistics.intervals import FEWEST, RANKS_FROM
 from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import PAIR, process_medians
 from analysis.statistics.verdicts import MARGIN
-from analysis.support.wording import count, share
+from analysis.support.wording import count, listed, share
 
 Floats = NDArray[np.float64]
 
@@ -122,19 +123,19 @@ def equivalence_rate(noise: float, blocks: int, margin: float = MARGIN) -> float
     return float((2 * stats.norm.cdf(room / max(true_error, 1e-12)) - 1).mean())
 
 
-def warning(noise: pd.DataFrame) -> str | None:
+def warning(noise: pd.DataFrame, settled: Collection[str] = ()) -> str | None:
     """Return the warning to show, with what to do, when an experiment about small differences was too noisy
-    for the margin; None if none was.
+    for the margin and its verdicts are not `settled` all the same; None if none was.
     """
     asked = noise[noise["small"].astype(bool)]
-    short = asked[~asked["enough"].astype(bool)]
+    short = asked[~asked["enough"].astype(bool) & ~asked["experiment"].isin(list(settled))]
     if short.empty:
         return None
     worst = short.loc[short["needed"].idxmax()]
     said = f"The worst is {worst['experiment']!r}: the time of a process varies by {share(worst['noise'], 1)}"
     return (
         f"The machine was too noisy to settle differences of {share(MARGIN)} in {len(short)} of {len(asked)} "
-        f"experiments about small ones. {said}, with {count(worst['bursts'], 'burst')}, which needs "
-        f"{needed_said(worst['needed'])} blocks; {worst['blocks']} were run. Expect verdicts of "
-        f"'inconclusive'. To do better: {ADVICE}."
+        f"experiments about small ones: {listed(short['experiment'])}. {said}, with "
+        f"{count(worst['bursts'], 'burst')}, which needs {needed_said(worst['needed'])} blocks; "
+        f"{worst['blocks']} were run. The verdicts of the others stand. To do better: {ADVICE}."
     )

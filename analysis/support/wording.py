@@ -80,6 +80,11 @@ def _between(estimate: float, low: float, high: float, digits: int) -> str:
     return f"{number(estimate, digits)} [{number(low, digits)}, {number(high, digits)}]"
 
 
+def scene_in_words(particles: float, area_fraction: float) -> str:
+    """Return what tells a scene from the others: discs and area fraction."""
+    return f"{exact(particles)} discs at area fraction {area_fraction:.2f}"
+
+
 def change(row: Mapping[str, Any]) -> str:
     """Return a row of `verdicts.judge` as a change with its 95 % interval, e.g. `−4.6 % [−5.1 %, −4.0 %]`,
     if it has one.

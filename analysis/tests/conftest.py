@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from analysis import report
 from analysis.figures.style import Data
 from analysis.records import published
 from analysis.records.reading import load
@@ -24,6 +25,12 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
         text = json.dumps(trace(f"find_{schedule}, scene.in, 2 threads", chunks))
         (folder / "timelines" / f"{schedule}.json").write_text(text)
     return folder
+
+
+@pytest.fixture(scope="session")
+def page(results: Path) -> str:
+    """The report of it."""
+    return report.render(results)
 
 
 @pytest.fixture(scope="session")

@@ -3,7 +3,7 @@
 import hashlib
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -76,14 +76,12 @@ def _require_schema(file: Path, content: Any) -> None:  # noqa: ANN401 - read fr
 def _owner(content: dict[str, Any]) -> str:
     """The machine that a record is of, in one word: the partition under Slurm, else the host.
 
-    A failure knows its site only.
+    A failure has them among its tags; an old one knows its site only.
     """
-    provenance = content.get("provenance", {})
+    provenance, tags = content.get("provenance", {}), content["tags"]
     slurm = provenance.get("slurm") or {}
-    owner = (
-        slurm.get("SLURM_JOB_PARTITION") or provenance.get("host") or content["tags"].get("site", "unknown")
-    )
-    return _word(owner)
+    host = provenance.get("host") or tags.get("host") or tags.get("site", "unknown")
+    return _word(slurm.get("SLURM_JOB_PARTITION") or tags.get("partition") or host)
 
 
 def _word(text: object) -> str:
@@ -93,13 +91,12 @@ def _word(text: object) -> str:
 
 def _take(store: Store, found: Sequence[_Found]) -> int:
     """How many were new."""
-    known = {_sha256(read_json(file)) for file in _files(store.root)}
-    measured = {one.file.name for one in found if one.content["kind"] != "failure"}
-    measured |= {file.name for file in (store.root / "records").rglob("*.json")}
+    here = [(file, read_json(file)) for file in _files(store.root)]
+    known = {_sha256(content) for _, content in here}
+    measured = _measured([*here, *((one.file, one.content) for one in found)])
     taken = 0
     for one in found:
-        # A process that has been measured since has not failed.
-        if one.sha256 in known or (one.content["kind"] == "failure" and one.file.name in measured):
+        if one.sha256 in known or _is_answered(one.file, one.content, measured):
             continue
         target = store.root / one.path
         there = read_json(target)
@@ -111,9 +108,34 @@ def _take(store: Store, found: Sequence[_Found]) -> int:
         known.add(one.sha256)
         taken += 1
     for file in sorted((store.root / "failures" / COLLECTED).rglob("*.json")):
-        if file.name in measured:
+        if _is_answered(file, read_json(file), measured):
             store.retire(file)
     return taken
+
+
+def _measured(files: Iterable[tuple[Path, Any]]) -> set[tuple[str, str]]:
+    """Owner and file name of every process that left a record, and the name alone with an empty owner."""
+    names = set()
+    for file, content in files:
+        if _kind(content) not in (None, "failure"):
+            names |= {(_owner(content), file.name), ("", file.name)}
+    return names
+
+
+def _is_answered(file: Path, content: Any, measured: set[tuple[str, str]]) -> bool:  # noqa: ANN401 - read from a file
+    """Whether a failure is one of a process that has been measured since, on the same machine if it tells
+    which: hosts with the same processor give their processes the same names.
+    """
+    if _kind(content) != "failure":
+        return False
+    owner = _owner(content) if "host" in content["tags"] else ""
+    return (owner, file.name) in measured
+
+
+def _kind(content: Any) -> str | None:  # noqa: ANN401 - read from a file
+    """The kind that a record says it is of; None for what is none at all."""
+    is_one = isinstance(content, dict) and isinstance(content.get("tags"), dict)
+    return str(content["kind"]) if is_one and "kind" in content else None
 
 
 def _files(folder: Path) -> Iterator[Path]:

@@ -137,11 +137,11 @@ class Store:
             self.retire(self.failure_path(point, block))
 
     def keep_failure(self, point: Point, block: int, done: Completed, tags: Tags) -> None:
-        """Record that a process failed, and why."""
+        """Record that a process failed, why, where and with which program."""
         failure = {
             "schema_version": 1,
             "kind": "failure",
-            "tags": tags,
+            "tags": {**tags, **_where(point)},
             "axes": point.axes,
             "command": list(done.command),
             "exit_code": done.exit_code,
@@ -157,6 +157,16 @@ class Store:
     def note(self, name: str) -> Any:  # noqa: ANN401 - JSON is any value
         """The content of a file of the runner's own, or None."""
         return read_json(self.root / name)
+
+
+def _where(point: Point) -> Tags:
+    """The host, the partition under Slurm and the program: what a record of the process would tell."""
+    told = {
+        "host": os.uname().nodename,
+        "partition": os.environ.get("SLURM_JOB_PARTITION"),
+        "program_sha256": point.program.sha256,
+    }
+    return {key: value for key, value in told.items() if value}
 
 
 def new_session() -> str:

@@ -18,7 +18,10 @@ DRAWING_PAUSE = 10.0
 """Seconds between two drawings: what is complete sooner is drawn together, which takes less time."""
 
 DRAWING_LIMIT = 600.0
-"""Seconds after which a drawing is given up."""
+"""Seconds after which a drawing or a report is given up."""
+
+REPORT_PAUSE, REPORT_SHARE = 300.0, 0.05
+"""Least seconds between two reports of what is there, and the most of the time that they may take."""
 
 
 def run(settings: Settings) -> int:
@@ -50,6 +53,7 @@ class Session:
         self._failures: Counter[str] = Counter()
         self._to_draw: list[str] = []
         self._drawn_at = -math.inf
+        self._report_due = time.monotonic() + REPORT_PAUSE
         self._said: set[str] = set()
         self._others, self._control = split(study.experiments)
         self._incomplete = [one for one in self._others if not schedule.is_complete(one)]
@@ -67,6 +71,9 @@ class Session:
 
     def run(self) -> int:
         """Run what is missing. First blocks come first: they tell what each block costs here."""
+        for experiment in self._study.experiments:
+            if self._schedule.is_complete(experiment):
+                self._schedule.begin(experiment)  # it may have fewer points than when it was completed
         for experiment in self._incomplete:
             self._run_control(everything=False)
             self._block(experiment, 0)
@@ -152,6 +159,7 @@ class Session:
                     self._tell(point, outcome)
         if missing:
             self._report.block(what, self._schedule.status)
+            self._write_report()
 
     def _tell(self, point: Point, failed: Outcome) -> None:
         where = f"{point.experiment}, {point.series}, {point.x_name} {point.x:g}"
@@ -183,6 +191,20 @@ class Session:
                 warn(f"{name}: complete, but its figure could not be drawn: {done.reason}")
         self._drawn_at = time.monotonic()
         self._schedule.figure_seconds = (self._drawn_at - began) / len(names)
+
+    def _write_report(self) -> None:
+        """Write the report of what is there every few minutes, which says that the study goes on."""
+        began = time.monotonic()
+        if not self._study.settings.figures or began < self._report_due:
+            return
+        self._report.now("writing the report of what is there")
+        done = self._analysis.ask(f"report {self._schedule.status()}", DRAWING_LIMIT)
+        now = time.monotonic()
+        self._report_due = now + max(REPORT_PAUSE, (now - began) / REPORT_SHARE)
+        if done.exit_code == 0:
+            self._report.line(f"report of what is there: {done.output.strip()}")
+        else:
+            warn(f"the report of what is there could not be written: {done.reason}")
 
     def _conclude(self) -> int:
         root = self._study.store.root

@@ -78,8 +78,9 @@ class Study:
         self.store = Store(settings.results, new_session())
 
     def analysis_command(self) -> list[str]:
-        """What draws the figures of the experiments that it is told, and says what is open."""
-        return [sys.executable, "-m", "analysis", "follow", "--results", str(self.store.root)]
+        """What draws the figures of the experiments that it is told, says what is open, writes the report."""
+        asked = ["--study", ",".join(self.settings.study)] if self.settings.study else []
+        return [sys.executable, "-m", "analysis", "follow", "--results", str(self.store.root), *asked]
 
     def scenes(self) -> SceneFolder:
         """The generated scenes; the results folder must be held."""

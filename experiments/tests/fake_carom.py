@@ -230,7 +230,7 @@ def provenance() -> dict[str, Any]:
     openmp = {key: value for key, value in os.environ.items() if key.startswith("OMP_")}
     slurm = {key: value for key, value in os.environ.items() if key.startswith(("SLURM_", "SLURMD_"))}
     return {
-        "host": "host",
+        "host": os.uname().nodename,
         "cpu_model": "none",
         "cores": 2,
         "hardware_threads": 2,

@@ -65,7 +65,7 @@ def test_the_conversation_is_a_line_for_a_line(
     answer, drawn = said.out.splitlines()
     assert set(json.loads(answer)) == {"open", "settled", "said"}
     assert drawn == "1"
-    assert "found 'dance', expected `draw A,B` or `open`" in said.err
+    assert "found 'dance', expected `draw A,B`, `open` or `report ...`" in said.err
     assert [path.name for path in (tmp_path / "figures").iterdir()] == ["neighbourhood.svg"]
 
 

@@ -1,3 +1,4 @@
+import json
 import re
 from itertools import pairwise
 from pathlib import Path
@@ -17,7 +18,7 @@ from analysis.records.studies import split
 from analysis.tests.synthetic import Machine, write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import study, trace
 
 UNCOUNTED = ["counters_hardware", "counters_simulated", "speed_against_error-unresolved"]
 DRAWN = [entry for entry in FIGURES if entry.name not in UNCOUNTED]
@@ -67,6 +68,57 @@ def test_partial_data_are_marked_in_figure_and_caption(tmp_path: Path) -> None:
     write(tmp_path, [record for record in study(["steps"], blocks=4) if record["tags"]["block"] != 2])
     (drawn,) = draw_all(tmp_path)
     assert drawn.caption.endswith("Partial: 30 of 40 runs.")
+
+
+def test_what_is_planned_is_what_the_runner_wrote_down_last(tmp_path: Path) -> None:
+    """Records of a question of ten values, of which two were taken out."""
+    records = [record for record in study(["steps"], blocks=4) if record["tags"]["x"] <= 160]
+    write(tmp_path, records)
+    assert draw_all(tmp_path)[0].caption.endswith("Partial: 32 of 40 runs.")
+    points = sorted({record["tags"]["point"] for record in records})
+    plan = {"paper": {"steps": {"blocks": 4, "points": points}}}
+    (tmp_path / "plan.json").write_text(json.dumps(plan))
+    assert "artial" not in draw_all(tmp_path)[0].caption
+    plan["paper"]["steps"]["blocks"] = 5
+    plan["paper"]["steps"]["stopped"] = {points[0]: 4}
+    (tmp_path / "plan.json").write_text(json.dumps(plan))
+    assert draw_all(tmp_path)[0].caption.endswith("Partial: 32 of 39 runs.")
+    for other in ({"paper": {"steps": {"blocks": 4, "points": points[1:]}}}, {"paper": {"steps": 3}}, {}, 7):
+        (tmp_path / "plan.json").write_text(json.dumps(other))
+        assert draw_all(tmp_path)[0].caption.endswith("Partial: 32 of 40 runs."), (
+            "it is not the plan of these"
+        )
+
+
+def test_a_timeline_calls_its_scene_as_other_figures_do(tmp_path: Path) -> None:
+    write(tmp_path, study(["phases"], blocks=2))
+    (tmp_path / "timelines").mkdir()
+    for number, name in enumerate(("scene.in", "unknown.in")):
+        text = json.dumps(trace(f"find_static, {name}, 2 threads", 3))
+        (tmp_path / "timelines" / f"{number}.json").write_text(text)
+    (drawn,) = (one for one in draw_all(tmp_path, formats=("svg",)) if one.entry.name == "timeline")
+    caption = drawn.caption.replace("\u00a0", " ")
+    assert "find_static, 100 000 discs at area fraction 0.80, 2 threads: " in caption
+    assert "find_static, unknown.in, 2 threads: " in caption
+
+
+def test_the_phases_and_the_hard_cases_say_what_they_show(tmp_path: Path) -> None:
+    write(tmp_path, study(["phases", "hard_cases"], blocks=2))
+    drawn = {one.entry.name: one for one in draw_all(tmp_path, formats=("svg",))}
+    caption = drawn["phases"].caption.replace("\u00a0", " ")
+    assert "(100 000 discs at area fraction 0.80, 2 threads)" in caption
+    svg = drawn["hard_cases"].files[0].read_text(encoding="utf-8")
+    assert "<!-- greatest distance of the speeds' -->" in svg
+    assert "table" not in re.findall(r"<!-- (what stands[^>]*) -->", svg)[0]
+
+
+def test_the_ladder_has_short_names_beside_the_long_ones(tmp_path: Path) -> None:
+    write(tmp_path, study(["ladder"], blocks=4))
+    (drawn,) = draw_all(tmp_path, formats=("svg",))
+    (table,) = drawn.tables
+    rows = [[cell.text for cell in row] for row in table.rows]
+    variants = {record["tags"]["series"]: record["axes"]["variant"] for record in study(["ladder"], blocks=1)}
+    assert {row[0]: row[2] for row in rows} == variants
 
 
 def test_svg_png_and_pdf_are_written_whole(tmp_path: Path) -> None:

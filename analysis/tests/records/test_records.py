@@ -6,7 +6,7 @@ import pytest
 
 from analysis.records.reading import InputError, load
 from analysis.records.studies import split
-from analysis.tests.synthetic import Machine, Point, bench, write
+from analysis.tests.synthetic import Machine, Point, bench, failure, write
 from analysis.tests.synthetic_study import failures, study
 
 
@@ -98,6 +98,36 @@ def test_a_failed_check_has_no_time(tmp_path: Path) -> None:
     records = load(tmp_path)
     assert records.times.empty
     assert list(records.runs["check_verdict"]) == ["failed"]
+
+
+def test_a_failure_belongs_to_the_machine_and_the_program_that_it_tells(tmp_path: Path) -> None:
+    hosts = [Machine(host="one"), Machine(host="two")]
+    for machine in hosts:
+        write(tmp_path, study(["steps"], blocks=1, machine=machine))
+    known = {one.host: one.provenance("g++ 12.2.0", 2)["binary_sha256"] for one in hosts}
+    for number, tags in enumerate(
+        (
+            {"host": "one", "program_sha256": known["one"]},
+            {"host": "two", "program_sha256": "of no record"},
+            {"host": "three"},
+            {"partition": "two", "host": "node"},
+            {},
+        )
+    ):
+        write(tmp_path, [failure("steps", "checkered", str(number), point=f"p{number}", **tags)])
+    found = {one.machine.split(":")[0]: set(one.failures["reason"]) for one in split(load(tmp_path))}
+    assert found == {"one": {"0", "4"}, "two": {"1", "3", "4"}}
+
+
+def test_a_failure_of_one_of_two_programs_is_not_the_others(tmp_path: Path) -> None:
+    first, second = study(["steps"], blocks=2), study(["steps"], blocks=1)
+    for number, record in enumerate(second):
+        record["provenance"]["binary_sha256"] = "a" * 64
+        record["tags"]["point"] = f"other-{number}"
+    write(tmp_path, [*first, *second])
+    write(tmp_path, [failure("steps", "checkered", "crash", host="bench-1", program_sha256="a" * 64)])
+    studies = split(load(tmp_path))
+    assert [len(one.failures) for one in studies] == [0, 1]
 
 
 def test_no_folder_is_bad_input(tmp_path: Path) -> None:

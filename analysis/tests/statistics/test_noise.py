@@ -70,7 +70,9 @@ def test_the_warning_names_the_worst_and_what_to_do() -> None:
     assert "1 of 2" in text
     assert "'loud'" in text
     assert "blocks" in text
+    assert "experiments about small ones: loud." in text
     assert warning(table[table["experiment"] == "quiet"]) is None
+    assert warning(table, {"loud"}) is None, "its verdicts are settled all the same"
 
 
 def test_trends_are_not_warned_about() -> None:

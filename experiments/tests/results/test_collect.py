@@ -1,6 +1,7 @@
 """Merging results folders: by content, never twice, and nothing of another schema."""
 
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,8 @@ from experiments.results.collect import collect
 from experiments.run.session import run
 from experiments.support.errors import InputError
 from experiments.tests.conftest import PAIR, Workplace
+
+HOST = os.uname().nodename
 
 
 @pytest.fixture
@@ -41,7 +44,7 @@ def test_records_come_in_once(source: Path, tmp_path: Path, capsys: pytest.Captu
     names = [path.name for path in collected(target)]
     assert names == sorted(path.name for path in source.glob("records/pair/*.json"))
     assert {path.parent.relative_to(target).as_posix() for path in collected(target)} == {
-        "records/collected/host/pair"
+        f"records/collected/{HOST}/pair"
     }
     collect([source], target)
     collect([target], tmp_path / "further")
@@ -74,10 +77,7 @@ def test_machines_of_the_same_kind_stand_side_by_side(source: Path, tmp_path: Pa
         change(file, lambda record: record["provenance"].update(host="../other host"))
     collect([source], target)
     assert len(collected(target)) == 8
-    assert sorted(path.name for path in (target / "records" / "collected").iterdir()) == [
-        "-other-host",
-        "host",
-    ]
+    assert {path.name for path in (target / "records" / "collected").iterdir()} == {"-other-host", HOST}
 
 
 @pytest.mark.parametrize("moment", ["2025-01-01T00:00:00Z", "2023-01-01T00:00:00Z"])
@@ -134,6 +134,40 @@ def test_failures_come_in_until_they_are_answered(workplace: Workplace, tmp_path
     collect([workplace.results], target)
     assert not collected(target, "failures")
     assert len(collected(target)) == 16
+
+
+def as_on(folder: Path, host: str) -> None:
+    """Make what a folder holds that of another host with the same processor."""
+    for file in folder.glob("*/pair/*.json"):
+        change(
+            file,
+            lambda record: record["tags" if record["kind"] == "failure" else "provenance"].update(host=host),
+        )
+
+
+def test_hosts_with_the_same_processor_keep_failures_of_their_own(
+    workplace: Workplace, tmp_path: Path
+) -> None:
+    target, folder = tmp_path / "all", workplace.results
+    collect_of = {}
+    for host, crashes in (("one", "nine"), ("two", "nine"), ("three", "none")):
+        workplace.behave(FAKE_BENCH_CRASHES=crashes)
+        run(workplace.settings)
+        as_on(folder, host)
+        collect([folder], target)
+        collect_of[host] = len(collected(target, "failures"))
+    assert collect_of == {"one": 1, "two": 2, "three": 2}, "what one host measured the others did not"
+    owners = {path.parent.parent.name for path in collected(target, "failures")}
+    assert owners == {"one", "two"}
+
+
+def test_a_failure_tells_its_host_and_its_program(workplace: Workplace) -> None:
+    workplace.behave(FAKE_BENCH_CRASHES="nine")
+    run(workplace.settings)
+    (failure,) = workplace.failures()
+    assert failure["tags"]["host"] == os.uname().nodename
+    record = next(iter(workplace.records("pair").values()))
+    assert failure["tags"]["program_sha256"] == record["provenance"]["binary_sha256"]
 
 
 def test_a_run_leaves_collected_records_alone(source: Path, tmp_path: Path, workplace: Workplace) -> None:

@@ -2,18 +2,26 @@
 
 import json
 import os
+import re
+import shutil
 from dataclasses import replace
 
 import pytest
 
+from experiments.run import session
 from experiments.run.session import run
 from experiments.run.study import Study
 from experiments.run.verdicts import Open, Verdicts
-from experiments.tests.conftest import PAIR, Workplace, finish
+from experiments.tests.conftest import CHUNKS, PAIR, Workplace, finish
 
 ANALYSIS = """
 import glob, json, sys
 for line in sys.stdin:
+    if line.startswith("report"):
+        with open(REPORTS, "a") as file:
+            file.write(line)
+        print("results/report.html", flush=True)
+        continue
     if line != "open\\n":
         print(1, flush=True)
         continue
@@ -41,8 +49,10 @@ def needing(workplace: Workplace) -> Workplace:
     folder = workplace.root / "analysis"
     folder.mkdir()
     (folder / "__init__.py").touch()
-    needed, log = (repr(os.fspath(workplace.root / name)) for name in ("needed", "looks"))
-    (folder / "__main__.py").write_text(ANALYSIS.replace("NEEDED", needed).replace("LOG", log))
+    program = ANALYSIS
+    for word, name in (("NEEDED", "needed"), ("LOG", "looks"), ("REPORTS", "reports")):
+        program = program.replace(word, repr(os.fspath(workplace.root / name)))
+    (folder / "__main__.py").write_text(program)
     return workplace
 
 
@@ -103,6 +113,39 @@ def test_an_analysis_that_fails_leaves_the_budget_to_the_old_rule(needing: Workp
     said = "what is open is not known, so that nothing is measured to settle it: no statistics"
     assert said in error.splitlines()
     assert blocks_of(needing, "pair") == 4
+
+
+def test_the_report_of_what_is_there_is_written_while_the_study_runs(
+    needing: Workplace, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    want(needing, pair=2, chunks=2)
+    needing.monkeypatch.chdir(needing.root)
+    monkeypatch.setattr(session, "REPORT_PAUSE", 0.0)
+    monkeypatch.setattr(session, "REPORT_SHARE", 1e6)
+    settings = replace(needing.settings, figures=True, study=("pair", "chunks"))
+    assert run(settings) == 0
+    asked = (needing.root / "reports").read_text().splitlines()
+    assert len(asked) >= 7, "after each block"
+    assert all(
+        re.fullmatch(r"report \d+ of 16 processes done, about \d+ (s|min) left", line) for line in asked
+    )
+    assert capfd.readouterr().out.count("report of what is there: results/report.html") == len(asked)
+    (needing.root / "reports").unlink()
+    monkeypatch.setattr(session, "REPORT_PAUSE", 300.0)
+    shutil.rmtree(needing.results)
+    assert run(settings) == 0
+    assert not (needing.root / "reports").exists(), "a short study needs none"
+
+
+def test_values_taken_out_of_a_finished_question_are_no_longer_planned(workplace: Workplace) -> None:
+    run(workplace.settings)
+    plan = json.loads((workplace.results / "plan.json").read_text())["paper"]["chunks"]
+    assert (plan["blocks"], len(plan["points"])) == (2, 3)
+    workplace.question("chunks", CHUNKS.replace("values = [1, 2, 3]", "values = [1, 2]"))
+    run(workplace.settings)
+    plan = json.loads((workplace.results / "plan.json").read_text())["paper"]["chunks"]
+    assert (plan["blocks"], len(plan["points"])) == (2, 2)
+    assert len(workplace.records("chunks")) == 4
 
 
 def test_the_cheapest_to_settle_comes_first(workplace: Workplace) -> None:

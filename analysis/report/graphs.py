@@ -1,0 +1,50 @@
+"""The graphs of the published report: what each showed, and where it is measured and drawn again."""
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from analysis.figures import FIGURES
+
+GRAPHS_FILE = Path(__file__).parent / "graphs.toml"
+
+
+@dataclass(frozen=True)
+class Graph:
+    """A published graph, what it showed, and the questions that measure it again, the one drawn first;
+    `appendix` tells those of the published appendix.
+    """
+
+    name: str
+    showed: str
+    questions: Sequence[str]
+    appendix: bool = False
+
+
+def load() -> list[Graph]:
+    """Return the published graphs, in the order of the published report."""
+    return [Graph(**table) for table in tomllib.loads(GRAPHS_FILE.read_text(encoding="utf-8"))["graph"]]
+
+
+def appendix() -> list[str]:
+    """Return the questions that `make appendix` asks, each once."""
+    return list(dict.fromkeys(name for graph in load() if graph.appendix for name in graph.questions))
+
+
+def rows(anchors: Mapping[str, str]) -> list[dict[str, Any]]:
+    """Return a row a graph for the report: its questions with their titles and, where `anchors` has one, the
+    place of the figure.
+    """
+    titles = {entry.experiment: entry.title for entry in reversed(FIGURES)}
+    return [
+        {
+            "name": graph.name,
+            "showed": graph.showed,
+            "questions": [
+                {"name": name, "title": titles[name], "anchor": anchors.get(name)} for name in graph.questions
+            ],
+        }
+        for graph in load()
+    ]

@@ -1,0 +1,119 @@
+"""The figures of a study as parts of the report, one a question, and the list of contents."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from markupsafe import Markup
+
+from analysis.derived.accuracy import MEASURES, errors
+from analysis.figures import HARD_CASES, SPEED_AGAINST_ERROR, Drawn
+from analysis.records.studies import Study
+from analysis.report.horizons import horizons
+from analysis.support.wording import blocks, change
+
+PHASES = "phases"
+
+
+@dataclass(frozen=True)
+class Part:
+    """What the report shows of one question: a title, sentences, figures. A figure alone brings its own
+    title, so that `heading` is False.
+    """
+
+    experiment: str
+    anchor: str
+    title: str
+    heading: bool
+    said: Sequence[str]
+    figures: Sequence[Mapping[str, Any]]
+
+
+def parts(study: Study, drawn: Sequence[Drawn]) -> list[Part]:
+    """Return a part for each question that was drawn: where the time goes, the others in the order of the
+    figures, those about errors last.
+    """
+    found = [
+        _part(study, [one for one in drawn if one.entry.experiment == experiment])
+        for experiment in dict.fromkeys(one.entry.experiment for one in drawn)
+    ]
+    kinds = {one.entry.experiment: one.entry.kind for one in drawn}
+    order = ["", SPEED_AGAINST_ERROR, HARD_CASES]
+    return sorted(found, key=lambda part: (part.experiment != PHASES, order.index(kinds[part.experiment])))
+
+
+def _part(study: Study, drawn: Sequence[Drawn]) -> Part:
+    entry = drawn[0].entry
+    said: Sequence[str] = ()
+    title = entry.title
+    if entry.kind == SPEED_AGAINST_ERROR:
+        title, said = title.partition(":")[0], _errors(study, entry.experiment)
+    elif entry.kind == HARD_CASES:
+        said = (
+            "Scenes that are hard to simulate right, each with an expectation that can fail. ✓ holds; ✗ "
+            "fails, with the reason; ! is wrong by the nature of the method, as expected, with its number; – "
+            "was not measured.",
+        )
+    elif entry.experiment == PHASES:
+        title = "Where the time goes"
+    figures = [_figure(one) for one in drawn]
+    heading = len(figures) > 1 or bool(said)
+    name = str(figures[0]["name"])
+    return Part(entry.experiment, f"part-{name}" if heading else name, title, heading, said, figures)
+
+
+def _errors(study: Study, experiment: str) -> list[str]:
+    """Say of an experiment of speed against error how far paths can be compared, and which measures were 0
+    throughout and so have no figure.
+    """
+    measured = errors(study, experiment)
+    zeros = [measure.title for measure in MEASURES if (measured[measure.key] == 0).all()]
+    said = [
+        "Errors are measured in a run of their own, never inside the clock, against an exact simulation of "
+        f"the same scene that goes from collision to collision. {horizons(study, experiment)}"
+    ]
+    return [*said, f"Zero in every run, and so without a figure: {', '.join(zeros)}."] if zeros else said
+
+
+def _figure(figure: Drawn) -> dict[str, Any]:
+    return {
+        "name": figure.files[0].stem,
+        "title": figure.entry.title,
+        "caption": figure.caption,
+        "verdicts": _verdicts(figure),
+        "tables": figure.tables,
+        "svg": Markup(inline(figure.files[0].read_text(encoding="utf-8"), figure.files[0].stem)),
+    }
+
+
+def _verdicts(figure: Drawn) -> list[dict[str, str]]:
+    rows = [] if figure.verdicts is None else figure.verdicts.to_dict("records")
+    return [
+        {"name": row["name"], "change": change(row), "blocks": blocks(row), "verdict": row["verdict"]}
+        for row in rows
+    ]
+
+
+def inline(svg: str, name: str) -> str:
+    """Return an SVG file's root element, free to take the width that the page gives it.
+
+    Its identifiers get the figure's name in front, since a page may hold each only once.
+    """
+    root = svg[svg.index("<svg") :]
+    end = root.index(">")
+    head = re.sub(r'\s(width|height)="[^"]*"', "", root[:end])
+    return head + re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{name}-", root[end:])
+
+
+def contents(study: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return the study's list of contents: the anchor and the title of each of its places, in their order."""
+    anchor = study["anchor"]
+    return [
+        *((part.anchor, part.title) for part in study["asked"]),
+        *([(f"{anchor}-claims", "The claims, tested again")] if sum(study["states"].values()) else []),
+        (f"{anchor}-machine", "The machine and the programs"),
+        (f"{anchor}-trust", "Can these numbers be trusted?"),
+        *((part.anchor, part.title) for part in study["trust"]),
+        *((part.anchor, part.title) for part in study["parts"]),
+    ]

@@ -1,0 +1,158 @@
+"""The report as a person reads it: what was asked first, places that links lead to, words that agree."""
+
+import re
+from io import StringIO
+from pathlib import Path
+
+import pytest
+
+from analysis import claims, report
+from analysis.cli import main
+from analysis.report import graphs
+from analysis.tests.report.test_report import Page, text_of
+from analysis.tests.synthetic import Machine, failure, write
+from analysis.tests.synthetic_noise import QUIET, Noise
+from analysis.tests.synthetic_study import study
+
+ROOT = Path(__file__).parents[3]
+
+
+def nav_of(page: str) -> str:
+    return page[page.index("<nav>") : page.index("</nav>")]
+
+
+def rows_of(page: str) -> list[str]:
+    """The first cell of each claim."""
+    table = page[page.index('<table class="claims">') :] if '<table class="claims">' in page else ""
+    return re.findall(r'<span class="id">(\w+)', table)
+
+
+def test_what_was_asked_leads(tmp_path: Path) -> None:
+    write(tmp_path, study(["radius", "steps", "neighbourhood", "control"], blocks=6, noise=QUIET))
+    page = report.render(tmp_path, ["neighbourhood"])
+    ids = Page(page).ids
+    assert ids.index("neighbourhood") < ids.index("study-1-claims") < ids.index("steps")
+    assert nav_of(page).index('"#neighbourhood"') < nav_of(page).index('"#study-1-claims"')
+    assert rows_of(page) == ["four_boxes", "radius", "steps"]
+    unasked = report.render(tmp_path)
+    ids = Page(unasked).ids
+    assert ids.index("study-1-claims") < ids.index("radius") < ids.index("steps") < ids.index("neighbourhood")
+    assert rows_of(unasked) == ["radius", "steps", "four_boxes"]
+
+
+def test_a_question_of_ones_own_leads_and_claims_without_records_are_one_line(tmp_path: Path) -> None:
+    records = study(["sequential_orders"], blocks=4)
+    for record in records:
+        record["tags"] |= {"experiment": "mine", "figure": "comparison", "title": "My orders"}
+    write(tmp_path, [*records, *study(["control"], blocks=4)])
+    page = report.render(tmp_path, ["mine"])
+    ids = Page(page).ids
+    assert ids.index("mine") < ids.index("study-1-claims")
+    assert rows_of(page) == []
+    text = text_of(page)
+    assert text.count("no records yet, and no verdict") == 1
+    assert "17 claims have no records yet, and no verdict: threads, particles" in text
+    assert "My orders" in nav_of(page)
+
+
+def test_a_study_that_has_what_was_asked_comes_first(tmp_path: Path) -> None:
+    write(tmp_path, study(["steps"], blocks=3))
+    write(tmp_path, study(["radius"], blocks=2, scale="quick", machine=Machine(host="bench-2")))
+    headings = r"<h2>([^<]*scale[^<]*)</h2>"
+    assert "paper scale" in re.findall(headings, report.render(tmp_path))[0]
+    assert "quick scale" in re.findall(headings, report.render(tmp_path, ["radius"]))[0]
+
+
+def test_the_contents_name_every_question_and_claims_lead_to_their_figures(page: str) -> None:
+    links = set(re.findall(r'href="#([^"]+)"', nav_of(page)))
+    assert {"control", "threads", "machine", "part-hard_cases", "ladder", "part-phases"} <= links
+    assert "part-speed_against_error-path" in links
+    table = page[page.index('<table class="claims">') : page.index('id="study-1-machine"')]
+    for claim in claims.load():
+        cell = table[table.index(f'<span class="id">{claim.id}') :]
+        told = set(re.findall(r'href="#([^"]+)"', cell[: cell.index("</td>")]))
+        assert len(told) == len(claim.experiments), claim.id
+        assert told <= set(Page(page).ids)
+
+
+def test_points_tell_their_values_in_the_page(page: str) -> None:
+    assert len(re.findall(r"<use [^>]*><title>[^<]*\d[^<]*</title></use>", page)) > 500
+
+
+def test_every_published_graph_has_its_place(page: str) -> None:
+    section = page[page.index('<section id="graphs">') : page.index('<section id="method">')]
+    for graph in graphs.load():
+        assert f"<td>{graph.name}</td><td>{graph.showed}</td>" in section
+        for question in graph.questions:
+            assert f'<a href="#{question}">' in section
+
+
+def test_a_graph_that_was_not_measured_has_its_command(tmp_path: Path) -> None:
+    write(tmp_path, study(["steps"], blocks=2, scale="quick"))
+    text = text_of(report.render(tmp_path))
+    assert "Radius ( make experiments STUDY=radius SCALE=quick )" in text
+
+
+def test_the_table_of_graphs_is_the_one_of_the_readme() -> None:
+    readme = (ROOT / "analysis" / "README.md").read_text(encoding="utf-8")
+    files = {path.stem for path in (ROOT / "experiments" / "questions").glob("*.toml")}
+    for graph in graphs.load():
+        assert set(graph.questions) <= files
+        links = ", ".join(f"[{name}](../experiments/questions/{name}.toml)" for name in graph.questions)
+        assert f"| {graph.name} | {graph.showed} | {links} |\n" in readme
+
+
+def test_make_appendix_asks_what_the_table_says() -> None:
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    goal = makefile[makefile.index("\nappendix:") :]
+    (study_of,) = re.findall(r"STUDY=(\S+)", goal[: goal.index("\n\n")])
+    assert study_of.split(",") == graphs.appendix()
+
+
+def test_the_box_on_noise_agrees_with_the_verdicts(tmp_path: Path) -> None:
+    noisy = Noise(process=0.03, repetition=0, burst_rate=0, drift=0)
+    far, near = (study([name], blocks=6, noise=noisy) for name in ("self_contained_track", "neighbourhood"))
+    for record in near:
+        if record["tags"]["series"] == "nine":
+            record["repetitions"][0]["steps_seconds"] /= 1.25 / 1.19
+    write(tmp_path, [*far, *near])
+    page = report.render(tmp_path)
+    box = re.search(r'<p class="warning">(.*?)</p>', page, re.DOTALL)
+    assert box is not None
+    assert "in 1 of 2 experiments about small ones: neighbourhood." in box[1]
+    said = dict(
+        re.findall(r"<tr><td>(\w+)</td>(?:<td class=\"number\">[^<]*</td>\s*){4}<td>([^<]*)</td>", page)
+    )
+    assert said == {
+        "neighbourhood": "too few for small differences",
+        "self_contained_track": "settled all the same",
+    }
+
+
+def test_a_report_of_a_study_that_goes_on_says_when_and_how_far(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(tmp_path, study(["steps"], blocks=2))
+    (tmp_path / "report.pdf").write_text("of earlier records")
+    monkeypatch.setattr("sys.stdin", StringIO("report 20 of 80 processes done, about 12 min left\n"))
+    assert main(["follow", "--results", str(tmp_path), "--study", "steps"]) == 0
+    assert capsys.readouterr().out == f"{tmp_path / 'report.html'}\n"
+    text = text_of((tmp_path / "report.html").read_text(encoding="utf-8"))
+    told = (
+        r"The study goes on\. This is what it had at \d{4}-\d\d-\d\d \d\d:\d\d UTC, 20 of 80 processes done"
+    )
+    assert re.search(told, text)
+    assert not (tmp_path / "report.pdf").exists()
+    assert {path.suffix for path in (tmp_path / "figures").iterdir()} == {".svg"}
+    assert main(["report", "--results", str(tmp_path)]) == 0
+    assert "goes on" not in text_of((tmp_path / "report.html").read_text(encoding="utf-8"))
+
+
+def test_the_commands_to_repeat_it_name_the_questions_and_the_scale(tmp_path: Path) -> None:
+    write(tmp_path, study(["steps", "control"], blocks=2, scale="quick"))
+    write(tmp_path, [failure("compiler", "clang++", "is not built", scale="quick")])
+    assert "make experiments STUDY=compiler,steps SCALE=quick\n" in report.render(tmp_path)
+
+
+def test_the_whole_study_is_repeated_without_a_name(page: str) -> None:
+    assert "make experiments SCALE=paper\n" in page
