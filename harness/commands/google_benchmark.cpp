@@ -118,7 +118,7 @@ void run_google_benchmark(const std::vector<std::string>& flags, const std::stri
     if (cases > 0) {
         return;
     }
-    constexpr std::string_view name = "--benchmark_filter=";
+    static constexpr std::string_view name = "--benchmark_filter=";
     const auto filter = std::ranges::find_if(flags, [](const auto& flag) { return flag.starts_with(name); });
     throw InputError("--benchmark_filter: found " +
                      (filter == flags.end() ? "none that fits" : in_quotes(filter->substr(name.size()))) +
