@@ -1,11 +1,14 @@
 """The blocks of the documents that a reader would type in or write to a file."""
 
+import os
 import re
+import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
+BUILT = (ROOT / "build" / "gcc" / "carom").is_file()
 DOCUMENTS = sorted(
     path.relative_to(ROOT).as_posix()
     for pattern in ("*.md", "docs/*.md", "experiments/*.md", "analysis/*.md")
@@ -58,3 +61,18 @@ def write_file(block: Block, folder: Path) -> None:
     if text.count(old) != 1:
         raise ValueError(f"{block.word}: holds {text.count(old)} times what is to be replaced: {old}")
     path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+def output_of(script: str, folder: Path) -> str:
+    """What a script prints that is run as a reader would."""
+    left_out = ("MAKE", "OMP_", "PYTEST")
+    settings = {key: value for key, value in os.environ.items() if not key.startswith(left_out)}
+    # More threads than idle processors must not spin for each other.
+    settings["OMP_WAIT_POLICY"] = "passive"
+    done = subprocess.run(
+        ["bash", "-euo", "pipefail", "-c", script],
+        cwd=folder, env=settings, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        text=True, errors="replace", check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, f"exit code {done.returncode}\n{script}\n{done.stdout[-4000:]}"
+    return done.stdout

@@ -3,7 +3,6 @@
 Where a block is marked `verbs`, only the names of its verbs are checked.
 """
 
-import os
 import re
 import shutil
 import subprocess
@@ -11,13 +10,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from documents import DOCUMENTS, KINDS, ROOT, Block, blocks, document, shell, write_file
+from documents import BUILT, DOCUMENTS, KINDS, ROOT, Block, blocks, document, output_of, shell, write_file
 
 COMMAND = r"(make|cmake|ctest|python|\.venv/bin/python|build/\w+/carom|carom|git|apt-get) "
 LOOKS_LIKE_A_COMMAND = re.compile(rf"^\s*{COMMAND}", re.MULTILINE)
 INDENTED_COMMAND = re.compile(rf"^(    |\t){COMMAND}", re.MULTILINE)
 FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
-BUILT = (ROOT / "build" / "gcc" / "carom").is_file()
 CMAKE_LISTS = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
 MAKEFILE_VERBS = set(
     re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
@@ -54,18 +52,10 @@ def follow(document_blocks: list[Block], folder: Path, kinds: tuple[str, ...]) -
 
 
 def run(block: Block, folder: Path) -> None:
-    left_out = ("MAKE", "OMP_", "PYTEST")
-    settings = {key: value for key, value in os.environ.items() if not key.startswith(left_out)}
-    # More threads than idle processors must not spin for each other.
-    settings["OMP_WAIT_POLICY"] = "passive"
-    done = subprocess.run(
-        ["bash", "-euo", "pipefail", "-c", block.text],
-        cwd=folder, env=settings, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-        text=True, errors="replace", check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, (
-        f"line {block.line}: exit code {done.returncode}\n{block.text}\n{done.stdout[-4000:]}"
-    )
+    try:
+        output_of(block.text, folder)
+    except AssertionError as error:
+        raise AssertionError(f"line {block.line}: {error}") from error
 
 
 @pytest.mark.skipif(not BUILT, reason="build/gcc/carom is not built (`make build` builds it)")
