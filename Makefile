@@ -6,7 +6,8 @@
 .NOTPARALLEL:
 .SILENT:
 .PHONY: help setup environment build build-gcc build-clang build-gcc-libomp tests-gcc tests-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files movie \
-        experiments status submit resume collect figures report compare lint lint-quick format clean distclean
+        experiments appendix status submit resume collect figures report compare lint lint-quick format clean distclean \
+        settings
 
 export COMPILER ?= gcc
 CXX_gcc := g++
@@ -19,35 +20,86 @@ configure = CXX=$(CXX_$*) $(generator) cmake --preset release -B build/$* -DCARO
 sources := find kernels variants harness -name '*.[ch]pp'
 study := $${STUDY:+--study "$$STUDY"} $${SCALE:+--scale "$$SCALE"} $${SITE:+--site "$$SITE"} $${QUESTIONS:+--questions "$$QUESTIONS"}
 results := $${RESULTS:+--results "$$RESULTS"}
+asked := $${STUDY:+--study "$$STUDY"}
+limits := $${BUDGET:+--budget "$$BUDGET"} $${UNTIL:+"--until-$$UNTIL"}
+picture := $${OUT:+--output "$$OUT"} $${STEP:+--step "$$STEP"}
 dry_run := $${DRY_RUN:+--dry-run}
 
-help: ## list these verbs
+# What may be given, with what holds if it is not: `make help` prints these lines.
+#: Settings, given as NAME=VALUE behind the verb; in brackets what holds without:
+#:   STUDY=      questions out of QUESTIONS, between commas (all)
+#:   SCALE=      paper or quick, a tenth of the discs and half of the steps (paper)
+#:   SITE=       where it runs: a name in experiments/sites, or a file *.toml (local)
+#:   QUESTIONS=  folder of questions of your own (experiments/questions)
+#:   RESULTS=    folder of records, figures and report (results)
+#:   BUDGET=     minutes for the whole study, report included (38 at paper scale, 2.5 at quick scale)
+#:   UNTIL=      decided: measure until all that can be decided is (no: for the budget)
+#:   DRY_RUN=    1: say what would be done, do nothing (no)
+#:   SCENE=      the scene file of a movie
+#:   OUT=        its file *.mp4, *.gif or *.png (results/movies/SCENE.mp4, *.gif without ffmpeg)
+#:   STEP=       the step of a *.png (the last)
+#:   VARIANT=    the variant of a movie (published)
+#:   A= B=       two results folders to compare
+#:   FROM=       a results folder to collect from (those of SITE)
+#:   COMPILER=   gcc, clang or gcc-libomp (gcc)
+#:   JOBS=       compilers and tests at a time (one a processor)
+#:   WERROR=     1: a compiler's warning stops the build (no)
+#:   TIME=       seconds of random input for each reader (60)
+#:   PYTHON=     the Python that makes .venv, 3.11 or newer (the system's)
+#:
+#: Exit codes: 0 done; else 2, and make's last line names that of the command, `Error N`:
+#:   1 wrong input or usage, told in one line; 2 a point or a check failed, as the report says; 3 of compare:
+#:   something is slower (what is undecided is told, and is no error); 130 stopped, the same command goes on.
+settings := STUDY SCALE SITE QUESTIONS RESULTS BUDGET UNTIL DRY_RUN SCENE OUT STEP VARIANT A B FROM COMPILER JOBS WERROR TIME PYTHON
+of_tools := CC CXX CFLAGS CXXFLAGS LDFLAGS MAKEFLAGS SHELL CMAKE_% CTEST_% CCACHE_% CAROM_% PYTEST_% OMP_% PIP_%
+given := $(foreach one,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(one)))),$(one)))
+unknown := $(firstword $(filter-out $(settings) $(of_tools),$(given)))
+$(if $(unknown),$(error $(unknown)=: is no setting, expected one of $(settings) (see `make help`)))
+
+# What has to be given. The second word says what it is.
+need = test -n "$${$(1)-}" || { echo "$(1)=: missing, expected $(2)" >&2; exit 1; }
+# A copied or moved checkout brings a build folder along that is not its own: CMake would not say what to do.
+own_build = made=$$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' $(1)/CMakeCache.txt 2>/dev/null); \
+	test -z "$$made" || test "$$made" -ef . || { \
+	echo "$(1): was built for $$made, and this is $$PWD; \`make clean\` removes it, then build again" >&2; exit 1; }
+
+help: ## list these verbs, the settings and the exit codes
 	sed -nE 's/^([a-z-]+):[^#]*## (.*)/  make \1\t\2/p' Makefile | expand -t 20
+	echo
+	sed -nE 's/^#: ?//p' Makefile
+
+settings:
+	case "$${JOBS-}" in *[!0-9]*|0*) echo "JOBS=$$JOBS: expected a whole number of at least 1" >&2; exit 1;; esac
+	case "$${UNTIL-}" in ""|decided) ;; *) echo "UNTIL=$$UNTIL: expected decided" >&2; exit 1;; esac
+	case "$${TIME-}" in *[!0-9]*) echo "TIME=$$TIME: expected a whole number of seconds" >&2; exit 1;; esac
 
 setup: ## install what is missing and make .venv (PYTHON=another Python, 3.11 or newer)
 	./setup.sh
 
-build: ## build build/$COMPILER/carom (COMPILER=gcc|clang|gcc-libomp; JOBS=; WERROR=1 stops at a warning)
+build: settings ## build build/$COMPILER/carom (COMPILER=gcc|clang|gcc-libomp; JOBS=; WERROR=1 stops at a warning)
 	case "$$COMPILER" in gcc|clang|gcc-libomp) ;; *) echo "COMPILER=$$COMPILER: expected gcc, clang or gcc-libomp" >&2; exit 1;; esac
 	$(MAKE) --no-print-directory "build-$$COMPILER"
 
 # The program alone: what the study and the verbs need. The tests are built for the tests.
-build-gcc build-clang: build-%:
+build-gcc build-clang: build-%: settings
+	$(call own_build,build/$*)
 	$(configure)
 	cmake --build build/$* --target carom $(jobs)
 
-tests-gcc tests-clang: tests-%:
+tests-gcc tests-clang: tests-%: settings
+	$(call own_build,build/$*)
 	$(configure)
 	cmake --build build/$* $(jobs)
 
 # g++'s code with the OpenMP runtime of clang++, which has g++'s entry points too: to compare the compilers' code alone.
-build-gcc-libomp:
+build-gcc-libomp: settings
+	$(call own_build,build/gcc-libomp)
 	CXX=g++ $(generator) cmake --preset release -B build/gcc-libomp -DBUILD_TESTING=OFF \
 		-DOpenMP_CXX_FLAGS=-fopenmp -DOpenMP_CXX_LIB_NAMES=omp \
 		-DOpenMP_omp_LIBRARY="$$(dirname "$$(readlink -f "$$(command -v clang++)")")/../lib/libomp.so"
 	cmake --build build/gcc-libomp $(jobs) --target carom
 
-test: lint-quick tests-gcc tests-clang ## build with both compilers and run every quick test
+test: settings lint-quick tests-gcc tests-clang ## build with both compilers and run every quick test
 	ctest --test-dir build/gcc --output-on-failure --no-tests=error -LE slow $(jobs)
 	ctest --test-dir build/clang --output-on-failure --no-tests=error -LE slow $(jobs)
 	$(python) pytest
@@ -65,7 +117,7 @@ test-all: test ## and the slow ones, and those that need Slurm
 
 fuzz: fuzz-scenes fuzz-files ## let random input loose on every reader (TIME=60, seconds for each; needs libclang-rt-dev)
 
-fuzz-scenes: environment
+fuzz-scenes: environment settings
 	$(generator) cmake --preset fuzz
 	cmake --build build/fuzz $(jobs)
 	mkdir -p build/fuzz/corpus
@@ -76,7 +128,7 @@ fuzz-scenes: environment
 fuzz-files: environment
 	CAROM_FUZZ_SECONDS="$${TIME:-60}" $(python) pytest -m fuzz -s
 
-sanitize: environment ## run the quick C++ tests with AddressSanitizer and UBSan, then with ThreadSanitizer (most of an hour)
+sanitize: environment settings ## run the quick C++ tests with AddressSanitizer and UBSan, then with ThreadSanitizer (most of an hour)
 	for preset in asan-ubsan tsan; do \
 		$(generator) cmake --preset $$preset && cmake --build --preset $$preset $(jobs) && ctest --preset $$preset $(jobs) || exit 1; \
 	done
@@ -84,50 +136,61 @@ sanitize: environment ## run the quick C++ tests with AddressSanitizer and UBSan
 test-slurm: environment ## the tests that need Slurm, which they unpack themselves (Debian's packages, no root)
 	$(python) pytest -m slurm
 
-# What g++'s build can measure is measured before another one is built. A point that failed (2) belongs in the report
-# and still fails the goal.
-run := $(python) experiments run $(study) $(results) $${BUDGET:+--budget "$$BUDGET"} $${UNTIL:+"--until-$$UNTIL"}
-experiments: environment build-gcc ## run the study, then report (STUDY= SCALE=quick|paper SITE= QUESTIONS= RESULTS= BUDGET=minutes UNTIL=decided)
-	builds=$$($(python) experiments builds $(study)) || exit; \
+# A mistake is told before anything is built. What g++'s build can measure is measured before another one is built. A
+# point that failed (2) belongs in the report and still fails the goal.
+run := $(python) experiments run $(study) $(results) $(limits)
+experiments: environment settings ## run the study, then report (STUDY= SCALE= SITE= QUESTIONS= RESULTS= BUDGET= UNTIL= DRY_RUN=1)
+	builds=$$($(python) experiments builds $(study) $(results) $(limits)) || exit; \
+	if test -n "$${DRY_RUN-}"; then exec $(python) experiments plan $(study) $(results) $(limits); fi; \
+	$(MAKE) --no-print-directory build-gcc || exit; \
 	case $$builds in *clang*) \
 		$(run) --builds gcc; case $$? in 0|2) ;; *) exit $$?;; esac; \
 		$(MAKE) --no-print-directory build-clang || exit;; \
 	esac; \
 	code=0; $(run) || code=$$?; \
-	case $$code in 0|2) $(python) analysis report $(results) && exit $$code;; *) exit $$code;; esac
+	case $$code in 0|2) $(python) analysis report $(results) $(asked) && exit $$code;; *) exit $$code;; esac
+
+# analysis/report/graphs.toml says which graphs these are.
+appendix: ## draw the graphs of the published appendix, measuring what is missing (SCALE= RESULTS= BUDGET=)
+	$(MAKE) --no-print-directory experiments \
+		STUDY=neighbourhood,self_contained_checkered,self_contained_track,self_contained_repeat,schedule_find,schedule_resolve,schedule_resolve_row
 
 status: environment ## what of the study is done, what is missing (STUDY= SCALE= SITE= RESULTS=)
 	$(python) experiments status $(study) $(results)
 
 submit: environment ## hand what is missing to a Slurm cluster (SITE= STUDY= SCALE= RESULTS= DRY_RUN=1)
-	: "$${SITE:?the site of a cluster, a file *.toml}"
+	$(call need,SITE,the site of a cluster (a file *.toml))
 	$(python) experiments submit $(study) $(results) $(dry_run)
 
 resume: environment ## hand it again what is missing of all that was submitted (SITE= RESULTS= DRY_RUN=1)
-	: "$${SITE:?the site of a cluster, a file *.toml}"
+	$(call need,SITE,the site of a cluster (a file *.toml))
 	$(python) experiments resume $(study) $(results) $(dry_run)
 
 collect: environment ## merge a cluster's records, or another folder's, into RESULTS (SITE= or FROM=)
-	: "$${FROM:-$${SITE:?the site of a cluster, or FROM=, a results folder}}"
+	test -n "$${FROM-}" || $(call need,SITE,the site of a cluster (a file *.toml) or FROM= with a results folder)
 	$(python) experiments collect $(study) $(results) $${FROM:+"$$FROM"}
 
 figures: environment ## draw the figures of whatever is there (RESULTS=)
 	$(python) analysis figures $(results)
 
-report: environment ## write the report of whatever is there (RESULTS=)
-	$(python) analysis report $(results)
+report: environment ## write the report of whatever is there (RESULTS=; STUDY= puts questions first)
+	$(python) analysis report $(results) $(asked)
 
-movie: environment build ## draw a run (SCENE= OUT=*.mp4|*.gif|*.png VARIANT= STEP=)
-	: "$${SCENE:?a scene file}"
+movie: environment ## draw a run (SCENE= OUT=*.mp4|*.gif|*.png VARIANT= STEP=)
+	$(call need,SCENE,a scene file (make movie SCENE=scene.in))
+	$(python) analysis movie "$$SCENE" $(picture)
+	$(MAKE) --no-print-directory build
 	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
 	"build/$$COMPILER/carom" run "$$SCENE" --variant "$${VARIANT:-published}" --trajectory "$$folder/trajectory" && \
-	$(python) analysis movie "$$SCENE" "$$folder/trajectory" $${OUT:+--output "$$OUT"} $${STEP:+--step "$$STEP"}
+	$(python) analysis movie "$$SCENE" "$$folder/trajectory" $(picture)
 
-compare: environment ## compare two result folders (A= B=)
-	: "$${A:?one result folder}" "$${B:?the other result folder}"
-	$(python) analysis compare "$$A" "$$B"
+# What is undecided (4) is an answer, and no failure of the command.
+compare: environment ## compare two results folders (A= B=); fails if something is slower
+	$(call need,A,a results folder)
+	$(call need,B,the results folder to compare with it)
+	code=0; $(python) analysis compare "$$A" "$$B" || code=$$?; case $$code in 4) ;; *) exit $$code;; esac
 
-lint: lint-quick ## every static check of C++ and Python (clang-tidy from the package of that name)
+lint: settings lint-quick ## every static check of C++ and Python (clang-tidy from the package of that name)
 	CXX=clang++ $(generator) cmake --preset release -B build/lint -DCAROM_UNITY=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
 	cmake --build build/lint --target carom_build_info
 	run-clang-tidy -quiet -p build/lint -j "$${JOBS:-$$(nproc)}"

@@ -77,7 +77,8 @@ def _parser() -> argparse.ArgumentParser:
     text = "draw a run as an animation, or one step of it as a picture"
     movie = commands.add_parser("movie", help=text, description=text)
     movie.add_argument("scene", type=Path, metavar="SCENE", help="the scene file that was run")
-    movie.add_argument("trajectory", type=Path, metavar="TRAJECTORY", help="from `carom run --trajectory`")
+    told = "from `carom run --trajectory`; without it, only see whether the movie could be drawn"
+    movie.add_argument("trajectory", type=Path, nargs="?", metavar="TRAJECTORY", help=told)
     movie.add_argument("--output", type=Path, metavar="FILE", help="*.mp4 (needs ffmpeg), *.gif or *.png")
     movie.add_argument("--step", type=int, metavar="S", help="of a picture (default: the last)")
     movie.set_defaults(run=_movie)
@@ -191,6 +192,11 @@ def _compare(options: argparse.Namespace) -> int:
 
 
 def _movie(options: argparse.Namespace) -> int:
+    if options.trajectory is None:
+        from analysis.commands.movie_file import target_of
+
+        target_of(options.scene, options.output, options.step)
+        return 0
     from analysis.commands import movie
 
     print(movie.draw(options.scene, options.trajectory, options.output, options.step))

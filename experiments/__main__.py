@@ -12,9 +12,10 @@ from typing import NoReturn
 
 from experiments.plan import site
 from experiments.plan.new_question import new_question
-from experiments.plan.program import GENERATOR
+from experiments.plan.plan import Surroundings, plan
+from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.question import load_questions
-from experiments.plan.scale import SCALES
+from experiments.plan.scale import SCALES, find_scale
 from experiments.plan.site import load_site
 from experiments.results.collect import collect
 from experiments.run.session import run
@@ -59,15 +60,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _check(options: argparse.Namespace) -> int:
-    """Read every question and site, and say how many there are."""
+    """Read every question and site, plan each question at both scales, and say how many there are."""
     questions = load_questions(options.questions, options.study)
     sites = [load_site(str(path)) for path in sorted(site.FOLDER.glob("*.toml"))]
+    where = load_site(options.site)
+    programs = find_programs(where, options.build)
+    for scale in SCALES.values():
+        around = Surroundings(where, site.this_machine(), programs, scale)
+        for one in questions:
+            plan(one, around)
+    asked = {name for one in questions for name in one.programs if name in programs}
+    unbuilt = [programs[name].remedy for name in sorted(asked) if programs[name].sha256 is None]
     print(f"{len(questions)} questions and {len(sites)} sites are valid")
+    for remedy in unbuilt:
+        print(f"but whether the variants exist was not looked at: {remedy}")
     return 0
 
 
 def _builds(options: argparse.Namespace) -> int:
     """The one that makes the scenes, and what the questions cannot do without."""
+    find_scale(options.scale)
     questions = load_questions(options.questions, options.study)
     asked = {GENERATOR}.union(*(one.programs for one in questions))
     print(*(name for name in load_site(options.site).programs if name in asked))
@@ -76,6 +88,8 @@ def _builds(options: argparse.Namespace) -> int:
 
 def _status(options: argparse.Namespace) -> int:
     settings = _settings(options)
+    if not settings.results.is_dir() and settings.results != Settings.results:
+        raise InputError(f"results: found {settings.results}, expected a folder that is there")
     is_local = load_site(settings.site).cluster is None
     return show_status(settings) if is_local else show_cluster_status(settings)
 
@@ -198,18 +212,20 @@ def names(text: str) -> tuple[str, ...]:
 
 
 def positive_number(text: str) -> int:
-    """A whole number of at least 1. Raises ValueError, which the parser makes a line of."""
-    number = int(text)
-    if number < 1:
-        raise ValueError
-    return number
+    """A whole number of at least 1. Raises what the parser makes a line of."""
+    if not (text.isascii() and text.isdigit() and int(text) > 0):
+        raise argparse.ArgumentTypeError(f"found {text}, expected a whole number of at least 1")
+    return int(text)
 
 
 def minutes(text: str) -> float:
-    """A number of minutes above 0, in seconds. Raises ValueError, which the parser makes a line of."""
-    number = float(text)
+    """A number of minutes above 0, in seconds. Raises what the parser makes a line of."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = 0.0
     if not 0 < number < float("inf"):
-        raise ValueError
+        raise argparse.ArgumentTypeError(f"found {text}, expected a number of minutes above 0")
     return number * 60
 
 

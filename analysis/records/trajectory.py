@@ -1,7 +1,7 @@
 """Reads what `carom run --trajectory` writes, and the size of the box from the scene file beside it."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,10 +17,11 @@ COLUMNS = "step i x y vx vy"
 
 @dataclass(frozen=True)
 class Box:
-    """What a scene file says of its box: the side L and the discs' radius r."""
+    """What a scene file says of its box, the side L and the discs' radius r, and of the number of steps S."""
 
     side: float
     radius: float
+    steps: int = 0
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Trajectory:
 
 
 def read_box(path: Path) -> Box:
-    """Read the first lines of a scene file, N, L and r. Raises InputError with the file and the line."""
+    """Read the first lines of a scene file, N, L, r and S. Raises InputError with the file and the line."""
     lines = _lines(path)
     next(lines, "")
     side, radius = (
@@ -48,7 +49,10 @@ def read_box(path: Path) -> Box:
         raise InputError(
             f"{path}:2: found a side of {side:g} and a radius of {radius:g}, expected L >= 2r > 0"
         )
-    return Box(side, radius)
+    steps = next(lines, "").strip()
+    if not (steps.isascii() and steps.isdigit() and len(steps) < 19):
+        raise InputError(f"{path}:4: found {_shown(steps)}, expected the number of steps S")
+    return Box(side, radius, int(steps))
 
 
 def read_trajectory(path: Path) -> Trajectory:
@@ -68,7 +72,7 @@ def read_trajectory(path: Path) -> Trajectory:
         step, disc = (0, number - 1) if count is None else divmod(number - 1, max(1, count))
         if fields[:2] != [str(step), str(disc)]:
             raise InputError(f"{where}: found {_shown(line)}, expected step {step}, disc {disc}")
-        states.append(tuple(_number(field, where, "a finite number") for field in fields[2:]))
+        states.append(_numbers(line, fields[2:], where))
     discs = count or len(states)
     if not states or len(states) % discs:
         missing = f"disc {len(states) % discs}" if states else "step 0, disc 0"
@@ -84,6 +88,17 @@ def _lines(path: Path) -> Iterator[str]:
             yield from file
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+
+
+def _numbers(line: str, fields: Sequence[str], where: str) -> tuple[float, ...]:
+    """Return the numbers; one by one only where together they are none, which tells what is wrong."""
+    try:
+        numbers = tuple(map(float, fields))
+    except ValueError:
+        numbers = (math.nan,)
+    if "_" in line or not math.isfinite(sum(numbers)):
+        return tuple(_number(field, where, "a finite number") for field in fields)
+    return numbers
 
 
 def _number(text: str, where: str, expected: str) -> float:

@@ -117,9 +117,10 @@ def load_questions(folder: Path, names: Iterable[str] = ()) -> tuple[Question, .
     chosen = list(dict.fromkeys(names)) or list(files)
     for name in chosen:
         if name not in files:
-            raise InputError(
-                f'study: found "{name}", expected names out of {", ".join(files)}{nearest(name, files)}'
-            )
+            # Where one resembles it, all the others would only hide that one.
+            like = nearest(name, files)
+            expected = "the name of a question" if like else f"names out of {', '.join(files)}"
+            raise InputError(f'study: found "{name}", expected {expected}{like}')
     if CONTROL in files and CONTROL not in chosen:
         chosen.append(CONTROL)
     return tuple(load_question(files[name]) for name in chosen)

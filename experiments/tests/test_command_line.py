@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from experiments.__main__ import main
-from experiments.tests.conftest import Workplace, finish, no_child_is_left
+from experiments.tests.conftest import PAIR, Workplace, finish, no_child_is_left
 
 
 def wait_for(path: Path, pattern: str) -> None:
@@ -60,13 +60,18 @@ def test_only_what_the_questions_ask_for_is_built(
 MISTAKES = {
     "verb": (["walk"], r"argument VERB: invalid choice: 'walk' .*\(see `python -m experiments --help`\)"),
     "scale": (["run", "--scale", "pape"], r'scale: found "pape", expected one of .*; did you mean "paper"\?'),
-    "study": (["run", "--study", "pears"], r'study: found "pears", expected names out of .*'),
+    "study": (["run", "--study", "pears"], r'study: found "pears", expected the name of a question; did .*'),
+    "no study": (["run", "--study", "x"], r'study: found "x", expected names out of chunks, control, pair'),
     "site": (
         ["plan", "--site", "moon"],
         r'site: found "moon", expected one of example-slurm, local or a file \*\.toml',
     ),
-    "blocks": (["run", "--blocks", "0"], r"argument --blocks: invalid positive_number value: '0' .*"),
-    "budget": (["run", "--budget", "-1"], r"argument --budget: invalid minutes value: '-1' .*"),
+    "blocks": (["run", "--blocks", "0"], r"argument --blocks: found 0, expected a whole number of at .*"),
+    "budget": (["run", "--budget", "-1"], r"argument --budget: found -1, expected a number of minutes .*"),
+    "results": (
+        ["status", "--results", "nowhere"],
+        r"results: found nowhere, expected a folder that is there",
+    ),
     "questions": (
         ["check", "--questions", "nowhere"],
         r"nowhere: has no question in it; expected files \*\.toml",
@@ -94,6 +99,20 @@ def test_check_reads_every_file(workplace: Workplace) -> None:
     code, _, error = finish(workplace.start("check"))
     assert code == 1
     assert error.count("\n") == 1
+
+
+def test_check_sees_a_variant_that_there_is_not_where_the_program_is_built(workplace: Workplace) -> None:
+    workplace.question("pair", PAIR.replace('variant = "nine"', 'variant = "nin"'))
+    code, output, error = finish(workplace.start("check"))
+    assert (code, output) == (1, "")
+    assert re.fullmatch(
+        r'.*pair\.toml: series\[2\]\.variant: found "nin", .*; did you mean "nine"\?\n', error
+    )
+    workplace.program.unlink()
+    code, output, error = finish(workplace.start("check"))
+    assert (code, error) == (0, "")
+    assert "whether the variants exist was not looked at" in output
+    assert "build it with `make build`" in output
 
 
 def test_two_runners_in_one_folder_are_refused(workplace: Workplace) -> None:

@@ -4,6 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection
@@ -13,7 +14,10 @@ from PIL import Image, ImageSequence
 
 from analysis.cli import main
 from analysis.commands import movie
-from analysis.commands.movie import FRAMES, Moment, Picture, boxes_per_side, moments
+from analysis.commands.frames import Canvas
+from analysis.commands.movie import FRAMES, MOVIE_DOTS, PICTURE_DOTS, moments
+from analysis.commands.picture import ORDER, Moment, Picture, boxes_per_side
+from analysis.figures.style import SETTINGS
 from analysis.records.reading import InputError
 from analysis.records.trajectory import Box, read_box, read_trajectory
 
@@ -87,9 +91,8 @@ def test_discs_fly_between_the_steps_and_are_coloured_by_speed(scene: Path, traj
 
 def test_boxes_of_one_colour_are_a_box_apart(scene: Path, trajectory: Path) -> None:
     picture = Picture("scene.in", read_box(scene), read_trajectory(trajectory))
-    legend = picture.figure.axes[0].get_legend()
-    assert legend is not None
-    assert [text.get_text() for text in legend.get_texts()] == list(movie.ORDER)
+    (legend,) = picture.figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == list(ORDER)
     boxes = {
         (round(patch.get_x() / 21), round(patch.get_y() / 21)): patch
         for patch in picture.figure.axes[0].patches
@@ -115,7 +118,14 @@ def test_the_boxes_are_the_published_ones() -> None:
     [
         (["--output", "run.avi"], "run.avi: found the suffix '.avi', expected one of .mp4, .gif, .png"),
         (["--output", "run.png", "--step", "5"], "--step: found 5, expected a step from 0 to 4"),
-        (["--output", "scene.in/run.png"], "scene.in: File exists, expected a writable place with room"),
+        (
+            ["--output", "absent/run.png"],
+            "absent/run.png: found no folder absent, expected one that is there",
+        ),
+        (
+            ["--output", "run.gif", "--step", "1"],
+            "run.gif: found a step beside a movie, expected a name *.png",
+        ),
     ],
 )
 def test_what_cannot_be_drawn_is_one_line(
@@ -127,9 +137,82 @@ def test_what_cannot_be_drawn_is_one_line(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(scene.parent)
-    assert main(["movie", str(scene), str(trajectory), *arguments]) == 1
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith(said)
+    there = sorted(scene.parent.iterdir())
+    for run in ([str(trajectory)], []):
+        assert main(["movie", str(scene), *run, *arguments]) == 1, "also before the run is there"
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.startswith(said)
+    assert sorted(scene.parent.iterdir()) == there
+
+
+def test_without_a_run_it_is_only_seen_whether_it_could_be_drawn(
+    scene: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(scene.parent)
+    assert main(["movie", str(scene), "--output", "run.gif"]) == 0
+    assert main(["movie", str(scene), "--step", "2"]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert [path.name for path in scene.parent.iterdir()] == ["scene.in"]
+
+
+def test_a_disc_of_a_movie_is_where_the_picture_has_it(scene: Path, trajectory: Path) -> None:
+    picture = Picture("scene.in", read_box(scene), read_trajectory(trajectory))
+    canvas = Canvas(picture, MOVIE_DOTS)
+    for moment in (Moment(0, 0.0), Moment(2, 0.5)):
+        (frame,) = canvas.frames([moment])
+        changed = canvas.palette[frame].astype(int) - canvas.palette[canvas.background]
+        for place, speed in zip(picture.positions(moment), picture.speeds(moment), strict=True):
+            x, y = picture.axes.transData.transform(place)
+            centre = round(len(frame) - y), round(x)
+            shade = 255 * np.array(picture.discs.cmap(picture.discs.norm(speed))[:3])
+            assert abs(canvas.palette[frame[centre]] - shade).max() < 40
+            outside = centre[0], round(x + 1.1 * picture.axes.transData.get_matrix()[0, 0] * 5) + 1
+            assert not changed[outside].any()
+    assert len(canvas.palette) == 64
+
+
+def test_the_frames_differ_in_the_discs_and_the_title_alone(scene: Path, trajectory: Path) -> None:
+    picture = Picture("scene.in", read_box(scene), read_trajectory(trajectory))
+    canvas = Canvas(picture, MOVIE_DOTS)
+    first, later = canvas.frames([Moment(0, 0.0), Moment(3, 0.0)])
+    box = picture.axes.get_window_extent()
+    rows, columns = np.nonzero(first != later)
+    beside = (columns < box.x0) | (columns > box.x1) | (rows > len(first) - box.y0)
+    assert not beside.any()
+    assert (rows < len(first) - box.y1).any(), "the title counts the steps"
+
+
+def test_the_legends_lie_inside_the_picture(scene: Path, trajectory: Path) -> None:
+    for dots in (PICTURE_DOTS, MOVIE_DOTS):
+        with mpl.rc_context(SETTINGS):
+            picture = Picture("scene.in", read_box(scene), read_trajectory(trajectory))
+            picture.figure.set_dpi(dots)
+            picture.figure.draw_without_rendering()
+        inside = picture.figure.bbox
+        (legend,) = picture.figure.legends
+        for artist in (legend, picture.figure.axes[1].yaxis.label):
+            box = artist.get_window_extent()
+            assert inside.x0 <= box.x0 <= box.x1 <= inside.x1
+            assert inside.y0 <= box.y0 <= box.y1 <= inside.y1
+
+
+def test_a_movie_of_many_discs_is_small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(movie, "FRAMES", 30)
+    generator = np.random.default_rng(1)
+    places, speeds = generator.uniform(0, 1000, (2000, 2)), generator.uniform(-2, 2, (2000, 2))
+    scene, run = tmp_path / "scene.in", tmp_path / "trajectory"
+    scene.write_text("2000\n1000\n8\n30\n")
+    run.write_text(
+        "".join(
+            f"{step} {disc} {x:.6f} {y:.6f} {vx:.6f} {vy:.6f}\n"
+            for step in range(31)
+            for disc, (x, y, vx, vy) in enumerate(np.hstack([places + step * speeds, speeds]))
+        )
+    )
+    target = movie.draw(scene, run, tmp_path / "run.gif")
+    with Image.open(target) as image:
+        assert len(list(ImageSequence.Iterator(image))) == 31
+    assert target.stat().st_size < 31 * 17_000
 
 
 def test_an_ffmpeg_that_fails_is_one_line(

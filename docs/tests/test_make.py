@@ -1,0 +1,166 @@
+"""What `make` answers: one line for a mistake, before anything is built; its help."""
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from documents import ROOT
+
+HAS_ENVIRONMENT = (ROOT / ".venv" / "bin" / "python").exists()
+pytestmark = pytest.mark.skipif(not HAS_ENVIRONMENT, reason="no .venv here (`make setup` makes it)")
+
+MISTAKES = {
+    "no scene": (["movie"], "SCENE=: missing, expected a scene file (make movie SCENE=scene.in)"),
+    "no such scene": (["movie", "SCENE=absent.in"], "absent.in: cannot be read: No such file or directory"),
+    "a movie of one step": (
+        ["movie", "SCENE=3.in", "OUT=a.gif", "STEP=1"],
+        "a.gif: found a step beside a mov.*",
+    ),
+    "a step too late": (["movie", "SCENE=3.in", "STEP=9"], "--step: found 9, expected a step from 0 to 4"),
+    "a folder of movies": (
+        ["movie", "SCENE=3.in", "OUT=/absent/a.gif"],
+        "/absent/a.gif: found no folder /absent.*",
+    ),
+    "a budget": (
+        ["experiments", "BUDGET=-1"],
+        ".*--budget: found -1, expected a number of minutes above 0.*",
+    ),
+    "an end": (["experiments", "UNTIL=doomsday"], "UNTIL=doomsday: expected decided"),
+    "a study": (["experiments", "STUDY=neighbourhod"], '.*; did you mean "neighbourhood"\\?'),
+    "a scale": (["experiments", "SCALE=quik"], 'scale: found "quik".*; did you mean "quick"\\?'),
+    "jobs": (["build", "JOBS=many"], "JOBS=many: expected a whole number of at least 1"),
+    "no jobs": (["test", "JOBS=0"], "JOBS=0: expected a whole number of at least 1"),
+    "results": (["status", "RESULTS=/absent"], "results: found /absent, expected a folder that is there"),
+    "nothing to compare": (
+        ["compare", "A=results"],
+        "B=: missing, expected the results folder to compare with it",
+    ),
+    "no site": (["submit"], r"SITE=: missing, expected the site of a cluster \(a file \*\.toml\)"),
+    "a compiler": (["build", "COMPILER=tcc"], "COMPILER=tcc: expected gcc, clang or gcc-libomp"),
+}
+
+
+def make(*words: str, folder: Path = ROOT) -> "subprocess.CompletedProcess[str]":
+    left_out = ("MAKE", "MFLAGS", "OMP_")
+    settings = {key: value for key, value in os.environ.items() if not key.startswith(left_out)}
+    return subprocess.run(
+        ["make", *words], cwd=folder, env=settings, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+        check=False,
+    )  # fmt: skip
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    """All that a verb looks at before it builds, and a scene of three discs and four steps."""
+    for name in ("Makefile", "analysis", "experiments", "harness/record.schema.json", ".venv"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).symlink_to(ROOT / name)
+    (tmp_path / "3.in").write_text("3\n60\n5\n4\n0 10 10 1 0\n1 30 30 0 1\n2 50 50 -5 -5\n")
+    return tmp_path
+
+
+@pytest.mark.parametrize(("words", "line"), MISTAKES.values(), ids=MISTAKES.keys())
+def test_a_mistake_is_one_line_before_anything_is_built(checkout: Path, words: list[str], line: str) -> None:
+    there = sorted(checkout.iterdir())
+    done = make(*words, folder=checkout)
+    assert done.returncode == 2
+    said = [one for one in done.stderr.splitlines() if not one.startswith("make")]
+    assert len(said) == 1, done.stderr
+    assert re.fullmatch(
+        line.replace("(make movie SCENE=scene.in)", r"\(make movie SCENE=scene\.in\)"), said[0]
+    )
+    assert sorted(checkout.iterdir()) == there
+
+
+@pytest.mark.parametrize("word", ["THREADS=two", "STUDYY=threads"])
+def test_a_setting_that_there_is_not_is_refused(checkout: Path, word: str) -> None:
+    done = make("experiments", word, folder=checkout)
+    assert done.returncode == 2
+    name = word.split("=")[0]
+    assert re.fullmatch(
+        rf"Makefile:\d+: \*\*\* {name}=: is no setting, expected one of STUDY .*\n", done.stderr
+    )
+
+
+def test_what_compilers_and_tools_are_told_is_let_through(checkout: Path) -> None:
+    assert make("help", "CXXFLAGS=-O1", "CMAKE_PREFIX_PATH=/opt", "WERROR=1", folder=checkout).returncode == 0
+
+
+def test_a_dry_run_measures_nothing_and_builds_nothing(checkout: Path) -> None:
+    done = make("experiments", "STUDY=steps", "DRY_RUN=1", folder=checkout)
+    assert done.returncode == 2
+    assert "gcc/carom: is not built; build it with `make build`" in done.stderr
+    assert not (checkout / "build").exists()
+
+
+def test_a_dry_run_says_what_would_be_done(checkout: Path) -> None:
+    if not (ROOT / "build" / "gcc" / "carom").is_file():
+        pytest.skip("build/gcc/carom is not built (`make build` builds it)")
+    (checkout / "build").symlink_to(ROOT / "build")
+    done = make("experiments", "STUDY=neighbourhood", "SCALE=quick", "DRY_RUN=1", folder=checkout)
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"^neighbourhood +2 ", done.stdout, re.MULTILINE)
+    assert "of them to be run" in done.stdout
+    assert not list((checkout / "results").glob("records/*/*.json"))
+    assert not (checkout / "results" / "report.html").exists()
+
+
+def test_a_copied_checkout_says_what_to_do_with_its_build(checkout: Path) -> None:
+    cache = checkout / "build" / "gcc" / "CMakeCache.txt"
+    cache.parent.mkdir(parents=True)
+    cache.write_text("CMAKE_HOME_DIRECTORY:INTERNAL=/another/place\n")
+    done = make("build", folder=checkout)
+    assert done.returncode == 2
+    told = f"build/gcc: was built for /another/place, and this is {checkout}; `make clean` removes it"
+    assert f"{told}, then build again" in done.stderr.splitlines()
+    assert "CMake" not in done.stderr
+
+
+def test_help_tells_settings_with_their_defaults_and_exit_codes() -> None:
+    told = make("help").stdout
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    (settings,) = re.findall(r"^settings := (.*)$", makefile, re.MULTILINE)
+    for name in settings.split():
+        assert re.search(rf"^ +(?:A= )?{name}=", told, re.MULTILINE), name
+    for goal in re.findall(r"^([a-z-]+):[^#\n]*## ", makefile, re.MULTILINE):
+        assert f"  make {goal} " in told
+    assert "Exit codes: 0 done; else 2" in told
+    assert max(map(len, told.splitlines())) <= 130
+
+
+def test_the_glossary_has_every_rung_and_order() -> None:
+    glossary = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8").lower()
+    for word in ("sweep", "block", "control", "self-contained", "strips", "stale", "wavefront", "checkered"):
+        assert re.search(rf"^\| [^|]*\b{word}\b[^|]*\|", glossary, re.MULTILINE), word
+    for readme in ("README.md", "analysis/report/report.html.jinja"):
+        assert "docs/glossary.md" in (ROOT / readme).read_text(encoding="utf-8")
+
+
+def test_compare_that_is_undecided_is_no_failure(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "analysis", tmp_path / "analysis", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("Makefile", "harness", ".venv"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    script = (
+        "from pathlib import Path\n"
+        "from analysis.tests.synthetic import write\n"
+        "from analysis.tests.synthetic_noise import QUIET, Noise\n"
+        "from analysis.tests.synthetic_study import study\n"
+        "loud = Noise(process=0.05)\n"
+        "for name, speed, noise, seed in (\n"
+        "    ('quiet', 1, QUIET, 1), ('slow', 0.8, QUIET, 2), ('loud', 1, loud, 1), ('other', 1, loud, 2)\n"
+        "):\n"
+        "    records = study(['neighbourhood', 'steps'], 10, speed=speed, noise=noise, seed=seed)\n"
+        "    write(Path(name), records)\n"
+    )
+    subprocess.run([tmp_path / ".venv/bin/python", "-c", script], cwd=tmp_path, check=True)
+    done = make("compare", "A=loud", "B=other", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    assert "Undecided, for which more blocks or a quieter machine are needed: exit code 4." in done.stdout
+    done = make("compare", "A=quiet", "B=slow", folder=tmp_path)
+    assert done.returncode == 2
+    assert "Slower: exit code 3." in done.stdout
+    assert "Error 3" in done.stderr
