@@ -27,7 +27,12 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
 
 std::string name_of(const std::string& setting) { return setting.substr(0, setting.find('=')); }
 
-std::vector<std::string> environment_with(const std::vector<std::string>& settings) {
+/// Without a setting of its own the program takes as many threads as it is told to, however busy the machine.
+std::vector<std::string> environment_with(std::vector<std::string> settings) {
+    const auto names_it = [](const auto& setting) { return name_of(setting) == "OMP_DYNAMIC"; };
+    if (std::ranges::none_of(settings, names_it)) {
+        settings.emplace_back("OMP_DYNAMIC=false");
+    }
     std::vector<std::string> all;
     std::ranges::copy_if(settings, std::back_inserter(all),
                          [](const auto& setting) { return setting.find('=') != std::string::npos; });
