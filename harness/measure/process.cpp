@@ -78,18 +78,16 @@ double seconds_of(const timeval& time) {
 
 double ProcessEnd::wall_seconds() const { return std::accumulate(seconds.begin(), seconds.end(), 0.0); }
 
-Process::Process(ProcessCommand command) : command_(std::move(command)) {}
+Process::Process(ProcessCommand command)
+    : command_(std::move(command)), output_(temporary_file()), error_(temporary_file()) {}
 
 Process::~Process() {
     if (child_ != 0 && !has_ended_) {
         kill_group();
         waitpid(child_, nullptr, 0);
     }
-    for (std::FILE* file : {output_, error_}) {
-        if (file != nullptr) {
-            std::fclose(file);
-        }
-    }
+    std::fclose(output_);
+    std::fclose(error_);
     if (ends_ >= 0) {
         close(ends_);
     }
@@ -118,8 +116,6 @@ void Process::advance(double seconds) {
 }
 
 void Process::start() {
-    output_ = temporary_file();
-    error_ = temporary_file();
     std::array<int, 2> report{};
     if (pipe2(report.data(), O_CLOEXEC) != 0) {
         throw InputError(std::string("no pipe can be made: ") + std::strerror(errno));

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -37,6 +37,7 @@ struct ProcessEnd {
 /// whoever started it, and its whole group with it.
 class Process {
   public:
+    /// Throws InputError if there is no room for what it will print.
     explicit Process(ProcessCommand command);
     ~Process();
     Process(const Process&) = delete;
@@ -61,8 +62,8 @@ class Process {
     void kill_group();
 
     ProcessCommand command_;
-    std::FILE* output_ = nullptr;
-    std::FILE* error_ = nullptr;
+    std::FILE* output_;
+    std::FILE* error_;
     pid_t child_ = 0;
     int ends_ = -1; ///< a descriptor that is readable once it has ended
     bool has_ended_ = false;

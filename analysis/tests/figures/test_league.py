@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analysis.cli import main
 from analysis.figures import draw
 from analysis.figures.style import Data
 from analysis.records import published
@@ -102,3 +103,56 @@ def test_the_report_names_commands_and_claims_nothing(results: Path) -> None:
     assert "&#39;./a b&#39; anna" in text or "'./a b' anna" in text
     assert "of programs whose results are not checked" in text
     assert "Four boxes" not in text
+
+
+CLAIM = """
+[[claim]]
+id = "anna_wins"
+claim = "Anna's is faster than Carl's."
+test = "pair"
+[claim.arguments]
+experiments = ["hand_ins"]
+axis = "series"
+candidate = "anna"
+reference = "carl"
+expected = "faster"
+"""
+
+
+def claims(results: Path, text: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
+    (results / "claims.toml").write_text(text)
+    code = main(["claims", "--results", str(results)])
+    printed = capsys.readouterr()
+    return code, printed.out + printed.err
+
+
+def test_claims_of_a_folder_of_questions_are_judged(
+    results: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, printed = claims(results, CLAIM, capsys)
+    assert code == 0
+    assert "1 decided" in printed
+    assert "anna_wins" in printed
+    assert "holds" in printed
+    assert "four_boxes" not in printed
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('test = "pair"', 'test = "pairs"', 'claim anna_wins: test: found "pairs", expected one of'),
+        ('test = "pair"', "", "claims.toml: claim[1]: "),
+        ("axis =", "axes =", "claim anna_wins: arguments: "),
+        ("experiments =", "questions =", "claim[1].arguments.experiment: missing"),
+        ("[[claim]]", "[[claim]", "claims.toml: cannot be read"),
+        ("id =", "name =", "claims.toml: claim[1]: "),
+    ],
+)
+def test_a_claim_that_is_none_is_told_in_a_line(
+    results: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, expected: str
+) -> None:
+    code, printed = claims(results, CLAIM.replace(old, new), capsys)
+    assert code == 1
+    assert expected in printed
+    assert len([line for line in printed.splitlines() if expected in line]) == 1
+    assert "Traceback" not in printed
