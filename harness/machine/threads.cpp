@@ -17,7 +17,7 @@
 #include "kernels/parallel_for.hpp"
 
 /// LLVM's runtime, where the program is linked with it; in milliseconds.
-extern "C" [[gnu::weak]] void kmp_set_blocktime(int milliseconds); // NOLINT(readability-identifier-naming)
+extern "C" [[gnu::weak]] void kmp_set_blocktime(int milliseconds); // NOLINT(readability-*)
 
 namespace carom {
 namespace {

@@ -8,7 +8,7 @@
 #include "harness/tests/temporary_directory.hpp"
 #include "kernels/tests/scenes.hpp"
 
-extern "C" [[gnu::weak]] void kmp_set_blocktime(int milliseconds); // NOLINT(readability-identifier-naming)
+extern "C" [[gnu::weak]] void kmp_set_blocktime(int milliseconds); // NOLINT(readability-*)
 
 namespace carom {
 namespace {
