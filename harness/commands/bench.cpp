@@ -138,9 +138,9 @@ void bench(BenchOptions options, const std::vector<std::string>& flags) {
         }
     }
     const int most_threads_used = std::ranges::max(options.threads);
-    note_crowding(most_threads_used);
     run_google_benchmark(flags, cases.front().name());
     finish(cases, options);
+    note_crowding(most_threads_used);
     note_if_busy(watch, most_threads_used);
 }
 

@@ -49,7 +49,6 @@ Verdict check_file(const CheckOptions& options, const Scene& scene, const Varian
 
 Verdict check_variant(const std::string& name, const Tuning& tuning, const Scene& scene,
                       const Variant& variant) {
-    note_crowding(tuning.threads);
     const auto simulation = variant.simulate(scene, tuning);
     Run run = run_scene(scene, *simulation, tuning, {CheckScope::every_step, variant.policies});
     return {name + ", variant " + std::string(variant.name), std::move(run.discs), std::move(run.violation)};
@@ -95,6 +94,10 @@ void check(CheckOptions options) {
     }
     if (!options.json) {
         print_line(scene, verdict);
+    }
+    if (options.trajectory.empty()) {
+        note_crowding(options.simulation.tuning.threads);
+        note_withheld_threads(options.simulation);
     }
 }
 

@@ -48,9 +48,9 @@ class Messages : public std::streambuf {
         if (keep_all_ || has("match any benchmarks") || has("compile benchmark re")) {
             kept_ += (kept_.empty() ? "" : " ") + line_;
         } else if (has("Library was built as DEBUG")) {
-            note("Google Benchmark was built as DEBUG, as Debian's package is: it only asks for runs "
-                 "here, and the "
-                 "times are those of carom's own clock");
+            note("Google Benchmark was built as DEBUG, as Debian's package is: it only asks for runs here, "
+                 "and "
+                 "the times are those of carom's own clock");
         } else {
             const std::string line = line_ + '\n';
             outside_->sputn(line.data(), static_cast<std::streamsize>(line.size()));

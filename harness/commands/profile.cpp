@@ -84,7 +84,6 @@ void profile(const ProfileOptions& options) {
     const LoadedScene loaded = load_scene(options.simulation.scene);
     const Variant& variant = require_variant(options.simulation.variant, loaded.scene);
     Measurement measurement = measurement_of(loaded, variant, options.simulation.tuning, options.measurement);
-    note_crowding(threads);
 
     for (int k = 0; k < options.measurement.warm_ups; ++k) {
         bare_run(measurement, CheckScope::nothing);
@@ -115,6 +114,7 @@ void profile(const ProfileOptions& options) {
         record["profile"] = profile_json(result);
         write_record(options.measurement.record, record);
     }
+    note_crowding(threads);
     note_if_busy(watch, threads);
 }
 

@@ -253,7 +253,6 @@ void run(RunOptions options) {
     const Scene scene = read_scene_and_settle_threads(options.simulation, AskedThreads::at_most);
     seconds.reading = process_seconds() - before;
     const Variant& variant = require_variant(options.simulation.variant, scene);
-    note_crowding(options.simulation.tuning.threads);
     const Run result = simulate(options, scene, variant, seconds);
     Summary summary = summarise(options, scene, variant, result, seconds);
     summary.threads_asked = asked;
@@ -273,6 +272,8 @@ void run(RunOptions options) {
             print_errors(*errors);
         }
     }
+    note_crowding(summary.threads);
+    note_withheld_threads(options.simulation);
     if (summary.threads == asked) {
         note_if_busy(watch, asked);
     }
@@ -285,6 +286,8 @@ void add_run_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("run", "Simulate a scene and print a short summary");
     options->simulation.variant = automatic;
     add_simulation_options(*command, options->simulation);
+    command->get_option("--threads")
+        ->description("OpenMP threads at most; fewer for few discs or beside other programs");
     command->add_option("--trajectory", options->trajectory,
                         "File for the state at each unit of time: lines `step i x y vx vy`");
     command->add_flag("--errors", options->errors,

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int most = 1'000'000'000;
 
-/// Below so many discs a step takes no longer on one thread than on two (docs/performance.md).
+/// Below so many discs a step on one thread takes no longer than on two (docs/performance.md).
 constexpr std::size_t fewest_discs_for_threads = 500;
 
 /// From so many on, threads work so long between two waits that they gain even where they share processors.
@@ -90,8 +90,7 @@ Scene read_scene_and_settle_threads(SimulationOptions& options, AskedThreads mea
     if (!fixed && discs < fewest_discs_for_threads) {
         threads = 1;
     } else if (!fixed && free < threads && discs < fewest_discs_to_share_processors) {
-        note("other programs have the processors: " + counted(free, "thread") + " in place of " +
-             number_text(threads) + " (OMP_DYNAMIC=false for exactly " + number_text(threads) + ")");
+        options.threads_withheld = threads - free;
         threads = free;
     }
     require_threads(threads);
@@ -102,6 +101,14 @@ void note_crowding(int threads) {
     if (threads > usable_processors()) {
         note(counted(threads, "thread") + " on " + counted(usable_processors(), "processor") +
              ": they take turns, and wait for each other the longer");
+    }
+}
+
+void note_withheld_threads(const SimulationOptions& options) {
+    if (options.threads_withheld > 0) {
+        const std::string asked = number_text(options.tuning.threads + options.threads_withheld);
+        note("other programs had the processors: " + counted(options.tuning.threads, "thread") +
+             " in place of " + asked + " (OMP_DYNAMIC=false for exactly " + asked + ")");
     }
 }
 

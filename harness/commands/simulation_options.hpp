@@ -16,6 +16,7 @@ struct SimulationOptions {
     std::string variant = "published";
     Tuning tuning;
     bool threads_given = false; ///< on the command line
+    int threads_withheld = 0;   ///< of those, since other programs had the processors
 };
 
 /// The name that stands for the fastest variant for the scene.
@@ -39,6 +40,9 @@ Scene read_scene_and_settle_threads(SimulationOptions& options, AskedThreads mea
 
 /// Says so if these are more threads than the processors that this process may use.
 void note_crowding(int threads);
+
+/// Says so if fewer threads ran than were asked for, since other programs had the processors.
+void note_withheld_threads(const SimulationOptions& options);
 
 /// The variant of that name; throws InputError with the nearest name if there is none.
 const Variant& require_variant(const std::string& name);

@@ -257,7 +257,7 @@ TEST_F(RunCommand, TakesNoMoreThreadsThanOtherProgramsLeaveProcessors) {
     const ProgramResult result = run_carom({"run", many, threads, "--json"}, free_to_choose);
     EXPECT_EQ(nlohmann::json::parse(result.output)["threads"], 1);
     EXPECT_PRED_FORMAT2(testing::IsSubstring,
-                        "other programs have the processors: 1 thread in place of " + threads, result.notes);
+                        "other programs had the processors: 1 thread in place of " + threads, result.notes);
     EXPECT_EQ(summary({many, threads}, {"OMP_DYNAMIC=false"})["threads"], usable_processors());
 }
 
