@@ -185,9 +185,11 @@ def _compare(options: argparse.Namespace) -> int:
     print("The folders were not interleaved: a change of the machine between them shows as a change of time.")
     code = comparison.exit_code(table)
     if code == comparison.SLOWER:
-        print(f"Slower: exit code {code}.")
+        print(f"Slower (exit code {code} of analysis compare).")
     elif code == comparison.UNDECIDED:
-        print(f"Undecided, for which more blocks or a quieter machine are needed: exit code {code}.")
+        print(
+            f"Undecided: more blocks or a quieter machine would tell (exit code {code} of analysis compare)."
+        )
     return code
 
 

@@ -73,7 +73,7 @@ def _check(options: argparse.Namespace) -> int:
     unbuilt = [programs[name].remedy for name in sorted(asked) if programs[name].sha256 is None]
     print(f"{len(questions)} questions and {len(sites)} sites are valid")
     for remedy in unbuilt:
-        print(f"but whether the variants exist was not looked at: {remedy}")
+        print(f"whether its variants exist could not be looked up: {remedy}")
     return 0
 
 

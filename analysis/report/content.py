@@ -89,7 +89,9 @@ def _study(
         "checks": provenance.checks(study),
         "states": missing.tally(table if study is studies[0] else table[~table["missing"]]),
         **_claims(table, {part.experiment: (part.anchor, part.title) for part in shown}, asked),
-        "without_records": _without_records(table) if study is studies[0] else None,
+        "without_records": list(table.loc[table["missing"].astype(bool), "id"])
+        if study is studies[0]
+        else [],
     }
 
 
@@ -105,13 +107,6 @@ def _claims(
     ]
     rows.sort(key=lambda row: bool(asked) and not set(row["experiments"]) & set(asked))
     return {"claims": rows, "tally": pd.Series([row["verdict"] for row in rows]).value_counts().to_dict()}
-
-
-def _without_records(table: pd.DataFrame) -> dict[str, Any] | None:
-    """Return the names of the claims that have no records, and the questions that would make them."""
-    rows = table[table["missing"].astype(bool)]
-    names = dict.fromkeys(name for row in rows["experiments"] for name in row)
-    return {"claims": list(rows["id"]), "questions": list(names)} if len(rows) else None
 
 
 def _settled(table: pd.DataFrame, drawn: Sequence[Drawn]) -> set[str]:

@@ -133,9 +133,10 @@ def warning(noise: pd.DataFrame, settled: Collection[str] = ()) -> str | None:
         return None
     worst = short.loc[short["needed"].idxmax()]
     said = f"The worst is {worst['experiment']!r}: the time of a process varies by {share(worst['noise'], 1)}"
+    others = " The verdicts of the others stand." if len(short) < len(asked) else ""
     return (
         f"The machine was too noisy to settle differences of {share(MARGIN)} in {len(short)} of {len(asked)} "
         f"experiments about small ones: {listed(short['experiment'])}. {said}, with "
         f"{count(worst['bursts'], 'burst')}, which needs {needed_said(worst['needed'])} blocks; "
-        f"{worst['blocks']} were run. The verdicts of the others stand. To do better: {ADVICE}."
+        f"{worst['blocks']} were run.{others} To do better: {ADVICE}."
     )

@@ -159,8 +159,8 @@ def test_compare_that_is_undecided_is_no_failure(tmp_path: Path) -> None:
     done = make("compare", "A=loud", "B=other", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
-    assert "Undecided, for which more blocks or a quieter machine are needed: exit code 4." in done.stdout
+    assert "Undecided: more blocks or a quieter machine would tell (exit code 4 of " in done.stdout
     done = make("compare", "A=quiet", "B=slow", folder=tmp_path)
     assert done.returncode == 2
-    assert "Slower: exit code 3." in done.stdout
+    assert "Slower (exit code 3 of analysis compare)." in done.stdout
     assert "Error 3" in done.stderr

@@ -111,7 +111,7 @@ def test_check_sees_a_variant_that_there_is_not_where_the_program_is_built(workp
     workplace.program.unlink()
     code, output, error = finish(workplace.start("check"))
     assert (code, error) == (0, "")
-    assert "whether the variants exist was not looked at" in output
+    assert "whether its variants exist could not be looked up" in output
     assert "build it with `make build`" in output
 
 

@@ -138,9 +138,7 @@ def test_a_report_of_a_study_that_goes_on_says_when_and_how_far(
     assert main(["follow", "--results", str(tmp_path), "--study", "steps"]) == 0
     assert capsys.readouterr().out == f"{tmp_path / 'report.html'}\n"
     text = text_of((tmp_path / "report.html").read_text(encoding="utf-8"))
-    told = (
-        r"The study goes on\. This is what it had at \d{4}-\d\d-\d\d \d\d:\d\d UTC, 20 of 80 processes done"
-    )
+    told = r"the study goes on: this is what it had at \d{4}-\d\d-\d\d \d\d:\d\d UTC, 20 of 80 processes done"
     assert re.search(told, text)
     assert not (tmp_path / "report.pdf").exists()
     assert {path.suffix for path in (tmp_path / "figures").iterdir()} == {".svg"}
