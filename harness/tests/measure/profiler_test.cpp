@@ -186,7 +186,8 @@ TEST(Profiler, CountsALoopThatGaveAThreadNothingAsWaiting) {
     EXPECT_LT(work.busy_seconds, profiler.phase_time(Phase::find).wall_seconds - 0.02 + 1e-9);
     EXPECT_EQ(work.loops, 1);
     using enum Span::Kind;
-    EXPECT_TRUE(std::ranges::equal(profiler.spans(0), std::initializer_list<Span::Kind>{wait, phase}, {}, &Span::kind));
+    EXPECT_TRUE(std::ranges::equal(profiler.spans(0), std::initializer_list<Span::Kind>{wait, phase}, {},
+                                   &Span::kind));
 }
 
 TEST(Profiler, LeavesOutSpansBeyondTheLimitAndSaysHowMany) {
