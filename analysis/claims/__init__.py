@@ -145,14 +145,15 @@ def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> tuple
     origin = claim.published
     number = "" if origin.threads is None else str(origin.threads)
     said = ", ".join(part for part in (number, origin.threads_said) if part) or "not stated"
-    ends = {name: _ends(runs[name]) for name in ("particles", "radius", "side", "steps") if len(runs)}
+    scenes = runs[["particles", "radius", "side", "steps"]].dropna()
+    ends = {name: _ends(scenes[name]) for name in scenes if len(scenes)}
     scene = "{particles} discs of radius {radius}, side {side}, {steps} steps".format(**ends) if ends else "–"
     models = listed(sorted(runs["cpu_model"].unique()))
     return (
         Compared("threads", said, listed(tested)),
         Compared("machine", origin.machine, models),
         Compared("scene", origin.scene, scene),
-        Compared("tolerance", "published", listed(sorted(runs["tolerance"].unique()))),
+        Compared("tolerance", "published", listed(sorted(runs["tolerance"].dropna().unique())) or "–"),
     )
 
 

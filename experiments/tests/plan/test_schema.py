@@ -213,7 +213,7 @@ def test_unreadable_files_are_named(tmp_path: Path) -> None:
 
 def test_study_names_are_checked(workplace: Workplace) -> None:
     with pytest.raises(
-        InputError, match=r'study: found "pear", expected names out of .*; did you mean "pair"\?'
+        InputError, match=r'study: found "pear", expected the name of a question; did you mean "pair"\?'
     ):
         load_questions(workplace.root / "questions", ["pear"])
 
