@@ -72,6 +72,7 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     if not outside.empty:
         entries += [(f"◆ {engine}", INK) for engine in outside["engine"].unique()]
     key(panels[0], [*entries, ("▬ Pareto front (substeps)", FAINT)])
+    figure.draw_without_rendering()
     for axes, beside in zip(panels, labels.values(), strict=True):
         label_points(axes, beside, INK)
     timed = accuracy.times(data.study, experiment)

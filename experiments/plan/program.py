@@ -1,9 +1,11 @@
 """The carom program as this package knows it: its command line and its exit codes, nothing else."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from experiments.plan.scenes import AnyScene, sha256_of
 from experiments.plan.site import Site
@@ -64,6 +66,19 @@ def variants(program: Program) -> tuple[str, ...]:
     if done.exit_code != 0 or not names:
         raise InputError(f"{program.path}: `list --names` gave no names: {done.reason}")
     return names
+
+
+@cache
+def build_of(program: Program) -> dict[str, Any]:
+    """How a build of Carom was made, as in a record's provenance. Raises InputError if it does not say."""
+    done = process.run([str(program.path), "doctor", "--json"], time_limit=60)
+    try:
+        told = json.loads(done.output)
+        return {**told["program"], "openmp": {"runtime": told["openmp"]["runtime"]}}
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(
+            f"{program.path}: `doctor --json` does not say how it was built: {done.reason}"
+        ) from error
 
 
 def generate(program: Program, scene: AnyScene, path: Path) -> None:

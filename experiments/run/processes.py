@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from experiments.plan.point import Point, Tags
-from experiments.plan.program import Program
+from experiments.plan.program import Program, build_of
 from experiments.plan.scenes import SceneFile
 from experiments.results.store import Store
 from experiments.run.host_lock import run_alone
@@ -56,6 +56,8 @@ class Processes:
         }
         if path is not None:
             described["scene"] = str(path)
+        if point.command is None and point.program.sha256 != self._instrument.sha256:
+            described["build"] = build_of(point.program)
         if point.is_checked:
             described["checked"] = "every-step" if point.command is None else "trajectory"
         if point.command is not None:

@@ -45,6 +45,7 @@ struct Described {
     int threads = 1;
     int warm_ups = 0;
     Json axes = Json::object();
+    Json build = Json::object(); ///< of its record's provenance, what is not as this program's
     std::string pattern; ///< of the time that it prints; empty if it is timed from outside
     double unit_seconds = 1;
     std::string benchmark; ///< the case of a Google Benchmark; empty if it is none
@@ -80,6 +81,7 @@ Described described(const Json& json) {
                   .threads = json.value("threads", 1),
                   .warm_ups = json.value("warm_ups", 0),
                   .axes = json.value("axes", Json::object()),
+                  .build = json.value("build", Json::object()),
                   .pattern = json.value("pattern", ""),
                   .unit_seconds = json.value("unit_seconds", 1.0),
                   .benchmark = json.value("benchmark", ""),
@@ -154,6 +156,7 @@ void write_record_of(const Described& one, const ProcessEnd& end, const std::opt
                                            .axes = one.axes,
                                            .scene = scene,
                                            .sources = sources_json(one.sources),
+                                           .build = one.build,
                                            .checked = one.checked,
                                            .tags = one.tags,
                                            .threads = one.threads,

@@ -39,6 +39,7 @@ std::string hash_of(const Json& sources) {
 
 Json provenance_of(const ProcessMeasurement& measurement) {
     Json provenance = provenance_json(measurement.threads);
+    provenance.merge_patch(measurement.build);
     provenance["openmp"]["environment"] = openmp_variables(measurement.command.environment);
     provenance["binary_sha256"] = hash_of(measurement.sources);
     return provenance;

@@ -21,6 +21,7 @@ struct ProcessMeasurement {
     nlohmann::ordered_json axes;      ///< what was chosen, by name
     nlohmann::ordered_json scene;     ///< as scene_json, or null
     nlohmann::ordered_json sources;   ///< the files that make up the program, each with its SHA-256
+    nlohmann::ordered_json build;     ///< what is known of how it was built, as in a record's provenance
     std::string checked;              ///< how its result was checked beforehand; empty if it was not
     std::vector<std::string> tags;    ///< KEY=VALUE
     int threads = 1;
@@ -31,8 +32,8 @@ struct ProcessMeasurement {
 nlohmann::ordered_json sources_json(const std::vector<std::string>& files);
 
 /// The record of the process, of kind "process". Its provenance is that of this program, which measured it,
-/// but for the environment and for the hash of the program: of its one file, or of the hashes of all in a
-/// row.
+/// but for `build`, for the environment, and for the hash of the program: of its one file, or of the hashes of
+/// all in a row.
 nlohmann::ordered_json process_json(const ProcessMeasurement& measurement);
 
 } // namespace carom

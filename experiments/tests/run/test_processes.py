@@ -228,3 +228,24 @@ def test_a_new_question_runs_as_it_is(empty_workplace: Workplace) -> None:
         "two threads",
     }
     assert json.loads(next(empty_workplace.results.glob("records/sorting/*")).read_text())["scene"] is None
+
+
+@pytest.mark.skipif(not (BUILD / "clang" / "carom").is_file(), reason="build/clang/carom is not built")
+def test_two_builds_take_turns_as_whole_processes_and_each_tells_how_it_was_built(
+    empty_workplace: Workplace,
+) -> None:
+    series = [
+        f'[[series]]\nname = "{name}"\nvariant = "published"\nprogram = "{name}"\n'
+        for name in ("gcc", "clang")
+    ]
+    blocks = "[blocks]\nminimum = 1\nwanted = 1\n"
+    head = f'title = "Compilers"\nfigure = "comparison"\nverb = "process"\nthreads = 1\n{SCENE}\n'
+    empty_workplace.question("builds", head + "\n".join([*series, blocks]))
+    assert run(settings(empty_workplace)) == 0
+    records = list(empty_workplace.records("builds").values())
+    built = {record["tags"]["series"]: record["provenance"] for record in records}
+    assert built["gcc"]["compiler"].startswith("GNU")
+    assert built["gcc"]["openmp"]["runtime"] == "libgomp"
+    assert built["clang"]["compiler"].startswith("Clang")
+    assert built["clang"]["openmp"]["runtime"] == "libomp"
+    assert all(record["turns"]["contenders"] == 2 and is_record(record) for record in records)

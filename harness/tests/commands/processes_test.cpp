@@ -46,6 +46,7 @@ TEST_F(ProcessesCommand, LeavesARecordOfEach) {
                   {"axes", {{"threads", 3}}},
                   {"threads", 3},
                   {"scene", scene},
+                  {"build", {{"compiler", "GNU 1"}, {"openmp", {{"runtime", "none"}}}}},
                   {"checked", "trajectory"}});
     const auto result = processes({first, described("exit 0", "two")}, {"--slice", "0.002", "--seed", "9"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
@@ -63,6 +64,9 @@ TEST_F(ProcessesCommand, LeavesARecordOfEach) {
     EXPECT_EQ(one["process"]["sources"][0]["path"], "/bin/sh");
     EXPECT_EQ(one["process"]["sources"][0]["sha256"], one["provenance"]["binary_sha256"]);
     EXPECT_EQ(one["provenance"]["openmp"]["environment"]["OMP_NUM_THREADS"], "3");
+    EXPECT_EQ(one["provenance"]["openmp"]["runtime"], "none");
+    EXPECT_EQ(one["provenance"]["compiler"], "GNU 1");
+    EXPECT_TRUE(one["provenance"].contains("compiler_flags")) << "what is not said stays this program's";
     EXPECT_EQ(one["turns"]["contenders"], 2);
     EXPECT_EQ(one["turns"]["seed"], 9);
     EXPECT_GT(one["turns"]["seconds"].size(), 1);
