@@ -115,7 +115,7 @@ bool TrajectoryFile::next_line() {
 Disc TrajectoryFile::disc_of_line(std::vector<bool>& seen, std::size_t& index) {
     const auto words = words_of(line_);
     if (words.size() != columns.size()) {
-        refuse("found " + std::to_string(words.size()) + " words, expected 6: step i x y vx vy");
+        refuse("found " + counted(words.size(), "word") + ", expected 6: step i x y vx vy");
     }
     const auto step = parse_number<int>(words[0]);
     if (!step || *step != steps_read_) {
