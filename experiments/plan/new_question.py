@@ -5,6 +5,7 @@ from pathlib import Path
 
 from experiments.plan.question import FOLDER
 from experiments.support.errors import InputError
+from experiments.support.files import require_room_for_folder
 
 TEMPLATE = FOLDER / "question.template"
 
@@ -19,6 +20,7 @@ def new_question(name: str, folder: Path) -> int:
     """
     if not _NAME.fullmatch(name):
         raise InputError(f'NAME: found "{name}", expected letters, digits, _ and -, a letter first')
+    require_room_for_folder("questions", folder)
     question, sorted_file = folder / f"{name}.toml", folder / f"{name}.txt"
     for path in (question, sorted_file):
         if path.exists():
