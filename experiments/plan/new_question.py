@@ -1,6 +1,7 @@
 """A question to start from: a commented file, and something for it to measure."""
 
 import re
+import shlex
 from pathlib import Path
 
 from experiments.plan.question import FOLDER
@@ -29,6 +30,7 @@ def new_question(name: str, folder: Path) -> int:
     lines = (str(number * 7919 % 1_000_003) for number in range(_LINES))
     sorted_file.write_text("\n".join(lines) + "\n", encoding="ascii")
     text = TEMPLATE.read_text(encoding="utf-8").replace("NAME.txt", sorted_file.name)
-    question.write_text(text.replace("FOLDER", str(folder)), encoding="utf-8")
-    print(f"{question}: edit it, then `make experiments QUESTIONS={folder} RESULTS={folder / 'results'}`")
+    asked, results = shlex.quote(str(folder)), shlex.quote(str(folder / "results"))
+    question.write_text(text.replace("FOLDER", asked), encoding="utf-8")
+    print(f"{question}: edit it, then `make experiments QUESTIONS={asked} RESULTS={results}`")
     return 0

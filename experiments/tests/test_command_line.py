@@ -66,6 +66,15 @@ def test_a_new_question_needs_a_place_for_its_folder(
     assert capsys.readouterr().err == told
 
 
+def test_a_new_question_tells_a_command_that_a_shell_understands(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "my questions"
+    assert main(["new", "mine", "--questions", str(folder)]) == 0
+    assert f"`make experiments QUESTIONS='{folder}' RESULTS='{folder}/results'`" in capsys.readouterr().out
+    assert f"QUESTIONS='{folder}' RESULTS='{folder}'/results\n" in (folder / "mine.toml").read_text()
+
+
 MISTAKES = {
     "verb": (["walk"], r"argument VERB: invalid choice: 'walk' .*\(see `python -m experiments --help`\)"),
     "scale": (["run", "--scale", "pape"], r'scale: found "pape", expected one of .*; did you mean "paper"\?'),
