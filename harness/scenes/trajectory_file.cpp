@@ -68,7 +68,7 @@ std::vector<Disc> TrajectoryFile::next() {
     std::vector<bool> seen(discs_, false);
     for (std::size_t read = 0; read < discs_; ++read) {
         if (!next_line()) {
-            refuse("the trajectory ends with " + std::to_string(read) + " discs of step " +
+            refuse("the trajectory ends with " + counted(read, "disc") + " of step " +
                    std::to_string(steps_read_) + ", expected " + std::to_string(discs_));
         }
         std::size_t index = 0;
