@@ -254,6 +254,7 @@ void processes(const ProcessesOptions& options) {
     }
     std::deque<Process> running;
     std::vector<Process*> everyone;
+    everyone.reserve(all.size());
     for (const Described& one : all) {
         everyone.push_back(&running.emplace_back(one.command));
     }
