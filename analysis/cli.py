@@ -80,9 +80,16 @@ def _parser() -> argparse.ArgumentParser:
     told = "from `carom run --trajectory`; without it, only see whether the movie could be drawn"
     movie.add_argument("trajectory", type=Path, nargs="?", metavar="TRAJECTORY", help=told)
     movie.add_argument("--output", type=Path, metavar="FILE", help="*.mp4 (needs ffmpeg), *.gif or *.png")
-    movie.add_argument("--step", type=int, metavar="S", help="of a picture (default: the last)")
+    movie.add_argument("--step", type=_step, metavar="S", help="of a picture (default: the last)")
     movie.set_defaults(run=_movie)
     return parser
+
+
+def _step(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(f"found {text}, expected the number of a step") from error
 
 
 # The imports below are inside the functions: drawing and printing libraries take seconds to load.

@@ -26,6 +26,7 @@ from experiments.slurm.status import show_cluster_status
 from experiments.slurm.submit import resume, submit
 from experiments.slurm.task import work
 from experiments.support.errors import InputError, Interrupted, cannot
+from experiments.support.files import require_room_for_folder
 
 # Slurm sends SIGUSR1 ahead of a task's time limit.
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)
@@ -81,8 +82,12 @@ def _builds(options: argparse.Namespace) -> int:
     """The one that makes the scenes, and what the questions cannot do without."""
     find_scale(options.scale)
     questions = load_questions(options.questions, options.study)
+    where = load_site(options.site)
+    if where.cluster is not None:
+        raise InputError(f"site {where.name}: is a cluster; use `make submit SITE={options.site}`")
+    require_room_for_folder("results", options.results)
     asked = {GENERATOR}.union(*(one.programs for one in questions))
-    print(*(name for name in load_site(options.site).programs if name in asked))
+    print(*(name for name in where.programs if name in asked))
     return 0
 
 
@@ -105,6 +110,7 @@ def _collect(options: argparse.Namespace) -> int:
 
 def _settings(options: argparse.Namespace) -> Settings:
     """Every setting is an option."""
+    require_room_for_folder("results", options.results)
     return Settings(**{field.name: getattr(options, field.name) for field in fields(Settings)})
 
 
@@ -207,8 +213,11 @@ _VERBS = {
 
 
 def names(text: str) -> tuple[str, ...]:
-    """The names between commas."""
-    return tuple(name.strip() for name in text.split(",") if name.strip())
+    """The names between commas. Raises what the parser makes a line of."""
+    found = tuple(name.strip() for name in text.split(",") if name.strip())
+    if not found:
+        raise argparse.ArgumentTypeError(f"found '{text}', expected names between commas")
+    return found
 
 
 def positive_number(text: str) -> int:

@@ -21,7 +21,7 @@ namespace carom {
 template <class T> struct Untouched : std::allocator<T> {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
-    template <class Other> struct rebind {
+    template <class Other> struct rebind { // NOLINT(readability-identifier-naming)
         using other = Untouched<Other>;
     };
 

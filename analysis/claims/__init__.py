@@ -87,7 +87,7 @@ def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[st
     tested = tuple(sorted(int(number) for number in runs["threads"].unique()))
     outcome = _with_failures(_at_threads(outcome, claim, tested), claim, study)
     if not math.isnan(wanted):
-        told = missing.said(study, claim.experiments, outcome.blocks, wanted)
+        told = missing.said(study, claim, outcome.blocks, wanted)
         outcome = replace(outcome, why=f"{outcome.why}; {told}" if outcome.why else told)
     figures = (*_setting(claim, tested, runs), *outcome.figures)
     return {

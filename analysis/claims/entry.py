@@ -1,5 +1,6 @@
 """A claim as `claims.toml` states it, and what a test of it may look at."""
 
+import shlex
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -34,7 +35,8 @@ class Origin:
 class Claim:
     """A claim in our words, where it comes from, on which scales it may be decided and by which test.
 
-    `other_scales` says why records of another scale do not decide it.
+    `other_scales` says why records of another scale do not decide it; `questions` is the folder of its
+    question, empty for a published one.
     """
 
     id: str
@@ -44,6 +46,7 @@ class Claim:
     other_scales: str
     test: str
     arguments: Mapping[str, Any] = field(default_factory=dict)
+    questions: str = ""
 
     @property
     def experiments(self) -> Sequence[str]:
@@ -71,25 +74,42 @@ def load(results: Path | None = None) -> list[Claim]:
     Raises InputError for a file that is no list of claims: a key that is no field of `Claim` or `Origin`, or
     one of them that is missing.
     """
+    path, content = _content(results)
+    return [_claim(path, number, content, table) for number, table in enumerate(content.get("claim", []), 1)]
+
+
+def questions_folder(results: Path) -> str:
+    """Return the folder of the questions behind a results folder, empty for the published ones. Raises
+    InputError as `load` does.
+    """
+    return str(_content(results)[1].get("questions", ""))
+
+
+def setting(questions: str) -> str:
+    """Return ` QUESTIONS=` with the folder, as `make` is given it; nothing for the published ones."""
+    return f" QUESTIONS={shlex.quote(questions)}" if questions else ""
+
+
+def _content(results: Path | None) -> tuple[Path, dict[str, Any]]:
     own = results / CLAIMS_FILE.name if results is not None else CLAIMS_FILE
     path = own if own.exists() else CLAIMS_FILE
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-        reasons = content.get("other_scales", {})
-        return [
-            _claim(path, number, reasons, table) for number, table in enumerate(content.get("claim", []), 1)
-        ]
+        return path, tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read: {error}") from error
 
 
-def _claim(path: Path, number: int, reasons: Mapping[str, str], table: dict[str, Any]) -> Claim:
+def _claim(path: Path, number: int, content: Mapping[str, Any], table: dict[str, Any]) -> Claim:
     key = f"{path}: claim[{number}]"
     try:
         told = {"effect": "not stated", **table.pop("published", {})}
         scales, why = tuple(table.pop("scales", SCALES)), table.pop("other_scales", None)
         claim = Claim(
-            published=Origin(**told), scales=scales, other_scales=reasons.get(why, why or ""), **table
+            published=Origin(**told),
+            scales=scales,
+            other_scales=content.get("other_scales", {}).get(why, why or ""),
+            questions=content.get("questions", ""),
+            **table,
         )
     except TypeError as error:
         said = str(error).partition(") ")[2] or str(error).partition("() ")[2] or str(error)

@@ -1,10 +1,10 @@
 """What is missing where a claim is open: blocks, minutes, and the command that measures them."""
 
 import math
-from collections.abc import Sequence
 
 import pandas as pd
 
+from analysis.claims.entry import Claim, setting
 from analysis.claims.outcome import ELSEWHERE, FAILS, HOLDS, OPEN, Outcome
 from analysis.records.studies import Study
 from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
@@ -27,13 +27,14 @@ def needed(outcome: Outcome, open_claims: int) -> float:
     return blocks_to_decide(1.0 if outcome.p is None else outcome.p, outcome.blocks, max(1, open_claims))
 
 
-def said(study: Study, experiments: Sequence[str], blocks: int, wanted: float) -> str:
-    """Say in numbers what is missing to settle what rests on so many blocks of some experiments."""
+def said(study: Study, claim: Claim, blocks: int, wanted: float) -> str:
+    """Say in numbers what is missing to settle a claim that rests on so many blocks."""
     if not math.isfinite(wanted):
         return f"not in sight: more than {MOST_BLOCKS} blocks, or the effect lies on the margin"
-    minutes = (wanted - blocks) * sum(map(seconds_per_block, [study] * len(experiments), experiments)) / 60
+    minutes = (wanted - blocks) * sum(seconds_per_block(study, name) for name in claim.experiments) / 60
     scale = "" if study.scale == "paper" else f" SCALE={study.scale}"
-    command = f"make experiments STUDY={','.join(experiments)}{scale} BUDGET={math.ceil(minutes) + 1}"
+    asked = f"STUDY={','.join(claim.experiments)}{scale}{setting(claim.questions)}"
+    command = f"make experiments {asked} BUDGET={math.ceil(minutes) + 1}"
     more = count(int(wanted) - blocks, "more block")
     return f"open: {more} would be expected to settle it, {number(max(minutes, 0.1), 2)} min: `{command}`"
 

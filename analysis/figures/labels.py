@@ -43,7 +43,7 @@ def label_points(axes: Axes, labels: Sequence[tuple[str, float, float]], colour:
     """Write each label (text, x, y) into a corner of its point where it lies on no other; leave out one that
     has no room. Return how many were written.
 
-    Call it last, after the figure's `draw_without_rendering`: it needs the final limits and layout of the axes.
+    Call it last, after the figure's `draw_without_rendering`: it needs the final limits and layout.
     """
     figure = axes.figure.get_figure(root=True)
     taken: list[tuple[float, float, float, float]] = []

@@ -23,9 +23,15 @@ def write(results: Path, asked: Sequence[str] = ()) -> list[Path]:
     what was written. Questions that were `asked` by name lead.
 
     Draws the figures on the way. Without the libraries that the PDF needs, one line on standard error says so
-    and an earlier, now outdated PDF is removed. Raises InputError if there is no such folder.
+    and an earlier, now outdated PDF is removed; a line tells each question asked that has no records. Raises
+    InputError if there is no such folder.
     """
-    gathered = content(load(results), results, asked)
+    records = load(results)
+    present = {*records.runs["experiment"], *records.failures["experiment"]}
+    for name in dict.fromkeys(asked):
+        if name not in present:
+            print(f"study: found no records of {name}, which does not lead the report", file=sys.stderr)
+    gathered = content(records, results, asked)
     html, pdf = results / "report.html", results / "report.pdf"
     with replacing(html) as part:
         part.write_text(_page(gathered), encoding="utf-8")

@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from analysis import claims
 from analysis.claims import missing
-from analysis.claims.entry import CLAIMS_FILE
+from analysis.claims.entry import CLAIMS_FILE, questions_folder
 from analysis.derived.ladder import headlines
 from analysis.derived.noise_prior import prior
 from analysis.figures import FIGURES, Drawn, experiments
@@ -63,7 +63,7 @@ def content(
         "failures": records.failures.to_dict("records"),
         "wrong": records.runs[records.runs["check_verdict"] == "failed"].to_dict("records"),
         "skipped": records.skipped,
-        "verbs": provenance.verbs(records),
+        "verbs": provenance.verbs(records, questions_folder(results)),
         "scale": _scale(records.runs),
         "commands": provenance.commands(records.runs),
     }

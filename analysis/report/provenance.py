@@ -5,6 +5,7 @@ from typing import Any
 
 import pandas as pd
 
+from analysis.claims.entry import setting
 from analysis.figures import experiments
 from analysis.records.reading import Records
 from analysis.records.studies import Study
@@ -76,12 +77,16 @@ def missing_counters(counters: pd.DataFrame) -> list[dict[str, str]]:
     ]
 
 
-def verbs(records: Records) -> list[str]:
-    """Return the project's own commands that repeat the whole of it, in order."""
+def verbs(records: Records, questions: str) -> list[str]:
+    """Return the project's own commands that repeat the whole of it, in order; its questions are in that
+    folder, or the published ones.
+    """
     families = set(records.runs["compiler_family"])
     builds = [f"make build COMPILER={name}" for name in ("gcc", "clang") if name in families]
     scales = sorted(set(records.runs["scale"]) - {"unstated"})
-    studies = [f"make experiments{_study(records, scale)} SCALE={scale}" for scale in scales]
+    studies = [
+        f"make experiments{_study(records, scale)} SCALE={scale}{setting(questions)}" for scale in scales
+    ]
     return ["make setup", *(builds or ["make build"]), *(studies or ["make experiments"]), "make report"]
 
 

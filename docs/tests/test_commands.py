@@ -17,6 +17,8 @@ LOOKS_LIKE_A_COMMAND = re.compile(rf"^\s*{COMMAND}", re.MULTILINE)
 INDENTED_COMMAND = re.compile(rf"^(    |\t){COMMAND}", re.MULTILINE)
 FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 CMAKE_LISTS = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+TESTS_BUILT = (ROOT / "build" / "gcc" / "kernels" / "tests" / "kernels_tests").is_file()
+"""`make build` builds the program alone."""
 MAKEFILE_VERBS = set(
     re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
 )
@@ -102,7 +104,7 @@ def exists(words: list[str]) -> bool:
         case ["build/gcc/carom", verb, *_]:
             return not BUILT or has_help(["build/gcc/carom", verb])
         case [program] if program.startswith("build/gcc/"):
-            return not BUILT or (ROOT / program).is_file()
+            return not TESTS_BUILT or (ROOT / program).is_file()
         case ["cmake" | "ctest", "--preset", preset] | ["cmake", "--build", "--preset", preset, *_]:
             return f'"name": "{preset}"' in (ROOT / "CMakePresets.json").read_text(encoding="utf-8")
         case ["cmake", "-B", "build/gcc", option]:

@@ -1,7 +1,8 @@
-"""On a Debian that has nothing yet, in a clean clone: the two commands of README.md, and tutorial.md's first.
+"""On a bare Debian or Ubuntu, in a clean clone: README.md's two commands, the tutorial's first.
 
-The machine is made by debootstrap from the mirror that this one's own apt uses, in a folder of its own; what
-is mounted into it is mounted in a namespace that ends with each command.
+The machine is made by debootstrap, in a folder of its own, from the mirror that apt uses here, or the public
+one of a distribution that apt here has not; what is mounted into it is mounted in a namespace that ends with
+each command.
 """
 
 import os
@@ -18,7 +19,8 @@ pytestmark = pytest.mark.slow
 
 PASSED_ON = ("http_proxy", "https_proxy", "no_proxy", "HTTP_PROXY", "HTTPS_PROXY", "NO_PROXY")
 CONFIGURATION = (
-    "etc/apt",
+    "etc/apt/apt.conf.d",
+    "etc/apt/auth.conf.d",
     "etc/pip.conf",
     "etc/ssl/certs",
     "usr/local/share/ca-certificates",
@@ -36,8 +38,26 @@ exec chroot --userspec="$2:$2" --groups="$2" "$1" bash -euo pipefail -c "$3"
 
 
 @dataclass(frozen=True)
+class Distribution:
+    """Where a distribution's packages are."""
+
+    mirror: str
+    components: str
+    script: str
+    """Of debootstrap, for suites that are newer than debootstrap."""
+
+
+DISTRIBUTIONS = {
+    "Debian": Distribution("http://deb.debian.org/debian", "main", "sid"),
+    "Ubuntu": Distribution("http://archive.ubuntu.com/ubuntu", "main,universe", "gutsy"),
+}
+SUITES = {"bookworm": "Debian", "trixie": "Debian", "noble": "Ubuntu"}
+"""Debian 12 and 13, Ubuntu 24.04."""
+
+
+@dataclass(frozen=True)
 class Machine:
-    """A Debian below a folder."""
+    """A system below a folder."""
 
     root: Path
 
@@ -61,34 +81,41 @@ class Machine:
         return done.stdout
 
 
-def mirror() -> tuple[str, str]:
-    """The mirror and the release that apt here installs from."""
-    if shutil.which("apt-get") is None:
-        pytest.skip("no fresh machine: apt-get is not here, so that no mirror is known")
-    wanted = ["apt-get", "indextargets", "--format", "$(SITE) $(RELEASE) $(ORIGIN)", "Created-By: Packages"]
-    lines = subprocess.run(wanted, capture_output=True, text=True, check=True).stdout.splitlines()
-    for site, release, *origin in map(str.split, lines):
-        if origin in (["Debian"], ["Ubuntu"]) and "-" not in release:
-            return site, release
-    pytest.skip("no fresh machine: apt here has no mirror of Debian or Ubuntu")
+def mirror(name: str) -> str:
+    """The mirror of a distribution: that of apt here if it has one."""
+    if shutil.which("apt-get") is not None:
+        shown = "$(SITE) $(RELEASE) $(ORIGIN)"
+        wanted = ["apt-get", "indextargets", "--format", shown, "Created-By: Packages"]
+        lines = subprocess.run(wanted, capture_output=True, text=True, check=True).stdout.splitlines()
+        for site, release, *origin in map(str.split, lines):
+            if origin == [name] and "-" not in release:
+                return site
+    return DISTRIBUTIONS[name].mirror
 
 
-@pytest.fixture(scope="module")
-def machine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
+def bootstrap(suite: str, root: Path) -> None:
+    """Unpack the smallest system of a suite that can fetch a clone; skip the test where that cannot be."""
     if os.geteuid() != 0:
         pytest.skip("no fresh machine: debootstrap needs root")
     if shutil.which("debootstrap") is None:
         pytest.skip("no fresh machine: debootstrap is not here (apt-get install debootstrap)")
-    site, release = mirror()
-    root = tmp_path_factory.mktemp("machine") / "root"
-    include = "--include=ca-certificates,git,make,sudo"
+    distribution = DISTRIBUTIONS[SUITES[suite]]
+    known = Path("/usr/share/debootstrap/scripts", suite).exists()
+    options = ["--variant=minbase", "--include=ca-certificates,git,make,sudo"]
+    options += [f"--components={distribution.components}"]
+    words = [suite, str(root), mirror(SUITES[suite]), *([] if known else [distribution.script])]
     made = subprocess.run(
-        ["debootstrap", "--variant=minbase", include, release, str(root), site],
+        ["debootstrap", *options, *words],
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
     )  # fmt: skip
     if made.returncode != 0:
-        pytest.skip(f"no fresh machine: debootstrap: {made.stdout.strip().splitlines()[-1:]}")
-    (root / "etc" / "apt" / "sources.list").unlink(missing_ok=True)
+        pytest.skip(f"no fresh machine: debootstrap {suite}: {made.stdout.strip().splitlines()[-1:]}")
+
+
+@pytest.fixture(scope="module", params=SUITES)
+def machine(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Iterator[Machine]:
+    root = tmp_path_factory.mktemp(request.param) / "root"
+    bootstrap(request.param, root)
     for name in CONFIGURATION:
         source, target = Path("/", name), root / name
         if source.is_dir():

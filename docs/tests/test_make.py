@@ -20,6 +20,10 @@ MISTAKES = {
         "a.gif: found a step beside a mov.*",
     ),
     "a step too late": (["movie", "SCENE=3.in", "STEP=9"], "--step: found 9, expected a step from 0 to 4"),
+    "a step that is none": (
+        ["movie", "SCENE=3.in", "STEP=two"],
+        ".*--step: found two, expected the number of a step.*",
+    ),
     "a folder of movies": (
         ["movie", "SCENE=3.in", "OUT=/absent/a.gif"],
         "/absent/a.gif: found no folder /absent.*",
@@ -30,6 +34,12 @@ MISTAKES = {
     ),
     "an end": (["experiments", "UNTIL=doomsday"], "UNTIL=doomsday: expected decided"),
     "a study": (["experiments", "STUDY=neighbourhod"], '.*; did you mean "neighbourhood"\\?'),
+    "no names in a study": (
+        ["experiments", "STUDY=,"],
+        ".*--study: found ',', expected names between commas.*",
+    ),
+    "a file for results": (["experiments", "RESULTS=3.in"], "results: found 3.in, which is no folder, .*"),
+    "a cluster": (["experiments", "SITE=example-slurm"], ".* is a cluster; use `make submit SITE=.*"),
     "a scale": (["experiments", "SCALE=quik"], 'scale: found "quik".*; did you mean "quick"\\?'),
     "jobs": (["build", "JOBS=many"], "JOBS=many: expected a whole number of at least 1"),
     "no jobs": (["test", "JOBS=0"], "JOBS=0: expected a whole number of at least 1"),

@@ -1,10 +1,12 @@
 """A question to start from: a commented file, and something for it to measure."""
 
 import re
+import shlex
 from pathlib import Path
 
 from experiments.plan.question import FOLDER
 from experiments.support.errors import InputError
+from experiments.support.files import require_room_for_folder
 
 TEMPLATE = FOLDER / "question.template"
 
@@ -19,6 +21,7 @@ def new_question(name: str, folder: Path) -> int:
     """
     if not _NAME.fullmatch(name):
         raise InputError(f'NAME: found "{name}", expected letters, digits, _ and -, a letter first')
+    require_room_for_folder("questions", folder)
     question, sorted_file = folder / f"{name}.toml", folder / f"{name}.txt"
     for path in (question, sorted_file):
         if path.exists():
@@ -27,6 +30,7 @@ def new_question(name: str, folder: Path) -> int:
     lines = (str(number * 7919 % 1_000_003) for number in range(_LINES))
     sorted_file.write_text("\n".join(lines) + "\n", encoding="ascii")
     text = TEMPLATE.read_text(encoding="utf-8").replace("NAME.txt", sorted_file.name)
-    question.write_text(text.replace("FOLDER", str(folder)), encoding="utf-8")
-    print(f"{question}: edit it, then `make experiments QUESTIONS={folder} RESULTS={folder / 'results'}`")
+    asked, results = shlex.quote(str(folder)), shlex.quote(str(folder / "results"))
+    question.write_text(text.replace("FOLDER", asked), encoding="utf-8")
+    print(f"{question}: edit it, then `make experiments QUESTIONS={asked} RESULTS={results}`")
     return 0

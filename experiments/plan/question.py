@@ -111,6 +111,8 @@ def load_questions(folder: Path, names: Iterable[str] = ()) -> tuple[Question, .
 
     Raises InputError for a name that the folder does not have, and for a file that is not a valid question.
     """
+    if not folder.is_dir():
+        raise InputError(f"questions: found {folder}, expected a folder that is there")
     files = {path.stem: path for path in sorted(folder.glob("*.toml")) if path.name != CLAIMS}
     if not files:
         raise InputError(f"{folder}: has no question in it; expected files *.toml")
@@ -174,7 +176,9 @@ def _require_valid(question: Question) -> None:
 
 
 def _require_names(question: Question) -> None:
-    """A tag that reads as a number is one in a record, and no longer the name that it was."""
+    """A tag that reads as a number is one in a record, and no longer the name that it was; series of one name
+    would be drawn as one.
+    """
     named = {"file name": question.name}
     for number, series in enumerate(question.series, start=1):
         named |= {f"series[{number}].name": series.name, f"series[{number}].label": series.label or ""}
@@ -183,6 +187,12 @@ def _require_names(question: Question) -> None:
     for key, name in named.items():
         if _NUMBER.fullmatch(name):
             raise InputError(f'{question.file}: {key}: found "{name}", expected a name that is no number')
+    curves = [(series.name, series.label) for series in question.series]
+    for number, (name, label) in enumerate(curves, start=1):
+        if (name, label) in curves[: number - 1]:
+            raise InputError(
+                f'{question.file}: series[{number}].name: found "{name}" twice, expected each once'
+            )
 
 
 def _require_possible_scenes(question: Question) -> None:
@@ -200,11 +210,17 @@ def _require_possible_scenes(question: Question) -> None:
                     f"{question.file}: sweep.parameter: found {parameter} over the hard case {scene.case}, "
                     f"which is as it is; expected one of {', '.join(_OF_THE_RUN)}"
                 )
-        elif scene.max_velocity < scene.min_velocity and parameter is None:
-            raise InputError(
-                f"{question.file}: {key}.max_velocity: found {scene.max_velocity}, "
-                f"expected at least {scene.min_velocity}"
-            )
+        elif parameter not in _OF_A_SCENE:
+            if scene.max_velocity < scene.min_velocity:
+                raise InputError(
+                    f"{question.file}: {key}.max_velocity: found {scene.max_velocity}, "
+                    f"expected at least {scene.min_velocity}"
+                )
+            if scene.side < 2 * scene.radius:
+                raise InputError(
+                    f"{question.file}: {key}.side: found {scene.side}, expected at least a disc's diameter, "
+                    f"{2 * scene.radius}"
+                )
 
 
 def _require_what_processes_can(question: Question) -> None:

@@ -1,5 +1,6 @@
 """The study as the command line asks for it: its questions planned, its results folder, its schedule."""
 
+import json
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +21,7 @@ from experiments.run.schedule import Schedule
 from experiments.support.errors import InputError
 from experiments.support.files import write_text
 
+ROOT = question.FOLDER.parents[1]
 COSTS = "costs.json"
 FINISHED = "finished.json"
 POINTS_FAILED = 2
@@ -129,11 +131,17 @@ class Study:
 
 
 def keep_claims(questions: Path, results: Path) -> None:
-    """Let the results say what is claimed of them, where the questions are not the published ones."""
-    if questions.resolve() != question.FOLDER:
+    """Let the results say what is claimed of them, where the questions are not the published ones, and where
+    the questions are.
+    """
+    folder = questions.resolve()
+    if folder != question.FOLDER:
         claims = questions / CLAIMS
         told = claims.read_text(encoding="utf-8") if claims.exists() else "# Nothing is claimed.\n"
-        write_text(results / CLAIMS, told, results)
+        shown = folder.relative_to(ROOT) if folder.is_relative_to(ROOT) else folder
+        # A text of JSON is one of TOML, and a key of the whole file stands before its tables.
+        place = json.dumps(str(shown), ensure_ascii=False)
+        write_text(results / CLAIMS, f"questions = {place}\n{told}", results)
 
 
 def summary(schedule: Schedule, budget_seconds: float) -> str:

@@ -12,6 +12,13 @@ from typing import Any
 from experiments.support.errors import InputError
 
 
+def require_room_for_folder(what: str, folder: Path) -> None:
+    """Raises InputError where something else stands in the place of a folder, or of one that it is in."""
+    there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    if not there.is_dir():
+        raise InputError(f"{what}: found {there}, which is no folder, expected one or a place for one")
+
+
 def read_json(path: Path) -> Any:  # noqa: ANN401 - JSON is any value
     """The content of a JSON file, or None if it is missing or not JSON, which has no NaN and no infinity."""
     try:

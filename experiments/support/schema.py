@@ -111,6 +111,8 @@ def _expected(schema: Mapping[str, Any]) -> str:
     text = _TYPES.get(schema.get("type", ""), "another value")
     if "minimum" in schema:
         text += f" of at least {schema['minimum']}"
+    if "maximum" in schema:
+        text += f" and at most {schema['maximum']}"
     if "exclusiveMinimum" in schema:
         text += f" above {schema['exclusiveMinimum']}"
     if schema.get("minLength") or schema.get("minItems") or schema.get("minProperties"):

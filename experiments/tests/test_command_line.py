@@ -57,6 +57,24 @@ def test_only_what_the_questions_ask_for_is_built(
     assert capsys.readouterr().out == builds
 
 
+def test_a_new_question_needs_a_place_for_its_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+    assert main(["new", "mine", "--questions", str(tmp_path / "file" / "questions")]) == 1
+    told = f"questions: found {tmp_path}/file, which is no folder, expected one or a place for one\n"
+    assert capsys.readouterr().err == told
+
+
+def test_a_new_question_tells_a_command_that_a_shell_understands(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "my questions"
+    assert main(["new", "mine", "--questions", str(folder)]) == 0
+    assert f"`make experiments QUESTIONS='{folder}' RESULTS='{folder}/results'`" in capsys.readouterr().out
+    assert f"QUESTIONS='{folder}' RESULTS='{folder}'/results\n" in (folder / "mine.toml").read_text()
+
+
 MISTAKES = {
     "verb": (["walk"], r"argument VERB: invalid choice: 'walk' .*\(see `python -m experiments --help`\)"),
     "scale": (["run", "--scale", "pape"], r'scale: found "pape", expected one of .*; did you mean "paper"\?'),
@@ -74,7 +92,20 @@ MISTAKES = {
     ),
     "questions": (
         ["check", "--questions", "nowhere"],
-        r"nowhere: has no question in it; expected files \*\.toml",
+        r"questions: found nowhere, expected a folder that is there",
+    ),
+    "no names": (["run", "--study", ","], r"argument --study: found ',', expected names between commas .*"),
+    "a file for results": (
+        ["run", "--results", "questions/pair.toml"],
+        r"results: found questions/pair\.toml, which is no folder, expected one or a place for one",
+    ),
+    "a file above results": (
+        ["builds", "--results", "questions/pair.toml/results"],
+        r"results: found \S+/questions/pair\.toml, which is no folder, expected one or a place for one",
+    ),
+    "builds for a cluster": (
+        ["builds", "--site", "example-slurm"],
+        r"site example-slurm: is a cluster; use `make submit SITE=example-slurm`",
     ),
     "build": (
         ["status", "--build", "nowhere"],

@@ -139,7 +139,7 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error)
             return *unknown;
         }
     }
-    if (called.empty() && is<CLI::RequiredError>(error)) {
+    if (called.empty() && program.get_require_subcommand_min() > 0 && is<CLI::RequiredError>(error)) {
         return "found no verb, expected one out of " + help_of(program);
     }
     return wrong(app, error).value_or(first_line_of(error.what()));

@@ -2,15 +2,18 @@
 #include <cstdint>
 #include <cstring>
 #include <deque>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/commands/measurement_options.hpp"
 #include "harness/measure/process.hpp"
@@ -22,6 +25,8 @@
 #include "harness/support/format.hpp"
 #include "harness/support/input_file.hpp"
 #include "harness/support/json.hpp"
+#include "harness/support/output_file.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -46,7 +51,7 @@ struct Described {
     int warm_ups = 0;
     Json axes = Json::object();
     Json build = Json::object(); ///< of its record's provenance, what is not as this program's
-    std::string pattern; ///< of the time that it prints; empty if it is timed from outside
+    std::string pattern;         ///< of the time that it prints; empty if it is timed from outside
     double unit_seconds = 1;
     std::string benchmark; ///< the case of a Google Benchmark; empty if it is none
     std::string output;    ///< the file that the benchmark writes
@@ -67,48 +72,87 @@ std::vector<std::string> environment_with(const std::map<std::string, std::strin
     return variables;
 }
 
+template <class Value> constexpr const char* kind() {
+    if constexpr (std::is_same_v<Value, std::string>) {
+        return "a text";
+    } else if constexpr (std::is_integral_v<Value>) {
+        return "a whole number";
+    } else if constexpr (std::is_floating_point_v<Value>) {
+        return "a number";
+    } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
+        return "a list of texts";
+    } else {
+        return "an object of texts";
+    }
+}
+
+/// The value of a key, or `otherwise` where the key is not there. Throws InputError.
+template <class Value>
+Value value_of(const Json& process, const char* key, const std::optional<Value>& otherwise = std::nullopt) {
+    const auto found = process.find(key);
+    if (found == process.end()) {
+        if (otherwise) {
+            return *otherwise;
+        }
+        throw InputError(std::string(key) + ": found none, expected " + kind<Value>());
+    }
+    try {
+        return found->template get<Value>();
+    } catch (const Json::exception&) {
+        throw InputError(std::string(key) + ": found " + in_quotes(json_text(*found, -1)) + ", expected " +
+                         kind<Value>());
+    }
+}
+
+std::string text_of(const Json& process, const char* key) { return value_of<std::string>(process, key, ""); }
+
 Described described(const Json& json) {
-    Described one{.command = {.words = json.at("command").get<std::vector<std::string>>(),
-                              .folder = json.value("folder", ""),
-                              .environment = environment_with(
-                                  json.value("environment", std::map<std::string, std::string>())),
-                              .most_seconds = json.value("most_seconds", 600.0)},
-                  .record = json.at("record"),
-                  .tags = json.value("tags", std::vector<std::string>()),
-                  .sources = json.value("sources", std::vector<std::string>()),
-                  .scene = json.value("scene", ""),
-                  .checked = json.value("checked", ""),
-                  .threads = json.value("threads", 1),
-                  .warm_ups = json.value("warm_ups", 0),
+    using Words = std::vector<std::string>;
+    Described one{.command = {.words = value_of<Words>(json, "command"),
+                              .folder = text_of(json, "folder"),
+                              .environment = environment_with(value_of(
+                                  json, "environment", std::optional(std::map<std::string, std::string>()))),
+                              .most_seconds = value_of<double>(json, "most_seconds", 600.0)},
+                  .record = value_of<std::string>(json, "record"),
+                  .tags = value_of<Words>(json, "tags", Words()),
+                  .sources = value_of<Words>(json, "sources", Words()),
+                  .scene = text_of(json, "scene"),
+                  .checked = text_of(json, "checked"),
+                  .threads = value_of<int>(json, "threads", 1),
+                  .warm_ups = value_of<int>(json, "warm_ups", 0),
                   .axes = json.value("axes", Json::object()),
                   .build = json.value("build", Json::object()),
-                  .pattern = json.value("pattern", ""),
-                  .unit_seconds = json.value("unit_seconds", 1.0),
-                  .benchmark = json.value("benchmark", ""),
-                  .output = json.value("output", "")};
+                  .pattern = text_of(json, "pattern"),
+                  .unit_seconds = value_of<double>(json, "unit_seconds", 1.0),
+                  .benchmark = text_of(json, "benchmark"),
+                  .output = text_of(json, "output")};
     if (one.command.words.empty() || one.command.words.front().empty()) {
         throw InputError("command: found no word, expected a program and its arguments");
     }
+    if (one.command.most_seconds <= 0) {
+        throw InputError("most_seconds: found " + number_text(one.command.most_seconds) +
+                         ", expected a number above 0");
+    }
     tags_json(one.tags);
+    require_writable(one.record);
     return one;
 }
 
 /// Throws InputError.
 std::vector<Described> read_processes(const std::string& path) {
     const Json json = Json::parse(read_file(path), nullptr, false);
-    if (!json.is_array() || json.empty()) {
+    if (!json.is_array() || json.empty() ||
+        !std::ranges::all_of(json, [](const Json& one) { return one.is_object(); })) {
         throw InputError(path +
                          ": found something else, expected a JSON list with an object for each process");
     }
     std::vector<Described> processes;
     for (const Json& one : json) {
-        const std::string where = path + ", process " + std::to_string(processes.size() + 1) + ": ";
         try {
             processes.push_back(described(one));
-        } catch (const Json::exception& error) {
-            throw InputError(where + error.what());
         } catch (const InputError& error) {
-            throw InputError(where + error.what());
+            throw InputError(path + ", process " + std::to_string(processes.size() + 1) + ": " +
+                             error.what());
         }
     }
     return processes;
@@ -119,7 +163,8 @@ std::string failure_of(const Described& one, const ProcessEnd& end) {
     const std::string said = last_line(end.error);
     const std::string after = said.empty() ? "" : ": " + said;
     if (!end.not_started.empty()) {
-        return one.command.words.front() + ": cannot be run: " + end.not_started;
+        const std::string& folder = one.command.folder;
+        return "cannot be run" + (folder.empty() ? "" : " in " + folder) + ": " + end.not_started;
     }
     if (end.out_of_time) {
         return format("took longer than %g s and was stopped", one.command.most_seconds);
@@ -212,6 +257,7 @@ void processes(const ProcessesOptions& options) {
     }
     std::deque<Process> running;
     std::vector<Process*> everyone;
+    everyone.reserve(all.size());
     for (const Described& one : all) {
         everyone.push_back(&running.emplace_back(one.command));
     }
@@ -245,10 +291,10 @@ void add_processes_command(CLI::App& program) {
                      "JSON file: a list with, for each process, an object with its command (a list of words) "
                      "and the file for its record")
         ->required();
-    command->add_option("--slice", options->slice_seconds, "Seconds that each runs before the next does")
-        ->check(CLI::Range(1e-3, 1e6))
-        ->capture_default_str();
-    command->add_option("--seed", options->seed, "Of the order of the slices")->capture_default_str();
+    add_number(*command, "--slice", options->slice_seconds, 1e-3, 1e6,
+               "Seconds that each runs before the next does");
+    add_number(*command, "--seed", options->seed, 0, std::numeric_limits<std::uint64_t>::max(),
+               "Of the order of the slices");
     command->callback([options] { processes(*options); });
 }
 

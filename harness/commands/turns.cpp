@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -10,6 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/command_line/usage_errors.hpp"
+#include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/commands/measurement_options.hpp"
 #include "harness/commands/simulation_options.hpp"
@@ -18,6 +21,7 @@
 #include "harness/records/record.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/input_file.hpp"
+#include "harness/support/output_file.hpp"
 
 namespace carom {
 namespace {
@@ -38,19 +42,20 @@ struct ContenderOptions {
 /// Parses one contender's words. Throws InputError with `where` in front.
 ContenderOptions parse_contender(const std::vector<std::string>& words, const std::string& where) {
     ContenderOptions options;
-    CLI::App parser;
+    CLI::App parser("", "carom bench");
     parser.set_help_flag();
     add_simulation_options(parser, options.simulation);
     add_measurement_options(parser, options.measurement);
-    parser.add_option("--repetitions", options.repetitions)->check(CLI::Range(1, 1));
+    parser.add_option("--repetitions", options.repetitions)->check(one_of({"1"}));
     try {
         parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::ParseError& error) {
-        throw InputError(where + ": " + error.what());
+        throw InputError(where + ": " + usage_message(parser, error));
     }
     if (options.measurement.record.empty()) {
         throw InputError(where + ": found no --record, expected a file for it");
     }
+    require_writable(options.measurement.record);
     require_threads(options.simulation.tuning.threads);
     tags_json(options.measurement.tags);
     return options;
@@ -133,10 +138,10 @@ void add_turns_command(CLI::App& program) {
             "JSON file: a list with, for each contender, a list of the words that `carom bench` would be "
             "given, --record among them")
         ->required();
-    command->add_option("--turn", options->turn_seconds, "Seconds that a turn is to last, a step at least")
-        ->check(CLI::Range(1e-6, 1e6))
-        ->capture_default_str();
-    command->add_option("--seed", options->seed, "Of the order of the turns")->capture_default_str();
+    add_number(*command, "--turn", options->turn_seconds, 1e-6, 1e6,
+               "Seconds that a turn is to last, a step at least");
+    add_number(*command, "--seed", options->seed, 0, std::numeric_limits<std::uint64_t>::max(),
+               "Of the order of the turns");
     command->callback([options] { turns(*options); });
 }
 

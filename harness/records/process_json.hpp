@@ -32,8 +32,8 @@ struct ProcessMeasurement {
 nlohmann::ordered_json sources_json(const std::vector<std::string>& files);
 
 /// The record of the process, of kind "process". Its provenance is that of this program, which measured it,
-/// but for `build`, for the environment, and for the hash of the program: of its one file, or of the hashes of
-/// all in a row.
+/// but for `build`, for the environment, and for the hash of the program: of its one file, or of the hashes
+/// of all in a row.
 nlohmann::ordered_json process_json(const ProcessMeasurement& measurement);
 
 } // namespace carom

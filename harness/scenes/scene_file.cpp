@@ -108,7 +108,7 @@ std::size_t read_count(LineReader& reader) {
     }
     constexpr std::size_t shortest_line = std::string_view("0 0 0 0 0").size();
     if (static_cast<std::size_t>(count) * shortest_line > reader.bytes_left()) {
-        reader.fail(std::to_string(count) + " discs in a file too short for so many",
+        reader.fail(counted(count, "disc") + " in a file too short for so many",
                     "a line `i x y vx vy` for each");
     }
     return static_cast<std::size_t>(count);

@@ -68,7 +68,7 @@ std::vector<Disc> TrajectoryFile::next() {
     std::vector<bool> seen(discs_, false);
     for (std::size_t read = 0; read < discs_; ++read) {
         if (!next_line()) {
-            refuse("the trajectory ends with " + std::to_string(read) + " discs of step " +
+            refuse("the trajectory ends with " + counted(read, "disc") + " of step " +
                    std::to_string(steps_read_) + ", expected " + std::to_string(discs_));
         }
         std::size_t index = 0;
@@ -115,7 +115,7 @@ bool TrajectoryFile::next_line() {
 Disc TrajectoryFile::disc_of_line(std::vector<bool>& seen, std::size_t& index) {
     const auto words = words_of(line_);
     if (words.size() != columns.size()) {
-        refuse("found " + std::to_string(words.size()) + " words, expected 6: step i x y vx vy");
+        refuse("found " + counted(words.size(), "word") + ", expected 6: step i x y vx vy");
     }
     const auto step = parse_number<int>(words[0]);
     if (!step || *step != steps_read_) {

@@ -28,7 +28,8 @@ int open_to_read(const std::filesystem::path& path) {
 }
 
 [[noreturn]] void refuse(const std::string& path, const char* what, int error) {
-    throw InputError(path + ": " + what + " (" + std::strerror(error) + "), expected a readable file");
+    throw InputError((path.empty() ? "''" : path) + ": " + what + " (" + std::strerror(error) +
+                     "), expected a readable file");
 }
 
 } // namespace

@@ -1,9 +1,11 @@
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
 from analysis import claims
+from analysis.claims import missing
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, Verdict
 from analysis.figures.style import Data
 from analysis.records import published
@@ -80,6 +82,13 @@ def test_a_ratio_claim_follows_the_effect(tmp_path: Path, effect: float, noise: 
     assert row["verdict"] == verdict
     assert "10 blocks" in row["measured"].replace("\u00a0", " ")
     assert verdict != OPEN or "more blocks" in row["why"]
+
+
+def test_the_command_that_would_settle_a_claim_names_the_folder_of_its_question(tmp_path: Path) -> None:
+    (measured,) = split(load(pair_folder(tmp_path, 0.0)))
+    (claim,) = (replace(one, questions="my questions") for one in claims.load() if one.id == "four_boxes")
+    command = "`make experiments STUDY=neighbourhood QUESTIONS='my questions' BUDGET="
+    assert command in missing.said(measured, claim, 10, 20)
 
 
 @pytest.mark.parametrize(

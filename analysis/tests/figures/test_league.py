@@ -105,6 +105,12 @@ def test_the_report_names_commands_and_claims_nothing(results: Path) -> None:
     assert "Four boxes" not in text
 
 
+def test_the_report_repeats_questions_of_another_folder(results: Path) -> None:
+    (results / "claims.toml").write_text('questions = "my questions"\n')
+    [html, *_] = write(results)
+    assert "SCALE=paper QUESTIONS=&#39;my questions&#39;" in html.read_text(encoding="utf-8")
+
+
 CLAIM = """
 [[claim]]
 id = "anna_wins"

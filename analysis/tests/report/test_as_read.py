@@ -146,6 +146,14 @@ def test_a_report_of_a_study_that_goes_on_says_when_and_how_far(
     assert "goes on" not in text_of((tmp_path / "report.html").read_text(encoding="utf-8"))
 
 
+def test_a_question_without_records_that_is_to_lead_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["report", "--results", str(tmp_path), "--study", "thraeds,control"]) == 0
+    told = [f"study: found no records of {name}, which does not lead" for name in ("thraeds", "control")]
+    assert [line.removesuffix(" the report") for line in capsys.readouterr().err.splitlines()] == told
+
+
 def test_the_commands_to_repeat_it_name_the_questions_and_the_scale(tmp_path: Path) -> None:
     write(tmp_path, study(["steps", "control"], blocks=2, scale="quick"))
     write(tmp_path, [failure("compiler", "clang++", "is not built", scale="quick")])

@@ -11,6 +11,8 @@ import pytest
 
 from analysis.support.parallel import in_parallel
 
+ROOT = Path(__file__).parents[3]
+
 
 @pytest.fixture(autouse=True)
 def _four_processors(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -41,6 +43,15 @@ def test_what_is_raised_there_is_raised_here() -> None:
     assert raised.value.filename == "file 0"
 
 
+def test_no_library_has_threads_that_a_fork_would_lose() -> None:
+    script = "import analysis.report, os; print(len(os.listdir('/proc/self/task')))"
+    settings = {key: value for key, value in os.environ.items() if not key.endswith("_NUM_THREADS")}
+    done = subprocess.run(
+        [sys.executable, "-c", script], env=settings, cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "1\n"
+
+
 SLEEPERS = r"""
 import os, time
 os.sched_getaffinity = lambda _: {0, 1, 2, 3}
@@ -53,9 +64,8 @@ list(in_parallel(sleep, 3))
 
 
 def test_they_end_with_a_parent_that_is_killed() -> None:
-    root = Path(__file__).parents[3]
     with subprocess.Popen(
-        [sys.executable, "-c", SLEEPERS], stdout=subprocess.PIPE, text=True, cwd=root
+        [sys.executable, "-c", SLEEPERS], stdout=subprocess.PIPE, text=True, cwd=ROOT
     ) as parent:
         assert parent.stdout is not None
         try:

@@ -39,6 +39,18 @@ MISTAKES = {
         CHUNKS.replace("radius = 5", "radius = 0"),
         "scene.radius: found 0, expected a number above 0",
     ),
+    "too many discs": (
+        CHUNKS.replace("particles = 100", "particles = 1000000000000"),
+        "expected a whole number of at least 1 and at most 100000000",
+    ),
+    "a box smaller than a disc": (
+        PAIR.replace("side = 1000", "side = 3"),
+        "scene.side: found 3, expected at least a disc's diameter, ",
+    ),
+    "two series of one name": (
+        PAIR.replace('name = "nine"', 'name = "four"'),
+        'series[2].name: found "four" twice, expected each once',
+    ),
     "unknown figure": (
         CHUNKS.replace('"schedule"', '"shedule"'),
         'figure: found "shedule", expected one of scaling, trend, comparison, schedule, machine, phases, '
@@ -226,6 +238,8 @@ def test_the_control_is_part_of_every_choice(workplace: Workplace) -> None:
 
 
 def test_a_folder_without_questions_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"questions: found .*/absent, expected a folder that is there"):
+        load_questions(tmp_path / "absent")
     with pytest.raises(InputError, match="has no question in it"):
         load_questions(tmp_path)
 

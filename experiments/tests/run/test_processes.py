@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 import time
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -211,10 +212,12 @@ def test_the_folder_of_the_questions_brings_its_claims_along(empty_workplace: Wo
     empty_workplace.question("counts", SLOW)
     run(replace(settings(empty_workplace), blocks=1))
     kept = empty_workplace.results / "claims.toml"
-    assert kept.read_text() == "# Nothing is claimed.\n"
+    place = f'questions = "{empty_workplace.root / "questions"}"\n'
+    assert kept.read_text() == f"{place}# Nothing is claimed.\n"
     (empty_workplace.root / "questions" / "claims.toml").write_text('[[claim]]\nid = "a"\n')
     run(replace(settings(empty_workplace), blocks=1))
-    assert kept.read_text() == '[[claim]]\nid = "a"\n'
+    assert kept.read_text() == f'{place}[[claim]]\nid = "a"\n'
+    assert tomllib.loads(kept.read_text())["questions"]
 
 
 def test_a_new_question_runs_as_it_is(empty_workplace: Workplace) -> None:

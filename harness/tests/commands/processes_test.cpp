@@ -96,7 +96,7 @@ TEST_F(ProcessesCommand, LeavesAFailureInThePlaceOfARecord) {
     EXPECT_EQ(failed("exit"), "4 exit code 4: last");
     EXPECT_EQ(failed("signal"), "-6 killed by SIGABRT");
     EXPECT_EQ(failed("endless"), "124 took longer than 0.05 s and was stopped");
-    EXPECT_EQ(failed("missing"), "127 /no/such/program: cannot be run: No such file or directory");
+    EXPECT_EQ(failed("missing"), "127 cannot be run: No such file or directory");
     EXPECT_EQ(failed("silent"), "1 time: 'took ([0-9]+)' matches 0 lines of standard output, expected one");
     EXPECT_EQ(record("right")["kind"], "process");
 }
@@ -132,9 +132,29 @@ TEST_F(ProcessesCommand, RefusesWhatDescribesNoProcesses) {
     EXPECT_TRUE(refused(processes(Json::array({Json{{"command", {"ls"}}}})), 1, {"process 1", "record"}));
     EXPECT_TRUE(refused(processes(Json::array({Json{{"command", Json::array()}, {"record", "r"}}})), 1,
                         {"process 1", "command"}));
-    Json tagged = described("exit 0", "tagged");
-    tagged["tags"] = {"x"};
-    EXPECT_TRUE(refused(processes(Json::array({tagged})), 1, {"process 1", "--tag", "KEY=VALUE"}));
+    EXPECT_TRUE(refused(processes(Json::array({{"ls"}})), 1, {"processes.json", "expected a JSON list"}));
+}
+
+TEST_F(ProcessesCommand, RefusesAProcessThatCannotBeBeforeAnyRuns) {
+    const auto with = [this](const std::string& key, const Json& value) {
+        Json one = described("echo x >> " + (directory / "runs"), "one");
+        one[key] = value;
+        return processes(Json::array({described("echo x >> " + (directory / "runs"), "first"), one}));
+    };
+    EXPECT_TRUE(refused(with("tags", {"x"}), 1, {"process 2", "--tag", "KEY=VALUE"}));
+    EXPECT_TRUE(refused(with("command", "ls"), 1, {"process 2: command: found", "expected a list of texts"}));
+    EXPECT_TRUE(refused(with("threads", "two"), 1, {"threads: found", "two", "expected a whole number"}));
+    EXPECT_TRUE(refused(with("most_seconds", -1), 1, {"most_seconds: found -1, expected a number above 0"}));
+    EXPECT_TRUE(refused(with("record", directory / "none/one"), 1, {"none/one: cannot be written"}));
+    EXPECT_FALSE(std::filesystem::exists(directory / "runs"));
+}
+
+TEST_F(ProcessesCommand, RefusesSlicesThatCannotBe) {
+    const Json one = Json::array({described("exit 0", "one")});
+    EXPECT_TRUE(refused(processes(one, {"--slice", "0"}), 1,
+                        {"--slice: found '0', expected a number from 0.001 to 1e+06"}));
+    EXPECT_TRUE(
+        refused(processes(one, {"--seed", "-1"}), 1, {"--seed: found '-1', expected a whole number"}));
 }
 
 } // namespace

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <fstream>
 #include <numeric>
 #include <string>
@@ -94,6 +95,22 @@ TEST_F(TurnsCommand, RefusesAContenderThatCannotBeAndSaysWhichOne) {
     EXPECT_TRUE(refused(turns({right, words("nine", "two", {"--tag", "x"})}), 1, {"--tag", "KEY=VALUE"}));
     EXPECT_TRUE(
         refused(turns({right, words("nine", "two", {"--no-such"})}), 1, {"contender 2", "--no-such"}));
+    EXPECT_TRUE(refused(turns({right, Json{"--record", directory / "two"}}), 1,
+                        {"contender 2: found no SCENE, expected it: `carom bench --help`"}));
+    EXPECT_TRUE(refused(turns({right, words("nine", "two", {"--recrod", "x"})}), 1,
+                        {"contender 2: found '--recrod'", "did you mean '--record'?"}));
+    EXPECT_TRUE(refused(turns({right, words("nine", "two", {"--repetitions", "3"})}), 1,
+                        {"contender 2: --repetitions: found '3', expected 1"}));
+    EXPECT_TRUE(refused(turns({right, words("nine", "none/two")}), 1, {"none/two: cannot be written"}));
+    EXPECT_FALSE(std::filesystem::exists(directory / "one")) << "refused before any runs";
+}
+
+TEST_F(TurnsCommand, RefusesTurnsThatCannotBe) {
+    const Json contenders{words("published", "one")};
+    EXPECT_TRUE(refused(turns(contenders, {"--turn", "0"}), 1,
+                        {"--turn: found '0', expected a number from 1e-06 to 1e+06"}));
+    EXPECT_TRUE(
+        refused(turns(contenders, {"--seed", "-1"}), 1, {"--seed: found '-1', expected a whole number"}));
 }
 
 TEST_F(TurnsCommand, OneThatFailsItsCheckHasNoTimesAndTheOthersHave) {

@@ -77,6 +77,12 @@ TEST(Copy, IsRepeatedAsOftenAsTheTimeAllows) {
     EXPECT_GT(measure_copy({"L2", mebi}, 2, 0.1).repetitions, 5);
 }
 
+TEST(Copy, InACacheIsNotSlowerThanInMemory) {
+    const double in_cache = measure_copy({"L1d", 32 * kibi}, 1, 0.05).best;
+    const double in_memory = measure_copy({"memory", 64 * mebi}, 1, 0.05).best;
+    EXPECT_GT(in_cache, 0.7 * in_memory);
+}
+
 TEST(Copy, OfLessThanADoubleAThreadCopiesOneForEach) { expect_a_rate(measure_copy({"L1d", 1}, 3, 0)); }
 
 TEST(Arithmetic, OfAWholeRegisterIsFasterThanOfOneDouble) {

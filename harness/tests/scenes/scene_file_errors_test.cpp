@@ -85,6 +85,7 @@ const std::vector<BadFile> bad_files{
     {"StepsBeyondIntegers", with_header("1\n10\n1\n4000000000\n"),
      "bad.in:4: found '4000000000', expected the number of steps S"},
     {"DiscsMissing", with_discs(""), "bad.in:1: found 2 discs in a file too short for so many"},
+    {"OnlyDiscMissing", "1\n10\n1\n5\n", "bad.in:1: found 1 disc in a file too short for so many"},
     {"OneDiscMissing", with_discs("0 5.00000 5.00000 0 0\n"),
      "bad.in:6: found the end of the file, expected one line `i x y vx vy` for each"},
     {"BlankLineForADisc", with_discs("0 5 5 0 0\n\n1 7.00000 7 0 0\n"),
