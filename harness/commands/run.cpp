@@ -134,8 +134,11 @@ nlohmann::ordered_json summary_json(const Summary& summary) {
             {"state_hash", summary.state_hash}};
 }
 
-/// "60 steps", or "60 units of time in 480 steps".
+/// "60 steps", or "60 units of time in 480 steps"; without steps "60 units of time".
 std::string steps_text(const Summary& summary) {
+    if (summary.policies.impact == Impact::event_driven) {
+        return counted(summary.units_of_time, "unit") + " of time";
+    }
     const std::string steps = counted(summary.steps, "step");
     return summary.substeps == 1 ? steps : counted(summary.units_of_time, "unit") + " of time in " + steps;
 }
@@ -252,7 +255,11 @@ void run(RunOptions options) {
     const int asked = options.simulation.tuning.threads;
     const Scene scene = read_scene_and_settle_threads(options.simulation, AskedThreads::at_most);
     seconds.reading = process_seconds() - before;
-    const Variant& variant = require_variant(options.simulation.variant, scene);
+    const Variant& variant = require_variant(options.simulation.variant, scene, options.simulation.tuning);
+    if (variant.policies.impact == Impact::event_driven) {
+        options.simulation.tuning.threads = 1;
+        options.simulation.threads_withheld = 0;
+    }
     const Run result = simulate(options, scene, variant, seconds);
     Summary summary = summarise(options, scene, variant, result, seconds);
     summary.threads_asked = asked;
