@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "variants/event_driven.hpp"
 #include "variants/parts.hpp"
 #include "variants/table.hpp"
 
@@ -32,7 +33,10 @@ std::span<const Variant> variants() {
 
 const Variant* find_variant(std::string_view name) {
     const auto found = std::ranges::find(variants(), name, &Variant::name);
-    return found == variants().end() ? nullptr : &*found;
+    if (found != variants().end()) {
+        return &*found;
+    }
+    return name == event_driven().name ? &event_driven() : nullptr;
 }
 
 } // namespace carom

@@ -24,7 +24,7 @@ class Simulation {
     virtual std::vector<Disc> discs() const = 0;
 };
 
-/// One row of the table, with what it takes to run it.
+/// One row of the table, or the event-driven simulation, with what it takes to run it.
 struct Variant {
     std::string_view name;
     Policies policies;
@@ -33,14 +33,15 @@ struct Variant {
     /// numbers.
     std::unique_ptr<Simulation> (*simulate)(const Scene&, const Tuning&);
 
-    /// The same, telling `probe` what it does. `probe` must outlive the simulation.
+    /// The same, telling `probe` what it does. `probe` must outlive the simulation. Null for the event-driven
+    /// simulation, which has no phases.
     std::unique_ptr<Simulation> (*simulate_observed)(const Scene&, const Tuning&, Probe& probe);
 };
 
-/// Every variant, in the order of the table.
+/// Every variant of the table, in its order.
 std::span<const Variant> variants();
 
-/// The variant of that name, or null.
+/// The variant of that name, be it in the table or event_driven(), or null.
 const Variant* find_variant(std::string_view name);
 
 } // namespace carom

@@ -1,7 +1,8 @@
 """Error measures beside the time that they cost: from the tables of a study to one row a point.
 
 A point is a series at a number of substeps on one scene. Its time is over all of its processes; its errors
-come from the one that measured them, since every run of a point ends in the same bits.
+come from the one that measured them, since every run of a point ends in the same bits. The event-driven
+simulation takes no steps: it is a point with 0 substeps.
 """
 
 from collections.abc import Callable, Sequence
@@ -118,15 +119,23 @@ def errors(study: Study, experiment: str) -> pd.DataFrame:
     runs = study.runs_of(experiment)
     runs = runs[runs["has_errors"].astype(bool)]
     at_one = study.trajectory[study.trajectory["time"] == 1].set_index("file")["rms_distance"]
-    runs = runs.assign(path=runs["file"].map(at_one), scene_name=runs["scene_name"].fillna(""))
+    runs = _without_steps(runs).assign(path=runs["file"].map(at_one))
     return runs.assign(**{measure.key: measure.value(runs) for measure in MEASURES})
 
 
 def times(study: Study, experiment: str) -> pd.DataFrame:
     """Return the timed repetitions with `seconds`, the time of one unit of simulated time."""
-    table = study.times_of(experiment)
+    table = _without_steps(study.times_of(experiment))
+    return table.assign(seconds=table["steps_seconds"] / table["steps"])
+
+
+def _without_steps(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the table with a text for every scene, and no substeps where there are no steps."""
+    steps = table["impact"] != "event_driven"
     return table.assign(
-        seconds=table["steps_seconds"] / table["steps"], scene_name=table["scene_name"].fillna("")
+        x=table["x"].where(steps, 0.0),
+        substeps=table["substeps"].where(steps, 0),
+        scene_name=table["scene_name"].fillna(""),
     )
 
 
@@ -168,6 +177,7 @@ def outside(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
 def orders(table: pd.DataFrame) -> pd.DataFrame:
     """Return per scene and series of `points` the fitted `order` of the error in dt, an Interval."""
     keys = ["scene_name", "series"]
+    table = table[table["substeps"] > 0]
     rows = [
         {**dict(zip(keys, key, strict=True)), "order": order(1 / part["substeps"], part["error"], SMALL)}
         for key, part in table.groupby(keys, sort=False)

@@ -124,7 +124,8 @@ def _front(axes: Axes, part: pd.DataFrame, zero: float) -> list[Label]:
     x, y = rows["error"].clip(lower=zero), MILLI * rows["median"]
     axes.plot(x, y, color=lighten(FAINT, 0.6), linewidth=5, solid_capstyle="round", zorder=1)
     return [
-        (f"{substeps:g}", one, other) for one, other, substeps in zip(x, y, rows["substeps"], strict=True)
+        (f"{substeps:g}" if substeps else series, one, other)
+        for one, other, substeps, series in zip(x, y, rows["substeps"], rows["series"], strict=True)
     ][::-1]
 
 
@@ -229,7 +230,9 @@ def _choice(choice: Choice | None) -> Cell:
 
 
 def run_label(series: str, substeps: float) -> str:
-    """Return a series with its step, e.g. `row, dt = 1/8`."""
+    """Return a series with its step, e.g. `row, dt = 1/8`; the series alone where there are no steps."""
+    if substeps == 0:
+        return series
     return f"{series}, dt{NO_BREAK}={NO_BREAK}{'1' if substeps == 1 else f'1/{substeps:g}'}"
 
 
@@ -262,14 +265,27 @@ def _caption(table: pd.DataFrame, data: Data, experiment: str, subject: str, mea
         if varying
         else "A point's error is the same in every run, to the last bit, and has no interval; its time has."
     )
+    without_steps = _exact_sentence(table)
     zeros = " Errors of exactly 0 stand at the left edge." if (table["error"] <= 0).any() else ""
     fronts = "; ".join(
         f"{_panel_name(str(scene), part)}: {front_in_words(part)}"
         for scene, part in table.groupby("scene_name", sort=False)
     )
     return (
-        f"{opened} The error is {measure.meaning}; down and to the left is better. {certain}{zeros} No other "
-        f"choice has at most the error and at most the time of one on the Pareto front (grey): {fronts}."
+        f"{opened} The error is {measure.meaning}; down and to the left is better. {certain}{without_steps}"
+        f"{zeros} No other choice has at most the error and at most the time of one on the Pareto front "
+        f"(grey): {fronts}."
+    )
+
+
+def _exact_sentence(table: pd.DataFrame) -> str:
+    """Say what the error of the event-driven simulation is against, which is the reference of all others."""
+    names = table.loc[table["substeps"] == 0, "series"].unique()
+    if len(names) == 0:
+        return ""
+    return (
+        f" {' and '.join(names)}: on one thread and without steps, the simulation that the others are "
+        "compared with; its own error is against the same in long double, and so the rounding of double."
     )
 
 
@@ -280,7 +296,9 @@ def front_in_words(part: pd.DataFrame) -> str:
         (series, [f"{row['substeps']:g}" for row in group])
         for series, group in groupby(rows.to_dict("records"), key=lambda row: str(row["series"]))
     ]
-    return ", then ".join(f"{series} with {_listed(steps)}" for series, steps in runs)
+    return ", then ".join(
+        series if steps == ["0"] else f"{series} with {_listed(steps)}" for series, steps in runs
+    )
 
 
 def _listed(steps: list[str]) -> str:

@@ -1,10 +1,11 @@
 #include "harness/accuracy/error_measures.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 
+#include "harness/accuracy/companion.hpp"
+#include "harness/accuracy/event_driven_errors.hpp"
 #include "harness/accuracy/momentum_balance.hpp"
 #include "harness/accuracy/penetration.hpp"
 #include "harness/measure/energy_drift.hpp"
@@ -14,88 +15,11 @@
 #include "harness/support/json.hpp"
 #include "harness/verify/at_contact.hpp"
 #include "harness/verify/checker.hpp"
-#include "kernels/exact/event_driven.hpp"
 
 namespace carom {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// The event-driven simulation that goes along with a run, as far as its limit lets it.
-class Companion {
-  public:
-    Companion(const Scene& scene, std::int64_t most_events)
-        : scene_(scene), limits_{.in_all = most_events}, reference_(scene) {}
-
-    /// Compares at the end of unit of time `time`.
-    void compare(int time, const std::vector<Disc>& discs) {
-        if (!reason_.empty() || !advance(time)) {
-            return;
-        }
-        const double distance = rms_distance(discs);
-        if (!result_.time_to_tenth_radius && distance > 0.1) {
-            result_.time_to_tenth_radius = time;
-        }
-        if (std::has_single_bit(static_cast<unsigned>(time)) || time == scene_.steps) {
-            result_.trajectory.push_back({.time = time, .rms_distance = distance});
-        }
-    }
-
-    /// Fills in what the reference has to say at the end.
-    void finish(ErrorMeasures& measures) {
-        if (!reason_.empty()) {
-            measures.reference_reason = reason_;
-            return;
-        }
-        const auto time = static_cast<double>(scene_.steps);
-        const auto count = static_cast<double>(scene_.discs.size());
-        result_.collision_rate = static_cast<double>(reference_.pair_collisions()) / (time * count);
-        result_.pressure = reference_.wall_impulse() / (time * 4 * scene_.side);
-        result_.speed_distance =
-            kolmogorov_smirnov_distance(speeds(measures.discs), speeds(reference_.discs()));
-        measures.reference = std::move(result_);
-    }
-
-  private:
-    bool advance(int time) {
-        if (reference_.advance(time, limits_)) {
-            return true;
-        }
-        reason_ = reference_.events() > limits_.in_all
-                      ? format("the reference is given up at time %.6g of %d after %lld events", //
-                               reference_.time(), scene_.steps, static_cast<long long>(limits_.in_all))
-                      : format("the collisions of the reference at time %.6g do not come to an end: a disc "
-                               "is wedged",
-                               reference_.time());
-        return false;
-    }
-
-    double rms_distance(const std::vector<Disc>& discs) const {
-        const auto exact = reference_.discs();
-        double sum = 0;
-        for (std::size_t i = 0; i < discs.size(); ++i) {
-            const double dx = (discs[i].x - exact[i].x) / scene_.radius;
-            const double dy = (discs[i].y - exact[i].y) / scene_.radius;
-            sum += dx * dx + dy * dy;
-        }
-        return discs.empty() ? 0 : std::sqrt(sum / static_cast<double>(discs.size()));
-    }
-
-    template <class SomeDisc> static std::vector<double> speeds(const std::vector<SomeDisc>& discs) {
-        std::vector<double> result;
-        result.reserve(discs.size());
-        for (const SomeDisc& disc : discs) {
-            result.push_back(std::hypot(disc.vx, disc.vy));
-        }
-        return result;
-    }
-
-    const Scene& scene_;
-    EventLimits limits_;
-    EventDriven<double> reference_;
-    AgainstReference result_;
-    std::string reason_;
-};
 
 /// Measures what is seen at every step of a run.
 class Watch {
@@ -193,11 +117,14 @@ double kolmogorov_smirnov_distance(std::vector<double> one, std::vector<double> 
 
 ErrorMeasures measure_errors(const Scene& scene, const Variant& variant, const Tuning& tuning,
                              std::int64_t most_events) {
+    if (variant.policies.impact == Impact::event_driven) {
+        return measure_event_driven_errors(scene, most_events);
+    }
     const auto simulation = variant.simulate(scene, tuning);
     const Rounding rounding = rounding_of(variant.policies);
     const Checker checker(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, rounding,
                           variant.policies.impact);
-    Companion companion(scene, most_events);
+    Companion<double> companion(scene, most_events);
     Watch watch(scene, rounding, variant.policies.impact, 1.0 / tuning.substeps, simulation->discs());
     ErrorMeasures measures;
     for (int time = 1; time <= scene.steps; ++time) {

@@ -131,8 +131,8 @@ void bench(BenchOptions options, const std::vector<std::string>& flags) {
             for (const int threads : options.threads) {
                 Tuning tuning = options.tuning;
                 tuning.threads = threads;
-                cases.emplace_back(
-                    measurement_of(loaded, require_variant(name, loaded.scene), tuning, options.measurement));
+                cases.emplace_back(measurement_of(loaded, require_variant(name, loaded.scene, tuning), tuning,
+                                                  options.measurement));
                 register_case(cases.back(), options);
             }
         }

@@ -8,20 +8,26 @@
 #include "harness/commands/commands.hpp"
 #include "harness/records/policies_json.hpp"
 #include "harness/verify/determinism.hpp"
+#include "variants/event_driven.hpp"
 #include "variants/name.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {
 namespace {
 
+nlohmann::ordered_json variant_json(const Variant& variant) {
+    const Determinism same_bits = promised(variant.policies);
+    return {{"name", variant.name},
+            {"policies", policies_json(variant.policies)},
+            {"same_bits", {{"threads", same_bits.threads}, {"compilers", same_bits.compilers}}}};
+}
+
 void print_json() {
     auto list = nlohmann::ordered_json::array();
     for (const Variant& variant : variants()) {
-        const Determinism same_bits = promised(variant.policies);
-        list.push_back({{"name", variant.name},
-                        {"policies", policies_json(variant.policies)},
-                        {"same_bits", {{"threads", same_bits.threads}, {"compilers", same_bits.compilers}}}});
+        list.push_back(variant_json(variant));
     }
+    list.push_back(variant_json(event_driven()));
     std::cout << list.dump(2) << '\n';
 }
 
@@ -29,6 +35,7 @@ void print_names() {
     for (const Variant& variant : variants()) {
         std::cout << variant.name << '\n';
     }
+    std::cout << event_driven().name << '\n';
 }
 
 std::string word_of(const nlohmann::ordered_json& choice) {
@@ -67,6 +74,15 @@ void print_promises() {
                 held_by(&Determinism::threads).c_str(), held_by(&Determinism::compilers).c_str());
 }
 
+void print_event_driven() {
+    std::printf(
+        "\nWithout steps, and with none of these policies:\n"
+        "%s\n"
+        "    every collision at its time, in order, exact to rounding; on one thread, whatever --threads\n"
+        "    says; no --substeps, no phases to profile, no scene whose discs overlap at the start\n",
+        std::string(event_driven().name).c_str());
+}
+
 } // namespace
 
 void add_list_command(CLI::App& program) {
@@ -86,6 +102,7 @@ void add_list_command(CLI::App& program) {
         } else {
             print_table();
             print_promises();
+            print_event_driven();
         }
     });
 }

@@ -82,7 +82,12 @@ void profile(const ProfileOptions& options) {
     require_threads(options.simulation.tuning.threads);
     const int threads = options.simulation.tuning.threads;
     const LoadedScene loaded = load_scene(options.simulation.scene);
-    const Variant& variant = require_variant(options.simulation.variant, loaded.scene);
+    const Variant& variant =
+        require_variant(options.simulation.variant, loaded.scene, options.simulation.tuning);
+    if (variant.simulate_observed == nullptr) {
+        throw InputError("--variant " + options.simulation.variant +
+                         ": found a variant without phases, expected one with steps");
+    }
     Measurement measurement = measurement_of(loaded, variant, options.simulation.tuning, options.measurement);
 
     for (int k = 0; k < options.measurement.warm_ups; ++k) {

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -13,7 +12,9 @@
 #include <unistd.h>
 
 #include "harness/accuracy/error_measures.hpp"
+#include "harness/accuracy/errors_text.hpp"
 #include "harness/commands/commands.hpp"
+#include "harness/commands/error_bound.hpp"
 #include "harness/commands/simulation_options.hpp"
 #include "harness/machine/disturbance.hpp"
 #include "harness/measure/energy_drift.hpp"
@@ -33,6 +34,7 @@ namespace {
 
 struct RunOptions {
     SimulationOptions simulation;
+    ErrorBound bound;
     std::string trajectory;
     bool errors = false;
     bool json = false;
@@ -134,8 +136,11 @@ nlohmann::ordered_json summary_json(const Summary& summary) {
             {"state_hash", summary.state_hash}};
 }
 
-/// "60 steps", or "60 units of time in 480 steps".
+/// "60 steps", or "60 units of time in 480 steps"; without steps "60 units of time".
 std::string steps_text(const Summary& summary) {
+    if (summary.policies.impact == Impact::event_driven) {
+        return counted(summary.units_of_time, "unit") + " of time";
+    }
     const std::string steps = counted(summary.steps, "step");
     return summary.substeps == 1 ? steps : counted(summary.units_of_time, "unit") + " of time in " + steps;
 }
@@ -167,43 +172,6 @@ void print_summary(const Summary& summary) {
         std::printf("  energy drift     not defined: nothing moves at the start\n");
     }
     std::printf("  discs outside   %12d\n", summary.discs_outside);
-}
-
-void print_errors(const ErrorMeasures& errors) {
-    const auto line = [](const char* what, std::optional<double> value, const char* unit) {
-        if (value && std::isfinite(*value)) {
-            std::printf("  %-33s %12.6g %s\n", what, *value, unit);
-        } else {
-            std::printf("  %-33s    not known\n", what);
-        }
-    };
-    const auto of_reference = [&errors](auto AgainstReference::* field) -> std::optional<double> {
-        return errors.reference ? std::optional<double>((*errors.reference).*field) : std::nullopt;
-    };
-    line("momentum that no wall explains", errors.momentum_drift, "of the sum of |v|");
-    line("worst penetration", errors.penetration_worst, "r");
-    line("mean penetration", errors.penetration_mean, "r");
-    line("left colliding", static_cast<double>(errors.unresolved_pairs), "");
-    line("collisions", errors.collision_rate, "a disc and unit of time");
-    line("  of the reference", of_reference(&AgainstReference::collision_rate), "");
-    line("pressure", errors.pressure, "");
-    line("  of the reference", of_reference(&AgainstReference::pressure), "");
-    line("distance of the speeds", of_reference(&AgainstReference::speed_distance), "(Kolmogorov-Smirnov)");
-    const bool leaves = errors.reference && errors.reference->time_to_tenth_radius;
-    line("0.1 r from the reference after",
-         leaves ? std::optional<double>(*errors.reference->time_to_tenth_radius) : std::nullopt,
-         "units of time");
-    if (errors.reference) {
-        for (const DistanceAt& at : errors.reference->trajectory) {
-            std::printf("  distance after %6d units of time %13.6g r (root mean square)\n", at.time,
-                        at.rms_distance);
-        }
-    }
-    for (const std::string& reason : {errors.pressure_reason, errors.reference_reason}) {
-        if (!reason.empty()) {
-            std::printf("  %s\n", reason.c_str());
-        }
-    }
 }
 
 std::string trajectory_lines(int step, const std::vector<Disc>& discs) {
@@ -252,7 +220,16 @@ void run(RunOptions options) {
     const int asked = options.simulation.tuning.threads;
     const Scene scene = read_scene_and_settle_threads(options.simulation, AskedThreads::at_most);
     seconds.reading = process_seconds() - before;
-    const Variant& variant = require_variant(options.simulation.variant, scene);
+    const auto chosen = choose_method(scene, options.bound, options.simulation);
+    if (chosen) {
+        options.simulation.variant = chosen->tried.method.variant->name;
+        options.simulation.tuning.substeps = chosen->tried.method.substeps;
+    }
+    const Variant& variant = require_variant(options.simulation.variant, scene, options.simulation.tuning);
+    if (variant.policies.impact == Impact::event_driven) {
+        options.simulation.tuning.threads = 1;
+        options.simulation.threads_withheld = 0;
+    }
     const Run result = simulate(options, scene, variant, seconds);
     Summary summary = summarise(options, scene, variant, result, seconds);
     summary.threads_asked = asked;
@@ -262,11 +239,17 @@ void run(RunOptions options) {
     }
     if (options.json) {
         auto json = summary_json(summary);
+        if (chosen) {
+            json["choice"] = choice_json(*chosen);
+        }
         if (errors) {
             json["errors"] = error_measures_json(*errors);
         }
         std::cout << json_text(json, 2) << '\n';
     } else {
+        if (chosen) {
+            print_choice(*chosen);
+        }
         print_summary(summary);
         if (errors) {
             print_errors(*errors);
@@ -286,6 +269,7 @@ void add_run_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("run", "Simulate a scene and print a short summary");
     options->simulation.variant = automatic;
     add_simulation_options(*command, options->simulation);
+    add_error_bound_options(*command, options->bound);
     command->get_option("--threads")
         ->description("OpenMP threads at most; fewer for few discs or beside other programs");
     command->add_option("--trajectory", options->trajectory,

@@ -14,7 +14,9 @@
 #include "harness/support/nearest.hpp"
 #include "harness/support/note.hpp"
 #include "harness/support/text.hpp"
+#include "harness/verify/event_driven.hpp"
 #include "harness/verify/rounding.hpp"
+#include "variants/event_driven.hpp"
 #include "variants/fastest.hpp"
 
 namespace carom {
@@ -33,6 +35,7 @@ std::vector<std::string> variant_names() {
     for (const Variant& variant : variants()) {
         names.emplace_back(variant.name);
     }
+    names.emplace_back(event_driven().name);
     return names;
 }
 
@@ -41,6 +44,19 @@ std::string suggested_variant(const std::string& name) {
     constexpr std::array<std::string_view, 4> superlatives{"fastest", "automatic", "best", "default"};
     return std::ranges::find(superlatives, name) != superlatives.end() ? automatic
                                                                        : nearest(name, variant_names());
+}
+
+void require_event_driven(const Scene& scene, const Tuning& tuning) {
+    const std::string option = "--variant " + std::string(event_driven().name);
+    if (tuning.substeps != 1) {
+        throw InputError(option + ": found --substeps " + number_text(tuning.substeps) +
+                         ", expected none: it takes no steps");
+    }
+    if (const auto overlap = overlap_at_start(scene)) {
+        throw InputError(option + ": found that at the start " + *overlap +
+                         ", expected discs apart from each other and from the walls, as `carom generate "
+                         "--placement random` makes them");
+    }
 }
 
 } // namespace
@@ -120,13 +136,16 @@ const Variant& require_variant(const std::string& name) {
                      ", expected a name from `carom list`, such as '" + suggested_variant(name) + "'");
 }
 
-const Variant& require_variant(const std::string& name, const Scene& scene) {
+const Variant& require_variant(const std::string& name, const Scene& scene, const Tuning& tuning) {
     const Variant& variant = name == automatic ? fastest_variant(scene) : require_variant(name);
     if (!holds(variant.policies, scene)) {
         throw InputError("--variant " + name +
                          ": computes in float, and the scene has numbers beyond 1e15, a radius below "
                          "1e-15, or a fastest speed whose product with the radius is not within 1e-15 "
                          "to 1e17; expected a variant in double");
+    }
+    if (variant.policies.impact == Impact::event_driven) {
+        require_event_driven(scene, tuning);
     }
     return variant;
 }

@@ -47,7 +47,8 @@ void note_withheld_threads(const SimulationOptions& options);
 /// The variant of that name; throws InputError with the nearest name if there is none.
 const Variant& require_variant(const std::string& name);
 
-/// The same, or, for `automatic`, the fastest for the scene.
-const Variant& require_variant(const std::string& name, const Scene& scene);
+/// The same, or, for `automatic`, the fastest for the scene. Throws InputError also for a variant that can do
+/// nothing with this scene or this tuning.
+const Variant& require_variant(const std::string& name, const Scene& scene, const Tuning& tuning);
 
 } // namespace carom

@@ -105,8 +105,9 @@ void turns(const TurnsOptions& options) {
             loaded = scenes.emplace(path, load_scene(path)).first;
         }
         const LoadedScene& scene = loaded->second;
-        contenders.emplace_back(measurement_of(scene, require_variant(one.simulation.variant, scene.scene),
-                                               one.simulation.tuning, one.measurement));
+        const Tuning& tuning = one.simulation.tuning;
+        contenders.emplace_back(measurement_of(
+            scene, require_variant(one.simulation.variant, scene.scene, tuning), tuning, one.measurement));
     }
     const auto seconds = compete(contenders, options);
     const VariantContender* failed = nullptr;

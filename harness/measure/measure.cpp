@@ -18,7 +18,11 @@ std::string at_step(int step, int substep, int substeps, const std::string& what
     return where + ": " + what;
 }
 
-std::string unsettled(const Checker& checker, const std::vector<Disc>& discs, int sweep_limit) {
+std::string unsettled(const Checker& checker, const std::vector<Disc>& discs, int sweep_limit,
+                      Impact impact) {
+    if (impact == Impact::event_driven) {
+        return "the collisions of one instant do not come to an end: a disc is wedged";
+    }
     return "the resolve did not end within " + std::to_string(sweep_limit) + " sweeps: " +
            checker.colliding(discs).value_or("something is colliding below the checker's tolerance");
 }
@@ -27,7 +31,7 @@ std::string unsettled(const Checker& checker, const std::vector<Disc>& discs, in
 
 RunInParts::RunInParts(const Scene& scene, Simulation& simulation, const Tuning& tuning, const Check& check,
                        OnStep on_step, Stopwatch stopwatch)
-    : scene_(scene), simulation_(simulation), tuning_(tuning), scope_(check.scope),
+    : scene_(scene), simulation_(simulation), tuning_(tuning), check_(check),
       checker_(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, rounding_of(check.policies),
                check.policies.impact),
       on_step_(std::move(on_step)), stopwatch_(std::move(stopwatch)) {}
@@ -53,7 +57,8 @@ double RunInParts::advance(int steps) {
 
 void RunInParts::step(int substep) {
     const bool last = done_ == scene_.steps && substep == tuning_.substeps;
-    const bool checked = scope_ == CheckScope::every_step || (scope_ == CheckScope::last_step && last);
+    const bool checked =
+        check_.scope == CheckScope::every_step || (check_.scope == CheckScope::last_step && last);
     if (checked) {
         stopwatch_.stop();
         before_ = simulation_.discs();
@@ -64,7 +69,8 @@ void RunInParts::step(int substep) {
     if (checked || !tally.settled) {
         stopwatch_.stop();
         const auto violation = tally.settled ? checker_.step(before_, simulation_.discs())
-                                             : unsettled(checker_, simulation_.discs(), tuning_.sweep_limit);
+                                             : unsettled(checker_, simulation_.discs(), tuning_.sweep_limit,
+                                                         check_.policies.impact);
         if (violation) {
             run_.violation = at_step(done_, substep, tuning_.substeps, *violation);
         }

@@ -61,7 +61,7 @@ class RunInParts {
     const Scene& scene_;
     Simulation& simulation_;
     const Tuning& tuning_;
-    CheckScope scope_;
+    Check check_;
     Checker checker_;
     OnStep on_step_;
     Stopwatch stopwatch_;

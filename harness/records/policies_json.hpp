@@ -9,6 +9,15 @@ namespace carom {
 
 /// Every policy as a field of its own; null where it has no meaning for the variant.
 inline nlohmann::ordered_json policies_json(const Policies& policies) {
+    if (policies.impact == Impact::event_driven) {
+        nlohmann::ordered_json json = policies_json(Policies{});
+        for (auto& choice : json) {
+            choice = nullptr;
+        }
+        json["impact"] = word(policies.impact);
+        json["precision"] = word(policies.precision);
+        return json;
+    }
     nlohmann::ordered_json json{{"neighbourhood", word(policies.neighbourhood)},
                                 {"order", word(policies.order)},
                                 {"self_contained", word(policies.self_contained)},

@@ -22,9 +22,11 @@ using Json = nlohmann::ordered_json;
 Json axes_json(const Variant& variant, const Tuning& tuning) {
     Json axes{{"variant", variant.name}};
     axes.update(policies_json(variant.policies));
+    const bool has_loops = variant.policies.impact != Impact::event_driven;
+    const bool find_has_chunk = has_loops && has_chunk(variant.policies.find_schedule);
     const bool resolve_has_chunk =
-        !is_sequential(variant.policies.order) && has_chunk(variant.policies.resolve_schedule);
-    axes["find_chunk"] = has_chunk(variant.policies.find_schedule) ? Json(tuning.find_chunk) : Json(nullptr);
+        has_loops && !is_sequential(variant.policies.order) && has_chunk(variant.policies.resolve_schedule);
+    axes["find_chunk"] = find_has_chunk ? Json(tuning.find_chunk) : Json(nullptr);
     axes["resolve_chunk"] = resolve_has_chunk ? Json(tuning.resolve_chunk) : Json(nullptr);
     axes["threads"] = tuning.threads;
     axes["substeps"] = tuning.substeps;

@@ -8,6 +8,7 @@
 #include "harness/support/format.hpp"
 #include "harness/verify/at_contact.hpp"
 #include "harness/verify/conservation.hpp"
+#include "harness/verify/event_driven.hpp"
 
 namespace carom {
 
@@ -36,6 +37,9 @@ std::optional<std::string> Checker::step(const std::vector<Disc>& before,
                                          const std::vector<Disc>& after) const {
     if (before.size() != after.size()) {
         return format("%zu discs became %zu", before.size(), after.size());
+    }
+    if (impact_ == Impact::event_driven) {
+        return event_driven_violation(before, after, dt_, walls_);
     }
     const std::vector<Disc> free = flown(before, dt_, walls_);
     if (auto violation = moved(before, free, after)) {

@@ -32,6 +32,9 @@ class Checker {
     /// With Impact::at_contact discs that collided are not where they flew freely: what then holds of every
     /// step stands in at_contact.hpp. Discs that were moved into others, or into a wall, that they did not
     /// overlap before may be left colliding: the next step follows them back.
+    ///
+    /// Of Impact::event_driven only the states at the ends are seen: what holds of them stands in
+    /// event_driven.hpp.
     std::optional<std::string> step(const std::vector<Disc>& before, const std::vector<Disc>& after) const;
 
     /// The first pair or wall left colliding, or nothing.

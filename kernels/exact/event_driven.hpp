@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -106,6 +107,9 @@ template <class Real> class EventDriven {
     /// mass.
     Real wall_impulse() const { return wall_impulse_; }
 
+    /// What the walls have changed of the momentum of all discs along x and y, for unit mass.
+    const std::array<Real, 2>& momentum_from_walls() const { return momentum_from_walls_; }
+
   private:
     static constexpr int none = EventCells<Real>::none;
     static constexpr int wall_x = -2;
@@ -175,6 +179,7 @@ template <class Real> class EventDriven {
         Real& velocity = one.partner == wall_x ? one.vx : one.vy;
         velocity = -velocity;
         wall_impulse_ += 2 * std::abs(velocity);
+        momentum_from_walls_[one.partner == wall_x ? 0 : 1] += 2 * velocity;
         ++one.age;
         ++wall_collisions_;
     }
@@ -289,6 +294,7 @@ template <class Real> class EventDriven {
     std::int64_t pair_collisions_ = 0;
     std::int64_t wall_collisions_ = 0;
     Real wall_impulse_ = 0;
+    std::array<Real, 2> momentum_from_walls_{};
 };
 
 } // namespace carom

@@ -6,6 +6,7 @@
 
 #include "kernels/tests/scenes.hpp"
 #include "kernels/tests/simulate.hpp"
+#include "variants/event_driven.hpp"
 #include "variants/name.hpp"
 #include "variants/registry.hpp"
 #include "variants/table.hpp"
@@ -42,6 +43,16 @@ TEST(FindVariant, FindsNothingElse) {
     for (const char* name :
          {"", "Published", "published ", "checkered", "four", "row-", "row_resolve_dynamic"}) {
         EXPECT_EQ(find_variant(name), nullptr) << name;
+    }
+}
+
+TEST(EventDrivenVariant, IsFoundByItsNameAndStandsBesideTheTable) {
+    EXPECT_EQ(event_driven().name, "event_driven");
+    EXPECT_EQ(find_variant("event_driven"), &event_driven());
+    EXPECT_EQ(event_driven().policies.impact, Impact::event_driven);
+    EXPECT_NE(impossible(event_driven().policies), "");
+    for (const Variant& variant : variants()) {
+        EXPECT_NE(variant.policies.impact, Impact::event_driven);
     }
 }
 

@@ -1,6 +1,7 @@
 """Speed against error, on records with a known order of convergence and a known Pareto front."""
 
 import re
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +42,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def measured(folder: Path) -> Study:
     return split(load(folder))[0]
+
+
+def records_in(path: Path) -> Any:  # noqa: ANN401
+    path.mkdir()
+    write(path, records())
+    return load(path)
 
 
 def drawing(study: Study, key: str, folder: Path) -> Drawing:
@@ -222,9 +229,57 @@ def test_records_without_errors_draw_nothing(tmp_path: Path, data: Data) -> None
     assert horizons(data.study, "steps") == ""
 
 
+def exact_ones(records: list[dict[str, Any]], share: float) -> list[dict[str, Any]]:
+    """Return records of the event-driven simulation, which takes `share` of the time of the largest steps."""
+    found = []
+    for record in records:
+        if (record["tags"]["series"], record["tags"]["x"]) != ("checkered", 1):
+            continue
+        exact = deepcopy(record)
+        exact["tags"] |= {"series": "event-driven", "point": f"exact {record['tags']['scene_name']}"}
+        exact["axes"] |= {"variant": "event_driven", "impact": "event_driven", "neighbourhood": None}
+        for repetition in exact["repetitions"]:
+            repetition["steps_seconds"] *= share
+        if "trajectory" in exact["errors"]:
+            for at in exact["errors"]["trajectory"]:
+                at["rms_distance"] = 3e-14
+        found.append(exact)
+    return found
+
+
+def test_the_event_driven_simulation_is_on_the_front_without_steps(tmp_path: Path) -> None:
+    stepped = records()
+    write(tmp_path, [*stepped, *exact_ones(stepped, 3.0)])
+    found = split(load(tmp_path))[0]
+    table = points(found, BY_KEY["path"])
+    exact = table[table["series"] == "event-driven"]
+    assert exact[["x", "substeps", "on_front"]].to_numpy().tolist() == [[0, 0, True]] * 3
+    assert exact["error"].tolist() == [3e-14] * 3
+    dilute = table[table["scene_name"] == "dilute"]
+    assert front_in_words(dilute) == "float with 1, 2 and 4 substeps, then event-driven"
+    advice = dict(accuracy.advice(table, accuracy.times(found, NAME)))
+    tight = advice[min(advice)]["dense"]
+    assert tight is not None
+    assert run_label(tight.series, tight.substeps) == "event-driven"
+    assert tight.seconds.estimate == pytest.approx(3e-3 * 1.65, rel=0.05)
+    assert "event-driven" not in set(accuracy.orders(table)["series"])
+
+
+def test_the_caption_says_what_the_error_of_the_exact_simulation_is_against(tmp_path: Path) -> None:
+    stepped = records()
+    write(tmp_path, [*stepped, *exact_ones(stepped, 3.0)])
+    drawn = drawing(split(load(tmp_path))[0], "path", tmp_path)
+    assert "event-driven: on one thread and without steps" in drawn.caption
+    assert "against the same in long double" in drawn.caption
+    (advice,) = (table for table in drawn.tables if "cheapest" in table.title)
+    assert "event-driven: " in advice.rows[-1][1].text
+    assert "long double" not in drawing(split(records_in(tmp_path / "else"))[0], "path", tmp_path).caption
+
+
 def test_numbers_read_well() -> None:
     assert [power_of_ten(value) for value in (1e-2, 1.0, 1e-13, 1e4)] == ["0.01", "1", "10⁻¹³", "10⁴"]
     assert run_label("row", 8) == "row, dt\u00a0=\u00a01/8"
+    assert run_label("event-driven", 0) == "event-driven"
     assert run_label("row", 1) == "row, dt\u00a0=\u00a01"
 
 

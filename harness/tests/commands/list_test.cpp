@@ -8,6 +8,7 @@
 
 #include "harness/tests/program.hpp"
 #include "harness/verify/determinism.hpp"
+#include "variants/event_driven.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {
@@ -24,7 +25,7 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-TEST(ListCommand, NamesEveryVariantOnALineThePublishedBestFirst) {
+TEST(ListCommand, NamesEveryVariantOnALineThePublishedBestFirstAndTheEventDrivenLast) {
     const auto result = run_carom({"list", "--names"});
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_EQ(result.error, "");
@@ -32,13 +33,14 @@ TEST(ListCommand, NamesEveryVariantOnALineThePublishedBestFirst) {
     for (const Variant& variant : variants()) {
         expected.emplace_back(variant.name);
     }
+    expected.emplace_back(event_driven().name);
     EXPECT_EQ(lines_of(result.output), expected);
     EXPECT_EQ(lines_of(result.output)[0], "published");
 }
 
 TEST(ListCommand, GivesEveryPolicyAsJson) {
     const auto list = nlohmann::json::parse(run_carom({"list", "--json"}).output);
-    ASSERT_EQ(list.size(), variants().size());
+    ASSERT_EQ(list.size(), variants().size() + 1);
     EXPECT_EQ(list[0], nlohmann::json::parse(R"({"name": "published", "policies": {
         "neighbourhood": "four", "order": "checkered", "self_contained": "on", "direction": "reverse",
         "find_schedule": "guided_chunk", "resolve_schedule": "guided_chunk", "storage": "numbered",
@@ -49,6 +51,18 @@ TEST(ListCommand, GivesEveryPolicyAsJson) {
         EXPECT_EQ(list[i]["name"], variants()[i].name);
         EXPECT_EQ(list[i]["policies"]["resolve_schedule"].is_null(),
                   is_sequential(variants()[i].policies.order));
+    }
+    for (const auto& [policy, choice] : list.back()["policies"].items()) {
+        const bool means_something = policy == "impact" || policy == "precision";
+        EXPECT_EQ(choice.is_null(), !means_something) << policy;
+    }
+}
+
+TEST(ListCommand, ShowsTheEventDrivenSimulationApartWithWhatItCannot) {
+    const std::string output = run_carom({"list"}).output;
+    const std::string apart = output.substr(output.find("Without steps"));
+    for (const char* part : {"event_driven\n", "one thread", "no --substeps", "overlap at the start"}) {
+        EXPECT_PRED_FORMAT2(testing::IsSubstring, part, apart);
     }
 }
 

@@ -273,5 +273,31 @@ TEST_F(RunCommand, ReadsTheSceneFromStandardInput) {
     EXPECT_TRUE(refused(run_carom({"run", "-"}), 1, {"standard input:1: found the end of the file"}));
 }
 
+TEST_F(RunCommand, TakesTheEventDrivenSimulationForAVariant) {
+    const std::string apart = directory.write("apart.in", scene_text(tests::cradle()));
+    const auto json = summary({apart, "--threads", "2", "--variant", "event_driven", "--errors"});
+    EXPECT_EQ(json["variant"], "event_driven");
+    EXPECT_EQ(json["threads"], 1);
+    EXPECT_TRUE(json["policies"]["order"].is_null());
+    EXPECT_GT(json["pair_resolves_per_step"], 0);
+    EXPECT_LT(json["errors"]["trajectory"][0]["rms_distance"], 1e-13);
+    const auto text = run_carom({"run", apart, "--variant", "event_driven"});
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "60 units of time, variant event_driven, 1 thread",
+                        text.output);
+    const auto checked = run_carom({"check", apart, "--variant", "event_driven", "--json"});
+    EXPECT_EQ(nlohmann::json::parse(checked.output)["state_hash"], json["state_hash"]);
+}
+
+TEST_F(RunCommand, RefusesWhatTheEventDrivenSimulationCannot) {
+    const std::string apart = directory.write("apart.in", scene_text(tests::cradle()));
+    const std::vector<std::string> exact{"--variant", "event_driven"};
+    EXPECT_TRUE(refused(run_carom({"run", scene, exact[0], exact[1]}), 1,
+                        {"--variant event_driven", "overlap", "expected discs apart"}));
+    EXPECT_TRUE(refused(run_carom({"bench", scene, exact[0], exact[1]}), 1, {"expected discs apart"}));
+    EXPECT_TRUE(refused(run_carom({"run", apart, exact[0], exact[1], "--substeps", "2"}), 1,
+                        {"--substeps 2", "it takes no steps"}));
+    EXPECT_TRUE(refused(run_carom({"profile", apart, exact[0], exact[1]}), 1, {"a variant without phases"}));
+}
+
 } // namespace
 } // namespace carom

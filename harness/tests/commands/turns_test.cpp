@@ -77,6 +77,16 @@ TEST_F(TurnsCommand, LeavesARecordForEachThatIsAsOfAProcessOfItsOwn) {
     }
 }
 
+TEST_F(TurnsCommand, LetsTheEventDrivenSimulationTakePart) {
+    std::ofstream(scene) << scene_text(tests::cradle());
+    ASSERT_EQ(turns({words("published", "one"), words("event_driven", "two")}, {"--turn", "1e-6"}).exit_code,
+              0);
+    const auto alone = run_carom({"run", scene, "--variant", "event_driven", "--json"});
+    EXPECT_EQ(record("two")["state_hash"], Json::parse(alone.output)["state_hash"]);
+    EXPECT_EQ(record("two")["turns"]["seconds"].size(), 60);
+    EXPECT_EQ(record("two")["check"]["verdict"], "passed");
+}
+
 TEST_F(TurnsCommand, RefusesWhatIsNoListOfContenders) {
     const std::vector<std::string> expected{"contenders.json", "expected a JSON list"};
     for (const Json& wrong : {Json{}, Json::array(), Json{1}, Json{"scene.in"}, Json{Json{1, 2}}}) {

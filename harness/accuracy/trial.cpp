@@ -1,0 +1,215 @@
+#include "harness/accuracy/trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "harness/accuracy/companion.hpp"
+#include "harness/scenes/piece.hpp"
+#include "harness/support/errors.hpp"
+#include "harness/support/process_clock.hpp"
+#include "harness/verify/rounding.hpp"
+#include "kernels/exact/event_driven.hpp"
+#include "variants/event_driven.hpp"
+#include "variants/fastest.hpp"
+#include "variants/table.hpp"
+
+namespace carom {
+namespace {
+
+/// What the event-driven simulation may take of a trial; the others, which are given up as soon as they cost
+/// more than the cheapest that will do, take some ten times as much together.
+constexpr double seconds_of_one = 0.04;
+constexpr double seconds_of_all = 0.8;
+constexpr int most_substeps = 64;
+
+/// Of the error of paths in a piece, which is not the scene.
+constexpr double margin_of_piece = 0.25;
+
+/// What a method did in a trial.
+struct Ran {
+    std::vector<Disc> at_one;          ///< the state after one unit of time
+    std::int64_t pairs = 0;            ///< resolved
+    double setting_up = 0;             ///< seconds
+    std::vector<double> units_seconds; ///< of each unit of time
+
+    /// Of the units of time after the first, which is also the first to touch its memory.
+    double unit_seconds() const {
+        std::vector<double> later(units_seconds.begin() + (units_seconds.size() > 1 ? 1 : 0),
+                                  units_seconds.end());
+        const auto middle = later.begin() + static_cast<std::ptrdiff_t>(later.size() / 2);
+        std::ranges::nth_element(later, middle);
+        return *middle;
+    }
+};
+
+/// Every variant that may be the cheapest: the fastest with either impact, in either precision that holds the
+/// scene. First those that reach a bound with fewer steps, since they say how far the others need to go.
+std::vector<const Variant*> candidates(const Scene& scene) {
+    std::vector<const Variant*> found;
+    for (const Policies& base : {at_contact(ladder.back()), fastest_variant(scene).policies}) {
+        for (const Precision precision : {Precision::double_, Precision::float_}) {
+            Policies wanted = base;
+            wanted.precision = precision;
+            const auto variant = std::ranges::find(variants(), wanted, &Variant::policies);
+            if (variant != variants().end() && holds(wanted, scene)) {
+                found.push_back(&*variant);
+            }
+        }
+    }
+    return found;
+}
+
+class Trying {
+  public:
+    Trying(const Scene& scene, const Tuning& tuning, Measure measure, double bound)
+        : piece_(fullest_piece(scene, largest_trial)), tuning_(tuning), measure_(measure), bound_(bound),
+          units_of_run_(scene.steps), is_whole_(scene.discs.size() == piece_.discs.size()),
+          times_larger_(static_cast<double>(scene.discs.size()) /
+                        static_cast<double>(std::max<std::size_t>(piece_.discs.size(), 1))),
+          reference_(piece_) {}
+
+    Trial run() {
+        try_event_driven();
+        for (const Variant* variant : candidates(piece_)) {
+            try_variant(*variant);
+        }
+        return {.tried = std::move(tried_),
+                .discs = piece_.discs.size(),
+                .whole_scene = is_whole_,
+                .units_of_time = units_,
+                .seconds = process_seconds() - start_};
+    }
+
+  private:
+    /// The first, since it says how long a trial may be, and what nobody needs to exceed.
+    void try_event_driven() {
+        const double before = process_seconds();
+        const auto simulation = event_driven().simulate(piece_, {});
+        Ran ran;
+        ran.setting_up = process_seconds() - before;
+        for (int unit = 1; unit == 1 || unit <= units_; ++unit) {
+            require_end(advance(*simulation, 1, ran));
+            units_ = unit == 1 ? units_for(ran.units_seconds.front()) : units_;
+        }
+        follow_exactly();
+        note({.variant = &event_driven()}, ran, 0);
+    }
+
+    int units_for(double seconds) const {
+        return static_cast<int>(
+            std::clamp(seconds_of_one / std::max(seconds, 1e-9), 1.0, static_cast<double>(units_of_run_)));
+    }
+
+    void follow_exactly() {
+        for (int unit = 1; unit <= (measure_ == Measure::path ? 1 : units_); ++unit) {
+            require_end(reference_.advance(static_cast<long double>(unit)));
+        }
+    }
+
+    static void require_end(bool settled) {
+        if (!settled) {
+            throw CheckError("the collisions of one instant do not come to an end: a disc is wedged");
+        }
+    }
+
+    void try_variant(const Variant& variant) {
+        for (int substeps = 1; substeps <= most_substeps; substeps *= 2) {
+            if (process_seconds() - start_ > seconds_of_all) {
+                return;
+            }
+            const auto ran = run_variant(variant, substeps);
+            if (!ran) {
+                return;
+            }
+            const double margin = measure_ == Measure::path
+                                      ? (is_whole_ ? 0 : margin_of_piece * error_of(*ran))
+                                      : margin_of_counts();
+            note({.variant = &variant, .substeps = substeps}, *ran, margin);
+            const auto cheapest = cheapest_below(tried_, bound_, units_of_run_);
+            if (cheapest && cheapest->cost(units_of_run_) <= tried_.back().cost(units_of_run_)) {
+                return;
+            }
+        }
+    }
+
+    /// Nothing if a resolve did not end.
+    std::optional<Ran> run_variant(const Variant& variant, int substeps) const {
+        Tuning tuning = tuning_;
+        tuning.substeps = substeps;
+        const double before = process_seconds();
+        const auto simulation = variant.simulate(piece_, tuning);
+        Ran ran;
+        ran.setting_up = process_seconds() - before;
+        for (int unit = 1; unit <= units_; ++unit) {
+            if (!advance(*simulation, substeps, ran)) {
+                return std::nullopt;
+            }
+            if (measure_ == Measure::path && error_of(ran) > bound_) {
+                break;
+            }
+        }
+        return ran;
+    }
+
+    static bool advance(Simulation& simulation, int substeps, Ran& ran) {
+        const double before = process_seconds();
+        bool settled = true;
+        for (int substep = 0; substep < substeps && settled; ++substep) {
+            const Tally tally = simulation.step();
+            ran.pairs += tally.pair_resolves;
+            settled = tally.settled;
+        }
+        ran.units_seconds.push_back(process_seconds() - before);
+        if (ran.units_seconds.size() == 1) {
+            ran.at_one = simulation.discs();
+        }
+        return settled;
+    }
+
+    double error_of(const Ran& ran) const {
+        if (measure_ == Measure::path) {
+            return rms_distance(ran.at_one, reference_.discs(), piece_.radius);
+        }
+        const auto exact = static_cast<double>(reference_.pair_collisions());
+        const auto counted = static_cast<double>(ran.pairs);
+        if (exact == 0) {
+            return counted == 0 ? 0 : std::numeric_limits<double>::infinity();
+        }
+        return std::abs(counted / exact - 1);
+    }
+
+    double margin_of_counts() const {
+        const double share = units_ / (units_of_run_ * times_larger_);
+        return margin_of_rate(static_cast<double>(reference_.pair_collisions()), share, is_whole_);
+    }
+
+    void note(const Method& method, const Ran& ran, double margin) {
+        tried_.push_back({.method = method,
+                          .error = error_of(ran),
+                          .margin = margin,
+                          .setting_up = times_larger_ * ran.setting_up,
+                          .unit_seconds = times_larger_ * ran.unit_seconds()});
+    }
+
+    double start_ = process_seconds();
+    Scene piece_;
+    Tuning tuning_;
+    Measure measure_;
+    double bound_;
+    int units_of_run_;
+    bool is_whole_;
+    double times_larger_;
+    EventDriven<long double> reference_;
+    int units_ = 0;
+    std::vector<Tried> tried_;
+};
+
+} // namespace
+
+Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound) {
+    return Trying(scene, tuning, measure, bound).run();
+}
+
+} // namespace carom

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "harness/accuracy/choice.hpp"
+#include "kernels/policies.hpp"
+#include "kernels/scene.hpp"
+
+namespace carom {
+
+/// What came of trying methods on the beginning of a scene, or on a piece of it.
+struct Trial {
+    std::vector<Tried> tried; ///< never empty; the event-driven simulation is the first
+    std::size_t discs = 0;    ///< of the scene or its piece
+    bool whole_scene = false; ///< not a piece of it
+    int units_of_time = 0;    ///< that each method ran; fewer where its error was too large already
+    double seconds = 0;       ///< that all of it took
+};
+
+/// Tries methods on the scene until the cheapest of them with an error below `bound` is known: the
+/// event-driven simulation; the fastest variant with collisions at the step's end and at contact, in double
+/// and in float, each with 1, 2, 4 ... up to 64 substeps until its error is below the bound or it costs more
+/// than one that is. Each runs on the threads and with the tolerance of `tuning`, and is timed there; how
+/// many threads these are decides nothing.
+///
+/// Errors are against the event-driven simulation in long double. A scene of more than `largest_trial` discs
+/// is tried on the fullest of its pieces of that size, and the error of paths there may be a quarter less
+/// than in the run. All of it takes about a second at most. The discs must be apart at the start, and the
+/// scene have a unit of time. Throws CheckError if the collisions of an instant do not come to an end.
+Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound);
+
+/// Discs of the largest scene that is tried as a whole.
+inline constexpr std::size_t largest_trial = 20'000;
+
+} // namespace carom

@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "harness/accuracy/choice.hpp"
+#include "harness/accuracy/error_measures.hpp"
+#include "harness/accuracy/trial.hpp"
+#include "harness/scenes/generate.hpp"
+#include "harness/scenes/piece.hpp"
+#include "harness/verify/event_driven.hpp"
+#include "variants/event_driven.hpp"
+
+namespace carom {
+namespace {
+
+const Variant& published = *find_variant("published");
+
+Tried tried(int substeps, double error, double unit_seconds, double margin = 0, double setting_up = 0) {
+    return {.method = {.variant = &published, .substeps = substeps},
+            .error = error,
+            .margin = margin,
+            .setting_up = setting_up,
+            .unit_seconds = unit_seconds};
+}
+
+TEST(CheapestBelow, IsTheCheapestOfThoseThatReachTheBound) {
+    const std::vector<Tried> all{tried(1, 0.1, 1), tried(2, 0.05, 2), tried(4, 0.02, 4), tried(8, 1e-14, 3)};
+    EXPECT_EQ(cheapest_below(all, 0.2, 10)->method.substeps, 1);
+    EXPECT_EQ(cheapest_below(all, 0.05, 10)->method.substeps, 2) << "the bound itself is reached";
+    EXPECT_EQ(cheapest_below(all, 0.02, 10)->method.substeps, 8) << "the more exact one is cheaper";
+    EXPECT_EQ(cheapest_below(all, 1e-15, 10), std::nullopt);
+    EXPECT_EQ(cheapest_below({}, 1, 10), std::nullopt);
+}
+
+TEST(CheapestBelow, CountsWhatTheTrialLeavesOpenAgainstAMethod) {
+    const std::vector<Tried> all{tried(1, 0.009, 1, 0.002), tried(2, 0.005, 2, 0.002)};
+    EXPECT_EQ(cheapest_below(all, 0.01, 10)->method.substeps, 2);
+    EXPECT_EQ(cheapest_below(all, 0.012, 10)->method.substeps, 1);
+}
+
+TEST(CheapestBelow, PaysForSettingUpOnce) {
+    const std::vector<Tried> all{tried(1, 0.01, 1, 0, 20), tried(2, 0.01, 2)};
+    EXPECT_EQ(cheapest_below(all, 0.1, 10)->method.substeps, 2);
+    EXPECT_EQ(cheapest_below(all, 0.1, 30)->method.substeps, 1);
+}
+
+TEST(CheapestBelow, NeverTakesAnErrorThatIsNotKnown) {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(cheapest_below(std::vector{tried(1, unknown, 1)}, 1, 10), std::nullopt);
+}
+
+TEST(MostExact, HasTheLeastOfTheLargestErrors) {
+    const std::vector<Tried> all{tried(1, 0.01, 1, 0.5), tried(2, 0.1, 2, 0.1), tried(4, 0.3, 1)};
+    EXPECT_EQ(most_exact(all).method.substeps, 2);
+}
+
+TEST(MarginOfRate, IsNoneOnceTheWholeRunHasBeenTried) {
+    EXPECT_EQ(margin_of_rate(1000, 1, true), 0);
+    EXPECT_GT(margin_of_rate(1000, 1, false), 0);
+    EXPECT_EQ(margin_of_rate(0, 0.5, true), std::numeric_limits<double>::infinity());
+}
+
+TEST(MarginOfRate, FallsWithTheRootOfTheCount) {
+    EXPECT_DOUBLE_EQ(margin_of_rate(400, 0.5, true), 2 * margin_of_rate(1600, 0.5, true));
+    EXPECT_DOUBLE_EQ(margin_of_rate(800, 0.5, true), 2 * 0.5 * std::sqrt(4.0 / 800));
+}
+
+/// Discs that are apart, none of which any number in the program was fitted to.
+Scene unseen(std::uint64_t seed) {
+    constexpr std::array<double, 4> area_fractions{0.05, 0.2, 0.45, 0.7};
+    constexpr std::array<int, 3> counts{200, 500, 1100};
+    const double area_fraction = area_fractions[seed % area_fractions.size()];
+    const int count = counts[seed % counts.size()];
+    return generate({.count = count,
+                     .side = std::sqrt(count * std::numbers::pi / area_fraction),
+                     .radius = 1,
+                     .steps = 8,
+                     .least_velocity = 0.1,
+                     .largest_velocity = 0.1 + 0.075 * static_cast<double>(seed % 12),
+                     .seed = 1900 + seed,
+                     .placement = area_fraction > 0.4 ? Placement::lattice : Placement::random,
+                     .isotropic = true});
+}
+
+/// The error of a run of the method that is chosen.
+double delivered(const Scene& scene, const Method& method, Measure measure) {
+    const ErrorMeasures errors = measure_errors(scene, *method.variant, {.substeps = method.substeps});
+    return measure == Measure::path ? errors.reference->trajectory[0].rms_distance
+                                    : std::abs(*errors.collision_rate / errors.reference->collision_rate - 1);
+}
+
+class Promise : public testing::TestWithParam<Measure> {};
+
+TEST_P(Promise, IsKeptOnScenesNotSeenBefore) {
+    int kept = 0;
+    int made = 0;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        const Scene scene = unseen(seed);
+        for (const double bound : {0.1, 0.01, 1e-9}) {
+            const Trial trial = try_methods(scene, {}, GetParam(), bound);
+            const auto choice = cheapest_below(trial.tried, bound, scene.steps);
+            ASSERT_TRUE(choice) << seed << ": the event-driven simulation reaches " << bound;
+            ++made;
+            kept += delivered(scene, choice->method, GetParam()) <= bound ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(made, 36);
+    EXPECT_GE(kept, GetParam() == Measure::path ? made : made - 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(TryMethods, Promise, testing::Values(Measure::path, Measure::collision_rate));
+
+TEST(TryMethods, TriesNothingThatCostsMoreThanWhatReachesTheBound) {
+    const Scene scene = unseen(3);
+    const Trial trial = try_methods(scene, {}, Measure::path, 0.5);
+    EXPECT_EQ(trial.tried.front().method.variant, &event_driven());
+    for (const Tried& one : trial.tried) {
+        EXPECT_EQ(one.method.substeps, 1) << one.method.variant->name << ": the first step is good enough";
+    }
+    EXPECT_TRUE(trial.whole_scene);
+    EXPECT_EQ(trial.discs, scene.discs.size());
+}
+
+TEST(FullestPiece, IsTheSceneItselfIfThatIsSmallEnough) {
+    const Scene scene = unseen(1);
+    EXPECT_EQ(fullest_piece(scene, scene.discs.size()).discs, scene.discs);
+}
+
+TEST(FullestPiece, HasWallsDiscsApartAndNearlyTheDensityOfTheWhole) {
+    const Scene scene = generate({.count = 30'000,
+                                  .side = 434,
+                                  .radius = 1,
+                                  .steps = 3,
+                                  .least_velocity = 0.1,
+                                  .largest_velocity = 1,
+                                  .seed = 77,
+                                  .placement = Placement::random,
+                                  .isotropic = true});
+    const Scene piece = fullest_piece(scene, 4000);
+    EXPECT_LE(piece.discs.size(), 4000);
+    EXPECT_GE(piece.discs.size(), 3000);
+    EXPECT_EQ(overlap_at_start(piece), std::nullopt);
+    EXPECT_NEAR(area_fraction(piece), area_fraction(scene), 0.05 * area_fraction(scene));
+}
+
+TEST(FullestPiece, IsWhereTheDiscsAre) {
+    Scene scene{.side = 4000, .radius = 1, .steps = 1, .discs = {{10, 10, 0, 0}}};
+    for (int i = 0; i < 900; ++i) {
+        scene.discs.push_back({3000.0 + 4 * (i % 30), 3000.0 + 4 * (i / 30), 1, 0});
+    }
+    const Scene piece = fullest_piece(scene, 400);
+    EXPECT_LE(piece.discs.size(), 400);
+    EXPECT_GE(piece.discs.size(), 50);
+    EXPECT_TRUE(std::ranges::all_of(piece.discs, [](const Disc& disc) { return disc.vx == 1; }));
+}
+
+} // namespace
+} // namespace carom
