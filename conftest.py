@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def pytest_configure() -> None:
-    """Give each process of pytest-xdist a folder of its own for what a host has once: the lock of measurements."""
+    """Give each process of pytest-xdist a folder of its own for what a host has once, the lock."""
     worker = os.environ.get("PYTEST_XDIST_WORKER")
     if worker is not None:
         folder = Path(tempfile.gettempdir()) / f"carom-tests-{os.getuid()}-{worker}"

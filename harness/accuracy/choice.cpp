@@ -3,8 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace carom {
+namespace {
+
+double sum_from(const std::vector<std::int64_t>& counts, int first) {
+    return static_cast<double>(std::accumulate(counts.begin() + first, counts.end(), std::int64_t{0}));
+}
+
+} // namespace
 
 std::optional<Tried> cheapest_below(std::span<const Tried> tried, double bound, int units) {
     std::optional<Tried> cheapest;
@@ -21,16 +29,26 @@ const Tried& most_exact(std::span<const Tried> tried) {
     return *std::ranges::min_element(tried, {}, &Tried::largest_error);
 }
 
-double margin_of_rate(double counted, double share, bool beginning) {
-    if (beginning && share >= 1) {
-        return 0;
+Expected expected_rate_error(const Counts& counts, int units, double times_larger) {
+    const auto tried = static_cast<int>(counts.exact.size());
+    const int half = tried / 2;
+    const double exact = sum_from(counts.exact, 0);
+    const double other = sum_from(counts.other, 0);
+    const double exact_late = sum_from(counts.exact, half);
+    const double other_late = sum_from(counts.other, half);
+    const double rest = static_cast<double>(units - tried) / (tried - half);
+    const double exact_in_all = exact + rest * exact_late;
+    if (exact_in_all == 0) {
+        return {.error = other == 0 ? 0 : std::numeric_limits<double>::infinity()};
     }
-    if (counted <= 0) {
-        return std::numeric_limits<double>::infinity();
+    const double error = std::abs((other + rest * other_late) / exact_in_all - 1);
+    const bool is_piece = times_larger > 1;
+    if (tried == units && !is_piece) {
+        return {.error = error};
     }
-    const double in_rest = beginning ? counted * (1 - share) / share : counted / share;
-    const double open = beginning ? 1 - share : 1;
-    return 2 * open * std::sqrt(2 / counted + 2 / in_rest);
+    const double open = is_piece ? exact_in_all * times_larger : rest * exact_late;
+    const double share = is_piece ? 1 : open / exact_in_all;
+    return {.error = error, .margin = 2 * share * std::sqrt(2 / exact_late + 2 / open)};
 }
 
 } // namespace carom

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "variants/registry.hpp"
 
@@ -40,12 +42,25 @@ std::optional<Tried> cheapest_below(std::span<const Tried> tried, double bound, 
 /// The one with the least of the largest errors. There must be one.
 const Tried& most_exact(std::span<const Tried> tried);
 
-/// Twice the standard deviation of the difference between the relative errors of a rate of collisions in a
-/// run and in a trial of it, in which the exact simulation made `counted` collisions: the trial is the first
-/// `share` of the run (0 < share <= 1), or, if not `beginning`, something else as large as that.
+/// Collisions in each unit of time of a trial: of the exact simulation, and of another one on the same scene.
+struct Counts {
+    std::vector<std::int64_t> exact;
+    std::vector<std::int64_t> other;
+};
+
+/// A relative error that is expected, and by how much it may be larger.
+struct Expected {
+    double error = 0;
+    double margin = 0;
+};
+
+/// The relative error of the collision rate over `units` of time, of which `counts` are the first, or, where
+/// these are of a piece, over a scene `times_larger`. A step begins better than it goes on, since discs that
+/// are apart at the start get into each other only then: what is still to come is taken to be as the second
+/// half of what was counted.
 ///
-/// Counts of collisions are taken for independent, of variance equal to their mean: of the exact and of the
-/// other simulation, in the trial and in the rest of the run. A trial of the whole run leaves nothing open.
-double margin_of_rate(double counted, double share, bool beginning);
+/// The margin is twice the standard deviation of what is still to come beside that half. Counts are taken for
+/// independent, of variance equal to their mean. If the trial was the whole run nothing is open.
+Expected expected_rate_error(const Counts& counts, int units, double times_larger = 1);
 
 } // namespace carom

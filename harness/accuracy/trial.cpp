@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <optional>
 
 #include "harness/accuracy/companion.hpp"
@@ -24,13 +24,19 @@ constexpr double seconds_of_one = 0.04;
 constexpr double seconds_of_all = 0.8;
 constexpr int most_substeps = 64;
 
+/// Of a trial of a rate, which needs some units of time to become what it stays.
+constexpr int fewest_units_of_rate = 8;
+
+/// Of timing those that will do: a trial is short, and whatever else runs can only lengthen it.
+constexpr int further_rounds = 2;
+
 /// Of the error of paths in a piece, which is not the scene.
 constexpr double margin_of_piece = 0.25;
 
 /// What a method did in a trial.
 struct Ran {
     std::vector<Disc> at_one;          ///< the state after one unit of time
-    std::int64_t pairs = 0;            ///< resolved
+    std::vector<std::int64_t> pairs;   ///< resolved in each unit of time
     double setting_up = 0;             ///< seconds
     std::vector<double> units_seconds; ///< of each unit of time
 
@@ -64,16 +70,19 @@ std::vector<const Variant*> candidates(const Scene& scene) {
 class Trying {
   public:
     Trying(const Scene& scene, const Tuning& tuning, Measure measure, double bound)
-        : piece_(fullest_piece(scene, largest_trial)), tuning_(tuning), measure_(measure), bound_(bound),
-          units_of_run_(scene.steps), is_whole_(scene.discs.size() == piece_.discs.size()),
+        : piece_(fullest_piece(scene, largest_trial(measure))), tuning_(tuning), measure_(measure),
+          bound_(bound), units_of_run_(scene.steps), is_whole_(scene.discs.size() == piece_.discs.size()),
           times_larger_(static_cast<double>(scene.discs.size()) /
                         static_cast<double>(std::max<std::size_t>(piece_.discs.size(), 1))),
-          reference_(piece_) {}
+          extended_(piece_) {}
 
     Trial run() {
         try_event_driven();
         for (const Variant* variant : candidates(piece_)) {
             try_variant(*variant);
+        }
+        for (int round = 0; round < further_rounds; ++round) {
+            time_again();
         }
         return {.tried = std::move(tried_),
                 .discs = piece_.discs.size(),
@@ -93,19 +102,25 @@ class Trying {
             require_end(advance(*simulation, 1, ran));
             units_ = unit == 1 ? units_for(ran.units_seconds.front()) : units_;
         }
-        follow_exactly();
-        note({.variant = &event_driven()}, ran, 0);
+        exact_at_one_ = ran.at_one;
+        exact_pairs_ = ran.pairs;
+        note({.variant = &event_driven()}, ran, {.error = own_error(ran)});
     }
 
     int units_for(double seconds) const {
-        return static_cast<int>(
-            std::clamp(seconds_of_one / std::max(seconds, 1e-9), 1.0, static_cast<double>(units_of_run_)));
+        const double fewest = measure_ == Measure::path ? 1 : fewest_units_of_rate;
+        const double affordable = std::floor(seconds_of_one / std::max(seconds, 1e-9));
+        return static_cast<int>(std::min(std::max(affordable, fewest), static_cast<double>(units_of_run_)));
     }
 
-    void follow_exactly() {
-        for (int unit = 1; unit <= (measure_ == Measure::path ? 1 : units_); ++unit) {
-            require_end(reference_.advance(static_cast<long double>(unit)));
+    /// Of the event-driven simulation: what double rounds.
+    double own_error(const Ran& ran) {
+        require_end(extended_.advance(measure_ == Measure::path ? 1 : units_));
+        if (measure_ == Measure::path) {
+            return rms_distance(ran.at_one, extended_.discs(), piece_.radius);
         }
+        const std::int64_t counted = std::accumulate(ran.pairs.begin(), ran.pairs.end(), std::int64_t{0});
+        return expected_rate_error({.exact = {extended_.pair_collisions()}, .other = {counted}}, 1).error;
     }
 
     static void require_end(bool settled) {
@@ -123,13 +138,22 @@ class Trying {
             if (!ran) {
                 return;
             }
-            const double margin = measure_ == Measure::path
-                                      ? (is_whole_ ? 0 : margin_of_piece * error_of(*ran))
-                                      : margin_of_counts();
-            note({.variant = &variant, .substeps = substeps}, *ran, margin);
+            note({.variant = &variant, .substeps = substeps}, *ran, error_of(*ran));
             const auto cheapest = cheapest_below(tried_, bound_, units_of_run_);
             if (cheapest && cheapest->cost(units_of_run_) <= tried_.back().cost(units_of_run_)) {
                 return;
+            }
+        }
+    }
+
+    void time_again() {
+        for (Tried& one : tried_) {
+            if (one.largest_error() > bound_ || process_seconds() - start_ > seconds_of_all) {
+                continue;
+            }
+            if (const auto ran = run_variant(*one.method.variant, one.method.substeps)) {
+                one.setting_up = std::min(one.setting_up, times_larger_ * ran->setting_up);
+                one.unit_seconds = std::min(one.unit_seconds, times_larger_ * ran->unit_seconds());
             }
         }
     }
@@ -146,7 +170,7 @@ class Trying {
             if (!advance(*simulation, substeps, ran)) {
                 return std::nullopt;
             }
-            if (measure_ == Measure::path && error_of(ran) > bound_) {
+            if (measure_ == Measure::path && error_of(ran).error > bound_) {
                 break;
             }
         }
@@ -156,9 +180,10 @@ class Trying {
     static bool advance(Simulation& simulation, int substeps, Ran& ran) {
         const double before = process_seconds();
         bool settled = true;
+        ran.pairs.push_back(0);
         for (int substep = 0; substep < substeps && settled; ++substep) {
             const Tally tally = simulation.step();
-            ran.pairs += tally.pair_resolves;
+            ran.pairs.back() += tally.pair_resolves;
             settled = tally.settled;
         }
         ran.units_seconds.push_back(process_seconds() - before);
@@ -168,27 +193,19 @@ class Trying {
         return settled;
     }
 
-    double error_of(const Ran& ran) const {
-        if (measure_ == Measure::path) {
-            return rms_distance(ran.at_one, reference_.discs(), piece_.radius);
+    Expected error_of(const Ran& ran) const {
+        if (measure_ == Measure::collision_rate) {
+            return expected_rate_error({.exact = exact_pairs_, .other = ran.pairs}, units_of_run_,
+                                       times_larger_);
         }
-        const auto exact = static_cast<double>(reference_.pair_collisions());
-        const auto counted = static_cast<double>(ran.pairs);
-        if (exact == 0) {
-            return counted == 0 ? 0 : std::numeric_limits<double>::infinity();
-        }
-        return std::abs(counted / exact - 1);
+        const double error = rms_distance(ran.at_one, exact_at_one_, piece_.radius);
+        return {.error = error, .margin = is_whole_ ? 0 : margin_of_piece * error};
     }
 
-    double margin_of_counts() const {
-        const double share = units_ / (units_of_run_ * times_larger_);
-        return margin_of_rate(static_cast<double>(reference_.pair_collisions()), share, is_whole_);
-    }
-
-    void note(const Method& method, const Ran& ran, double margin) {
+    void note(const Method& method, const Ran& ran, const Expected& expected) {
         tried_.push_back({.method = method,
-                          .error = error_of(ran),
-                          .margin = margin,
+                          .error = expected.error,
+                          .margin = expected.margin,
                           .setting_up = times_larger_ * ran.setting_up,
                           .unit_seconds = times_larger_ * ran.unit_seconds()});
     }
@@ -201,8 +218,10 @@ class Trying {
     int units_of_run_;
     bool is_whole_;
     double times_larger_;
-    EventDriven<long double> reference_;
+    EventDriven<long double> extended_;
     int units_ = 0;
+    std::vector<Disc> exact_at_one_;
+    std::vector<std::int64_t> exact_pairs_;
     std::vector<Tried> tried_;
 };
 

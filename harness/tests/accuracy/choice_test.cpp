@@ -60,15 +60,32 @@ TEST(MostExact, HasTheLeastOfTheLargestErrors) {
     EXPECT_EQ(most_exact(all).method.substeps, 2);
 }
 
-TEST(MarginOfRate, IsNoneOnceTheWholeRunHasBeenTried) {
-    EXPECT_EQ(margin_of_rate(1000, 1, true), 0);
-    EXPECT_GT(margin_of_rate(1000, 1, false), 0);
-    EXPECT_EQ(margin_of_rate(0, 0.5, true), std::numeric_limits<double>::infinity());
+TEST(ExpectedRateError, IsKnownOnceTheWholeRunHasBeenTried) {
+    const Expected known = expected_rate_error({.exact = {100, 100, 200}, .other = {100, 90, 190}}, 3);
+    EXPECT_NEAR(known.error, 0.05, 1e-12);
+    EXPECT_EQ(known.margin, 0);
 }
 
-TEST(MarginOfRate, FallsWithTheRootOfTheCount) {
-    EXPECT_DOUBLE_EQ(margin_of_rate(400, 0.5, true), 2 * margin_of_rate(1600, 0.5, true));
-    EXPECT_DOUBLE_EQ(margin_of_rate(800, 0.5, true), 2 * 0.5 * std::sqrt(4.0 / 800));
+TEST(ExpectedRateError, GoesOnAsTheSecondHalfOfTheTrial) {
+    const Expected later = expected_rate_error({.exact = {100, 100}, .other = {100, 80}}, 10);
+    EXPECT_DOUBLE_EQ(later.error, 1 - (100 + 9 * 80) / 1000.0);
+    EXPECT_DOUBLE_EQ(later.margin, 2 * 0.8 * std::sqrt(2.0 / 100 + 2.0 / 800));
+    const Expected faster = expected_rate_error({.exact = {100, 100}, .other = {100, 120}}, 10);
+    EXPECT_NEAR(faster.error, later.error, 1e-12) << "without sign";
+}
+
+TEST(ExpectedRateError, LeavesMoreOpenWhereItIsOfAPiece) {
+    const Expected piece = expected_rate_error({.exact = {100, 100}, .other = {100, 80}}, 2, 10);
+    EXPECT_DOUBLE_EQ(piece.error, 0.1);
+    EXPECT_DOUBLE_EQ(piece.margin, 2 * std::sqrt(2.0 / 100 + 2.0 / 2000));
+}
+
+TEST(ExpectedRateError, IsWithoutBoundWhereNothingShouldCollide) {
+    EXPECT_EQ(expected_rate_error({.exact = {0, 0}, .other = {0, 0}}, 2).error, 0);
+    EXPECT_EQ(expected_rate_error({.exact = {0, 0}, .other = {0, 1}}, 2).error,
+              std::numeric_limits<double>::infinity());
+    const Expected late = expected_rate_error({.exact = {3, 0}, .other = {3, 0}}, 4);
+    EXPECT_FALSE(late.error + late.margin <= 1) << "nothing is known of what is still to come";
 }
 
 /// Discs that are apart, none of which any number in the program was fitted to.
