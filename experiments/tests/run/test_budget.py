@@ -94,7 +94,7 @@ class AnyName(tuple[str, ...]):
 def test_a_point_without_records_is_estimated_from_its_probe() -> None:
     point = points("threads")[1]
     costs = Costs({probe_key(point): Probe(step=0.003, process=0.02)}, {})
-    steps = 100
+    steps = generated(point).steps
     size = generated(point).particles / PROBE.particles
     assert costs.point(point) > steps * size * 0.003
     assert costs.point(point) == pytest.approx(steps * size**1.2 * 0.003, rel=0.1)
