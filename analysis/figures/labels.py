@@ -40,12 +40,13 @@ def label_ends(axes: Axes, labels: Sequence[tuple[str, float, str]], size: float
 
 
 def label_points(axes: Axes, labels: Sequence[tuple[str, float, float]], colour: str, size: float = 6) -> int:
-    """Write each label (text, x, y) into a corner of its point where it lies on no other; leave out one that
-    has no room. Return how many were written.
+    """Write each label (text, x, y) into a corner of its point where it lies on no other and beside no axes;
+    leave out one that has no room. Return how many were written.
 
     Call it last, after the figure's `draw_without_rendering`: it needs the final limits and layout.
     """
     figure = axes.figure.get_figure(root=True)
+    edges = axes.get_window_extent().extents * 72 / figure.dpi
     taken: list[tuple[float, float, float, float]] = []
     for text, x, y in labels:
         at = axes.transData.transform((x, y)) * 72 / figure.dpi
@@ -54,7 +55,8 @@ def label_points(axes: Axes, labels: Sequence[tuple[str, float, float]], colour:
             left = at[0] + (BESIDE if right > 0 else -BESIDE - width)
             bottom = at[1] + (BESIDE if up > 0 else -BESIDE - height)
             box = (left, bottom, left + width, bottom + height)
-            if not any(_overlap(box, other) for other in taken):
+            inside = edges[0] <= left and left + width <= edges[2]
+            if inside and not any(_overlap(box, other) for other in taken):
                 taken.append(box)
                 axes.annotate(
                     text, (x, y), xytext=(right * BESIDE, up * BESIDE), textcoords="offset points",

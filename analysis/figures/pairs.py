@@ -84,6 +84,8 @@ def _by_block(axes: Axes, curves: dict[str, pd.DataFrame], label: str) -> None:
         _runs(axes, ordered["position"], ordered["steps_seconds"], name, colour)
         labels.append((name, ordered["steps_seconds"].iloc[-1], colour))
     axes.margins(y=0.15)
+    # With one block alone the axis would be too short for a whole number.
+    axes.set_xlim(0.5, both["position"].max() + 0.5)
     label_ends(axes, labels)
 
 
