@@ -46,7 +46,8 @@ def label_points(axes: Axes, labels: Sequence[tuple[str, float, float]], colour:
     Call it last, after the figure's `draw_without_rendering`: it needs the final limits and layout.
     """
     figure = axes.figure.get_figure(root=True)
-    edges = axes.get_window_extent().extents * 72 / figure.dpi
+    window = axes.get_window_extent()
+    first, last = (end * 72 / figure.dpi for end in (window.x0, window.x1))
     taken: list[tuple[float, float, float, float]] = []
     for text, x, y in labels:
         at = axes.transData.transform((x, y)) * 72 / figure.dpi
@@ -55,7 +56,7 @@ def label_points(axes: Axes, labels: Sequence[tuple[str, float, float]], colour:
             left = at[0] + (BESIDE if right > 0 else -BESIDE - width)
             bottom = at[1] + (BESIDE if up > 0 else -BESIDE - height)
             box = (left, bottom, left + width, bottom + height)
-            inside = edges[0] <= left and left + width <= edges[2]
+            inside = first <= left and left + width <= last
             if inside and not any(_overlap(box, other) for other in taken):
                 taken.append(box)
                 axes.annotate(
