@@ -5,8 +5,9 @@ come from the one that measured them, since every run of a point ends in the sam
 simulation takes no steps: it is a point with 0 substeps.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import pandas as pd
@@ -147,17 +148,22 @@ def points(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
     which points of each scene are on its Pareto front.
     """
     measured = errors(study, experiment).dropna(subset=[measure.key])
-    timed = times(study, experiment)
-    if measured.empty or timed.empty:
+    summary = _summary(study, experiment)
+    if measured.empty or summary.empty:
         return pd.DataFrame()
     grouped = measured.groupby(POINT, sort=True)
     error = grouped[measure.key].agg(error="median", error_low="min", error_high="max")
     first = grouped[["variant", "precision", "area_fraction", "particles", "substeps"]].first()
-    table = summarise(timed, POINT, "seconds").merge(first.join(error).reset_index(), on=POINT)
+    table = summary.merge(first.join(error).reset_index(), on=POINT)
     parts = [
         part.assign(on_front=front(part["error"], part["median"])) for _, part in table.groupby("scene_name")
     ]
     return pd.concat(parts).sort_values(["area_fraction", "series", "x"], ignore_index=True)
+
+
+@cache
+def _summary(study: Study, experiment: str) -> pd.DataFrame:
+    return summarise(times(study, experiment), POINT, "seconds")
 
 
 def outside(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
@@ -195,14 +201,14 @@ class Choice:
     others: list[tuple[str, float]]
 
 
-def advice(table: pd.DataFrame, timed: pd.DataFrame) -> list[tuple[float, dict[str, Choice | None]]]:
-    """Return, for bounds in powers of ten from the loosest, the cheapest choice in each scene of `points`.
+def advice(table: pd.DataFrame, races: Mapping[str, "Race"]) -> list[tuple[float, dict[str, Choice | None]]]:
+    """Return, for bounds in powers of ten from the loosest, the cheapest choice in each scene of `points`, by
+    the scenes' `races`.
 
     Of bounds with the same choices only the tightest is kept: whoever needs less gets it for the same price.
     """
     found: list[tuple[float, dict[str, Choice | None]]] = []
     parts = {str(scene): part for scene, part in table.groupby("scene_name", sort=False)}
-    races = {scene: Race(timed[timed["scene_name"] == scene]) for scene in parts}
     for bound in _bounds(table["error"]):
         choices = {
             scene: cheapest(part[part["error"] <= bound], races[scene]) for scene, part in parts.items()
@@ -230,6 +236,15 @@ class Race:
                 judge_one(log_ratios(*sides, value="seconds")["log_ratio"])["verdict"] == "slower"
             )
         return self._slower[key]
+
+
+@cache
+def races(study: Study, experiment: str) -> dict[str, Race]:
+    """Return the race of each scene. The same for each measure of the errors, so that no two points of an
+    experiment are compared twice.
+    """
+    timed = times(study, experiment)
+    return {str(scene): Race(part) for scene, part in timed.groupby("scene_name", sort=False)}
 
 
 def cheapest(candidates: pd.DataFrame, race: Race) -> Choice | None:

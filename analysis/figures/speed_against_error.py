@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from analysis.derived import accuracy
-from analysis.derived.accuracy import SMALL, Choice, Measure
+from analysis.derived.accuracy import SMALL, Choice, Measure, Race
 from analysis.figures.captions import opening
 from analysis.figures.hover import Told, tell
 from analysis.figures.labels import label_points
@@ -75,8 +75,7 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     figure.draw_without_rendering()
     for axes, beside in zip(panels, labels.values(), strict=True):
         label_points(axes, beside, INK)
-    timed = accuracy.times(data.study, experiment)
-    tables = [_advice(table, timed, measure)]
+    tables = [_advice(table, accuracy.races(data.study, experiment), measure)]
     if measure.converges:
         tables.append(_orders(table))
     caption = _caption(table, data, experiment, subject, measure) + _outside_sentence(outside, table)
@@ -201,11 +200,11 @@ def power_of_ten(value: float) -> str:
     return f"10{str(power).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"
 
 
-def _advice(table: pd.DataFrame, timed: pd.DataFrame, measure: Measure) -> Table:
+def _advice(table: pd.DataFrame, races: Mapping[str, Race], measure: Measure) -> Table:
     scenes = dict(list(table.groupby("scene_name", sort=False)))
     rows = [
         [Cell(power_of_ten(bound)), *(_choice(choices[str(scene)]) for scene in scenes)]
-        for bound, choices in accuracy.advice(table, timed)
+        for bound, choices in accuracy.advice(table, races)
     ]
     columns = ["For an error below", *(_panel_name(str(scene), part) for scene, part in scenes.items())]
     title = (

@@ -72,7 +72,7 @@ def _pdf(page: str, folder: Path) -> bytes:
 
 def render(results: Path, asked: Sequence[str] = ()) -> str:
     """Return the report as one HTML page that needs nothing but itself."""
-    return _page(content(load(results), results, asked))
+    return _page(content(load(results), results, asked, formats=("svg",)))
 
 
 def _page(gathered: dict[str, Any], *, images: bool = False, goes_on: str = "") -> str:

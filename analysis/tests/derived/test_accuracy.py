@@ -117,7 +117,7 @@ def test_the_front_is_named_from_the_cheapest(measured: Study) -> None:
 
 def test_advice_is_the_cheapest_below_each_bound(measured: Study) -> None:
     table = points(measured, BY_KEY["path"])
-    advice = dict(accuracy.advice(table, accuracy.times(measured, NAME)))
+    advice = dict(accuracy.advice(table, accuracy.races(measured, NAME)))
     assert list(advice) == sorted(advice, reverse=True)
     choice = advice[0.01]["dense"]
     assert choice is not None
@@ -157,7 +157,7 @@ def test_equal_choices_are_both_named(tmp_path: Path) -> None:
 
 def test_bounds_with_the_same_choices_are_one(measured: Study) -> None:
     table = points(measured, BY_KEY["energy"])
-    advice = accuracy.advice(table, accuracy.times(measured, NAME))
+    advice = accuracy.advice(table, accuracy.races(measured, NAME))
     assert [bound for bound, _ in advice] == [1e-6, 1e-13]
 
 
@@ -257,7 +257,7 @@ def test_the_event_driven_simulation_is_on_the_front_without_steps(tmp_path: Pat
     assert exact["error"].tolist() == [3e-14] * 3
     dilute = table[table["scene_name"] == "dilute"]
     assert front_in_words(dilute) == "float with 1, 2 and 4 substeps, then event-driven"
-    advice = dict(accuracy.advice(table, accuracy.times(found, NAME)))
+    advice = dict(accuracy.advice(table, accuracy.races(found, NAME)))
     tight = advice[min(advice)]["dense"]
     assert tight is not None
     assert run_label(tight.series, tight.substeps) == "event-driven"
