@@ -1,5 +1,6 @@
 """What of the study is done, missing or failed, as a table for a terminal."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -86,6 +87,7 @@ def show_status(settings: Settings) -> int:
 def show_plan(settings: Settings) -> int:
     """Print what a run would do and about how long it would take; variants are probed, no point is run."""
     study = Study(settings)
+    others = others_at_work()
     with study.store.opened():
         schedule = study.schedule(study.runner(), settle=False)
     table = new_table("experiment", "points", "blocks", "to be run", "figure", "claim", "title")
@@ -99,7 +101,20 @@ def show_plan(settings: Settings) -> int:
     console = new_console()
     console.print(table)
     console.print(summary(schedule, study.budget_seconds))
+    if others:
+        console.print(others)
     return 0
+
+
+def others_at_work() -> str:
+    """What to say of a probe's times where other programs run; nothing where they leave most processors."""
+    load, processors = os.getloadavg()[0], len(os.sched_getaffinity(0))
+    if load < processors / 2:
+        return ""
+    return (
+        f"Other programs were at work (load {load:.1f} on {processors} processors): "
+        "what was foretold is for a machine as busy as this, a quiet one takes less."
+    )
 
 
 def new_console() -> Console:

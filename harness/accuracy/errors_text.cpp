@@ -10,7 +10,7 @@ namespace carom {
 void print_errors(const ErrorMeasures& errors) {
     const auto line = [](const char* what, std::optional<double> value, const char* unit) {
         if (value && std::isfinite(*value)) {
-            std::printf("  %-33s %12.6g %s\n", what, *value, unit);
+            std::printf("  %-33s %12.6g%s%s\n", what, *value, *unit != '\0' ? " " : "", unit);
         } else {
             std::printf("  %-33s    not known\n", what);
         }
