@@ -102,7 +102,7 @@ build-gcc-libomp: settings
 test: settings lint-quick tests-gcc tests-clang ## build with both compilers and run every quick test
 	ctest --test-dir build/gcc --output-on-failure --no-tests=error -LE slow $(jobs)
 	ctest --test-dir build/clang --output-on-failure --no-tests=error -LE slow $(jobs)
-	$(python) pytest --numprocesses "$${JOBS:-$$(nproc)}" --dist loadgroup
+	$(python) pytest --numprocesses "$${JOBS:-$$(nproc)}" --dist loadfile
 
 test-all: test ## and the slow ones, and those that need Slurm
 	ctest --test-dir build/gcc --output-on-failure -L slow

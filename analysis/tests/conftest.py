@@ -1,6 +1,8 @@
 """One complete synthetic study, shared by the tests that only read it."""
 
+import fcntl
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -28,9 +30,18 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def page(results: Path) -> str:
-    """The report of it."""
-    return report.render(results)
+def page(results: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The report of it, which takes longer than any test: of the processes of pytest-xdist, which share the
+    folder above, one makes it.
+    """
+    alone = "PYTEST_XDIST_WORKER" not in os.environ
+    base = tmp_path_factory.getbasetemp()
+    kept = (base if alone else base.parent) / "report-of-the-study.html"
+    with kept.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not kept.exists():
+            kept.write_text(report.render(results), encoding="utf-8")
+    return kept.read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="session")

@@ -55,12 +55,14 @@ class Schedule:
 
     def cheapest(self, verdicts: Verdicts, seconds_left: float) -> Experiment | None:
         """The experiment in which something is settled soonest, of those whose next look there is time for;
-        None if there is none.
+        None if there is none. One that has its blocks waits for the others that a claim rests on.
         """
         best, least = None, math.inf
         for one in self.experiments:
             found = verdicts.open.get(one.name)
             if found is None or any(self._is_given_up(one, point) for point in one.points):
+                continue
+            if self.given[one.name].blocks >= found.next and self.is_complete(one):
                 continue
             goes_on = [point for point in one.points if (point.series, point.x) not in found.points_stopped]
             block = sum(map(self._costs.point, goes_on))

@@ -108,7 +108,7 @@ def test_a_measure_that_is_missing_fails_unless_none_is_asked_for(tmp_path: Path
 
 def test_the_report_has_verdict_and_number_of_every_cell(tmp_path: Path) -> None:
     write(tmp_path, records())
-    (drawn,) = draw_all(tmp_path)
+    (drawn,) = draw_all(tmp_path, formats=("svg",))
     assert [table.title for table in drawn.tables] == ["In double precision:", "In float precision:"]
     assert all(len(table.rows) == 6 for table in drawn.tables)
     text = text_of(report.render(tmp_path))
@@ -122,7 +122,7 @@ def test_a_variant_that_only_failed_has_a_table_too(tmp_path: Path) -> None:
     made = [record for record in records() if record["tags"]["series"] == "row"]
     made.append(failure("hard_cases", "nine", "step 3: left colliding", scene_name="cradle"))
     write(tmp_path, made)
-    (drawn,) = draw_all(tmp_path)
+    (drawn,) = draw_all(tmp_path, formats=("svg",))
     assert [table.title for table in drawn.tables] == ["Without any record:", "In double precision:"]
     assert [cell.text for cell in drawn.tables[0].rows[0]][-1] == "✗: step 3: left colliding"
 

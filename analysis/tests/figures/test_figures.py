@@ -66,7 +66,7 @@ def test_partial_data_are_drawn_or_left_out_but_never_fail(tmp_path: Path, entry
 
 def test_partial_data_are_marked_in_figure_and_caption(tmp_path: Path) -> None:
     write(tmp_path, [record for record in study(["steps"], blocks=4) if record["tags"]["block"] != 2])
-    (drawn,) = draw_all(tmp_path)
+    (drawn,) = draw_all(tmp_path, formats=("svg",))
     assert drawn.caption.endswith("Partial: 30 of 40 runs.")
 
 
@@ -74,18 +74,18 @@ def test_what_is_planned_is_what_the_runner_wrote_down_last(tmp_path: Path) -> N
     """Records of a question of ten values, of which two were taken out."""
     records = [record for record in study(["steps"], blocks=4) if record["tags"]["x"] <= 160]
     write(tmp_path, records)
-    assert draw_all(tmp_path)[0].caption.endswith("Partial: 32 of 40 runs.")
+    assert draw_all(tmp_path, formats=("svg",))[0].caption.endswith("Partial: 32 of 40 runs.")
     points = sorted({record["tags"]["point"] for record in records})
     plan = {"paper": {"steps": {"blocks": 4, "points": points}}}
     (tmp_path / "plan.json").write_text(json.dumps(plan))
-    assert "artial" not in draw_all(tmp_path)[0].caption
+    assert "artial" not in draw_all(tmp_path, formats=("svg",))[0].caption
     plan["paper"]["steps"]["blocks"] = 5
     plan["paper"]["steps"]["stopped"] = {points[0]: 4}
     (tmp_path / "plan.json").write_text(json.dumps(plan))
-    assert draw_all(tmp_path)[0].caption.endswith("Partial: 32 of 39 runs.")
+    assert draw_all(tmp_path, formats=("svg",))[0].caption.endswith("Partial: 32 of 39 runs.")
     for other in ({"paper": {"steps": {"blocks": 4, "points": points[1:]}}}, {"paper": {"steps": 3}}, {}, 7):
         (tmp_path / "plan.json").write_text(json.dumps(other))
-        assert draw_all(tmp_path)[0].caption.endswith("Partial: 32 of 40 runs."), (
+        assert draw_all(tmp_path, formats=("svg",))[0].caption.endswith("Partial: 32 of 40 runs."), (
             "it is not the plan of these"
         )
 
@@ -134,14 +134,14 @@ def test_svg_png_and_pdf_are_written_whole(tmp_path: Path) -> None:
 
 def test_the_same_records_give_the_same_svg(tmp_path: Path) -> None:
     write(tmp_path, study(["steps"], blocks=2))
-    first = draw_all(tmp_path)[0].files[0].read_bytes()
-    assert draw_all(tmp_path)[0].files[0].read_bytes() == first
+    first = draw_all(tmp_path, formats=("svg",))[0].files[0].read_bytes()
+    assert draw_all(tmp_path, formats=("svg",))[0].files[0].read_bytes() == first
 
 
 def test_a_second_machine_has_files_of_its_own(tmp_path: Path) -> None:
     write(tmp_path, study(["steps"], blocks=3))
     write(tmp_path, study(["steps"], blocks=2, machine=Machine(host="bench-2")))
-    names = [drawn.files[0].stem for drawn in draw_all(tmp_path)]
+    names = [drawn.files[0].stem for drawn in draw_all(tmp_path, formats=("svg",))]
     assert names[0] == "steps"
     assert names[1].startswith("bench-2-example-cpu")
 
@@ -149,7 +149,7 @@ def test_a_second_machine_has_files_of_its_own(tmp_path: Path) -> None:
 def test_several_machines_are_in_one_machine_figure(tmp_path: Path) -> None:
     for host in ("bench-1", "bench-2"):
         write(tmp_path, study(["machine"], blocks=6, machine=Machine(host=host)))
-    caption = draw_all(tmp_path)[0].caption
+    caption = draw_all(tmp_path, formats=("svg",))[0].caption
     assert "bench-1: Example CPU" in caption
     assert "bench-2: Example CPU" in caption
 
@@ -162,7 +162,7 @@ def test_the_order_that_others_are_compared_with_does_not_depend_on_the_times(
     slow = study(["sequential_orders"], blocks=4)
     write(tmp_path, [one for one in fast if one["tags"]["series"] == "once"])
     write(tmp_path, [one for one in slow if one["tags"]["series"] != "once"])
-    (drawn,) = draw_all(tmp_path)
+    (drawn,) = draw_all(tmp_path, formats=("svg",))
     assert "Against once: repeat" in drawn.caption
 
 

@@ -31,12 +31,15 @@ for line in sys.stdin:
         name = one["tags"]["experiment"]
         blocks[name] = max(blocks.get(name, 0), one["tags"]["block"] + 1)
     answer = {"open": {}, "settled": [], "said": {}}
-    for name, needed in json.loads(open(NEEDED).read()).items():
-        if blocks[name] >= needed:
-            answer["settled"].append(name)
-            answer["said"][name] = f"holds from {blocks[name]} blocks"
+    for claim, needed in json.loads(open(NEEDED).read()).items():
+        names = claim.split("+")
+        least = min(blocks[name] for name in names)
+        if least >= needed:
+            answer["settled"] += names
+            answer["said"][claim] = f"holds from {least} blocks"
         else:
-            answer["open"][name] = {"blocks": blocks[name], "next": blocks[name] + 3, "needed": needed}
+            for name in names:
+                answer["open"][name] = {"blocks": least, "next": least + 3, "needed": needed}
     with open(LOG, "a") as file:
         print(json.dumps(blocks), file=file)
     print(json.dumps(answer), flush=True)
@@ -73,6 +76,15 @@ def test_what_is_open_goes_on_from_look_to_look_and_what_is_settled_stops(needin
     assert looks == [2, 5, 8], "nothing is looked at between two looks"
     assert "decided: chunks holds from 2 blocks" in output
     assert "decided: pair holds from 8 blocks" in output
+
+
+def test_what_rests_on_two_questions_gets_blocks_of_both(needing: Workplace) -> None:
+    """The blocks of such a claim are the fewest: more of the question that has them would settle nothing."""
+    want(needing, **{"pair+chunks": 5})
+    code, output, error = finish(needing.start("run", "--budget", "5"))
+    assert (code, error) == (0, "")
+    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (5, 5)
+    assert "decided: pair+chunks holds from 5 blocks" in output
 
 
 def test_a_finished_study_is_left_alone_until_a_budget_is_given(needing: Workplace) -> None:
