@@ -6,6 +6,8 @@ from enum import StrEnum
 from math import isfinite
 from typing import Any
 
+import pandas as pd
+
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.verdicts import MARGIN
 from analysis.support.wording import count, percent
@@ -45,7 +47,8 @@ class Outcome:
     words. `missing` tells a claim without records from one that they do not decide. `p` is the p-value of the
     verdict, or of the one best supported; None where nothing could be tested. `blocks` is how many it rests
     on, 0 where more of them would not help. `behind` are the alternatives, by series and x, of which nothing
-    but being faster is asked any more, each with the p-value of its not being so.
+    but being faster is asked any more, each with the p-value of its not being so; `not_asked` are the points
+    on which the claim does not rest.
     """
 
     verdict: Verdict
@@ -56,6 +59,12 @@ class Outcome:
     p: float | None = None
     blocks: int = 0
     behind: tuple[tuple[str, float, float], ...] = ()
+    not_asked: tuple[tuple[str, float], ...] = ()
+
+
+def points_of(rows: pd.DataFrame) -> tuple[tuple[str, float], ...]:
+    """Return the points of the rows of a table, by series and x."""
+    return tuple((str(series), float(x)) for series, x in rows[["series", "x"]].drop_duplicates().to_numpy())
 
 
 def no_records(experiment: str, missing: str = "") -> Outcome:

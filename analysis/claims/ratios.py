@@ -5,13 +5,14 @@ equivalent, the claim does not hold.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pandas as pd
 
 from analysis.claims import published_curves
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records
+from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records, points_of
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, exact, percent
@@ -30,7 +31,8 @@ def pair(
     value `at` of its parameter and nowhere else.
     """
     sides = (axis, candidate, reference)
-    return both([_one_pair(evidence, name, sides, expected, at) for name in experiments])
+    parts = [_one_pair(evidence, name, sides, expected, at) for name in experiments]
+    return replace(both(parts), not_asked=parts[0].not_asked if len(parts) == 1 else ())
 
 
 def _one_pair(
@@ -62,7 +64,8 @@ def _one_pair(
     measured = (
         f"{candidate} against {reference}{where}: {change(row)} of time, {blocks(row)} ({row['verdict']})"
     )
-    return judged(row, expected, measured, figures)
+    not_asked = () if at is None else points_of(times[times["x"] != at])
+    return replace(judged(row, expected, measured, figures), not_asked=not_asked)
 
 
 def _ratios(against: pd.DataFrame, chosen: pd.DataFrame, x: float) -> pd.Series:

@@ -15,6 +15,7 @@ from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
 from analysis.statistics.forecast import blocks_to_decide
+from analysis.statistics.intervals import FEWEST
 from analysis.statistics.looks import ERROR, next_look
 from analysis.support.wording import change
 
@@ -57,15 +58,19 @@ def open_questions(results: Path) -> dict[str, Any]:
 
 
 def _stopped(table: pd.DataFrame) -> dict[str, list[tuple[str, float]]]:
-    """Return the alternatives that are behind beyond doubt, by experiment: so far that the claim would still
-    stand, corrected for all that are open, if it rested on the weakest of them.
+    """Return the points of which no more is asked, by experiment: those on which its claim does not rest,
+    once they have an interval, and alternatives that are behind beyond doubt, so far that the claim would
+    still stand, corrected for all that are open, if it rested on the weakest of them.
     """
     still_open = table[table["needed"].notna()]
     enough = ERROR / max(1, len(still_open))
     return {
-        row.experiments[0]: [(series, x) for series, x, p in row.behind if p <= enough]
+        row.experiments[0]: [
+            *(row.not_asked if row.blocks >= FEWEST else ()),
+            *((series, x) for series, x, p in row.behind if p <= enough),
+        ]
         for row in still_open.itertuples()
-        if row.behind
+        if row.behind or row.not_asked
     }
 
 

@@ -159,6 +159,18 @@ def test_most_of_the_time_is_more_than_half_of_it_early_resolves_included(
     assert row["verdict"] == verdict
 
 
+def test_a_machine_of_two_speeds_does_not_hide_what_each_process_tells(tmp_path: Path) -> None:
+    """The share of the later resolves is of one process; early ones are a difference of two."""
+    records = profiled(0.3, 0.6, 0.3)
+    for record in records:
+        slow = (record["tags"]["block"] + len(record["axes"]["variant"])) % 2
+        for phase in record["profile"]["phases"]:
+            phase["wall_seconds"] *= 1 + slow
+    row = row_of(tmp_path, records, "resolve_dominates")
+    assert row["verdict"] == HOLDS
+    assert "without what is done early is 1.50 [1.50, 1.50]" in row["measured"]
+
+
 def test_early_resolves_are_not_guessed(tmp_path: Path) -> None:
     records = [one for one in profiled(0.3, 0.6, 0.3) if one["axes"]["variant"] != "self_contained_off"]
     row = row_of(tmp_path, records, "resolve_dominates")

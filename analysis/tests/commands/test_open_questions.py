@@ -39,6 +39,16 @@ def test_a_claim_that_is_open_says_how_many_blocks_it_needs(tmp_path: Path) -> N
     assert answer["settled"] == []
 
 
+def test_points_on_which_the_claim_does_not_rest_get_no_more_than_an_interval_takes(tmp_path: Path) -> None:
+    at_large = {("checkered", 1e5), ("row", 1e5)}
+    records = study(["row"], blocks=4, noise=NOISY, threads=20)
+    points = {(record["tags"]["series"], record["tags"]["x"]) for record in records}
+    write(tmp_path / "four", records)
+    assert set(open_questions(tmp_path / "four")["open"]["row"]["stopped"]) == points - at_large
+    assert at_large < points
+    assert found(tmp_path / "two", ["row"], 2, NOISY)["open"]["row"]["stopped"] == []
+
+
 def test_too_few_blocks_need_the_first_look(tmp_path: Path) -> None:
     answer = found(tmp_path, ["neighbourhood", "control"], 2, QUIET)
     expected = {"blocks": 2, "next": 4, "needed": 4, "stopped": []}
