@@ -58,6 +58,6 @@ def _row(late: pd.Series, resolving: pd.Series, whole: pd.Series) -> dict[str, A
     within one process, and so the surer one.
     """
     alone = judge_one(np.log(late / (whole - late)))
-    if alone["ratio"] > 1:
+    if alone["ratio"] > 1 and alone["verdict"] != "equivalent":
         return {**alone, "of": "resolving without what is done early"}
     return {**judge_one(np.log(resolving / (whole - resolving))), "of": "all resolving"}

@@ -150,6 +150,7 @@ def profiled(find: float, resolve: float, search: float) -> Records:
         (0.45, 0.45, 0.45, FAILS),
         (0.50, 0.50, 0.40, HOLDS),
         (0.45, 0.46, 0.44, FAILS),
+        (0.40, 0.502, 0.30, HOLDS),
     ],
 )
 def test_most_of_the_time_is_more_than_half_of_it_early_resolves_included(
