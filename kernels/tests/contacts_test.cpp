@@ -222,14 +222,20 @@ template <Policies policies> void depends_on_no_thread(const Scene& scene) {
     }
 }
 
-TEST(Contacts, DependOnNoThread) {
+template <Policies policies> void depend_on_no_thread_in_any_scene() {
     for (const auto& [name, scene] : tests::all_scenes()) {
         SCOPED_TRACE(name);
-        depends_on_no_thread<wide>(scene);
-        depends_on_no_thread<snug>(scene);
-        depends_on_no_thread<active>(scene);
+        depends_on_no_thread<policies>(scene);
     }
-    // Enough to do for the sweeps to run in parallel.
+}
+
+TEST(Contacts, DependOnNoThread) { depend_on_no_thread_in_any_scene<wide>(); }
+
+TEST(Contacts, DependOnNoThreadInSnugBoxes) { depend_on_no_thread_in_any_scene<snug>(); }
+
+TEST(Contacts, DependOnNoThreadWithAWorklist) { depend_on_no_thread_in_any_scene<active>(); }
+
+TEST(Contacts, DependOnNoThreadWhereSweepsRunInParallel) {
     depends_on_no_thread<active>(tests::random_scene_of_density(3000, 1.2, 3, 72));
 }
 
