@@ -34,6 +34,7 @@ void add_verbs(CLI::App& program) {
     carom::add_doctor_command(program);
     carom::add_limits_command(program);
     carom::add_outside_command(program);
+    carom::add_promises_command(program);
     carom::add_help_command(program);
     program.footer(
         "Exit codes: 0 done; 1 wrong usage or bad input, told in one line; 2 a result failed its check; "

@@ -23,6 +23,7 @@ from analysis.figures import (
     orders,
     pairs,
     phases,
+    promises,
     scaling,
     schedules,
     speed_against_error,
@@ -147,6 +148,8 @@ FIGURES = [
     _counted("counters_simulated", "Simulated counters", "cachegrind",
              "Simulated counters (cachegrind, one thread)"),
     *_accuracy(SPEED_AGAINST_ERROR, "speed_against_error", "speed_against_error", "Speed against error"),
+    _of_kind("promises", "Promised against delivered error", promises.promises,
+             "Promised against delivered error"),
     *_accuracy(HARD_CASES, "hard_cases", "hard_cases", "Hard cases"),
 ]  # fmt: skip
 
@@ -160,6 +163,7 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
     "phases": phases.profile,
     "ladder": ladder.waterfall,
     "limits": limits.phases_against_limits,
+    "promises": promises.promises,
 }
 """How an experiment without a figure of its own is drawn, given its name and title, by its tag `figure`."""
 

@@ -45,6 +45,7 @@ class Records:
     counters: pd.DataFrame
     limits: pd.DataFrame
     outside: pd.DataFrame
+    promises: pd.DataFrame
     failures: pd.DataFrame
     skipped: list[str] = field(default_factory=list)
 
@@ -65,9 +66,9 @@ def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
     ]
     for line in skipped:
         (warn or _warn_on_standard_error)(line)
-    measured, limits, outside, failed = (
+    measured, limits, outside, promises, failed = (
         [(path, record) for path, record in records if record["kind"] in kinds]
-        for kinds in (("bench", "profile", "process"), ("limits",), ("outside",), ("failure",))
+        for kinds in (("bench", "profile", "process"), ("limits",), ("outside",), ("promises",), ("failure",))
     )
     return Records(
         runs=tables.runs(measured),
@@ -78,6 +79,7 @@ def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
         counters=tables.counters(measured),
         limits=tables.limits(limits),
         outside=tables.outside(outside),
+        promises=tables.promises(promises),
         failures=tables.failures(failed),
         skipped=skipped,
     )

@@ -34,6 +34,7 @@ class Study:
     limits: pd.DataFrame
     """What the machine can do at most, whatever the revision and the scale."""
     outside: pd.DataFrame
+    promises: pd.DataFrame
     """Runs of a general engine on the machine at that scale, whatever the revision."""
 
     @property
@@ -93,6 +94,9 @@ def split(records: Records) -> list[Study]:
             limits=records.limits[records.limits["machine"] == machine],
             outside=records.outside[
                 (records.outside["machine"] == machine) & (records.outside["scale"] == scale)
+            ],
+            promises=records.promises[
+                (records.promises["machine"] == machine) & (records.promises["scale"] == scale)
             ],
         )
         for (machine, revision, scale), alike in records.runs.groupby(keys)

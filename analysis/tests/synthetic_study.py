@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from analysis.tests.synthetic import Machine, bench, failure, limits, profile
+from analysis.tests.synthetic import Machine, bench, failure, limits, profile, promises
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
 
@@ -46,6 +46,8 @@ def study(
                     scale=scale, points_planned=len(points), blocks_planned=blocks, figure=_figure(name),
                 )  # fmt: skip
                 records.append(profile(record, SHARES, counters(record)) if name in PROFILED else record)
+                if name == "promises" and block == 0:
+                    records.append(promises(record))
     if "limits" in names:
         records.append(limits(machine or Machine(), COPY, ARITHMETIC))
     return records
@@ -53,7 +55,15 @@ def study(
 
 def _figure(experiment: str) -> str:
     points = EXPERIMENTS[experiment]()
-    if experiment in ("control", "machine", *PROFILED, "ladder", "speed_against_error", "hard_cases"):
+    if experiment in (
+        "control",
+        "machine",
+        *PROFILED,
+        "ladder",
+        "speed_against_error",
+        "hard_cases",
+        "promises",
+    ):
         return experiment
     if points[0].x_name in ("none", "chunk"):
         return "comparison"

@@ -17,7 +17,7 @@ CONTROL = "control"
 _NUMBER = re.compile(r"\s*-?(0|[1-9]\d*)(\.\d+)?([eE][+-]?\d+)?\s*")
 _OF_THE_RUN = ("threads", "find_chunk", "resolve_chunk", "substeps")
 _OF_ERRORS = ("speed_against_error", "hard_cases")
-_OF_SCENES = (*_OF_ERRORS, "ladder", "limits")
+_OF_SCENES = (*_OF_ERRORS, "ladder", "limits", "promises")
 _OF_A_SCENE = (
     "particles", "side", "radius", "steps", "min_velocity", "max_velocity", "area_fraction", "seed",
 )  # fmt: skip

@@ -17,6 +17,7 @@ from experiments.run.kept_records import KeptRecords
 from experiments.run.limits import measure_limits
 from experiments.run.outside import Outside
 from experiments.run.processes import Processes
+from experiments.run.promises import keep_promises
 from experiments.run.verify import Verifier, representative
 from experiments.support.errors import InputError
 from experiments.support.files import move, read_json
@@ -116,9 +117,12 @@ class Runner:
             verdict = self._verifier.check(representative(task.experiment, point), checked)
             if verdict.exit_code != 0:
                 return self._fail(task, verdict)
-        limits = measure_limits(point, self._records)
-        if limits is not None and limits.exit_code != 0:
-            return self._fail(task, limits)
+        for beside in (
+            measure_limits(point, self._records),
+            keep_promises(point, scene, task.tags(self._store.session), self._records),
+        ):
+            if beside is not None and beside.exit_code != 0:
+                return self._fail(task, beside)
         failed = self._outside.measure(point, task.block, scene, task.tags(self._store.session))
         if failed is not None and failed.exit_code != 0:
             print(f"outside engine: not measured: {failed.reason}", file=sys.stderr)

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 namespace carom {
 namespace {
 
-double sum_from(const std::vector<std::int64_t>& counts, int first) {
-    return static_cast<double>(std::accumulate(counts.begin() + first, counts.end(), std::int64_t{0}));
+double sum_from(const std::vector<double>& amounts, int first) {
+    return std::accumulate(amounts.begin() + first, amounts.end(), 0.0);
 }
 
 } // namespace
@@ -29,26 +30,32 @@ const Tried& most_exact(std::span<const Tried> tried) {
     return *std::ranges::min_element(tried, {}, &Tried::largest_error);
 }
 
-Expected expected_rate_error(const Counts& counts, int units, double times_larger) {
-    const auto tried = static_cast<int>(counts.exact.size());
+Expected expected_average_error(const Amounts& amounts, int units, double times_more) {
+    constexpr double unbounded = std::numeric_limits<double>::infinity();
+    const auto tried = static_cast<int>(amounts.exact.size());
     const int half = tried / 2;
-    const double exact = sum_from(counts.exact, 0);
-    const double other = sum_from(counts.other, 0);
-    const double exact_late = sum_from(counts.exact, half);
-    const double other_late = sum_from(counts.other, half);
+    const double exact = sum_from(amounts.exact, 0);
+    const double other = sum_from(amounts.other, 0);
+    const double exact_late = sum_from(amounts.exact, half);
+    const double other_late = sum_from(amounts.other, half);
     const double rest = static_cast<double>(units - tried) / (tried - half);
     const double exact_in_all = exact + rest * exact_late;
-    if (exact_in_all == 0) {
-        return {.error = other == 0 ? 0 : std::numeric_limits<double>::infinity()};
+    const bool is_piece = times_more > 1;
+    const bool is_known = tried == units && !is_piece;
+    if (exact_in_all == 0 || (exact_late == 0 && !is_known)) {
+        return {.error = other == 0 && is_known ? 0 : unbounded};
     }
     const double error = std::abs((other + rest * other_late) / exact_in_all - 1);
-    const bool is_piece = times_larger > 1;
-    if (tried == units && !is_piece) {
+    if (is_known) {
         return {.error = error};
     }
-    const double open = is_piece ? exact_in_all * times_larger : rest * exact_late;
+    const double open = is_piece ? exact_in_all * times_more : rest * exact_late;
     const double share = is_piece ? 1 : open / exact_in_all;
-    return {.error = error, .margin = 2 * share * std::sqrt(2 / exact_late + 2 / open)};
+    return {.error = error, .margin = 2 * share * std::sqrt(amounts.grain * (2 / exact_late + 2 / open))};
+}
+
+double grain_of_impulse(double impulse, double collisions) {
+    return collisions > 0 ? 4 / std::numbers::pi * impulse / collisions : 0;
 }
 
 } // namespace carom

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,12 +12,15 @@ namespace carom {
 enum class Measure {
     path,           ///< RMS distance to the exact paths after one unit of time, in radii
     collision_rate, ///< of the whole run, relative to that of the exact one
+    pressure,       ///< on the walls over the whole run, likewise
 };
 
 /// One way to run a scene.
 struct Method {
     const Variant* variant = nullptr;
     int substeps = 1;
+
+    friend bool operator==(const Method&, const Method&) = default;
 };
 
 /// What a trial says of a method.
@@ -42,10 +44,13 @@ std::optional<Tried> cheapest_below(std::span<const Tried> tried, double bound, 
 /// The one with the least of the largest errors. There must be one.
 const Tried& most_exact(std::span<const Tried> tried);
 
-/// Collisions in each unit of time of a trial: of the exact simulation, and of another one on the same scene.
-struct Counts {
-    std::vector<std::int64_t> exact;
-    std::vector<std::int64_t> other;
+/// What an average is made of, in each unit of time of a trial: of the exact simulation, and of another one
+/// on the same scene. Collisions, or the momentum that the walls took up.
+struct Amounts {
+    std::vector<double> exact;
+    std::vector<double> other;
+    double grain =
+        1; ///< the variance of an amount over its mean; 1 of events that know nothing of each other
 };
 
 /// A relative error that is expected, and by how much it may be larger.
@@ -54,13 +59,18 @@ struct Expected {
     double margin = 0;
 };
 
-/// The relative error of the collision rate over `units` of time, of which `counts` are the first, or, where
-/// these are of a piece, over a scene `times_larger`. A step begins better than it goes on, since discs that
-/// are apart at the start get into each other only then: what is still to come is taken to be as the second
-/// half of what was counted.
+/// The relative error of an average over `units` of time, of which `amounts` are the first, or, where these
+/// are of a piece, over a scene with `times_more` of them. A step begins better than it goes on, since discs
+/// that are apart at the start get into each other only then: what is still to come is taken to be as the
+/// second half of what was tried.
 ///
-/// The margin is twice the standard deviation of what is still to come beside that half. Counts are taken for
-/// independent, of variance equal to their mean. If the trial was the whole run nothing is open.
-Expected expected_rate_error(const Counts& counts, int units, double times_larger = 1);
+/// The margin is twice the standard deviation of what is still to come beside that half. Amounts are taken
+/// for independent, of variance `grain` times their mean. If the trial was the whole run nothing is open.
+Expected expected_average_error(const Amounts& amounts, int units, double times_more = 1);
+
+/// The grain of the momentum that `collisions` with walls took up, `impulse` in all: its mean square over its
+/// mean. Where velocities are distributed as in equilibrium those that arrive at a wall have <v^2> = 4/pi
+/// <v>^2 (Maxwell 1860); where all discs are about as fast it is less.
+double grain_of_impulse(double impulse, double collisions);
 
 } // namespace carom

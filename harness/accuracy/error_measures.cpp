@@ -6,14 +6,13 @@
 
 #include "harness/accuracy/companion.hpp"
 #include "harness/accuracy/event_driven_errors.hpp"
-#include "harness/accuracy/momentum_balance.hpp"
+#include "harness/accuracy/momentum_watch.hpp"
 #include "harness/accuracy/penetration.hpp"
 #include "harness/measure/energy_drift.hpp"
 #include "harness/measure/measure.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/format.hpp"
 #include "harness/support/json.hpp"
-#include "harness/verify/at_contact.hpp"
 #include "harness/verify/checker.hpp"
 
 namespace carom {
@@ -26,30 +25,24 @@ class Watch {
   public:
     Watch(const Scene& scene, const Rounding& rounding, Impact impact, double dt,
           const std::vector<Disc>& start)
-        : walls_{.side = rounding(scene.side), .radius = rounding(scene.radius), .rounding = rounding},
-          impact_(impact), dt_(rounding(dt)),
-          balance_(impact == Impact::at_contact ? widened(walls_) : walls_),
-          penetration_(overlapping_pairs(start, walls_.radius, rounding), walls_.radius), before_(start) {}
+        : momentum_(scene, rounding, impact, dt, start), rounding_(rounding), radius_(rounding(scene.radius)),
+          penetration_(overlapping_pairs(start, radius_, rounding), radius_) {}
 
     void step(const std::vector<Disc>& discs, const Tally& tally) {
-        const auto pairs = overlapping_pairs(discs, walls_.radius, walls_.rounding);
-        if (impact_ == Impact::at_contact) {
-            balance_at_contact(discs);
-        } else {
-            balance_.add(before_, discs, pairs);
-        }
+        const auto pairs = overlapping_pairs(discs, radius_, rounding_);
+        momentum_.step(discs, pairs);
         penetration_.add(discs, pairs);
         pair_resolves_ += tally.pair_resolves;
-        before_ = discs;
     }
 
     void finish(const Scene& scene, ErrorMeasures& measures) const {
+        const MomentumBalance& balance = momentum_.balance();
         double speed_sum = 0;
         for (const Disc& disc : scene.discs) {
             speed_sum += std::hypot(disc.vx, disc.vy);
         }
         if (speed_sum > 0) {
-            measures.momentum_drift = balance_.unexplained() / speed_sum;
+            measures.momentum_drift = balance.unexplained() / speed_sum;
         }
         measures.penetration_worst = penetration_.worst();
         measures.penetration_mean = penetration_.mean();
@@ -58,33 +51,20 @@ class Watch {
                 static_cast<double>(pair_resolves_) /
                 (static_cast<double>(scene.steps) * static_cast<double>(scene.discs.size()));
         }
-        if (balance_.from_wall_to_wall()) {
+        if (balance.from_wall_to_wall()) {
             measures.pressure_reason = "a group of overlapping discs reached from wall to wall";
         } else if (scene.steps > 0) {
-            measures.pressure = balance_.wall_impulse() / (scene.steps * 4.0 * scene.side);
+            measures.pressure = balance.wall_impulse() / (scene.steps * 4.0 * scene.side);
         } else {
             measures.pressure_reason = "the scene has no steps";
         }
     }
 
   private:
-    /// The walls were met where the discs flew freely, not where they are.
-    void balance_at_contact(const std::vector<Disc>& discs) {
-        std::vector<Disc> free = flown(before_, dt_, walls_);
-        const auto pairs = colliding_pairs(free, discs, walls_);
-        for (std::size_t i = 0; i < free.size(); ++i) {
-            free[i].vx = discs[i].vx;
-            free[i].vy = discs[i].vy;
-        }
-        balance_.add(before_, free, pairs);
-    }
-
-    Walls walls_;
-    Impact impact_;
-    double dt_;
-    MomentumBalance balance_;
+    MomentumWatch momentum_;
+    Rounding rounding_;
+    double radius_;
     Penetration penetration_;
-    std::vector<Disc> before_;
     std::int64_t pair_resolves_ = 0;
 };
 

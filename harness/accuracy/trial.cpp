@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "harness/accuracy/companion.hpp"
+#include "harness/accuracy/momentum_watch.hpp"
 #include "harness/scenes/piece.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/process_clock.hpp"
@@ -24,8 +25,8 @@ constexpr double seconds_of_one = 0.04;
 constexpr double seconds_of_all = 0.8;
 constexpr int most_substeps = 64;
 
-/// Of a trial of a rate, which needs some units of time to become what it stays.
-constexpr int fewest_units_of_rate = 8;
+/// Of a trial of an average, which needs some units of time to become what it stays.
+constexpr int fewest_units_of_average = 8;
 
 /// Of timing those that will do: a trial is short, and whatever else runs can only lengthen it.
 constexpr int further_rounds = 2;
@@ -36,7 +37,7 @@ constexpr double margin_of_piece = 0.25;
 /// What a method did in a trial.
 struct Ran {
     std::vector<Disc> at_one;          ///< the state after one unit of time
-    std::vector<std::int64_t> pairs;   ///< resolved in each unit of time
+    std::vector<double> amounts;       ///< of what the measure is the average of, in each unit of time
     double setting_up = 0;             ///< seconds
     std::vector<double> units_seconds; ///< of each unit of time
 
@@ -74,6 +75,7 @@ class Trying {
           bound_(bound), units_of_run_(scene.steps), is_whole_(scene.discs.size() == piece_.discs.size()),
           times_larger_(static_cast<double>(scene.discs.size()) /
                         static_cast<double>(std::max<std::size_t>(piece_.discs.size(), 1))),
+          times_more_(measure == Measure::pressure ? scene.side / piece_.side : times_larger_),
           extended_(piece_) {}
 
     Trial run() {
@@ -95,20 +97,42 @@ class Trying {
     /// The first, since it says how long a trial may be, and what nobody needs to exceed.
     void try_event_driven() {
         const double before = process_seconds();
-        const auto simulation = event_driven().simulate(piece_, {});
+        EventDriven<double> simulation(piece_);
         Ran ran;
         ran.setting_up = process_seconds() - before;
         for (int unit = 1; unit == 1 || unit <= units_; ++unit) {
-            require_end(advance(*simulation, 1, ran));
+            advance_exactly(simulation, unit, ran);
             units_ = unit == 1 ? units_for(ran.units_seconds.front()) : units_;
         }
         exact_at_one_ = ran.at_one;
-        exact_pairs_ = ran.pairs;
+        amounts_ = {.exact = ran.amounts,
+                    .other = {},
+                    .grain = measure_ == Measure::pressure
+                                 ? grain_of_impulse(simulation.wall_impulse(),
+                                                    static_cast<double>(simulation.wall_collisions()))
+                                 : 1};
         note({.variant = &event_driven()}, ran, {.error = own_error(ran)});
     }
 
+    void advance_exactly(EventDriven<double>& simulation, int unit, Ran& ran) const {
+        const double so_far = amount(simulation);
+        const double before = process_seconds();
+        require_end(simulation.advance(unit));
+        ran.units_seconds.push_back(process_seconds() - before);
+        ran.amounts.push_back(amount(simulation) - so_far);
+        if (unit == 1) {
+            ran.at_one = simulation.discs();
+        }
+    }
+
+    /// What the measure is the average of, since the start.
+    template <class Real> double amount(const EventDriven<Real>& simulation) const {
+        return measure_ == Measure::pressure ? static_cast<double>(simulation.wall_impulse())
+                                             : static_cast<double>(simulation.pair_collisions());
+    }
+
     int units_for(double seconds) const {
-        const double fewest = measure_ == Measure::path ? 1 : fewest_units_of_rate;
+        const double fewest = measure_ == Measure::path ? 1 : fewest_units_of_average;
         const double affordable = std::floor(seconds_of_one / std::max(seconds, 1e-9));
         return static_cast<int>(std::min(std::max(affordable, fewest), static_cast<double>(units_of_run_)));
     }
@@ -119,8 +143,8 @@ class Trying {
         if (measure_ == Measure::path) {
             return rms_distance(ran.at_one, extended_.discs(), piece_.radius);
         }
-        const std::int64_t counted = std::accumulate(ran.pairs.begin(), ran.pairs.end(), std::int64_t{0});
-        return expected_rate_error({.exact = {extended_.pair_collisions()}, .other = {counted}}, 1).error;
+        const double in_all = std::accumulate(ran.amounts.begin(), ran.amounts.end(), 0.0);
+        return expected_average_error({.exact = {amount(extended_)}, .other = {in_all}}, 1).error;
     }
 
     static void require_end(bool settled) {
@@ -158,7 +182,7 @@ class Trying {
         }
     }
 
-    /// Nothing if a resolve did not end.
+    /// Nothing if a resolve did not end, or what it does to the walls cannot be told, or not in time.
     std::optional<Ran> run_variant(const Variant& variant, int substeps) const {
         Tuning tuning = tuning_;
         tuning.substeps = substeps;
@@ -166,8 +190,9 @@ class Trying {
         const auto simulation = variant.simulate(piece_, tuning);
         Ran ran;
         ran.setting_up = process_seconds() - before;
+        auto watch = watch_of(variant, substeps, *simulation);
         for (int unit = 1; unit <= units_; ++unit) {
-            if (!advance(*simulation, substeps, ran)) {
+            if (!advance(*simulation, substeps, ran, watch)) {
                 return std::nullopt;
             }
             if (measure_ == Measure::path && error_of(ran).error > bound_) {
@@ -177,26 +202,50 @@ class Trying {
         return ran;
     }
 
-    static bool advance(Simulation& simulation, int substeps, Ran& ran) {
-        const double before = process_seconds();
-        bool settled = true;
-        ran.pairs.push_back(0);
-        for (int substep = 0; substep < substeps && settled; ++substep) {
-            const Tally tally = simulation.step();
-            ran.pairs.back() += tally.pair_resolves;
-            settled = tally.settled;
+    /// Of the momentum that walls take up, which a step does not tell; none where nobody asks.
+    std::optional<MomentumWatch> watch_of(const Variant& variant, int substeps,
+                                          const Simulation& simulation) const {
+        if (measure_ != Measure::pressure) {
+            return std::nullopt;
         }
-        ran.units_seconds.push_back(process_seconds() - before);
+        return MomentumWatch(piece_, rounding_of(variant.policies), variant.policies.impact, 1.0 / substeps,
+                             simulation.discs());
+    }
+
+    bool advance(Simulation& simulation, int substeps, Ran& ran, std::optional<MomentumWatch>& watch) const {
+        ran.amounts.push_back(0);
+        ran.units_seconds.push_back(0);
+        for (int substep = 0; substep < substeps; ++substep) {
+            const double before = process_seconds();
+            const Tally tally = simulation.step();
+            ran.units_seconds.back() += process_seconds() - before;
+            if (!tally.settled) {
+                return false;
+            }
+            if (!watch) {
+                ran.amounts.back() += static_cast<double>(tally.pair_resolves);
+            } else if (!look(simulation, ran, *watch)) {
+                return false;
+            }
+        }
         if (ran.units_seconds.size() == 1) {
             ran.at_one = simulation.discs();
         }
-        return settled;
+        return true;
+    }
+
+    bool look(const Simulation& simulation, Ran& ran, MomentumWatch& watch) const {
+        const double so_far = watch.balance().wall_impulse();
+        watch.step(simulation.discs());
+        ran.amounts.back() += watch.balance().wall_impulse() - so_far;
+        return !watch.balance().from_wall_to_wall() && process_seconds() - start_ <= seconds_of_all;
     }
 
     Expected error_of(const Ran& ran) const {
-        if (measure_ == Measure::collision_rate) {
-            return expected_rate_error({.exact = exact_pairs_, .other = ran.pairs}, units_of_run_,
-                                       times_larger_);
+        if (measure_ != Measure::path) {
+            Amounts amounts = amounts_;
+            amounts.other = ran.amounts;
+            return expected_average_error(amounts, units_of_run_, times_more_);
         }
         const double error = rms_distance(ran.at_one, exact_at_one_, piece_.radius);
         return {.error = error, .margin = is_whole_ ? 0 : margin_of_piece * error};
@@ -217,15 +266,26 @@ class Trying {
     double bound_;
     int units_of_run_;
     bool is_whole_;
-    double times_larger_;
+    double times_larger_; ///< the scene than the piece, in discs
+    double times_more_;   ///< of what is averaged there is in the scene
     EventDriven<long double> extended_;
     int units_ = 0;
     std::vector<Disc> exact_at_one_;
-    std::vector<std::int64_t> exact_pairs_;
+    Amounts amounts_;
     std::vector<Tried> tried_;
 };
 
 } // namespace
+
+std::vector<Method> methods_for(const Scene& scene) {
+    std::vector<Method> methods{{.variant = &event_driven()}};
+    for (const Variant* variant : candidates(scene)) {
+        for (int substeps = 1; substeps <= most_substeps; substeps *= 2) {
+            methods.push_back({.variant = variant, .substeps = substeps});
+        }
+    }
+    return methods;
+}
 
 Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound) {
     return Trying(scene, tuning, measure, bound).run();

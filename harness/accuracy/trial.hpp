@@ -31,7 +31,11 @@ struct Trial {
 /// collisions of an instant do not come to an end.
 Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound);
 
-/// Discs of the largest scene that is tried as a whole. Rates need fewer, for longer.
+/// Everything that could be chosen for the scene, whether a trial comes to it or not: the event-driven
+/// simulation, and each variant that is tried with each number of substeps.
+std::vector<Method> methods_for(const Scene& scene);
+
+/// Discs of the largest scene that is tried as a whole. Averages need fewer, for longer.
 constexpr std::size_t largest_trial(Measure measure) { return measure == Measure::path ? 20'000 : 4'000; }
 
 } // namespace carom

@@ -1,9 +1,13 @@
 #include "harness/commands/error_bound.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "harness/command_line/values.hpp"
 #include "harness/support/errors.hpp"
@@ -16,6 +20,34 @@
 namespace carom {
 namespace {
 
+constexpr std::array measure_texts{
+    MeasureText{.measure = Measure::path,
+                .word = "path",
+                .meaning = "RMS distance to the exact paths after one unit of time, in radii"},
+    MeasureText{.measure = Measure::collision_rate,
+                .word = "collision_rate",
+                .meaning = "relative error of the collision rate of the whole run"},
+    MeasureText{.measure = Measure::pressure,
+                .word = "pressure",
+                .meaning = "relative error of the pressure on the walls over the whole run"},
+};
+
+std::string option_text(const ErrorBound& bound) {
+    return "--error-below " + number_text(bound.below) + ": ";
+}
+
+/// "0.0034", or "0.0034 at most 0.0052" where the trial leaves something open.
+std::string error_text(const Tried& tried) {
+    return tried.margin > 0 ? format("%.2g, at most %.2g", tried.error, tried.largest_error())
+                            : format("%.2g", tried.error);
+}
+
+} // namespace
+
+const MeasureText& text_of(Measure measure) {
+    return *std::ranges::find(measure_texts, measure, &MeasureText::measure);
+}
+
 CLI::Validator positive_number() {
     const auto check = [](std::string& text) {
         const std::optional<double> value = parse_number<double>(text);
@@ -23,13 +55,6 @@ CLI::Validator positive_number() {
         return positive ? std::string() : "found " + in_quotes(text) + ", expected a number above 0";
     };
     return {check, ""};
-}
-
-const char* word(Measure measure) { return measure == Measure::path ? "path" : "collision_rate"; }
-
-const char* meaning(Measure measure) {
-    return measure == Measure::path ? "RMS distance to the exact paths after one unit of time, in radii"
-                                    : "relative error of the collision rate of the whole run";
 }
 
 std::string text_of(const Method& method) {
@@ -40,13 +65,13 @@ std::string text_of(const Method& method) {
     return name + ", dt = " + (method.substeps == 1 ? "1" : "1/" + number_text(method.substeps));
 }
 
-/// "0.0034", or "0.0034 at most 0.0052" where the trial leaves something open.
-std::string error_text(const Tried& tried) {
-    return tried.margin > 0 ? format("%.2g, at most %.2g", tried.error, tried.largest_error())
-                            : format("%.2g", tried.error);
+std::vector<std::pair<std::string, Measure>> measure_choices() {
+    std::vector<std::pair<std::string, Measure>> choices;
+    for (const MeasureText& one : measure_texts) {
+        choices.emplace_back(one.word, one.measure);
+    }
+    return choices;
 }
-
-} // namespace
 
 void add_error_bound_options(CLI::App& command, ErrorBound& bound) {
     auto* below =
@@ -58,11 +83,22 @@ void add_error_bound_options(CLI::App& command, ErrorBound& bound) {
             ->default_str("")
             ->excludes(command.get_option("--variant"))
             ->excludes(command.get_option("--substeps"));
-    add_choice<Measure>(
-        command, "--measure", bound.measure,
-        {{word(Measure::path), Measure::path}, {word(Measure::collision_rate), Measure::collision_rate}},
-        "Which error: of the paths at time 1, in radii, or of the collision rate, relative")
+    add_choice<Measure>(command, "--measure", bound.measure, measure_choices(),
+                        "Which error: of the paths at time 1, in radii, or of the collision rate or the "
+                        "pressure, relative")
         ->needs(below);
+}
+
+void require_exact_run(const Scene& scene, const ErrorBound& bound) {
+    if (scene.steps == 0) {
+        throw InputError(option_text(bound) + "found a scene of 0 steps, expected at least one");
+    }
+    if (const auto overlap = overlap_at_start(scene)) {
+        throw InputError(
+            option_text(bound) + "found that at the start " + *overlap +
+            ": there is no exact run to measure an error by; expected discs apart from each other "
+            "and from the walls");
+    }
 }
 
 std::optional<Chosen> choose_method(const Scene& scene, const ErrorBound& bound,
@@ -70,22 +106,15 @@ std::optional<Chosen> choose_method(const Scene& scene, const ErrorBound& bound,
     if (bound.below == 0) {
         return std::nullopt;
     }
-    const std::string option = "--error-below " + number_text(bound.below) + ": ";
-    if (scene.steps == 0) {
-        throw InputError(option + "found a scene of 0 steps, expected at least one");
-    }
-    if (const auto overlap = overlap_at_start(scene)) {
-        throw InputError(
-            option + "found that at the start " + *overlap +
-            ": there is no exact run to measure an error by; expected discs apart from each other "
-            "and from the walls");
-    }
+    require_exact_run(scene, bound);
+    const std::string option = option_text(bound);
     Trial trial = try_methods(scene, options.tuning, bound.measure, bound.below);
     const auto cheapest = cheapest_below(trial.tried, bound.below, scene.steps);
     if (!cheapest) {
         const Tried& best = most_exact(trial.tried);
-        throw InputError(option + "found no method with so small an error (" + meaning(bound.measure) +
-                         "); the best is " + text_of(best.method) + ": " + error_text(best));
+        throw InputError(option + "found no method with so small an error (" +
+                         text_of(bound.measure).meaning + "); the best is " + text_of(best.method) + ": " +
+                         error_text(best));
     }
     return Chosen{.tried = *cheapest, .bound = bound, .trial = std::move(trial)};
 }
@@ -94,7 +123,7 @@ void print_choice(const Chosen& chosen) {
     const Trial& trial = chosen.trial;
     std::printf("chosen for an error below %s: %s; expected: %s (%s), %.3g ms a unit of time\n",
                 number_text(chosen.bound.below).c_str(), text_of(chosen.tried.method).c_str(),
-                error_text(chosen.tried).c_str(), meaning(chosen.bound.measure),
+                error_text(chosen.tried).c_str(), text_of(chosen.bound.measure).meaning,
                 1e3 * chosen.tried.unit_seconds);
     std::printf("from %s of at most %s of time on %s, against the event-driven simulation, in %.2g s\n",
                 counted(trial.tried.size(), "trial").c_str(), counted(trial.units_of_time, "unit").c_str(),
@@ -114,7 +143,7 @@ nlohmann::ordered_json choice_json(const Chosen& chosen) {
                          {"unit_seconds", one.unit_seconds}});
     }
     return {{"error_below", chosen.bound.below},
-            {"measure", word(chosen.bound.measure)},
+            {"measure", text_of(chosen.bound.measure).word},
             {"variant", chosen.tried.method.variant->name},
             {"substeps", chosen.tried.method.substeps},
             {"error", number_or_null(chosen.tried.error)},

@@ -30,6 +30,7 @@ LIKE = [
     ("phases", "phases"),
     ("ladder", "ladder"),
     ("limits", "limits"),
+    ("promises", "promises"),
 ]
 
 NAMING = ("ladder", "limits")

@@ -43,7 +43,7 @@ TEST_F(ErrorBelow, SaysInTwoLinesWhatItChoseAndRunsIt) {
 }
 
 TEST_F(ErrorBelow, DeliversWhatItExpects) {
-    for (const std::string measure : {"path", "collision_rate"}) {
+    for (const std::string measure : {"path", "collision_rate", "pressure"}) {
         const auto result = run({"--error-below", "0.02", "--measure", measure, "--json", "--errors"});
         ASSERT_EQ(result.exit_code, 0) << result.error;
         const auto json = nlohmann::json::parse(result.output);
