@@ -86,10 +86,14 @@ def _counted(name: str, title: str, source: str, subject: str) -> Entry:
 
 
 def _accuracy(kind: str, experiment: str, name: str, title: str) -> list[Entry]:
-    """Return the entries of an experiment about errors: a figure a measure, or the one of the hard cases."""
-    if kind == HARD_CASES:
-        draw = bound(hard_cases.hard_cases, experiment=experiment, subject=title)
-        return [Entry(name, experiment, title, draw, kind)]
+    """Return the entries of an experiment about errors: a figure a measure, or the one of promises or of hard
+    cases.
+    """
+    single = {PROMISES: promises.promises, HARD_CASES: hard_cases.hard_cases}
+    if kind in single:
+        return [
+            Entry(name, experiment, title, bound(single[kind], experiment=experiment, subject=title), kind)
+        ]
     return [
         Entry(
             f"{name}-{measure.key}", experiment, f"{title}: {measure.title}",
@@ -99,7 +103,7 @@ def _accuracy(kind: str, experiment: str, name: str, title: str) -> list[Entry]:
     ]  # fmt: skip
 
 
-SPEED_AGAINST_ERROR, HARD_CASES = "speed_against_error", "hard_cases"
+SPEED_AGAINST_ERROR, PROMISES, HARD_CASES = OF_ERRORS = ("speed_against_error", "promises", "hard_cases")
 """The kinds of experiments about errors, whose figures have a part of the report of their own."""
 
 _EARLY = "Resolving self-contained pairs early, on against off, under the"
@@ -148,8 +152,7 @@ FIGURES = [
     _counted("counters_simulated", "Simulated counters", "cachegrind",
              "Simulated counters (cachegrind, one thread)"),
     *_accuracy(SPEED_AGAINST_ERROR, "speed_against_error", "speed_against_error", "Speed against error"),
-    _of_kind("promises", "Promised against delivered error", promises.promises,
-             "Promised against delivered error"),
+    *_accuracy(PROMISES, "promises", "promises", "Promised against delivered error"),
     *_accuracy(HARD_CASES, "hard_cases", "hard_cases", "Hard cases"),
 ]  # fmt: skip
 
@@ -163,7 +166,6 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
     "phases": phases.profile,
     "ladder": ladder.waterfall,
     "limits": limits.phases_against_limits,
-    "promises": promises.promises,
 }
 """How an experiment without a figure of its own is drawn, given its name and title, by its tag `figure`."""
 
@@ -219,7 +221,7 @@ def _further(experiment: str, runs: pd.DataFrame) -> list[Entry]:
     name = re.sub(r"[^\w.-]", "_", experiment)
     if name in {entry.name for entry in FIGURES}:
         name = f"experiment-{name}"
-    if kind in (SPEED_AGAINST_ERROR, HARD_CASES):
+    if kind in OF_ERRORS:
         return _accuracy(kind, experiment, name, title)
     return [Entry(name, experiment, title, bound(_by_kind, experiment, title, kind))]
 
@@ -227,7 +229,7 @@ def _further(experiment: str, runs: pd.DataFrame) -> list[Entry]:
 def _by_kind(experiment: str, title: str, kind: str, data: Data) -> Drawing | None:
     drawing = KINDS[kind](data, experiment, title) if kind in KINDS else None
     if drawing is None:
-        kinds = ", ".join([*KINDS, SPEED_AGAINST_ERROR, HARD_CASES])
+        kinds = ", ".join([*KINDS, *OF_ERRORS])
         why = "has no records for it" if kind in KINDS else f"expected a tag figure out of {kinds}"
         print(f"{experiment}: not drawn: found figure {kind!r}, {why}", file=sys.stderr)
     return drawing

@@ -8,7 +8,7 @@ from typing import Any
 from markupsafe import Markup
 
 from analysis.derived.accuracy import MEASURES, errors
-from analysis.figures import HARD_CASES, SPEED_AGAINST_ERROR, Drawn
+from analysis.figures import HARD_CASES, OF_ERRORS, SPEED_AGAINST_ERROR, Drawn
 from analysis.records.studies import Study
 from analysis.report.horizons import horizons
 from analysis.support.wording import blocks, change
@@ -39,7 +39,7 @@ def parts(study: Study, drawn: Sequence[Drawn]) -> list[Part]:
         for experiment in dict.fromkeys(one.entry.experiment for one in drawn)
     ]
     kinds = {one.entry.experiment: one.entry.kind for one in drawn}
-    order = ["", SPEED_AGAINST_ERROR, HARD_CASES]
+    order = ["", *OF_ERRORS]
     return sorted(found, key=lambda part: (part.experiment != PHASES, order.index(kinds[part.experiment])))
 
 

@@ -30,7 +30,6 @@ LIKE = [
     ("phases", "phases"),
     ("ladder", "ladder"),
     ("limits", "limits"),
-    ("promises", "promises"),
 ]
 
 NAMING = ("ladder", "limits")
