@@ -1,6 +1,7 @@
 #pragma once
 
-#include "impacts.hpp"
+#include "impacts_contacts.hpp"
+#include "impacts_lists.hpp"
 #include "policies.hpp"
 #include "state.hpp"
 #include "sweep.hpp"
@@ -52,7 +53,8 @@ template <Policies policies, class SomeProbe>
 Tally resolve(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     Tally total;
     if constexpr (policies.impact == Impact::at_contact) {
-        total = collide_at_contact(state, tuning, probe);
+        total += collide_at_contact(state, tuning, probe);
+        total += find_left(state, tuning, probe);
     }
     total += resolve_in_place(state, tuning, probe);
     return total;

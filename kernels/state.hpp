@@ -22,6 +22,11 @@ template <class Real> struct OverlapsOf<Overlaps::lists, Real> {
     std::vector<std::vector<int>>
         overlaps; ///< for each disc those it overlaps; each pair stands in both lists
     std::vector<unsigned char> overlaps_wall; ///< of each disc, whether it overlaps one
+    std::vector<std::vector<NearDisc<Real>>>
+        near; ///< Impact::at_contact: for each disc those near it, and near a wall itself
+    std::vector<NextCollision<Real>> next; ///< ditto: of each disc
+    std::vector<unsigned char> asked;      ///< ditto: of each disc, whether it looks back in this sweep
+    std::vector<unsigned char> asked_next; ///< ditto: in the next one
 
     OverlapsOf(const Grid& /*grid*/, int count)
         : overlaps(static_cast<std::size_t>(count)), overlaps_wall(static_cast<std::size_t>(count)) {}
@@ -32,7 +37,6 @@ template <class Real> struct OverlapsOf<Overlaps::contacts, Real> {
     std::vector<ActiveBlocks::Beside> blocks_of_disc;
     ActiveBlocks active;
     std::vector<EarliestCollision<Real>> earliest; ///< Impact::at_contact: of each disc
-    int steps_flown = 0;                           ///< ditto: since the start, two at most
 
     OverlapsOf(const Grid& grid, int count)
         : strips(static_cast<std::size_t>(grid.strip_count(strip_height(Order::strips)))),
@@ -58,6 +62,7 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
     Real side;
     Real radius;
     Real speed; ///< Impact::at_contact: root of the mean squared speed, which collisions keep; else 0
+    int steps_flown = 0; ///< ditto: since the start, two at most
     Grid grid;
 
     /// Built on as many threads as will step it.

@@ -21,9 +21,11 @@
 // least two apart. Either way a whole box lies between them along that axis, so they are more than one box
 // side, at least 4r, apart there: a contradiction. Between two strips of one parity lies a whole strip, of at
 // least two boxes of more than 2r: again more than 4r. (A centre outside the scene is binned as if moved to
-// the nearest edge, which brings no two discs further apart.) The iterations of one colour, or of one parity
-// of rows, therefore neither write what another reads nor depend on the order in which they run: the result
-// is the same, to the last bit, for any number of threads and any schedule.
+// the nearest edge, which brings no two discs further apart. With Impact::at_contact discs have moved since
+// they were binned; those of a list were within 2R of each other then, and boxes are made for the wider R: the
+// same again with R for r.) The iterations of one colour, or of one parity of rows, therefore neither write
+// what another reads nor depend on the order in which they run: the result is the same, to the last bit, for
+// any number of threads and any schedule.
 
 namespace carom {
 
@@ -43,6 +45,22 @@ struct Swept {
 inline Swept one_sweep(Tally work) {
     work.sweeps = 1;
     return {work, work.pair_resolves + work.wall_resolves};
+}
+
+/// The sweeps of Impact::at_contact (way_back.hpp), until one changes nothing. `sweep(index, threads)` runs
+/// one and returns what it did.
+template <class SomeProbe, class Sweep>
+Tally sweep_impacts(const Tuning& tuning, SomeProbe& probe, const Sweep& sweep) {
+    Tally total;
+    std::int64_t last_changes = few_changes;
+    for (int index = 0; index < most_impact_sweeps && last_changes > 0; ++index) {
+        probe.sweep_begin();
+        const Swept swept = one_sweep(sweep(index, last_changes < few_changes ? 1 : tuning.threads));
+        probe.sweep_end();
+        last_changes = swept.last_changes;
+        total += swept.work;
+    }
+    return total;
 }
 
 template <Policies policies, class SomeProbe>

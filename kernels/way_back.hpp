@@ -2,12 +2,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "collide.hpp"
+#include "contacts.hpp"
+#include "policies.hpp"
 #include "scene.hpp"
+#include "state.hpp"
+#include "tally.hpp"
 
-// The collisions of Impact::at_contact: of one pair and of one disc with a wall, after a free flight through
-// them.
+// Impact::at_contact. At the end of a step the discs stand where they flew freely. Of every pair that is near
+// each other the way back along its present motion is asked when it came into contact. Both discs then get
+// the velocities that the collision of that moment gives them, and the places to which they have flown with
+// these since. Discs at walls likewise. Here stands how one pair or disc collides so; in which sweeps all of
+// them do, in impacts_contacts.hpp and impacts_lists.hpp.
+//
+// The order is that of time: a sweep makes those collisions that are the earliest known of both of their
+// discs. No two of these share a disc, so that they may be made in any order, and what a later one would do
+// is asked anew, of the new paths, in the next sweep. So the result is that of one order of all collisions by
+// time, whatever boxes, strips and threads there are. It is the same to the last bit with lists and with
+// contacts, since nothing in here depends on which disc of a pair is the first. (But of two collisions of a
+// disc at the same instant one is made, and the other one asked again: with contacts the first in the order
+// of the strips, with lists that with the disc of the lowest number.)
+//
+// Why it ends: after `most_impact_sweeps`. A pair collides again within a step only later than before, and
+// where the sweeps are not enough, what is left collides at the step's end, without being moved, as all do
+// with Impact::step_end. Why discs stay where they belong: a collision keeps the energy of the pair, and
+// moves neither disc farther than the pair flies, one relative to the other, in two steps. Discs that it
+// moves into others not near them, or into a wall, are found in the next step, by the same way back.
 
 namespace carom {
 
@@ -79,8 +101,12 @@ bool collide_back(Real time, BasicDisc<Real>& first, BasicDisc<Real>& second,
                             !approaching.counts(approach, distance_squared, speed_squared))) {
         return false;
     }
-    const Real impulse_x = approach / distance_squared * dx;
-    const Real impulse_y = approach / distance_squared * dy;
+    // All these distances are 2r. If (2r)^2 is a power of two, above which numbers lie twice as far apart as
+    // below, |d|^2 is rounded to one side more often than to the other, and the energy rises with every
+    // collision; 3 |d|^2 is away from any.
+    const Real thrice_squared = 3 * dx * dx + 3 * dy * dy;
+    const Real impulse_x = 3 * approach / thrice_squared * dx;
+    const Real impulse_y = 3 * approach / thrice_squared * dy;
     first = {first.x + impulse_x * time, first.y + impulse_y * time, first.vx + impulse_x,
              first.vy + impulse_y};
     second = {second.x - impulse_x * time, second.y - impulse_y * time, second.vx - impulse_x,
@@ -92,6 +118,56 @@ bool collide_back(Real time, BasicDisc<Real>& first, BasicDisc<Real>& second,
 template <class Real> void bounce_back(Real& position, Real& velocity, Real side, Real radius) {
     position = velocity < 0 ? 2 * radius - position : 2 * (side - radius) - position;
     velocity = -velocity;
+}
+
+/// How far back the discs may be followed from the end of the present step.
+template <Policies policies>
+WayBack<RealOf<policies.precision>> way_back(const State<policies>& state, const Tuning& tuning) {
+    using Real = RealOf<policies.precision>;
+    const Real dt = Real{1} / static_cast<Real>(tuning.substeps);
+    return {dt, dt * static_cast<Real>(state.steps_flown)};
+}
+
+/// When the discs of a near pair that has met came into contact, or a disc and a wall.
+template <Policies policies>
+RealOf<policies.precision> time_of(OverlappingDiscs discs, const State<policies>& state,
+                                   const WayBack<RealOf<policies.precision>>& back) {
+    const auto& disc = state.discs[static_cast<std::size_t>(discs.first)];
+    if (discs.at_wall()) [[unlikely]] {
+        return std::max(time_in_wall(disc.x, disc.vx, state.side, state.radius, back),
+                        time_in_wall(disc.y, disc.vy, state.side, state.radius, back));
+    }
+    return RelativeMotion(disc, state.discs[static_cast<std::size_t>(discs.second)], state.reach_squared())
+        .time_since_contact();
+}
+
+/// A disc bounces off the walls that it met at that time, before now.
+template <Policies policies>
+Changes bounce_at(RealOf<policies.precision> time, State<policies>& state, int i,
+                  const WayBack<RealOf<policies.precision>>& back) {
+    auto& disc = state.discs[static_cast<std::size_t>(i)];
+    Changes changes;
+    if (time_in_wall(disc.x, disc.vx, state.side, state.radius, back) == time) {
+        bounce_back(disc.x, disc.vx, state.side, state.radius);
+        ++changes.walls;
+    }
+    if (time_in_wall(disc.y, disc.vy, state.side, state.radius, back) == time) {
+        bounce_back(disc.y, disc.vy, state.side, state.radius);
+        ++changes.walls;
+    }
+    return changes;
+}
+
+/// Makes the collision that two discs, or a disc and a wall, had at that time; returns what it changed.
+template <Policies policies>
+Changes collide_at(RealOf<policies.precision> time, State<policies>& state, OverlappingDiscs discs,
+                   const WayBack<RealOf<policies.precision>>& back,
+                   const ApproachToleranceOf<policies>& approaching) {
+    if (discs.at_wall()) {
+        return bounce_at(time, state, discs.first, back);
+    }
+    return {.pairs = collide_back(time, state.discs[static_cast<std::size_t>(discs.first)],
+                                  state.discs[static_cast<std::size_t>(discs.second)], approaching)};
 }
 
 } // namespace carom

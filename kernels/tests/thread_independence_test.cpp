@@ -77,6 +77,17 @@ TEST(ThreadIndependence, OfEveryPolicyInEveryScene) {
                                                .resolve_schedule = dynamic}>();
 }
 
+TEST(ThreadIndependence, OfCollisionsAtContactInEveryScene) {
+    constexpr auto dynamic = Schedule::dynamic;
+    constexpr auto at_contact = [](Policies policies) {
+        policies.impact = Impact::at_contact;
+        return policies;
+    };
+    depends_on_no_thread_in_any_scene<at_contact(with(Order::checkered, dynamic))>();
+    depends_on_no_thread_in_any_scene<at_contact(with(Order::row, Schedule::guided))>();
+    depends_on_no_thread_in_any_scene<at_contact({.order = Order::strips, .storage = Storage::sorted})>();
+}
+
 TEST(ThreadIndependence, OfTheSequentialOrders) {
     const Scene scene = busy_scene();
     const auto depends_on_no_thread = [&scene]<Order order>() {

@@ -113,10 +113,8 @@ TEST_P(EveryVariant, RunsTheSimulationOfItsOwnPolicies) {
     EXPECT_GE(work.pair_attempts, 2);
     work.pair_attempts = 0;
     const Policies& policies = GetParam().policies;
-    const bool resolved_while_finding = policies.self_contained == SelfContained::on;
-    const bool taken_back = policies.impact == Impact::at_contact;
-    const int sweeps =
-        resolved_while_finding || policies.order == Order::track ? 1 : (taken_back ? 2 + 1 : 2);
+    const bool done_in_one = policies.self_contained == SelfContained::on || policies.order == Order::track;
+    const int sweeps = policies.impact == Impact::at_contact ? 2 + 1 : (done_in_one ? 1 : 2);
     EXPECT_EQ(work, (Tally{.overlaps = 1, .pair_resolves = 1, .sweeps = sweeps}));
 }
 

@@ -103,8 +103,22 @@ TEST(Impossible, GivesAReasonForContactsAndSnugBoxesWithoutWhatTheyNeed) {
                    .overlaps = Overlaps::contacts},
           Policies{.order = Order::strips, .storage = Storage::sorted, .overlaps = Overlaps::contacts},
           Policies{.search = Search::filtered}, Policies{.worklist = Worklist::active},
-          Policies{.impact = Impact::at_contact}}) {
+          Policies{.order = Order::strips,
+                   .self_contained = SelfContained::off,
+                   .storage = Storage::sorted,
+                   .overlaps = Overlaps::contacts,
+                   .impact = Impact::at_contact}}) {
         EXPECT_NE(impossible(policies), "") << name_of(policies).view();
+    }
+}
+
+TEST(Table, CombinesCollisionsAtContactWithThePublishedStorageAndTheFastest) {
+    for (const Policies& base : {Policies{}, ladder.back()}) {
+        for (const Precision precision : {Precision::double_, Precision::float_}) {
+            Policies policies = at_contact(base);
+            policies.precision = precision;
+            EXPECT_TRUE(in_table(policies));
+        }
     }
 }
 

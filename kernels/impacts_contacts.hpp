@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <iterator>
 
 #include "contacts.hpp"
@@ -15,23 +14,6 @@
 #include "tally.hpp"
 #include "wavefront.hpp"
 #include "way_back.hpp"
-
-// Impact::at_contact. At the end of a step the discs stand where they flew freely. Of every pair that is near
-// each other the way back along its present motion is asked when it came into contact. Both discs then get
-// the velocities that the collision of that moment gives them, and the places to which they have flown with
-// these since.
-//
-// The order is that of time: a sweep makes those collisions that are the earliest known of both of their
-// discs. No two of these share a disc, so that they may be made in any order, and what a later one would do
-// is asked anew, of the new paths, in the next sweep. So the result is that of one order of all collisions by
-// time, whatever the strips and the threads. (Of two collisions of a disc at the same instant the first in
-// the order of the strips is made, and the other one asked again.)
-//
-// Why it ends: after `most_impact_sweeps`. A pair collides again within a step only later than before, and
-// where the sweeps are not enough, what is left collides at the step's end, without being moved, as all do
-// with Impact::step_end. Why discs stay where they belong: a collision keeps the energy of the pair, and
-// moves neither disc farther than the pair flies, one relative to the other, in two steps. Discs that it
-// moves into others not near them, or into a wall, are found in the next step, by the same way back.
 
 namespace carom {
 
@@ -62,19 +44,6 @@ int* look_back_in_row(State<policies>& state, Strip<RealOf<policies.precision>>&
         }
     }
     return found;
-}
-
-/// When the discs of a near pair that has met came into contact, or a disc and a wall.
-template <Policies policies>
-RealOf<policies.precision> time_of(OverlappingDiscs discs, const State<policies>& state,
-                                   const WayBack<RealOf<policies.precision>>& back) {
-    const auto& disc = state.discs[static_cast<std::size_t>(discs.first)];
-    if (discs.at_wall()) [[unlikely]] {
-        return std::max(time_in_wall(disc.x, disc.vx, state.side, state.radius, back),
-                        time_in_wall(disc.y, disc.vy, state.side, state.radius, back));
-    }
-    return RelativeMotion(disc, state.discs[static_cast<std::size_t>(discs.second)], state.reach_squared())
-        .time_since_contact();
 }
 
 /// Drops the pending collisions of a strip of which a disc has collided in the sweep before; returns the end
@@ -124,36 +93,6 @@ Changes look_back(State<policies>& state, int index, int sweep,
     return changes;
 }
 
-/// A disc bounces off the walls that it met at that time, before now.
-template <Policies policies>
-Changes bounce_at(RealOf<policies.precision> time, State<policies>& state, int i,
-                  const WayBack<RealOf<policies.precision>>& back) {
-    auto& disc = state.discs[static_cast<std::size_t>(i)];
-    Changes changes;
-    if (time_in_wall(disc.x, disc.vx, state.side, state.radius, back) == time) {
-        bounce_back(disc.x, disc.vx, state.side, state.radius);
-        ++changes.walls;
-    }
-    if (time_in_wall(disc.y, disc.vy, state.side, state.radius, back) == time) {
-        bounce_back(disc.y, disc.vy, state.side, state.radius);
-        ++changes.walls;
-    }
-    return changes;
-}
-
-/// Makes one collision; returns what it changed.
-template <Policies policies>
-Changes collide(State<policies>& state, const NearPair<RealOf<policies.precision>>& pair,
-                const WayBack<RealOf<policies.precision>>& back,
-                const ApproachToleranceOf<policies>& approaching) {
-    const auto [first, second] = pair.discs;
-    if (pair.discs.at_wall()) {
-        return bounce_at(pair.time, state, first, back);
-    }
-    return {.pairs = collide_back(pair.time, state.discs[static_cast<std::size_t>(first)],
-                                  state.discs[static_cast<std::size_t>(second)], approaching)};
-}
-
 /// Moves those pending collisions of a strip that are the earliest known of both discs to `colliding`;
 /// returns its end.
 template <Policies policies>
@@ -195,7 +134,7 @@ Changes collide_earliest(State<policies>& state, int index, int sweep,
             strip.pending[static_cast<std::size_t>(strip.pending_count++)] = *k;
             continue;
         }
-        changes += collide(state, pair, back, approaching);
+        changes += collide_at(pair.time, state, pair.discs, back, approaching);
         for (const int disc : {first, second}) {
             earliest[disc].changed_in = sweep;
             marker.mark(blocks_of_disc[disc]);
@@ -225,25 +164,33 @@ template <Policies policies> void make_contacts(State<policies>& state, int inde
     strip.colliding.resize(strip.contacts.size() + 1);
 }
 
+/// Makes contacts of what is still overlapping at the end of the step, a strip to an iteration.
+template <Policies policies, class SomeProbe>
+    requires(policies.overlaps == Overlaps::contacts)
+Tally find_left(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
+    return parallel_for<policies.resolve_schedule>(
+        tuning.threads, state.grid.strip_count(strip_height(policies.order)), tuning.resolve_chunk, probe,
+        [&](int strip) {
+            make_contacts(state, strip);
+            return Tally{};
+        });
+}
+
 /// Takes collisions back to their time of contact, the earliest first, until none is left. The discs' places
-/// change; `find` has found what is near each other, and what is still overlapping is left as contacts.
+/// change; `find` has found what is near each other.
 ///
 /// Strips take turns as in a wavefront, two a sweep: what they write is known of, or done to, their own discs
 /// and those of the next one's first row (resolve_contacts.hpp).
 template <Policies policies, class SomeProbe>
+    requires(policies.overlaps == Overlaps::contacts)
 Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
-    using Real = typename State<policies>::Real;
-    const Real dt = Real{1} / static_cast<Real>(tuning.substeps);
-    const WayBack<Real> back{dt, dt * static_cast<Real>(state.steps_flown)};
+    const auto back = way_back(state, tuning);
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     const StripTurns turns(state.grid.strip_count(strip_height(policies.order)));
     Wavefront wavefront(turns.strips);
-    Tally total;
-    std::int64_t last_changes = few_changes;
-    for (int sweep = 0; sweep < most_impact_sweeps && last_changes > 0; ++sweep) {
-        probe.sweep_begin();
-        Tally work = parallel_for<policies.resolve_schedule>(
-            last_changes < few_changes ? 1 : tuning.threads, 2 * turns.strips, tuning.resolve_chunk, probe,
+    return sweep_impacts(tuning, probe, [&](int sweep, int threads) {
+        return parallel_for<policies.resolve_schedule>(
+            threads, 2 * turns.strips, tuning.resolve_chunk, probe,
             [&](int turn) {
                 const int strip = turns.strip(turn);
                 const bool looks = turns.sweep(turn) == 0;
@@ -253,17 +200,7 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
                 return Tally(changes);
             },
             [&](int turn) { return wavefront.can_begin(turns.strip(turn), 2 * sweep + turns.sweep(turn)); });
-        probe.sweep_end();
-        last_changes = work.pair_resolves + work.wall_resolves;
-        work.sweeps = 1;
-        total += work;
-    }
-    parallel_for<policies.resolve_schedule>(tuning.threads, turns.strips, tuning.resolve_chunk, probe,
-                                            [&](int strip) {
-                                                make_contacts(state, strip);
-                                                return Tally{};
-                                            });
-    return total;
+    });
 }
 
 } // namespace carom
