@@ -1,6 +1,7 @@
 """Every variant against every hard case: what was expected, and what came of it."""
 
 import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,8 @@ from analysis.records.studies import Study
 
 EXPECTATIONS_FILE = Path(__file__).parent / "hard_cases.toml"
 HOLDS, FAILS, LIMIT, UNMEASURED = "holds", "fails", "limit of the method", "not measured"
-COLUMNS = ["case", "series", "precision", "verdict", "value", "bound", "reason"]
+COLUMNS = ["case", "title", "series", "precision", "impact", "verdict", "value", "bound", "reason"]
+AT_CONTACT = "at_contact"
 
 
 @dataclass(frozen=True)
@@ -24,6 +26,8 @@ class Expectation:
 
     Where the method cannot be right, `limit` says why, and the measure is expected to be `at_least` so much
     in that precision: a smaller one would mean that the case no longer tests what it is for.
+
+    One with an `impact` is for the variants that make collisions then, in place of that for all.
     """
 
     name: str
@@ -33,6 +37,12 @@ class Expectation:
     at_least: dict[str, float] = field(default_factory=dict)
     equals: str | None = None
     limit: str = ""
+    impact: str = ""
+
+    @property
+    def title(self) -> str:
+        """The case, and for which variants this is if not for all of them."""
+        return f"{self.name}, {self.impact}" if self.impact else self.name
 
     @property
     def label(self) -> str:
@@ -50,13 +60,20 @@ LABELS = {
 
 def load() -> list[Expectation]:
     """Read the expectations, in the order of the table."""
-    return [
-        Expectation(**table) for table in tomllib.loads(EXPECTATIONS_FILE.read_text(encoding="utf-8"))["case"]
-    ]
+    tables = tomllib.loads(EXPECTATIONS_FILE.read_text(encoding="utf-8"))["case"]
+    return [expectation for table in tables for expectation in _of_table(table)]
+
+
+def _of_table(table: dict[str, Any]) -> Iterator[Expectation]:
+    at_contact = table.pop(AT_CONTACT, None)
+    yield Expectation(**table)
+    if at_contact is not None:
+        yield Expectation(table["name"], impact=AT_CONTACT, **at_contact)
 
 
 def evaluate(study: Study, experiment: str) -> pd.DataFrame:
-    """Return a row a case and series: `verdict`, `value` (of the case's measure), `bound`, `reason`.
+    """Return a row a case and series: `title` of its expectation, `verdict`, `value` (of the case's measure),
+    `bound`, `reason`.
 
     *holds*: every step passed the check and the measure is within its bound; *fails*: not so, `reason` says
     why; *limit of the method*: wrong as it must be; *not measured*: there is neither a record nor a failure.
@@ -66,15 +83,21 @@ def evaluate(study: Study, experiment: str) -> pd.DataFrame:
     failures = study.failures[study.failures["experiment"] == experiment]
     series = sorted(set(runs["series"]) | set(failures["series"].dropna()))
     precision = dict(zip(runs["series"], runs["precision"], strict=True))
+    impact = dict(zip(runs["series"], runs["impact"], strict=True))
+    expectations = _expectations(runs, failures)
+    special = {(expected.name, expected.impact) for expected in expectations if expected.impact}
     rows = [
         {
             "case": expected.name,
+            "title": expected.title,
             "series": one,
             "precision": precision.get(one),
+            "impact": impact.get(one),
             **_cell(expected, one, runs, failures),
         }
-        for expected in _expectations(runs, failures)
+        for expected in expectations
         for one in series
+        if ((expected.name, impact.get(one)) in special) == bool(expected.impact)
     ]
     return pd.DataFrame(rows, columns=COLUMNS)
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter
 
 from analysis.derived import hard_cases as cases
-from analysis.derived.hard_cases import FAILS, HOLDS, LIMIT, UNMEASURED
+from analysis.derived.hard_cases import AT_CONTACT, FAILS, HOLDS, LIMIT, UNMEASURED
 from analysis.figures.hover import Told, tell
 from analysis.figures.speed_against_error import power_of_ten
 from analysis.figures.style import BLUE, FAINT, INK, VERMILLION, Cell, Data, Drawing, Table, key, new_figure
@@ -33,18 +33,18 @@ def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
     table = cases.evaluate(data.study, experiment)
     if table.empty or (table["verdict"] == UNMEASURED).all():
         return None
-    expected = {one.name: one for one in cases.load()}
+    expected = {one.title: one for one in cases.load()}
     drawn = [
-        name
-        for name in dict.fromkeys(table["case"])
-        if table.loc[table["case"] == name, "value"].notna().any()
+        title
+        for title in dict.fromkeys(table["title"])
+        if table.loc[table["title"] == title, "value"].notna().any()
     ]
     figure, (axes,) = new_figure(0.9 + 0.22 * max(1, len(drawn)))
     _dots(axes, table, drawn)
-    _name_measures(axes, [expected[name].label if name in expected else "" for name in drawn])
+    _name_measures(axes, [expected[title].label if title in expected else "" for title in drawn])
     present = [precision for precision in COLOURS if (table["precision"] == precision).any()]
     key(axes, [*((f"● {one}", COLOURS[one]) for one in present), ("| bound", INK)])
-    labels = {name: expected[name].label if name in expected else "" for name in table["case"]}
+    labels = {title: expected[title].label if title in expected else "" for title in table["title"]}
     caption = (
         f"{subject}: {count(table['case'].nunique(), 'case')} and "
         f"{count(table['series'].nunique(), 'variant')}, a process for each. A dot is a variant on a case, "
@@ -54,15 +54,15 @@ def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
     return Drawing(figure, caption, tables=list(_tables(table, labels)))
 
 
-def _dots(axes: Axes, table: pd.DataFrame, names: list[str]) -> None:
-    shown = table[table["case"].isin(names) & table["value"].notna()]
+def _dots(axes: Axes, table: pd.DataFrame, titles: list[str]) -> None:
+    shown = table[table["title"].isin(titles) & table["value"].notna()]
     positive = pd.concat([shown["value"], shown["bound"].dropna()])
     positive = positive[positive > 0]
     zero = 10.0 ** (np.floor(np.log10(positive.min())) - 1) if len(positive) else 1e-16
-    heights = {name: -number for number, name in enumerate(names)}
+    heights = {title: -number for number, title in enumerate(titles)}
     for row in shown.to_dict("records"):
         colour = COLOURS.get(row["precision"], INK)
-        height = heights[row["case"]] - (0.14 if row["precision"] == "float" else -0.14)
+        height = heights[row["title"]] - (0.14 if row["precision"] == "float" else -0.14)
         value = max(row["value"], zero)
         inside = "white" if row["verdict"] == LIMIT else colour
         (dot,) = axes.plot(value, height, "o", color=colour, markerfacecolor=inside, markersize=3.5, zorder=3)
@@ -70,7 +70,7 @@ def _dots(axes: Axes, table: pd.DataFrame, names: list[str]) -> None:
         if pd.notna(row["bound"]):
             axes.plot([max(row["bound"], zero)] * 2, [height - 0.14, height + 0.14], color=INK, linewidth=1.1)
     axes.set_xscale("log")
-    axes.set_yticks(list(heights.values()), [name.replace("_", " ") for name in heights])
+    axes.set_yticks(list(heights.values()), [title.replace("_", " ") for title in heights])
     axes.tick_params(axis="y", length=0)
     axes.set_xlabel("what stands to the right of each case; relative where it has no unit")
     powers = range(round(np.log10(zero)) + 1, int(np.floor(np.log10(axes.get_xlim()[1]))) + 1)
@@ -100,25 +100,27 @@ def _name_measures(axes: Axes, labels: Sequence[str]) -> None:
 
 
 def _tables(table: pd.DataFrame, labels: dict[str, str]) -> Iterable[Table]:
-    """Yield a table for at most `WIDEST` variants of one precision: a row a case, a cell a verdict and a
-    number.
+    """Yield a table for at most `WIDEST` variants of one precision and one time of impact: a row a case, a
+    cell a verdict and a number.
     """
-    expects = {one.name: one.expects for one in cases.load()}
-    for precision, of_precision in table.fillna({"precision": ""}).groupby("precision"):
-        title = f"In {precision} precision:" if precision else "Without any record:"
-        series = list(dict.fromkeys(of_precision["series"]))
+    expects = {one.title: one.expects for one in cases.load()}
+    known = table.fillna({"precision": ""})
+    for (precision, at_contact), alike in known.groupby(["precision", known["impact"] == AT_CONTACT]):
+        collisions = ", collisions at contact" if at_contact else ""
+        heading = f"In {precision} precision{collisions}:" if precision else "Without any record:"
+        series = list(dict.fromkeys(alike["series"]))
         for first in range(0, len(series), WIDEST):
             chosen = series[first : first + WIDEST]
-            part = of_precision[of_precision["series"].isin(chosen)]
+            part = alike[alike["series"].isin(chosen)]
             rows = [
                 [
-                    Cell(f"{name.replace('_', ' ')}: {expects.get(name, '')}"),
-                    Cell(labels.get(name, "")),
+                    Cell(f"{case.replace('_', ' ')}: {expects.get(title, '')}"),
+                    Cell(labels.get(title, "")),
                     *map(_verdict, group.to_dict("records")),
                 ]
-                for name, group in part.groupby("case", sort=False)
+                for (case, title), group in part.groupby(["case", "title"], sort=False)
             ]
-            yield Table(title, ["Case, and what is expected", "Number", *chosen], rows)
+            yield Table(heading, ["Case, and what is expected", "Number", *chosen], rows)
 
 
 def _verdict(row: dict[str, object]) -> Cell:

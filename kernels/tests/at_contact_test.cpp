@@ -229,6 +229,37 @@ TEST(OverlapsLeft, AreWhatIsNearAndOverlaps) {
     EXPECT_GT(left, 10);
 }
 
+/// A blow goes through three in a row, beside a pair at rest. At first all six entries of lists are asked;
+/// then, after each of the two collisions, the four of the three.
+TEST(CollisionsAtContact, AskAgainOnlyWhoIsNearOne) {
+    const Scene scene{
+        .side = 30,
+        .radius = 1,
+        .steps = 1,
+        .discs = {
+            {10, 10, 1, 0}, {12.25, 10, 0, 0}, {14.375, 10, 0, 0}, {10, 20, 0, 0}, {12.0625, 20, 0, 0}}};
+    State<lists> state(scene);
+    NoProbe probe;
+    Tally work = found(state);
+    work += collide_at_contact(state, {}, probe);
+    EXPECT_EQ(work.pair_resolves, 2);
+    EXPECT_EQ(work.pair_attempts, 6 + 4 + 4);
+}
+
+/// One disc pushes another into a wall that this was not near: it stays in there, still moving into it. The
+/// next step follows it back to when it met the wall, a step ago.
+template <Policies policies> void leaves_to_the_next_step_who_is_pushed_into_a_wall() {
+    Scene scene{.side = 20, .radius = 1, .steps = 1, .discs = {{10, 1.625, 0, 0}, {10, 3.875, 0, -1}}};
+    EXPECT_EQ(tests::simulate<policies>(scene).discs[0], (Disc{10, 0.875, 0, -1}));
+    scene.steps = 2;
+    EXPECT_EQ(tests::simulate<policies>(scene).discs[0], (Disc{10, 2.125, 0, 1}));
+}
+
+TEST(CollisionsAtContact, LeaveToTheNextStepWhoIsPushedIntoAWall) {
+    leaves_to_the_next_step_who_is_pushed_into_a_wall<lists>();
+    leaves_to_the_next_step_who_is_pushed_into_a_wall<contacts>();
+}
+
 /// A disc strikes two at one instant. Of its speed the first gets 3/4 along its path, and the second less.
 TEST(CollisionsAtOneInstant, AreMadeWithTheLowestDiscFirst) {
     const Disc striker{10, 10, 1, 0};

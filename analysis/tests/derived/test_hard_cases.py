@@ -8,7 +8,7 @@ import pytest
 
 from analysis import report
 from analysis.derived import hard_cases
-from analysis.derived.hard_cases import FAILS, HOLDS, LABELS, LIMIT, UNMEASURED, Expectation
+from analysis.derived.hard_cases import AT_CONTACT, FAILS, HOLDS, LABELS, LIMIT, UNMEASURED, Expectation
 from analysis.figures.studies import draw_all
 from analysis.records.reading import load
 from analysis.records.studies import split
@@ -118,6 +118,47 @@ def test_the_report_has_verdict_and_number_of_every_cell(tmp_path: Path) -> None
     assert "Of 18 cells" in drawn.caption
 
 
+def at_contact(made: list[dict[str, Any]], series: str) -> None:
+    for record in made:
+        if record["tags"]["series"] == series:
+            record["axes"]["impact"] = AT_CONTACT
+
+
+def test_a_variant_at_contact_is_held_to_what_is_expected_of_such(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = Expectation("cradle", "exact", measure="path_end", at_most={"double": 1e-6}, impact=AT_CONTACT)
+    monkeypatch.setattr(hard_cases, "load", lambda: [*EXPECTED, own])
+    made = records()
+    at_contact(made, "row")
+    table = evaluated(tmp_path, made)
+    assert table.loc[("cradle", "row"), ["title", "verdict", "bound"]].to_list() == [
+        "cradle, at_contact", FAILS, 1e-6,
+    ]  # fmt: skip
+    assert table.loc[("cradle", "published"), ["title", "verdict", "bound"]].to_list() == [
+        "cradle", HOLDS, 1e-3,
+    ]  # fmt: skip
+    assert table.loc[("fast", "row"), "title"] == "fast"
+
+
+def test_variants_at_contact_have_a_table_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = Expectation("cradle", "exact", measure="energy", at_most={"double": 1e-6}, impact=AT_CONTACT)
+    monkeypatch.setattr(hard_cases, "load", lambda: [EXPECTED[0], own, *EXPECTED[1:]])
+    made = records()
+    at_contact(made, "row")
+    write(tmp_path, made)
+    (drawn,) = draw_all(tmp_path, formats=("svg",))
+    assert [(table.title, list(table.columns[2:])) for table in drawn.tables] == [
+        ("In double precision:", ["published"]),
+        ("In double precision, collisions at contact:", ["row"]),
+        ("In float precision:", ["float"]),
+    ]
+    cells = [[cell.text for cell in table.rows[0][:2]] for table in drawn.tables[:2]]
+    assert cells == [["cradle: right", LABELS["path_end"]], ["cradle: exact", LABELS["energy"]]]
+
+
 def test_a_variant_that_only_failed_has_a_table_too(tmp_path: Path) -> None:
     made = [record for record in records() if record["tags"]["series"] == "row"]
     made.append(failure("hard_cases", "nine", "step 3: left colliding", scene_name="cradle"))
@@ -131,7 +172,9 @@ def test_the_shipped_expectations_name_measures_that_exist(monkeypatch: pytest.M
     monkeypatch.undo()
     shipped = hard_cases.load()
     names = [one.name for one in shipped]
-    assert len(names) == len(set(names))
+    titles = [one.title for one in shipped]
+    assert len(titles) == len(set(titles))
+    assert {one.impact for one in shipped} == {"", AT_CONTACT}
     for one in shipped:
         assert one.expects
         assert one.measure in LABELS or one.equals in names or not one.measure
