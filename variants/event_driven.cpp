@@ -1,9 +1,12 @@
 #include "variants/event_driven.hpp"
 
-#include "kernels/exact/event_driven.hpp"
 #include "variants/name.hpp"
 
 namespace carom {
+
+template class EventDriven<double>;
+template class EventDriven<long double>;
+
 namespace {
 
 constexpr Policies policies{.impact = Impact::event_driven};

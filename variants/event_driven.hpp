@@ -1,8 +1,14 @@
 #pragma once
 
+#include "kernels/exact/event_driven.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {
+
+/// Compiled here once, as what is measured is: of two copies the linker keeps any, and the verbs, which are
+/// compiled in haste, would bring slow ones.
+extern template class EventDriven<double>;
+extern template class EventDriven<long double>;
 
 /// The event-driven simulation (kernels/exact/event_driven.hpp) as one more variant, beside the table: every
 /// collision at its time, in order, exact to rounding. Of the policies only `impact` and `precision` mean

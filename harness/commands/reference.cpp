@@ -10,7 +10,7 @@
 #include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
-#include "kernels/exact/event_driven.hpp"
+#include "variants/event_driven.hpp"
 
 namespace carom {
 namespace {

@@ -11,6 +11,8 @@
 #include "kernels/collide.hpp"
 #include "kernels/exact/event_cells.hpp"
 #include "kernels/exact/event_queue.hpp"
+#include "kernels/exact/first_collision.hpp"
+#include "kernels/exact/flight.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {
@@ -23,34 +25,35 @@ struct EventLimits {
 
 /// The exact reference: what the time step tends to as dt -> 0. Discs fly freely from event to event; pairs
 /// and walls collide at their exact times, in order (Alder and Wainwright, J. Chem. Phys. 31, 459, 1959).
+/// Events of one instant happen in the order of their discs.
 ///
 /// Each disc knows only its own next event, which stands in a queue of N times; an event whose partner has
 /// collided since it was foreseen is noticed when it comes up, and the disc looks ahead anew (lazy
 /// invalidation; Lubachevsky, J. Comput. Phys. 94, 255, 1991). Discs look into the nine cells around them and
-/// are moved only when something happens to them; crossing into another cell is an event, too. O(log N) an
-/// event.
+/// are moved only when something happens to them; crossing into another cell is an event, too. The work of an
+/// event does not depend on N, but where all discs no longer fit into a cache its time does: an event may be
+/// anywhere, and what the next ones will read is asked for ahead.
 ///
-/// Time of collision: |d + v t|^2 = (2r)^2 with a = |v|^2, b = d.v, c = |d|^2 - (2r)^2 has the earlier root
-/// t = (-b - sqrt(b^2 - a c)) / a. Approaching discs have b < 0, so the numerator cancels; multiplied out
-/// with its conjugate it is t = c / (-b + sqrt(b^2 - a c)), a sum of positive terms (Goldberg, ACM Computing
-/// Surveys 23, 5, 1991, section 1.4). Pairs that overlap (c < 0), at the start or by rounding, collide at
-/// once if they approach and are ignored while they part; so do walls. Centres so close that |d|^2 has too
-/// few bits left to give a normal do not collide.
+/// Pairs that overlap, at the start or by rounding, collide at once if they approach and are ignored while
+/// they part; so do walls. Centres that coincide have no normal and do not collide (first_collision.hpp).
 template <class Real> class EventDriven {
   public:
     explicit EventDriven(const Scene& scene)
-        : side_(static_cast<Real>(scene.side)), radius_(static_cast<Real>(scene.radius)), cells_(scene),
+        : walls_{static_cast<Real>(scene.radius),
+                 static_cast<Real>(scene.side) - static_cast<Real>(scene.radius)},
+          reach_squared_(4 * walls_[0] * walls_[0]), cells_(scene),
           queue_(static_cast<int>(scene.discs.size())) {
-        bodies_.reserve(scene.discs.size());
+        flights_.reserve(scene.discs.size());
         for (const Disc& disc : scene.discs) {
-            bodies_.push_back({.x = static_cast<Real>(disc.x),
-                               .y = static_cast<Real>(disc.y),
-                               .vx = static_cast<Real>(disc.vx),
-                               .vy = static_cast<Real>(disc.vy)});
-            const Body& one = bodies_.back();
-            cells_.insert(static_cast<int>(bodies_.size()) - 1, cells_.along(one.y), cells_.along(one.x));
+            flights_.push_back({.x = static_cast<Real>(disc.x),
+                                .y = static_cast<Real>(disc.y),
+                                .vx = static_cast<Real>(disc.vx),
+                                .vy = static_cast<Real>(disc.vy)});
+            Flight<Real>& one = flights_.back();
+            one.cell = cells_.cell_at(one.x, one.y);
+            cells_.insert(static_cast<int>(flights_.size()) - 1, one.cell);
         }
-        for (int i = 0; i < static_cast<int>(bodies_.size()); ++i) {
+        for (int i = 0; i < static_cast<int>(flights_.size()); ++i) {
             look_ahead(i);
         }
     }
@@ -59,13 +62,16 @@ template <class Real> class EventDriven {
     /// (as where a disc is wedged) or in all: it then stands at that instant.
     bool advance(Real time, const EventLimits& limits = {}) {
         std::int64_t at_once = 0;
-        while (!queue_.empty() && queue_.earliest_time() <= time) {
-            at_once = queue_.earliest_time() > now_ ? 0 : at_once + 1;
+        for (Real next = queue_.earliest_time(); next <= time; next = queue_.earliest_time()) {
+            at_once = next > now_ ? 0 : at_once + 1;
             ++events_;
             if (at_once > limits.at_once || events_ > limits.in_all) {
                 return false;
             }
-            now_ = std::max(now_, queue_.earliest_time());
+            now_ = std::max(now_, next);
+            if (flights_.size() > at_hand) {
+                prefetch_what_comes();
+            }
             happen(queue_.earliest());
         }
         now_ = std::max(now_, time);
@@ -74,13 +80,13 @@ template <class Real> class EventDriven {
 
     /// Reverses all velocities: from here on the discs go back the way they came.
     void turn_back() {
-        for (Body& body : bodies_) {
-            move_to_now(body);
-            body.vx = -body.vx;
-            body.vy = -body.vy;
-            ++body.age;
+        for (Flight<Real>& one : flights_) {
+            one.move_to(now_);
+            one.vx = -one.vx;
+            one.vy = -one.vy;
+            ++one.age;
         }
-        for (int i = 0; i < static_cast<int>(bodies_.size()); ++i) {
+        for (int i = 0; i < static_cast<int>(flights_.size()); ++i) {
             look_ahead(i);
         }
     }
@@ -88,10 +94,10 @@ template <class Real> class EventDriven {
     /// The discs as they are now, disc i at index i.
     std::vector<BasicDisc<Real>> discs() const {
         std::vector<BasicDisc<Real>> result;
-        result.reserve(bodies_.size());
-        for (const Body& body : bodies_) {
-            const Real elapsed = now_ - body.time;
-            result.push_back({body.x + body.vx * elapsed, body.y + body.vy * elapsed, body.vx, body.vy});
+        result.reserve(flights_.size());
+        for (const Flight<Real>& one : flights_) {
+            const Real elapsed = now_ - one.time;
+            result.push_back({one.x + one.vx * elapsed, one.y + one.vy * elapsed, one.vx, one.vy});
         }
         return result;
     }
@@ -111,47 +117,62 @@ template <class Real> class EventDriven {
     const std::array<Real, 2>& momentum_from_walls() const { return momentum_from_walls_; }
 
   private:
-    static constexpr int none = EventCells<Real>::none;
     static constexpr int wall_x = -2;
     static constexpr int wall_y = -3;
     static constexpr Real never = std::numeric_limits<Real>::infinity();
+    static constexpr std::size_t at_hand = 4096; ///< discs in 256 KiB, which a second cache holds
 
-    struct Body {
-        Real x = 0;
-        Real y = 0;
-        Real vx = 0;
-        Real vy = 0;
-        Real time = 0;                 ///< at which x and y are where it was
-        Real collision_time = never;   ///< of the next collision foreseen
-        Real crossing_time = never;    ///< of the next crossing into another cell
-        int partner = none;            ///< of the next collision: a disc or a wall
-        std::uint32_t partner_age = 0; ///< the partner's age when it was foreseen
-        std::uint32_t age = 0;         ///< collisions so far
-        bool crosses_row = false;
-    };
+    Flight<Real>& flight(int i) { return flights_[static_cast<std::size_t>(i)]; }
 
-    Body& body(int i) { return bodies_[static_cast<std::size_t>(i)]; }
+    /// Asks for what the next events will read. Each thing must have arrived for the next to be known, so
+    /// that it takes as many events: the disc; its cells and its partner; who is in its cells, and the cells
+    /// of its partner; who is in those. No result depends on it.
+    [[gnu::always_inline]] void prefetch_what_comes() {
+        __builtin_prefetch(&flight(queue_.coming(3)));
+        const Flight<Real>& third = flight(queue_.coming(2));
+        prefetch_cells(third.cell);
+        if (third.partner >= 0) {
+            __builtin_prefetch(&flight(third.partner));
+            queue_.prefetch(third.partner);
+        }
+        const Flight<Real>& second = flight(queue_.coming(1));
+        prefetch_discs(second.cell);
+        if (second.partner >= 0) {
+            prefetch_cells(flight(second.partner).cell);
+        }
+        const Flight<Real>& first = flight(queue_.coming(0));
+        if (first.partner >= 0) {
+            prefetch_discs(flight(first.partner).cell);
+        }
+    }
 
-    void move_to_now(Body& one) const {
-        const Real elapsed = now_ - one.time;
-        one.x += one.vx * elapsed;
-        one.y += one.vy * elapsed;
-        one.time = now_;
+    [[gnu::always_inline]] void prefetch_cells(int cell) const {
+        for (const int middle : {cell - cells_.stride(), cell, cell + cells_.stride()}) {
+            __builtin_prefetch(&cells_[middle - 1]);
+            __builtin_prefetch(&cells_[middle + 1]);
+        }
+    }
+
+    [[gnu::always_inline]] void prefetch_discs(int cell) {
+        for (const int offset : nine_) {
+            __builtin_prefetch(&flight(cells_[cell + offset].discs[0]));
+            __builtin_prefetch(&flight(cells_[cell + offset].discs[1]));
+        }
     }
 
     /// The next event of disc i, which has come up.
     void happen(int i) {
-        Body& one = body(i);
-        if (one.crossing_time < one.collision_time) {
+        Flight<Real>& one = flight(i);
+        if (now_ < one.collision_time) {
             cross(i);
             return;
         }
-        move_to_now(one);
+        one.move_to(now_);
         if (one.partner >= 0) {
-            Body& other = body(one.partner);
+            const int partner = one.partner;
+            Flight<Real>& other = flight(partner);
             if (other.age == one.partner_age) {
-                const int partner = one.partner;
-                move_to_now(other);
+                other.move_to(now_);
                 collide(one, other);
                 look_ahead(partner);
             }
@@ -161,7 +182,7 @@ template <class Real> class EventDriven {
         look_ahead(i);
     }
 
-    void collide(Body& one, Body& other) {
+    void collide(Flight<Real>& one, Flight<Real>& other) {
         const Real dx = other.x - one.x;
         const Real dy = other.y - one.y;
         const Real approach = (other.vx - one.vx) * dx + (other.vy - one.vy) * dy;
@@ -175,7 +196,7 @@ template <class Real> class EventDriven {
         ++pair_collisions_;
     }
 
-    void bounce(Body& one) {
+    void bounce(Flight<Real>& one) {
         Real& velocity = one.partner == wall_x ? one.vx : one.vy;
         velocity = -velocity;
         wall_impulse_ += 2 * std::abs(velocity);
@@ -187,108 +208,69 @@ template <class Real> class EventDriven {
     /// Moves disc i, which is at the edge of its cell, into the next one and looks into the cells that came
     /// into reach.
     void cross(int i) {
-        Body& one = body(i);
-        move_to_now(one);
-        const int row = cells_.place(i).row;
-        const int column = cells_.place(i).column;
-        const int step = (one.crosses_row ? one.vy : one.vx) > 0 ? 1 : -1;
-        const int along = (one.crosses_row ? row : column) + step;
-        cells_.remove(i);
-        cells_.insert(i, one.crosses_row ? along : row, one.crosses_row ? column : along);
-        const int ahead = along + step;
-        if (ahead >= 0 && ahead < cells_.per_side()) {
-            const int across = one.crosses_row ? column : row;
-            for (int k = std::max(across - 1, 0); k <= std::min(across + 1, cells_.per_side() - 1); ++k) {
-                foresee_cell(i, one.crosses_row ? ahead : k, one.crosses_row ? k : ahead);
-            }
+        Flight<Real>& one = flight(i);
+        const bool in_y = time_to_crossing_y(one) < time_to_crossing_x(one);
+        one.move_to(now_);
+        const int across = in_y ? 1 : cells_.stride();
+        const int along = in_y ? cells_.stride() : 1;
+        const int step = (in_y ? one.vy : one.vx) > 0 ? along : -along;
+        cells_.remove(i, one.cell);
+        one.cell += step;
+        cells_.insert(i, one.cell);
+        FirstCollision<Real> first(flights_, cells_, i, reach_squared_);
+        for (const int offset : {step - across, step, step + across}) {
+            first.look_into(one.cell + offset);
         }
-        foresee_crossing(i);
-        queue_.set(i, std::min(one.collision_time, one.crossing_time));
+        first.foresee();
+        schedule(i);
     }
 
     /// Foresees the next event of disc i, which has been moved to now, from nothing.
     void look_ahead(int i) {
-        Body& one = body(i);
+        Flight<Real>& one = flight(i);
         one.collision_time = never;
-        one.partner = none;
+        one.partner = Flight<Real>::nobody;
         foresee_wall(one, one.x, one.vx, wall_x);
         foresee_wall(one, one.y, one.vy, wall_y);
-        const auto& place = cells_.place(i);
-        const int last = cells_.per_side() - 1;
-        for (int row = std::max(place.row - 1, 0); row <= std::min(place.row + 1, last); ++row) {
-            for (int column = std::max(place.column - 1, 0); column <= std::min(place.column + 1, last);
-                 ++column) {
-                foresee_cell(i, row, column);
-            }
+        FirstCollision<Real> first(flights_, cells_, i, reach_squared_);
+        for (const int offset : nine_) {
+            first.look_into(one.cell + offset);
         }
-        foresee_crossing(i);
-        queue_.set(i, std::min(one.collision_time, one.crossing_time));
+        first.foresee();
+        schedule(i);
     }
 
-    void foresee_wall(Body& one, Real position, Real velocity, int wall) const {
-        if (velocity == 0) {
-            return;
-        }
-        const Real wall_position = velocity < 0 ? radius_ : side_ - radius_;
-        const Real time = now_ + std::max((wall_position - position) / velocity, Real(0));
-        if (time < one.collision_time) {
-            one.collision_time = time;
-            one.partner = wall;
-        }
+    void foresee_wall(Flight<Real>& one, Real position, Real velocity, int wall) const {
+        const Real time = now_ + time_to(walls_[velocity > 0 ? 1 : 0], position, velocity);
+        one.partner = time < one.collision_time ? wall : one.partner;
+        one.collision_time = std::min(one.collision_time, time);
     }
 
-    void foresee_cell(int i, int row, int column) {
-        Body& one = body(i);
-        for (int j = cells_.first_in(row, column); j != none; j = cells_.place(j).next) {
-            if (j == i) {
-                continue;
-            }
-            const Body& other = body(j);
-            const Real time = now_ + time_to_collision(one, other);
-            if (time < one.collision_time) {
-                one.collision_time = time;
-                one.partner = j;
-                one.partner_age = other.age;
-            }
-        }
+    /// How long until a disc is there along an axis, which it flies towards; at once if it is beyond.
+    static Real time_to(Real target, Real position, Real velocity) {
+        return velocity == 0 ? never : std::max((target - position) / velocity, Real(0));
     }
 
-    /// Of two discs, the first of which has been moved to now.
-    Real time_to_collision(const Body& one, const Body& other) const {
-        const Real elapsed = now_ - other.time;
-        const Real dx = other.x + other.vx * elapsed - one.x;
-        const Real dy = other.y + other.vy * elapsed - one.y;
-        const Real vx = other.vx - one.vx;
-        const Real vy = other.vy - one.vy;
-        const Real b = dx * vx + dy * vy;
-        if (!(b < 0)) {
-            return never;
-        }
-        const Real distance_squared = dx * dx + dy * dy;
-        if (distance_squared < coincident_squared<Real>) {
-            return never;
-        }
-        const Real c = distance_squared - 4 * radius_ * radius_;
-        if (c <= 0) {
-            return Real(0);
-        }
-        const Real discriminant = b * b - (vx * vx + vy * vy) * c;
-        return discriminant < 0 ? never : c / (std::sqrt(discriminant) - b);
+    Real time_to_crossing_x(const Flight<Real>& one) const {
+        return time_to(cells_.edge_x(one.cell, one.vx > 0), one.x, one.vx);
     }
 
-    void foresee_crossing(int i) {
-        Body& one = body(i);
-        const Real in_x = cells_.time_to_crossing(one.x, one.vx, cells_.place(i).column);
-        const Real in_y = cells_.time_to_crossing(one.y, one.vy, cells_.place(i).row);
-        one.crosses_row = in_y < in_x;
-        one.crossing_time = now_ + std::min(in_x, in_y);
+    Real time_to_crossing_y(const Flight<Real>& one) const {
+        return time_to(cells_.edge_y(one.cell, one.vy > 0), one.y, one.vy);
     }
 
-    Real side_;
-    Real radius_;
+    void schedule(int i) {
+        const Flight<Real>& one = flight(i);
+        const Real crossing_time = now_ + std::min(time_to_crossing_x(one), time_to_crossing_y(one));
+        queue_.set(i, std::min(one.collision_time, crossing_time));
+    }
+
+    std::array<Real, 2> walls_; ///< how far a centre comes, down and up
+    Real reach_squared_;        ///< (2r)^2
     Real now_ = 0;
-    std::vector<Body> bodies_;
+    std::vector<Flight<Real>> flights_;
     EventCells<Real> cells_;
+    std::array<int, 9> nine_ = cells_.nine();
     EventQueue<Real> queue_;
     std::int64_t events_ = 0;
     std::int64_t pair_collisions_ = 0;

@@ -46,6 +46,22 @@ inline Scene random_scene(int count, double side, double radius, int steps, doub
     return scene;
 }
 
+/// Discs of radius 1 on a square lattice, none touching, with random velocity components in [-1, 1).
+inline Scene lattice_scene(int per_side, double area_fraction, std::uint64_t seed) {
+    const double side = std::sqrt(per_side * per_side * std::numbers::pi / area_fraction);
+    const double spacing = side / per_side;
+    Random random(seed);
+    Scene scene{.side = side, .radius = 1, .steps = 1, .discs = {}};
+    for (int row = 0; row < per_side; ++row) {
+        for (int column = 0; column < per_side; ++column) {
+            const double vx = random.uniform(-1, 1);
+            scene.discs.push_back(
+                {spacing * (column + 0.5), spacing * (row + 0.5), vx, random.uniform(-1, 1)});
+        }
+    }
+    return scene;
+}
+
 /// Random discs whose areas add up to `area_fraction` of the box's.
 inline Scene random_scene_of_density(int count, double area_fraction, int steps, std::uint64_t seed) {
     const double side = std::sqrt(count * std::numbers::pi / area_fraction);

@@ -11,23 +11,6 @@
 namespace carom::tests {
 namespace {
 
-/// Discs at rest on a square lattice, none touching, with random velocity components in [-1, 1).
-Scene lattice(int per_side, double area_fraction, std::uint64_t seed) {
-    const int count = per_side * per_side;
-    const double side = std::sqrt(count * std::numbers::pi / area_fraction);
-    const double spacing = side / per_side;
-    Random random(seed);
-    Scene scene{.side = side, .radius = 1, .steps = 1, .discs = {}};
-    for (int row = 0; row < per_side; ++row) {
-        for (int column = 0; column < per_side; ++column) {
-            const double vx = random.uniform(-1, 1);
-            scene.discs.push_back(
-                {spacing * (column + 0.5), spacing * (row + 0.5), vx, random.uniform(-1, 1)});
-        }
-    }
-    return scene;
-}
-
 template <class Disc> double twice_energy(const std::vector<Disc>& discs) {
     double sum = 0;
     for (const auto& disc : discs) {
@@ -127,7 +110,7 @@ TEST(EventDriven, WedgedDiscIsReportedInsteadOfHanging) {
 }
 
 TEST(EventDriven, GivesUpAtTheLimitOfEventsItIsGiven) {
-    EventDriven<double> reference(lattice(10, 0.5, 1));
+    EventDriven<double> reference(lattice_scene(10, 0.5, 1));
     EXPECT_FALSE(reference.advance(10, {.in_all = 100}));
     EXPECT_EQ(reference.events(), 101);
     EXPECT_LT(reference.time(), 10);
@@ -158,7 +141,7 @@ TEST(EventDriven, NoDiscsAndOneAtRest) {
 }
 
 TEST(EventDriven, KeepsEnergyAndNeverOverlapsOverManyCollisions) {
-    const Scene scene = lattice(30, 0.6, 7);
+    const Scene scene = lattice_scene(30, 0.6, 7);
     EventDriven<double> reference(scene);
     ASSERT_TRUE(reference.advance(60));
     EXPECT_GT(reference.pair_collisions(), 50'000);
@@ -186,7 +169,7 @@ template <class Real> double missed_after(const Scene& scene, double time) {
 /// eleven bits more of long double make every error 2^11 times smaller, and so the horizon longer: it is
 /// rounding that sets it, nothing else.
 TEST(EventDriven, FindsItsWayBackWhileRoundingAllows) {
-    const Scene scene = lattice(10, 0.3, 3);
+    const Scene scene = lattice_scene(10, 0.3, 3);
     EXPECT_LT(missed_after<double>(scene, 5), 1e-9);
     EXPECT_LT(missed_after<double>(scene, 32), 0.1);
     EXPECT_GT(missed_after<double>(scene, 40), 0.1);
@@ -200,7 +183,7 @@ TEST(EventDriven, FindsItsWayBackWhileRoundingAllows) {
 }
 
 TEST(EventDriven, LongDoubleKnowsTheErrorOfDouble) {
-    const Scene scene = lattice(10, 0.3, 5);
+    const Scene scene = lattice_scene(10, 0.3, 5);
     EventDriven<double> coarse(scene);
     EventDriven<long double> fine(scene);
     ASSERT_TRUE(coarse.advance(3));
@@ -233,7 +216,7 @@ TEST(EventDriven, PressureFollowsTheHardDiscEquationOfState) {
     };
     for (const auto& [area_fraction, time] :
          {Case{0.1, 6000}, Case{0.3, 1000}, Case{0.5, 300}, Case{0.6, 200}}) {
-        const Scene scene = lattice(40, area_fraction, 11);
+        const Scene scene = lattice_scene(40, area_fraction, 11);
         const double temperature = twice_energy(scene.discs) / (2 * static_cast<double>(scene.discs.size()));
         EventDriven<double> reference(scene);
         ASSERT_TRUE(reference.advance(20));

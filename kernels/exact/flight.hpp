@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "kernels/cache_line.hpp"
+
+namespace carom {
+
+/// A disc in free flight, and the collision that it has foreseen. In double it is one cache line: nothing
+/// else is asked of a disc that is near another one.
+template <class Real> struct alignas(cache_line) Flight {
+    static constexpr int nobody = -1;
+
+    Real x = 0;
+    Real y = 0;
+    Real vx = 0;
+    Real vy = 0;
+    Real time = 0;                                               ///< at which x and y are where it was
+    Real collision_time = std::numeric_limits<Real>::infinity(); ///< of the next collision foreseen
+    int partner = nobody;                                        ///< of the next collision: a disc or a wall
+    std::uint32_t partner_age = 0;                               ///< the partner's age when it was foreseen
+    std::uint32_t age = 0;                                       ///< collisions so far
+    int cell = 0;                                                ///< of EventCells
+
+    void move_to(Real now) {
+        const Real elapsed = now - time;
+        x += vx * elapsed;
+        y += vy * elapsed;
+        time = now;
+    }
+};
+
+} // namespace carom
