@@ -168,12 +168,12 @@ template <Policies policies> void make_contacts(State<policies>& state, int inde
 template <Policies policies, class SomeProbe>
     requires(policies.overlaps == Overlaps::contacts)
 Tally find_left(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
-    return parallel_for<policies.resolve_schedule>(
-        tuning.threads, state.grid.strip_count(strip_height(policies.order)), tuning.resolve_chunk, probe,
-        [&](int strip) {
-            make_contacts(state, strip);
-            return Tally{};
-        });
+    return parallel_for<policies.resolve_schedule>(tuning.threads,
+                                                   state.grid.strip_count(strip_height(policies.order)),
+                                                   tuning.resolve_chunk, probe, [&](int strip) {
+                                                       make_contacts(state, strip);
+                                                       return Tally{};
+                                                   });
 }
 
 /// Takes collisions back to their time of contact, the earliest first, until none is left. The discs' places

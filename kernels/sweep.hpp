@@ -22,10 +22,10 @@
 // side, at least 4r, apart there: a contradiction. Between two strips of one parity lies a whole strip, of at
 // least two boxes of more than 2r: again more than 4r. (A centre outside the scene is binned as if moved to
 // the nearest edge, which brings no two discs further apart. With Impact::at_contact discs have moved since
-// they were binned; those of a list were within 2R of each other then, and boxes are made for the wider R: the
-// same again with R for r.) The iterations of one colour, or of one parity of rows, therefore neither write
-// what another reads nor depend on the order in which they run: the result is the same, to the last bit, for
-// any number of threads and any schedule.
+// they were binned; those of a list were within 2R of each other then, and boxes are made for the wider R:
+// the same again with R for r.) The iterations of one colour, or of one parity of rows, therefore neither
+// write what another reads nor depend on the order in which they run: the result is the same, to the last
+// bit, for any number of threads and any schedule.
 
 namespace carom {
 

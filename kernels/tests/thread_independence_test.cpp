@@ -77,15 +77,29 @@ TEST(ThreadIndependence, OfEveryPolicyInEveryScene) {
                                                .resolve_schedule = dynamic}>();
 }
 
+constexpr Policies at_contact(Policies policies) {
+    policies.impact = Impact::at_contact;
+    return policies;
+}
+
 TEST(ThreadIndependence, OfCollisionsAtContactInEveryScene) {
-    constexpr auto dynamic = Schedule::dynamic;
-    constexpr auto at_contact = [](Policies policies) {
-        policies.impact = Impact::at_contact;
-        return policies;
-    };
-    depends_on_no_thread_in_any_scene<at_contact(with(Order::checkered, dynamic))>();
+    depends_on_no_thread_in_any_scene<at_contact(with(Order::checkered, Schedule::dynamic))>();
     depends_on_no_thread_in_any_scene<at_contact(with(Order::row, Schedule::guided))>();
     depends_on_no_thread_in_any_scene<at_contact({.order = Order::strips, .storage = Storage::sorted})>();
+}
+
+/// So many discs that later sweeps, too, change enough to run on all threads.
+TEST(ThreadIndependence, OfCollisionsAtContactInManySweeps) {
+    constexpr Policies policies = at_contact(with(Order::checkered, Schedule::dynamic_chunk));
+    const Scene scene = tests::random_scene_of_density(8000, 0.8, 2, 83);
+    const Outcome expected = simulate<policies>(scene, {.threads = 1});
+    ASSERT_GT(expected.work.pair_resolves, 16 * few_changes);
+    for (const int threads : {2, 3, 8}) {
+        for (const int chunk : {1, 5}) {
+            const Tuning tuning{.threads = threads, .find_chunk = chunk, .resolve_chunk = chunk};
+            expect_same(expected, simulate<policies>(scene, tuning), threads, chunk);
+        }
+    }
 }
 
 TEST(ThreadIndependence, OfTheSequentialOrders) {
