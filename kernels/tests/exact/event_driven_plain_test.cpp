@@ -139,7 +139,7 @@ template <class Real> void expect_the_same(const Scene& scene, double time, doub
 }
 
 TEST(EventDriven, DoesWhatAllPairsAskedBeforeEveryEventDo) {
-    for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
         expect_the_same<double>(lattice_scene(6, 0.05, seed), 40, 1e-7);
         expect_the_same<double>(lattice_scene(7, 0.3, seed), 8, 1e-9);
         expect_the_same<double>(lattice_scene(8, 0.7, seed), 1, 1e-10);
