@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "cache_line.hpp"
 #include "grid.hpp"
+#include "parallel_for.hpp"
 #include "policies.hpp"
 
 namespace carom {

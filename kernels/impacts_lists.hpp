@@ -7,7 +7,6 @@
 #include <iterator>
 #include <limits>
 
-#include "cache_line.hpp"
 #include "collide.hpp"
 #include "contacts.hpp"
 #include "find.hpp"

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "cache_line.hpp"
 #include "parallel_for.hpp"
 #include "policies.hpp"
 #include "resolve_contacts.hpp"

@@ -100,7 +100,7 @@ def _costs(axes: Axes, made: pd.DataFrame) -> None:
     axes.set_ylim(0, 1.03)
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:.0f} %"))
     axes.set_ylabel("promises that cost at most this")
-    axes.set_xlabel("time, over the cheapest that keeps the bound")
+    axes.set_xlabel("time relative to the cheapest that does")
 
 
 def _caption(subject: str, table: pd.DataFrame, made: pd.DataFrame) -> str:

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "kernels/cache_line.hpp"
+#include "kernels/parallel_for.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/probe.hpp"
 

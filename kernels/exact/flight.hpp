@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "kernels/cache_line.hpp"
+#include "kernels/parallel_for.hpp"
 
 namespace carom {
 
