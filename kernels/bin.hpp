@@ -4,7 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -53,22 +56,56 @@ void for_each_part(const Tuning& tuning, SomeProbe& probe, const Body& body) {
     });
 }
 
-/// Of each part's discs, how many each box holds.
+/// The boxes from the first to the last of those of some discs.
+inline BoxRange range_of(std::span<const int> box_of_disc) {
+    BoxRange range{.first = std::numeric_limits<int>::max(), .last = -1};
+    for (const int box : box_of_disc) {
+        range.first = std::min(range.first, box);
+        range.last = std::max(range.last, box);
+    }
+    return box_of_disc.empty() ? BoxRange{.first = 0, .last = -1} : range;
+}
+
+/// Parts among which so few boxes are left out that to look for them takes longer.
+inline constexpr int few_parts = 2;
+
+/// Of one part's discs, how many each box holds.
 template <Policies policies> void count_part(State<policies>& state, int part, int parts) {
-    std::vector<int>& places = state.places[static_cast<std::size_t>(part)];
-    places.assign(static_cast<std::size_t>(state.grid.box_count()), 0);
-    for (int i = share(part, parts, state.count()); i < share(part + 1, parts, state.count()); ++i) {
-        ++places[static_cast<std::size_t>(state.box_of_disc[static_cast<std::size_t>(i)])];
+    PlacesOfPart& places = state.places[static_cast<std::size_t>(part)];
+    const auto first = static_cast<std::size_t>(share(part, parts, state.count()));
+    const auto last = static_cast<std::size_t>(share(part + 1, parts, state.count()));
+    const std::span<const int> box_of_disc(state.box_of_disc.data() + first, last - first);
+    places.boxes =
+        parts > few_parts ? range_of(box_of_disc) : BoxRange{.first = 0, .last = state.grid.box_count() - 1};
+    places.by_box.assign(static_cast<std::size_t>(places.boxes.count()), 0);
+    for (const int box : box_of_disc) {
+        ++places[box];
     }
 }
 
-/// How many discs the boxes of one part hold.
-template <Policies policies> int total_of_part(const State<policies>& state, int part, int parts) {
+/// The boxes of one part of them.
+template <Policies policies> BoxRange boxes_of_part(const State<policies>& state, int part, int parts) {
     const int boxes = state.grid.box_count();
+    return {.first = share(part, parts, boxes), .last = share(part + 1, parts, boxes) - 1};
+}
+
+/// The parts of the discs from the first to the last that may have one in `boxes`.
+inline std::span<PlacesOfPart> parts_that_meet(std::vector<PlacesOfPart>& places, BoxRange boxes) {
+    const auto meets = [&](const PlacesOfPart& part) { return part.meets(boxes); };
+    const auto first = std::find_if(places.begin(), places.end(), meets);
+    const auto last = std::find_if(places.rbegin(), std::make_reverse_iterator(first), meets).base();
+    return {first, last};
+}
+
+/// How many discs the boxes of one part hold.
+template <Policies policies> int total_of_part(State<policies>& state, int part, int parts) {
+    const BoxRange boxes = boxes_of_part(state, part, parts);
     int total = 0;
-    for (const std::vector<int>& places : state.places) {
-        total = std::accumulate(places.begin() + share(part, parts, boxes),
-                                places.begin() + share(part + 1, parts, boxes), total);
+    for (PlacesOfPart& places : parts_that_meet(state.places, boxes)) {
+        const int last = std::min(boxes.last, places.boxes.last);
+        for (int box = std::max(boxes.first, places.boxes.first); box <= last; ++box) {
+            total += places[box];
+        }
     }
     return total;
 }
@@ -76,23 +113,25 @@ template <Policies policies> int total_of_part(const State<policies>& state, int
 /// Turns the counts of one part of the boxes into places, the first of them `place`: those of a box's discs
 /// follow one another in the order of the parts of the discs, and boxes follow boxes.
 template <Policies policies> void place_part(State<policies>& state, int part, int parts, int place) {
-    const int boxes = state.grid.box_count();
-    for (auto box = static_cast<std::size_t>(share(part, parts, boxes));
-         box < static_cast<std::size_t>(share(part + 1, parts, boxes)); ++box) {
-        state.box_begin[box] = place;
-        for (std::vector<int>& places : state.places) {
-            place += std::exchange(places[box], place);
+    const BoxRange boxes = boxes_of_part(state, part, parts);
+    const std::span<PlacesOfPart> near = parts_that_meet(state.places, boxes);
+    for (int box = boxes.first; box <= boxes.last; ++box) {
+        state.box_begin[static_cast<std::size_t>(box)] = place;
+        for (PlacesOfPart& places : near) {
+            if (places.holds(box)) {
+                place += std::exchange(places[box], place);
+            }
         }
     }
 }
 
 template <Policies policies> void scatter_part(State<policies>& state, int part, int parts) {
-    std::vector<int>& places = state.places[static_cast<std::size_t>(part)];
+    PlacesOfPart& places = state.places[static_cast<std::size_t>(part)];
     [[maybe_unused]] const auto per_side = 1 / state.side;
     for (int i = share(part, parts, state.count()); i < share(part + 1, parts, state.count()); ++i) {
         const auto from = static_cast<std::size_t>(i);
         const int box = state.box_of_disc[from];
-        const auto to = static_cast<std::size_t>(places[static_cast<std::size_t>(box)]++);
+        const auto to = static_cast<std::size_t>(places[box]++);
         state.spare_discs[to] = state.discs[from];
         state.spare_numbers[to] = state.numbers[from];
         state.spare_box_of_disc[to] = box;

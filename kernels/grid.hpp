@@ -12,6 +12,8 @@ namespace carom {
 struct BoxRange {
     int first;
     int last;
+
+    int count() const { return last - first + 1; }
 };
 
 /// The geometry of a square of boxes laid over the scene. A centre outside the scene belongs to the nearest

@@ -26,7 +26,7 @@ template <Policies policies, class SomeProbe>
     requires(policies.storage == Storage::sorted)
 void move(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     using Real = typename State<policies>::Real;
-    constexpr int block = 1024;
+    constexpr int block = 256;
     const Real dt = Real{1} / static_cast<Real>(tuning.substeps);
     const int count = state.count();
     const int blocks = (count + block - 1) / block;

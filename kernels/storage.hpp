@@ -69,6 +69,18 @@ struct Indices {
     Iterator end() const { return {last}; }
 };
 
+/// What one part of the discs brings to the sort: how many each box holds, and then the place of the next of
+/// them there. Of the boxes from the first to the last that hold one: after the first sort few, since discs
+/// do not move far in a step.
+struct PlacesOfPart {
+    BoxRange boxes{.first = 0, .last = -1};
+    std::vector<int> by_box;
+
+    int& operator[](int box) { return by_box[static_cast<std::size_t>(box - boxes.first)]; }
+    bool holds(int box) const { return boxes.first <= box && box <= boxes.last; }
+    bool meets(BoxRange others) const { return boxes.first <= others.last && others.first <= boxes.last; }
+};
+
 /// Discs in the order of their boxes, row by row; in a box they keep the order that they had before. A box is
 /// a range of indices, and so is a run of neighbouring boxes of one row.
 template <class Real> struct DiscsOf<Storage::sorted, Real> {
@@ -83,8 +95,7 @@ template <class Real> struct DiscsOf<Storage::sorted, Real> {
     UntouchedVector<BasicDisc<Real>> spare_discs; ///< what the sort writes into, then swapped
     UntouchedVector<int> spare_numbers;
     UntouchedVector<int> spare_box_of_disc;
-    std::vector<std::vector<int>>
-        places; ///< of each part of the sort: for each box, its discs, then their place
+    std::vector<PlacesOfPart> places; ///< of each part of the sort
 
     DiscsOf(const Scene& scene, const Grid& grid, int threads)
         : discs(scene.discs.size()), numbers(discs.size()), box_of_disc(discs.size()),
