@@ -21,7 +21,7 @@ namespace {
 
 /// What the event-driven simulation may take of a trial; the others, which are given up as soon as they cost
 /// more than the cheapest that will do, take some ten times as much together.
-constexpr double seconds_of_one = 0.04;
+constexpr double seconds_of_one = 0.06;
 constexpr double seconds_of_all = 0.8;
 constexpr int most_substeps = 64;
 
@@ -33,6 +33,21 @@ constexpr int further_rounds = 2;
 
 /// Of the error of paths in a piece, which is not the scene.
 constexpr double margin_of_piece = 0.25;
+
+/// What a trial runs: the scene where it is small, or all of its run costs little, so that nothing of it is
+/// left open; else a piece.
+Scene scene_of_trial(const Scene& scene, Measure measure) {
+    Scene piece = fullest_piece(scene, largest_trial(measure));
+    if (measure == Measure::path || piece.discs.size() == scene.discs.size()) {
+        return piece;
+    }
+    EventDriven<double> simulation(piece);
+    const double before = process_seconds();
+    simulation.advance(1);
+    const double unit_seconds = (process_seconds() - before) * static_cast<double>(scene.discs.size()) /
+                                static_cast<double>(piece.discs.size());
+    return unit_seconds * scene.steps <= seconds_of_one ? scene : piece;
+}
 
 /// What a method did in a trial.
 struct Ran {
@@ -71,8 +86,8 @@ std::vector<const Variant*> candidates(const Scene& scene) {
 class Trying {
   public:
     Trying(const Scene& scene, const Tuning& tuning, Measure measure, double bound)
-        : piece_(fullest_piece(scene, largest_trial(measure))), tuning_(tuning), measure_(measure),
-          bound_(bound), units_of_run_(scene.steps), is_whole_(scene.discs.size() == piece_.discs.size()),
+        : piece_(scene_of_trial(scene, measure)), tuning_(tuning), measure_(measure), bound_(bound),
+          units_of_run_(scene.steps), is_whole_(scene.discs.size() == piece_.discs.size()),
           times_larger_(static_cast<double>(scene.discs.size()) /
                         static_cast<double>(std::max<std::size_t>(piece_.discs.size(), 1))),
           times_more_(measure == Measure::pressure ? scene.side / piece_.side : times_larger_),

@@ -3,13 +3,11 @@
 #include <cstdint>
 #include <limits>
 
-#include "kernels/parallel_for.hpp"
-
 namespace carom {
 
-/// A disc in free flight, and the collision that it has foreseen. In double it is one cache line: nothing
-/// else is asked of a disc that is near another one.
-template <class Real> struct alignas(cache_line) Flight {
+/// A disc in free flight, and the collision that it has foreseen. In double it fills one cache line of most
+/// processors, 64 bytes: nothing else is asked of a disc that is near another one.
+template <class Real> struct alignas(64) Flight {
     static constexpr int nobody = -1;
 
     Real x = 0;

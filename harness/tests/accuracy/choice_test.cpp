@@ -208,6 +208,24 @@ TEST(TryMethods, TriesNothingThatCostsMoreThanWhatReachesTheBound) {
     EXPECT_EQ(trial.discs, scene.discs.size());
 }
 
+TEST(TryMethods, TriesAllOfALargeSceneWhoseRunCostsLittle) {
+    const Scene scene = generate({.count = static_cast<int>(largest_trial(Measure::collision_rate)) + 1000,
+                                  .side = 600,
+                                  .radius = 1,
+                                  .steps = 8,
+                                  .least_velocity = 0.1,
+                                  .largest_velocity = 0.2,
+                                  .seed = 7,
+                                  .placement = Placement::random,
+                                  .isotropic = true});
+    const Trial trial = try_methods(scene, {}, Measure::collision_rate, 0.5);
+    EXPECT_TRUE(trial.whole_scene);
+    EXPECT_EQ(trial.units_of_time, 8);
+    for (const Tried& one : trial.tried) {
+        EXPECT_EQ(one.margin, 0) << one.method.variant->name;
+    }
+}
+
 TEST(FullestPiece, IsTheSceneItselfIfThatIsSmallEnough) {
     const Scene scene = unseen(1);
     EXPECT_EQ(fullest_piece(scene, scene.discs.size()).discs, scene.discs);
