@@ -70,7 +70,7 @@ def evaluate(
     for claim, alone, outcome in zip(listed_claims, tested, outcomes, strict=True):
         wanted = missing.needed(alone, open_claims) if missing.is_open(outcome) else math.nan
         rows.append({**_row(claim, outcome, study, wanted), "needed": wanted})
-    return pd.DataFrame(rows, columns=None if rows else COLUMNS)
+    return pd.DataFrame(rows, columns=COLUMNS).astype({"missing": bool})
 
 
 def _tested(evidence: Evidence, claim: Claim) -> Outcome:

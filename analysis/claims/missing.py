@@ -53,7 +53,7 @@ def tally(table: pd.DataFrame) -> dict[str, int]:
     `evaluate`.
     """
     decided, still_open = table["verdict"].isin(DECIDED), table["needed"].notna()
-    unmeasured = table["missing"].astype(bool) & ~decided & ~still_open
+    unmeasured = table["missing"] & ~decided & ~still_open
     states = {"decided": decided, "open": still_open, "not measured": unmeasured}
     counted = {state: int(rows.sum()) for state, rows in states.items()}
     return {**counted, "not decidable here": len(table) - sum(counted.values())}

@@ -89,9 +89,7 @@ def _study(
         "checks": provenance.checks(study),
         "states": missing.tally(table if study is studies[0] else table[~table["missing"]]),
         **_claims(table, {part.experiment: (part.anchor, part.title) for part in shown}, asked),
-        "without_records": list(table.loc[table["missing"].astype(bool), "id"])
-        if study is studies[0]
-        else [],
+        "without_records": list(table.loc[table["missing"], "id"]) if study is studies[0] else [],
     }
 
 
@@ -103,7 +101,7 @@ def _claims(
     """
     rows = [
         {**row, "places": [places[name] for name in row["experiments"] if name in places]}
-        for row in table[~table["missing"].astype(bool)].to_dict("records")
+        for row in table[~table["missing"]].to_dict("records")
     ]
     rows.sort(key=lambda row: bool(asked) and not set(row["experiments"]) & set(asked))
     return {"claims": rows, "tally": pd.Series([row["verdict"] for row in rows]).value_counts().to_dict()}

@@ -166,6 +166,15 @@ def test_several_machines_have_a_part_each(tmp_path: Path) -> None:
     assert len(parsed.ids) == len(set(parsed.ids))
 
 
+def test_questions_without_claims_have_a_part_a_machine_as_well(tmp_path: Path) -> None:
+    (tmp_path / "claims.toml").write_text("")
+    for host in ("bench-1", "bench-2"):
+        write(tmp_path, study(["machine"], blocks=1, noise=QUIET, machine=Machine(host=host)))
+    page = report.render(tmp_path)
+    assert {"study-1", "study-2"} <= set(Page(page).ids)
+    assert "no records yet" not in text_of(page)
+
+
 def test_text_from_records_is_escaped(tmp_path: Path) -> None:
     write(tmp_path, study(["machine"], blocks=2, machine=Machine(cpu_model="<script>alert(1)</script>")))
     assert "<script>" not in re.sub(r"<svg.*?</svg>", "", report.render(tmp_path), flags=re.DOTALL)
