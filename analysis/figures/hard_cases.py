@@ -19,7 +19,7 @@ from analysis.support.wording import count
 COLOURS = {"double": BLUE, "float": VERMILLION}
 MARKS = {HOLDS: "holds", FAILS: "fails", LIMIT: "open", UNMEASURED: "open"}
 SIGNS = {HOLDS: "✓", FAILS: "✗", LIMIT: "!", UNMEASURED: "–"}
-LABEL_WIDTH = 36
+LABEL_WIDTH = 30
 """Letters in a line of what a row measures."""
 
 WIDEST = 6

@@ -33,6 +33,8 @@ from analysis.support.wording import NO_BREAK, exact, interval, number
 Label = tuple[str, float, float]
 """A text beside a point: the text, and the point's x and y."""
 
+COLOURS = [*PALETTE, INK]
+
 MILLI = 1e3
 OTHERS = 2
 """How many of the choices that may be as cheap a table names."""
@@ -90,7 +92,7 @@ def _looks(table: pd.DataFrame) -> dict[str, tuple[str, str]]:
     looks = {}
     for row in table.drop_duplicates("series").to_dict("records"):
         family = re.sub(r"(^|-)float(?=-|$)", "", row["variant"]).strip("-") or "published"
-        colour = families.setdefault(family, PALETTE[len(families) % len(PALETTE)])
+        colour = families.setdefault(family, COLOURS[len(families) % len(COLOURS)])
         looks[str(row["series"])] = (colour, "●" if row["precision"] == "double" else "○")
     return looks
 

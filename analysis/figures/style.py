@@ -13,7 +13,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
-from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea
+from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea, VPacker
+from matplotlib.textpath import TextPath
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
@@ -38,6 +39,8 @@ PALETTE = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY]
 INK, FAINT, BAND = "#222222", "#8a8a8a", "#ececec"
 FORMATS = ("svg", "png", "pdf")
 WIDTH = 7.0
+KEY_SIZE, KEY_GAP, KEY_WIDTH = 7, 9, 72 * WIDTH - 50
+"""In points: of the letters of a key, between its entries, and the most of a line, beside an axis."""
 SETTINGS: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 8,
@@ -131,16 +134,22 @@ def new_figure(
 
 
 def key(axes: Axes, entries: Sequence[tuple[str, str]], raised: float = 4) -> None:
-    """Name the curves above the axes, each in its own colour; `entries` are text and colour, `raised` is in
-    points.
+    """Name the curves above the axes, each in its own colour, in as many lines as it takes; `entries` are
+    text and colour, `raised` is in points.
     """
-    texts: list[Artist] = [
-        TextArea(text, textprops={"color": colour, "fontsize": 7}) for text, colour in entries
+    lines: list[Artist] = [
+        HPacker(
+            children=[TextArea(text, textprops={"color": to, "fontsize": KEY_SIZE}) for text, to in line],
+            pad=0,
+            sep=KEY_GAP,
+            align="baseline",
+        )
+        for line in _lines_of_key(entries)
     ]
     figure = axes.figure.get_figure(root=True)
     anchored = AnchoredOffsetbox(
         "lower left",
-        child=HPacker(children=texts, pad=0, sep=9, align="baseline"),
+        child=VPacker(children=lines, pad=0, sep=3, align="left"),
         pad=0,
         borderpad=0,
         frameon=False,
@@ -149,8 +158,22 @@ def key(axes: Axes, entries: Sequence[tuple[str, str]], raised: float = 4) -> No
     )
     # Wide keys run on over the neighbouring axes: only their height may count in the layout.
     anchored.set_in_layout(False)
-    axes.set_title(" ", pad=raised)
+    axes.set_title("\n".join(" " for _ in lines), pad=raised)
     axes.add_artist(anchored)
+
+
+def _lines_of_key(entries: Sequence[tuple[str, str]]) -> list[list[tuple[str, str]]]:
+    """Share the entries out to lines that end before the figure does."""
+    lines: list[list[tuple[str, str]]] = [[]]
+    left = KEY_WIDTH
+    for text, colour in entries:
+        width = TextPath((0, 0), text, size=KEY_SIZE).get_extents().width + KEY_GAP
+        if width > left and lines[-1]:
+            lines.append([])
+            left = KEY_WIDTH
+        lines[-1].append((text, colour))
+        left -= width
+    return lines
 
 
 def plain_ticks(axis: mpl.axis.Axis, values: Sequence[float] | None = None) -> None:

@@ -14,7 +14,7 @@ import pandas as pd
 from jsonschema import Draft202012Validator
 from jsonschema.exceptions import best_match
 
-from analysis.records import tables
+from analysis.records import promises, tables
 
 SCHEMA_FILE = Path(__file__).parents[2] / "harness" / "record.schema.json"
 NEEDED_TAGS = ["experiment", "series", "x_name", "x", "block"]
@@ -66,7 +66,7 @@ def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
     ]
     for line in skipped:
         (warn or _warn_on_standard_error)(line)
-    measured, limits, outside, promises, failed = (
+    measured, limits, outside, promised, failed = (
         [(path, record) for path, record in records if record["kind"] in kinds]
         for kinds in (("bench", "profile", "process"), ("limits",), ("outside",), ("promises",), ("failure",))
     )
@@ -79,7 +79,7 @@ def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
         counters=tables.counters(measured),
         limits=tables.limits(limits),
         outside=tables.outside(outside),
-        promises=tables.promises(promises),
+        promises=promises.table(promised),
         failures=tables.failures(failed),
         skipped=skipped,
     )

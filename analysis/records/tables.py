@@ -3,7 +3,6 @@
 import shlex
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 Named = list[tuple[str, dict[str, Any]]]
@@ -44,11 +43,6 @@ LIMITS = [
 OUTSIDE = [
     "file", "machine", "scale", "experiment", "scene_name", "scene_sha256", "block", "session", "substeps",
     "engine", "seconds", "energy_drift",
-]  # fmt: skip
-PROMISE_NUMBERS = ["error_below", "promised", "delivered", "seconds", "trial_seconds", "methods", "ratio"]
-PROMISES = [
-    "file", "machine", "scale", "experiment", "scene_name", "session", "particles", "threads", "measure",
-    "kept", "method", "cheapest", *PROMISE_NUMBERS,
 ]  # fmt: skip
 NO_SCENE: dict[str, Any] = {"name": "", "sha256": "", **dict.fromkeys(SCENE)}
 """Of a program that is about something else than discs."""
@@ -94,12 +88,13 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
         "command": shlex.join(record["process"]["command"]) if record["kind"] == "process" else None,
         "compiler_family": _compiler_family(origin["compiler"]),
         "node": slurm.get("SLURMD_NODENAME", origin["host"]),
-        "machine": _machine(origin),
+        "machine": machine_of(origin),
         "revision": f"{origin['commit'][:10]}{changes}" if origin["commit"] else "no commit known",
     }
 
 
-def _machine(origin: dict[str, Any]) -> str:
+def machine_of(origin: dict[str, Any]) -> str:
+    """Return what a record's machine is called: the partition or host, and its processor."""
     partition = (origin["slurm"] or {}).get("SLURM_JOB_PARTITION")
     return f"{partition or origin['host']}: {origin['cpu_model']}"
 
@@ -202,7 +197,7 @@ def limits(records: Named) -> pd.DataFrame:
     rows = [
         {
             "file": name,
-            "machine": _machine(record["provenance"]),
+            "machine": machine_of(record["provenance"]),
             "compiler": record["provenance"]["compiler"],
             "limit": limit,
             **row,
@@ -222,7 +217,7 @@ def outside(records: Named) -> pd.DataFrame:
     rows = [
         {
             "file": name,
-            "machine": _machine(record["provenance"]),
+            "machine": machine_of(record["provenance"]),
             **{column: record["tags"].get(column) for column in ("experiment", "block")},
             **{column: str(record["tags"].get(column, "")) for column in ("scale", "scene_name", "session")},
             "scene_sha256": record["scene"]["sha256"],
@@ -239,52 +234,6 @@ def outside(records: Named) -> pd.DataFrame:
         .astype({"energy_drift": float})
         .assign(energy_drift=lambda table: table["energy_drift"].abs())
     )
-
-
-def promises(records: Named) -> pd.DataFrame:
-    """One row a bound that an error was to stay below: where it stands, `measure`, `error_below`, what was
-    `promised` and `delivered`, NaN where no method is known to reach the bound, `kept`, `method` with its
-    `seconds`, the `cheapest` of all `methods` that keep the bound, and `ratio`, how many times as much the
-    chosen one costs.
-    """
-    rows = [
-        {
-            "file": name,
-            "machine": _machine(record["provenance"]),
-            "experiment": record["tags"].get("experiment"),
-            **{column: str(record["tags"].get(column, "")) for column in ("scale", "scene_name", "session")},
-            "particles": record["scene"]["particles"],
-            "threads": record["axes"]["threads"],
-            **_promise(row),
-        }
-        for name, record in records
-        for row in record["promises"]
-    ]
-    return pd.DataFrame(rows, columns=PROMISES).astype(dict.fromkeys(PROMISE_NUMBERS, float))
-
-
-def _promise(row: dict[str, Any]) -> dict[str, object]:
-    told = {"measure": row["measure"], "error_below": row["error_below"], "kept": False}
-    if row["chosen"] is None:
-        return told
-    chosen, cheapest = row["chosen"], row["cheapest"]
-    delivered = np.nan if chosen["error"] is None else chosen["error"]
-    return told | {
-        "promised": row["promised"],
-        "delivered": delivered,
-        "kept": bool(delivered <= row["error_below"]),
-        "method": _method(chosen),
-        "seconds": chosen["seconds"],
-        "trial_seconds": row["trial_seconds"],
-        "cheapest": _method(cheapest),
-        "methods": row["methods"],
-        "ratio": chosen["seconds"] / cheapest["seconds"],
-    }
-
-
-def _method(delivered: dict[str, Any]) -> str:
-    steps = "" if delivered["substeps"] == 1 else f", dt = 1/{delivered['substeps']}"
-    return f"{delivered['variant']}{steps}"
 
 
 def failures(records: Named) -> pd.DataFrame:

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from analysis.tests.synthetic import Machine, bench, failure, limits, profile, promises
+from analysis.tests.synthetic import Machine, bench, failure, limits, profile
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
+from analysis.tests.synthetic_promises import promises
 
 PROFILED = ("phases", "limits")
 COPY = {"L2": (1 << 20, 40e9), "L3": (4 << 20, 20e9), "memory": (2 << 30, 8e9)}

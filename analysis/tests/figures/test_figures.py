@@ -108,7 +108,7 @@ def test_the_phases_and_the_hard_cases_say_what_they_show(tmp_path: Path) -> Non
     caption = drawn["phases"].caption.replace("\u00a0", " ")
     assert "(100 000 discs at area fraction 0.80, 2 threads)" in caption
     svg = drawn["hard_cases"].files[0].read_text(encoding="utf-8")
-    assert "<!-- greatest distance of the speeds' -->" in svg
+    assert "<!-- greatest distance of the -->" in svg
     assert "table" not in re.findall(r"<!-- (what stands[^>]*) -->", svg)[0]
 
 

@@ -10,7 +10,7 @@ from analysis.figures.style import Data, Drawing
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import split
-from analysis.tests import synthetic
+from analysis.tests import synthetic_promises as synthetic
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_study import study
 
