@@ -20,6 +20,9 @@ DRAWING_PAUSE = 10.0
 DRAWING_LIMIT = 600.0
 """Seconds after which a drawing or a report is given up."""
 
+DECIDING_SHARE = 0.25
+"""The part of a scale's time that what is open gets for certain."""
+
 REPORT_PAUSE, REPORT_SHARE = 300.0, 0.05
 """Least seconds between two reports of what is there, and the most of the time that they may take."""
 
@@ -69,6 +72,14 @@ class Session:
         done = self._schedule.status().seconds_done if self._has_more or not given else 0.0
         return now + study.measuring_seconds - done
 
+    def _keep_time_to_decide(self) -> None:
+        """On a slow machine the least of everything takes all of a scale's time, and what is open may need
+        seconds. Who names a budget gets no more than that.
+        """
+        if self._study.settings.budget_seconds is None:
+            for_certain = DECIDING_SHARE * self._study.measuring_seconds
+            self._until = max(self._until, time.monotonic() + for_certain)
+
     def run(self) -> int:
         """Run what is missing. First blocks come first: they tell what each block costs here."""
         for experiment in self._study.experiments:
@@ -85,6 +96,7 @@ class Session:
         settings = self._study.settings
         if self._has_more or settings.until_decided or settings.budget_seconds is not None:
             looks = settings.figures and settings.blocks is None
+            self._keep_time_to_decide()
             settled = self._settle() if looks else frozenset()
             if not settings.until_decided:
                 self._share(settled)

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import pytest
 
+from experiments.plan import scale
 from experiments.run import session
 from experiments.run.session import run
 from experiments.run.study import Study
@@ -101,6 +102,19 @@ def test_until_it_is_decided(needing: Workplace) -> None:
     want(needing, pair=20, chunks=11)
     assert finish(needing.start("run", "--until-decided"))[0] == 0
     assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (20, 11)
+
+
+@pytest.mark.parametrize(("share", "blocks"), [(0.0, 2), (1e7, 8)])
+def test_a_slow_machine_still_has_time_to_decide(
+    needing: Workplace, monkeypatch: pytest.MonkeyPatch, share: float, blocks: int
+) -> None:
+    want(needing, pair=8, chunks=2)
+    needing.monkeypatch.chdir(needing.root)
+    monkeypatch.setattr("experiments.run.study.REPORT_SECONDS", 0.0)
+    monkeypatch.setitem(scale.SCALES, "paper", replace(scale.SCALES["paper"], budget_seconds=1e-6))
+    monkeypatch.setattr(session, "DECIDING_SHARE", share)
+    assert run(replace(needing.settings, figures=True, study=("pair", "chunks"))) == 0
+    assert blocks_of(needing, "pair") == blocks
 
 
 def test_a_killed_study_comes_to_the_same_decisions(needing: Workplace) -> None:
