@@ -58,7 +58,7 @@ def plan(question: Question, around: Surroundings) -> Experiment:
         _point(question, number, series, scene, value, around)
         for scene in around.scale.scenes(question)
         for number, series in enumerate(question.series, start=1)
-        if not _left_out(series, around)
+        if not _left_out(series, scene, around)
         for value in _values(question, _known(question, number, series, around), around)
     ]
     if not points:
@@ -77,8 +77,10 @@ def plan(question: Question, around: Surroundings) -> Experiment:
     return Experiment(question, tuple(points), f"{around.seed} {question.name}")
 
 
-def _left_out(series: Series, around: Surroundings) -> bool:
-    """Whether the series may be missing and its program is."""
+def _left_out(series: Series, scene: NamedScene, around: Surroundings) -> bool:
+    """Whether the series does not run the scene, or may be missing and its program is."""
+    if scene.series and series.name not in scene.series:
+        return True
     program = around.programs.get(series.program)
     return series.optional and (program is None or program.sha256 is None)
 

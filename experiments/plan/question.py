@@ -37,11 +37,14 @@ class Blocks:
 
 @dataclass(frozen=True)
 class NamedScene:
-    """A scene, its name where the question has several, and whether it is left out at quick scale."""
+    """A scene, its name where the question has several, whether it is left out at quick scale, and the names
+    of the series that run it, if not all of them do.
+    """
 
     scene: AnyScene
     name: str | None = None
     paper_only: bool = False
+    series: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -151,7 +154,8 @@ def _scenes(
 
 def _named_scene(table: dict[str, Any]) -> NamedScene:
     beside = {key: table.pop(key) for key in ("name", "paper_only") if key in table}
-    return NamedScene(HardCase(**table) if "case" in table else Scene(**table), **beside)
+    series = tuple(table.pop("series", ()))
+    return NamedScene(HardCase(**table) if "case" in table else Scene(**table), series=series, **beside)
 
 
 def _require_valid(question: Question) -> None:
@@ -193,6 +197,14 @@ def _require_names(question: Question) -> None:
             raise InputError(
                 f'{question.file}: series[{number}].name: found "{name}" twice, expected each once'
             )
+    known = list(dict.fromkeys(series.name for series in question.series))
+    for number, scene in enumerate(question.scenes, start=1):
+        for place, name in enumerate(scene.series, start=1):
+            if name not in known:
+                raise InputError(
+                    f'{question.file}: scenes[{number}].series[{place}]: found "{name}", expected one of '
+                    f"{', '.join(known)}{nearest(name, known)}"
+                )
 
 
 def _require_possible_scenes(question: Question) -> None:

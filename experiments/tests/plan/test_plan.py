@@ -222,6 +222,16 @@ def test_what_takes_too_long_is_left_out_at_quick_scale(workplace: Workplace) ->
     }
 
 
+def test_a_scene_may_be_for_some_series_alone(workplace: Workplace) -> None:
+    text = ERRORS.replace('case = "cradle"', 'case = "cradle"\nseries = ["nine"]')
+    points = plan(load_question(workplace.question("errors", text)), surroundings(workplace)).points
+    assert {(point.scene_name, point.series) for point in points} == {
+        ("dilute", "four"),
+        ("dilute", "nine"),
+        ("cradle", "nine"),
+    }
+
+
 MISTAKES = {
     "variant": (
         PAIR.replace('variant = "nine"', 'variant = "nien"'),

@@ -13,7 +13,7 @@ MISTAKES = {
     "unknown key": (
         CHUNKS.replace("steps = 10", "steps = 10\nradios = 5"),
         "scene.radios: unknown key; expected one of name, particles, side, radius, steps, min_velocity, "
-        'max_velocity, seed, placement, isotropic, paper_only, case; did you mean "radius"?',
+        'max_velocity, seed, placement, isotropic, paper_only, series, case; did you mean "radius"?',
     ),
     "misspelt required key": (
         CHUNKS.replace("radius", "radios"),
@@ -133,7 +133,15 @@ MISTAKES = {
     ),
     "case with a size": (
         ERRORS.replace('case = "cradle"', 'case = "cradle"\nparticles = 5'),
-        "scenes[2].particles: unknown key; expected one of case, name, paper_only",
+        "scenes[2].particles: unknown key; expected one of case, name, paper_only, series",
+    ),
+    "scene of a series that there is not": (
+        ERRORS.replace('case = "cradle"', 'case = "cradle"\nseries = ["nien"]'),
+        'scenes[2].series[1]: found "nien", expected one of four, nine; did you mean "nine"?',
+    ),
+    "scene of no series": (
+        ERRORS.replace('case = "cradle"', 'case = "cradle"\nseries = []'),
+        "scenes[2].series: found [], expected ",
     ),
     "scene without a name": (
         ERRORS.replace('name = "dilute"\n', ""),
