@@ -67,25 +67,27 @@ void add(GroupTotals& group, const Disc& free, const Disc& after, const Disc& lo
 }
 
 std::optional<std::string> violation_of(const GroupTotals& group, int lowest, double tolerance) {
-    const std::string who = format("the group of %d overlapping discs around disc %d", group.size, lowest);
+    const auto who = [&] {
+        return format("the group of %d overlapping discs around disc %d", group.size, lowest);
+    };
     if (!(std::abs(group.energy_after - group.energy_before) <= tolerance * group.energy_before)) {
-        return who + format(" changed its energy by %.17g of what it had",
+        return who() + format(" changed its energy by %.17g of what it had",
                             (group.energy_after - group.energy_before) / group.energy_before);
     }
     const double momentum_change = std::hypot(group.momentum_change_x, group.momentum_change_y);
     if (!group.at_wall && !(momentum_change <= tolerance * group.speed_sum)) {
-        return who +
+        return who() +
                format(", away from walls, changed its momentum by %.17g of the sum of its discs' momenta",
                       momentum_change / group.speed_sum);
     }
     const double centre_change = std::hypot(group.centre_change_x, group.centre_change_y);
     if (!group.at_wall && !(centre_change <= group.centre_slack)) {
-        return who +
+        return who() +
                format(", away from walls, moved its centre of mass by %.17g / %d", centre_change, group.size);
     }
     if (!group.at_wall &&
         !(std::abs(group.angular_change) <= tolerance * group.angular_scale + group.angular_slack)) {
-        return who +
+        return who() +
                format(", away from walls, changed its angular momentum by %.17g of the sum of its discs'",
                       group.angular_change / group.angular_scale);
     }
