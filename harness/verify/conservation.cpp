@@ -72,7 +72,7 @@ std::optional<std::string> violation_of(const GroupTotals& group, int lowest, do
     };
     if (!(std::abs(group.energy_after - group.energy_before) <= tolerance * group.energy_before)) {
         return who() + format(" changed its energy by %.17g of what it had",
-                            (group.energy_after - group.energy_before) / group.energy_before);
+                              (group.energy_after - group.energy_before) / group.energy_before);
     }
     const double momentum_change = std::hypot(group.momentum_change_x, group.momentum_change_y);
     if (!group.at_wall && !(momentum_change <= tolerance * group.speed_sum)) {
