@@ -95,8 +95,9 @@ class Trying {
 
     Trial run() {
         try_event_driven();
-        for (const Variant* variant : candidates(piece_)) {
-            try_variant(*variant);
+        std::vector<const Variant*> open = candidates(piece_);
+        for (int substeps = 1; substeps <= most_substeps; substeps *= 2) {
+            std::erase_if(open, [&](const Variant* variant) { return !try_variant(*variant, substeps); });
         }
         for (int round = 0; round < further_rounds; ++round) {
             time_again();
@@ -168,21 +169,18 @@ class Trying {
         }
     }
 
-    void try_variant(const Variant& variant) {
-        for (int substeps = 1; substeps <= most_substeps; substeps *= 2) {
-            if (process_seconds() - start_ > seconds_of_all) {
-                return;
-            }
-            const auto ran = run_variant(variant, substeps);
-            if (!ran) {
-                return;
-            }
-            note({.variant = &variant, .substeps = substeps}, *ran, error_of(*ran));
-            const auto cheapest = cheapest_below(tried_, bound_, units_of_run_);
-            if (cheapest && cheapest->cost(units_of_run_) <= tried_.back().cost(units_of_run_)) {
-                return;
-            }
+    /// Whether more substeps of it are worth a trial.
+    bool try_variant(const Variant& variant, int substeps) {
+        if (process_seconds() - start_ > seconds_of_all) {
+            return false;
         }
+        const auto ran = run_variant(variant, substeps);
+        if (!ran) {
+            return false;
+        }
+        note({.variant = &variant, .substeps = substeps}, *ran, error_of(*ran));
+        const auto cheapest = cheapest_below(tried_, bound_, units_of_run_);
+        return !cheapest || cheapest->cost(units_of_run_) > tried_.back().cost(units_of_run_);
     }
 
     void time_again() {

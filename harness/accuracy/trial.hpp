@@ -21,8 +21,8 @@ struct Trial {
 /// Tries methods on the scene until the cheapest of them with an error below `bound` is known: the
 /// event-driven simulation; the fastest variant with collisions at the step's end and at contact, in double
 /// and in float, each with 1, 2, 4 ... up to 64 substeps until its error is below the bound or it costs more
-/// than one that is. Each runs on the threads and with the tolerance of `tuning`, and is timed there; how
-/// many threads these are decides nothing.
+/// than one that is, all of them with few substeps before any with twice as many. Each runs on the threads
+/// and with the tolerance of `tuning`, and is timed there; how many threads these are decides nothing.
 ///
 /// Errors are against the event-driven simulation, as in error_measures.hpp: in double, its own in long
 /// double. A scene of more than `largest_trial` discs is tried on the fullest of its pieces of that size, and

@@ -208,6 +208,19 @@ TEST(TryMethods, TriesNothingThatCostsMoreThanWhatReachesTheBound) {
     EXPECT_EQ(trial.discs, scene.discs.size());
 }
 
+TEST(TryMethods, TriesFewSubstepsOfAllBeforeManyOfOne) {
+    const Scene scene = unseen(1);
+    const double out_of_reach = 1e-300;
+    const Trial trial = try_methods(scene, {}, Measure::path, out_of_reach);
+    std::vector<int> substeps;
+    for (const Tried& one : trial.tried) {
+        substeps.push_back(one.method.substeps);
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(substeps));
+    EXPECT_EQ(std::ranges::count(substeps, 1), 5) << "event-driven, and each variant that is tried";
+    EXPECT_GT(substeps.back(), 1);
+}
+
 TEST(TryMethods, TriesAllOfALargeSceneWhoseRunCostsLittle) {
     const Scene scene = generate({.count = static_cast<int>(largest_trial(Measure::collision_rate)) + 1000,
                                   .side = 600,
