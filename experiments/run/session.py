@@ -96,7 +96,6 @@ class Session:
         settings = self._study.settings
         if self._has_more or settings.until_decided or settings.budget_seconds is not None:
             looks = settings.figures and settings.blocks is None
-            self._keep_time_to_decide()
             settled = self._settle() if looks else frozenset()
             if not settings.until_decided:
                 self._share(settled)
@@ -108,6 +107,7 @@ class Session:
         """Measure what settles something soonest, and look again, as long as there is time; what is settled
         gets no more. Returns the experiments in which nothing is open.
         """
+        self._keep_time_to_decide()
         grown: dict[str, None] = {}
         while True:
             self._report.now("looking at what is decided", self._schedule.status)
