@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "filter.hpp"
+#include "four_at_once.hpp"
 #include "parallel_for.hpp"
 #include "policies.hpp"
 #include "state.hpp"
@@ -149,8 +149,8 @@ template <Policies policies, class SomeProbe>
 void bin(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const int parts = tuning.threads;
     if constexpr (policies.search == Search::filtered) {
-        state.near_x.resize(state.discs.size() + 4);
-        state.near_y.resize(state.discs.size() + 4);
+        state.near_x.resize(state.discs.size() + 8);
+        state.near_y.resize(state.discs.size() + 8);
     }
     state.places.resize(static_cast<std::size_t>(parts));
     std::vector<int> begin(static_cast<std::size_t>(parts));

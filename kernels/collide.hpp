@@ -142,13 +142,21 @@ template <class Real>
     return resolved;
 }
 
+/// The terms of (v2 - v1).n, which are to be added.
+template <class Real>
+[[gnu::always_inline]] inline auto approach_by_component(const std::array<Real, 2>& normal,
+                                                         const BasicDisc<Real>& first,
+                                                         const BasicDisc<Real>& second) {
+    using Both = BothComponents<Real>;
+    return (Both::load_velocity(second) - Both::load_velocity(first)) * Both::load(normal);
+}
+
 /// (v2 - v1).n
 template <class Real>
 [[gnu::always_inline]] inline Real approach_along(const std::array<Real, 2>& normal,
                                                   const BasicDisc<Real>& first,
                                                   const BasicDisc<Real>& second) {
-    using Both = BothComponents<Real>;
-    return Both::sum((Both::load_velocity(second) - Both::load_velocity(first)) * Both::load(normal));
+    return BothComponents<Real>::sum(approach_by_component(normal, first, second));
 }
 
 /// As resolve_pair, for a pair whose unit normal n = d / |d| is known: then s d = ((v2 - v1).n) n.

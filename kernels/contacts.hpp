@@ -82,7 +82,7 @@ template <class Real> struct Strip {
     std::vector<int> pending; ///< ditto: near pairs that are to collide, in a sweep; room for one more
     int pending_count = 0;
     std::vector<int> blocks_to_look_at; ///< blocks of one row to look at, in a sweep; room for one more
-    std::vector<int> colliding;         ///< contacts that may collide, in a sweep; room for one more
+    std::vector<int> colliding;         ///< contacts that may collide, in a sweep; room for four more
 };
 
 /// Of a disc, the earliest of the collisions that are known of it in a sweep.

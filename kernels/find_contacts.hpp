@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <vector>
 
 #include "collide.hpp"
 #include "contacts.hpp"
-#include "filter.hpp"
 #include "find.hpp"
+#include "four_at_once.hpp"
 #include "parallel_for.hpp"
 #include "policies.hpp"
 #include "state.hpp"
+#include "storage.hpp"
 
 namespace carom {
 
@@ -35,30 +37,59 @@ template <Policies policies> struct Candidates {
           sparse(static_cast<Real>(state.count()) * (state.radius * state.radius) <
                  state.side * state.side / 32) {}
 
-    /// Writes disc i with each disc of [begin, end) that may overlap it to `found`, which has room for all of
-    /// them and four more; returns the end. Without a branch on the outcome, or on the range being empty,
-    /// which no processor can predict.
-    [[gnu::always_inline]] OverlappingDiscs* append(int i, int begin, int end,
+    /// Writes disc i with each disc that may overlap it, of `own` and of `next`, to `found`, which has room
+    /// for all of them and twelve more; returns the end. Without a branch on the outcome or on how many they
+    /// are, up to four and eight: no processor can predict those.
+    [[gnu::always_inline]] OverlappingDiscs* append(int i, Indices own, Indices next,
                                                     OverlappingDiscs* found) const {
         if constexpr (policies.search == Search::exact) {
-            for (int j = begin; j < end; ++j) {
-                *found = {i, j};
-                found += overlap(discs[i], discs[j], reach_squared);
-            }
-            return found;
+            return append_exact(i, next, append_exact(i, own, found));
         }
-        int j = begin;
-        do {
-            const FourInts overlaps = may_overlap(x + j, y + j, x[i], y[i], filter_reach_squared, end - j);
-            if (!sparse || any(overlaps)) {
-                for (int k = 0; k < 4; ++k) {
-                    *found = {i, j + k};
-                    found -= overlaps[k]; // -1 where they may overlap: the next one is written after this one
-                }
-            }
-            j += 4;
-        } while (j < end);
+        if (own.count() > 4 || next.count() > 8) [[unlikely]] {
+            return append_many(i, next, append_many(i, own, found));
+        }
+        const unsigned in_own = may_overlap(i, own.first, own.last);
+        const unsigned in_next = may_overlap(i, next.first, next.last);
+        const unsigned beyond = may_overlap(i, next.first + 4, next.last);
+        if (!sparse || (in_own | in_next | beyond) != 0) {
+            found = write(i, own.first, in_own, found);
+            found = write(i, next.first, in_next, found);
+            found = write(i, next.first + 4, beyond, found);
+        }
         return found;
+    }
+
+  private:
+    OverlappingDiscs* append_exact(int i, Indices others, OverlappingDiscs* found) const {
+        for (const int j : others) {
+            *found = {i, j};
+            found += overlap(discs[i], discs[j], reach_squared);
+        }
+        return found;
+    }
+
+    OverlappingDiscs* append_many(int i, Indices others, OverlappingDiscs* found) const {
+        for (int j = others.first; j < others.last; j += 4) {
+            found = write(i, j, may_overlap(i, j, others.last), found);
+        }
+        return found;
+    }
+
+    /// Of the four discs from j on those before `end` that may overlap disc i.
+    unsigned may_overlap(int i, int j, int end) const {
+        return carom::may_overlap(x + j, y + j, x[i], y[i], filter_reach_squared, end - j);
+    }
+
+    /// Writes disc i with a set of the four discs from j on.
+    static OverlappingDiscs* write(int i, int j, unsigned set, OverlappingDiscs* found) {
+        static_assert(sizeof(OverlappingDiscs) == 2 * sizeof(int));
+        const FourInts first{i, i, i, i};
+        const FourInts second = members_from(j, set);
+        const FourInts one_and_two = __builtin_shufflevector(first, second, 0, 4, 1, 5);
+        const FourInts three_and_four = __builtin_shufflevector(first, second, 2, 6, 3, 7);
+        std::memcpy(found, &one_and_two, sizeof one_and_two);
+        std::memcpy(found + 2, &three_and_four, sizeof three_and_four);
+        return found + sets_of_four.count[set];
     }
 };
 
@@ -148,13 +179,14 @@ void search_block(State<policies>& state, const Candidates<policies>& candidates
             *pair = {i, i};
             found.end_at(pair + 1);
         }
-        const BoxRange rows = Look<policies.neighbourhood>::along(grid, state.discs[disc].y, row);
         const BoxRange near = Look<policies.neighbourhood>::along(grid, state.discs[disc].x, column);
-        for (int box = row_begin; box <= rows.last * boxes_per_side; box += boxes_per_side) {
-            const int from = std::max(i + 1, box_begin[box + near.first]);
-            const int to = box_begin[box + near.last + 1];
-            found.end_at(candidates.append(i, from, to, found.room(to - from + 4)));
+        const Indices own{i + 1, box_begin[row_begin + near.last + 1]};
+        Indices next{0, 0};
+        if (Look<policies.neighbourhood>::along(grid, state.discs[disc].y, row).last > row) {
+            const int next_row_begin = row_begin + boxes_per_side;
+            next = {box_begin[next_row_begin + near.first], box_begin[next_row_begin + near.last + 1]};
         }
+        found.end_at(candidates.append(i, own, next, found.room(own.count() + next.count() + 12)));
     }
 }
 
@@ -190,7 +222,7 @@ Tally find_in_strip(State<policies>& state, int index, RealOf<policies.precision
         }
     }
     strip.blocks_to_look_at.resize(static_cast<std::size_t>(state.active.per_row()) + 1);
-    strip.colliding.resize(static_cast<std::size_t>(strip.block_begin.back()) + 1);
+    strip.colliding.resize(static_cast<std::size_t>(strip.block_begin.back()) + 4);
     if constexpr (policies.impact == Impact::at_contact) {
         strip.pending.resize(strip.near.size() + 1);
         strip.pending_count = 0;

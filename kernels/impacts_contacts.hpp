@@ -161,7 +161,7 @@ template <Policies policies> void make_contacts(State<policies>& state, int inde
         }
     }
     *begin = static_cast<int>(strip.contacts.size());
-    strip.colliding.resize(strip.contacts.size() + 1);
+    strip.colliding.resize(strip.contacts.size() + 4);
 }
 
 /// Makes contacts of what is still overlapping at the end of the step, a strip to an iteration.

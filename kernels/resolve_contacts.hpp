@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 
 #include "collide.hpp"
 #include "contacts.hpp"
+#include "four_at_once.hpp"
 #include "policies.hpp"
 #include "state.hpp"
 #include "tally.hpp"
@@ -21,16 +23,25 @@
 namespace carom {
 
 /// Looks at contacts [begin, end) of a strip and writes those that may collide to `colliding`, in their
-/// order; returns its end. No branch depends on the outcome, which no processor can predict.
+/// order; returns its end, beyond which there must be room for four. No branch depends on the outcome, which
+/// no processor can predict.
 template <Policies policies>
 int* look_at_contacts(const State<policies>& state, const Strip<RealOf<policies.precision>>& strip, int begin,
                       int end, int* colliding) {
     const auto* const discs = state.discs.data();
     const auto* const contacts = strip.contacts.data();
-    for (int k = begin; k < end; ++k) {
-        const auto [first, second] = contacts[k].discs;
-        *colliding = k;
-        colliding += !(approach_along(contacts[k].normal, discs[first], discs[second]) >= 0);
+    const auto approach = [&](int k) {
+        const auto& contact = contacts[std::min(k, end - 1)];
+        const auto [first, second] = contact.discs;
+        return approach_by_component(contact.normal, discs[first], discs[second]);
+    };
+    for (int k = begin; k < end; k += 4) {
+        const FourInts approaching =
+            sums_below_zero(approach(k), approach(k + 1), approach(k + 2), approach(k + 3));
+        const unsigned set = fast_set_of(approaching & first_of_four(end - k));
+        const FourInts members = members_from(k, set);
+        std::memcpy(colliding, &members, sizeof members);
+        colliding += sets_of_four.count[set];
     }
     return colliding;
 }

@@ -67,6 +67,7 @@ struct Indices {
 
     Iterator begin() const { return {first}; }
     Iterator end() const { return {last}; }
+    int count() const { return last - first; }
 };
 
 /// What one part of the discs brings to the sort: how many each box holds, and then the place of the next of
@@ -89,7 +90,7 @@ template <class Real> struct DiscsOf<Storage::sorted, Real> {
     UntouchedVector<int> box_of_disc; ///< written by the move, and then sorted with the discs
     std::vector<int> box_begin; ///< index of the first disc of each box; one more, the count, at the end
 
-    std::vector<float> near_x; ///< Search::filtered: positions in float, and four more that mean nothing
+    std::vector<float> near_x; ///< Search::filtered: positions in float, and eight more that mean nothing
     std::vector<float> near_y; ///< ditto
 
     UntouchedVector<BasicDisc<Real>> spare_discs; ///< what the sort writes into, then swapped

@@ -1,10 +1,12 @@
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "kernels/collide.hpp"
-#include "kernels/filter.hpp"
+#include "kernels/four_at_once.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "kernels/tests/simulate.hpp"
 
@@ -24,16 +26,35 @@ TEST(Filter, DropsNoPairThatOverlaps) {
         const Disc two{one.x + distance * std::cos(angle), one.y + distance * std::sin(angle), 0, 0};
         const std::vector<float> x{filter_position(two.x, 1 / side), 0, 0, 0};
         const std::vector<float> y{filter_position(two.y, 1 / side), 0, 0, 0};
-        const FourInts kept =
+        const unsigned kept =
             may_overlap(x.data(), y.data(), filter_position(one.x, 1 / side),
                         filter_position(one.y, 1 / side), filter_reach_squared(side, radius), 1);
         if (overlap(one, two, 4 * radius * radius)) {
-            ASSERT_EQ(kept[0], -1) << one << " and " << two << ", L = " << side << ", r = " << radius;
+            ASSERT_EQ(kept & 1U, 1U) << one << " and " << two << ", L = " << side << ", r = " << radius;
         }
-        ASSERT_EQ(kept[1] | kept[2] | kept[3], 0);
-        dropped += kept[0] == 0;
+        ASSERT_EQ(kept >> 1U, 0U);
+        dropped += kept == 0;
     }
     EXPECT_GT(dropped, 10'000) << "a filter that drops nothing is none";
+}
+
+TEST(FourAtOnce, KnowsEverySet) {
+    for (unsigned set = 0; set < 16; ++set) {
+        FourInts truths{};
+        std::vector<int> members;
+        for (int disc = 0; disc < 4; ++disc) {
+            if ((set >> disc & 1U) != 0) {
+                truths[disc] = -1;
+                members.push_back(disc);
+            }
+        }
+        EXPECT_EQ(set_of(truths), set);
+        EXPECT_EQ(fast_set_of(truths), set);
+        ASSERT_EQ(sets_of_four.count[set], std::ssize(members));
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            EXPECT_EQ(members_from(7, set)[k], 7 + members[k]);
+        }
+    }
 }
 
 } // namespace
