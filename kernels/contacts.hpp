@@ -87,9 +87,8 @@ template <class Real> struct Strip {
 
 /// Of a disc, the earliest of the collisions that are known of it in a sweep.
 template <class Real> struct EarliestCollision {
-    Real time = 0;       ///< before the end of the step
-    int known_in = -1;   ///< the sweep in which it is known
-    int changed_in = -1; ///< the last sweep in which the disc collided
+    Real time = 0;     ///< before the end of the step
+    int known_in = -1; ///< the sweep in which it is known
 };
 
 /// Which blocks of boxes have contacts to look at: with Worklist::all always all of them. A block is a run of

@@ -173,6 +173,7 @@ void search_block(State<policies>& state, const Candidates<policies>& candidates
         }
         if constexpr (policies.impact == Impact::at_contact) {
             state.earliest[disc] = {};
+            state.changed_in[disc] = -1;
         }
         if (grid.at_wall(row, column) && overlaps_wall(state.discs[disc], state.side, radius)) [[unlikely]] {
             OverlappingDiscs* const pair = found.room(1);
@@ -244,6 +245,7 @@ Tally find(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const Real radius = state.search_radius(Real{1} / static_cast<Real>(tuning.substeps));
     if constexpr (policies.impact == Impact::at_contact) {
         state.earliest.resize(state.discs.size());
+        state.changed_in.resize(state.discs.size());
         state.steps_flown = std::min(state.steps_flown + 1, 2);
     }
     return parallel_for<policies.find_schedule>(

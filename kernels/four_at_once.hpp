@@ -7,8 +7,8 @@
 #include <cstring>
 #include <limits>
 
-// Four discs or four contacts at a time, in registers, by GNU's vectors and one instruction of its own. Which
-// of the four something is true of is a set, in bits: that of the first one is the lowest.
+// Four discs or contacts at a time, or two pairs, in registers, by GNU's vectors and one instruction of its
+// own. Which of the four something is true of is a set, in bits: that of the first one is the lowest.
 
 namespace carom {
 
@@ -63,11 +63,13 @@ inline FourInts members_from(int first, unsigned set) {
 /// Of four, the first `count`: -1; the rest: 0.
 inline FourInts first_of_four(int count) { return FourInts{0, 1, 2, 3} < count; }
 
+/// The sum of the two components of each of two vectors.
+template <class Both> [[gnu::always_inline]] inline Both sums(Both one, Both other) {
+    return __builtin_shufflevector(one, other, 0, 2) + __builtin_shufflevector(one, other, 1, 3);
+}
+
 /// Of each of four vectors, whether the sum of its two components is below 0, or a NaN; as truths.
 template <class Both> FourInts sums_below_zero(Both first, Both second, Both third, Both fourth) {
-    const auto sums = [](Both one, Both other) {
-        return __builtin_shufflevector(one, other, 0, 2) + __builtin_shufflevector(one, other, 1, 3);
-    };
     const auto before = ~(sums(first, second) >= 0);
     const auto after = ~(sums(third, fourth) >= 0);
     if constexpr (sizeof before == sizeof(FourInts)) {

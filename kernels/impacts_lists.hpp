@@ -45,7 +45,7 @@ Changes look_back(State<policies>& state, int i, const WayBack<RealOf<policies.p
         const auto& [other, in_own_box, last] = near[static_cast<std::size_t>(entry)];
         const OverlappingDiscs discs{i, other};
         const auto& partner = state.discs[static_cast<std::size_t>(other)];
-        if (!discs.at_wall() && !RelativeMotion(disc, partner, reach_squared).met(back)) {
+        if (!discs.at_wall() && !motion_of(disc, partner, reach_squared).met(back)) {
             continue;
         }
         const auto time = time_of(discs, state, back);

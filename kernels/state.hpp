@@ -37,6 +37,7 @@ template <class Real> struct OverlapsOf<Overlaps::contacts, Real> {
     std::vector<ActiveBlocks::Beside> blocks_of_disc;
     ActiveBlocks active;
     std::vector<EarliestCollision<Real>> earliest; ///< Impact::at_contact: of each disc
+    std::vector<int> changed_in; ///< ditto: of each disc the last sweep in which it collided; -1 before
 
     OverlapsOf(const Grid& grid, int count)
         : strips(static_cast<std::size_t>(grid.strip_count(strip_height(Order::strips)))),

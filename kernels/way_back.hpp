@@ -1,11 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
 #include "collide.hpp"
 #include "contacts.hpp"
+#include "four_at_once.hpp"
 #include "policies.hpp"
 #include "scene.hpp"
 #include "state.hpp"
@@ -41,39 +43,59 @@ template <class Real> struct WayBack {
 };
 
 /// The motion of the second of two discs as the first one sees it: |d - v t|^2 = (2r)^2, with a = |v|^2, b =
-/// d.v, c = |d|^2 - (2r)^2, at the times t ago at which they were in contact.
-template <class Real> struct RelativeMotion {
-    Real a;
-    Real b;
-    Real c;
-
-    RelativeMotion(const BasicDisc<Real>& first, const BasicDisc<Real>& second, Real reach_squared) {
-        const Real dx = second.x - first.x;
-        const Real dy = second.y - first.y;
-        const Real vx = second.vx - first.vx;
-        const Real vy = second.vy - first.vy;
-        a = vx * vx + vy * vy;
-        b = dx * vx + dy * vy;
-        c = dx * dx + dy * dy - reach_squared;
-    }
+/// d.v, c = |d|^2 - (2r)^2, at the times t ago at which they were in contact. `Number` is of one pair, or a
+/// vector of those of several.
+template <class Number> struct RelativeMotion {
+    Number a;
+    Number b;
+    Number c;
 
     /// Did they come into contact within the way back, if they fly as they do now? They are apart at its
     /// beginning and, at its end or in between, nearer than 2r. Without a root, a quotient or a branch.
-    [[gnu::always_inline]] bool met(const WayBack<Real>& back) const {
-        const Real time = back.step + static_cast<Real>(b < 0) * (back.all - back.step);
-        const bool were_apart = c - time * (2 * b - a * time) > 0;
-        const bool met_and_parted = (b > 0) & (b < a * time) & (b * b > a * c);
+    template <class Real> [[gnu::always_inline]] auto met(const WayBack<Real>& back) const {
+        const Number time = b < 0 ? Number{} + back.all : Number{} + back.step;
+        const auto were_apart = c - time * (2 * b - a * time) > 0;
+        const auto met_and_parted = (b > 0) & (b < a * time) & (b * b > a * c);
         return were_apart & ((c <= 0) | met_and_parted);
     }
 
     /// How long ago that was: the earlier moment, which is the larger root t = (b + sqrt(b^2 - a c)) / a.
     /// Where b < 0 the sum cancels and is multiplied out with its conjugate (Goldberg, ACM Computing Surveys
     /// 23, 5, 1991, section 1.4).
-    Real time_since_contact() const {
-        const Real root = std::sqrt(b * b - a * c);
-        return b < 0 ? -c / (root - b) : (b + root) / a;
+    Number time_since_contact() const {
+        const Number root = std::sqrt(b * b - a * c);
+        const bool approaching = b < 0;
+        return (approaching ? -c : b + root) / (approaching ? root - b : a);
     }
 };
+
+template <class Real>
+RelativeMotion<Real> motion_of(const BasicDisc<Real>& first, const BasicDisc<Real>& second,
+                               Real reach_squared) {
+    const Real dx = second.x - first.x;
+    const Real dy = second.y - first.y;
+    const Real vx = second.vx - first.vx;
+    const Real vy = second.vy - first.vy;
+    return {vx * vx + vy * vy, dx * vx + dy * vy, dx * dx + dy * dy - reach_squared};
+}
+
+/// The same of two pairs at once.
+template <class Real>
+[[gnu::always_inline]] inline auto motions_of_two(const std::array<OverlappingDiscs, 2>& pairs,
+                                                  const BasicDisc<Real>* discs, Real reach_squared) {
+    using Both = BothComponents<Real>;
+    std::array<typename Both::Register, 2> d;
+    std::array<typename Both::Register, 2> v;
+    for (std::size_t n = 0; n < 2; ++n) {
+        const auto& first = discs[pairs[n].first];
+        const auto& second = discs[pairs[n].second];
+        d[n] = Both::load_position(second) - Both::load_position(first);
+        v[n] = Both::load_velocity(second) - Both::load_velocity(first);
+    }
+    return RelativeMotion<typename Both::Register>{sums(v[0] * v[0], v[1] * v[1]),
+                                                   sums(d[0] * v[0], d[1] * v[1]),
+                                                   sums(d[0] * d[0], d[1] * d[1]) - reach_squared};
+}
 
 /// The time since which a disc has been in a wall that it moves into, along one axis; below 0 if it is in
 /// none, or has been for longer than the way back.
@@ -137,7 +159,7 @@ RealOf<policies.precision> time_of(OverlappingDiscs discs, const State<policies>
         return std::max(time_in_wall(disc.x, disc.vx, state.side, state.radius, back),
                         time_in_wall(disc.y, disc.vy, state.side, state.radius, back));
     }
-    return RelativeMotion(disc, state.discs[static_cast<std::size_t>(discs.second)], state.reach_squared())
+    return motion_of(disc, state.discs[static_cast<std::size_t>(discs.second)], state.reach_squared())
         .time_since_contact();
 }
 

@@ -1,6 +1,8 @@
+#include <array>
 #include <cmath>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -41,7 +43,7 @@ TEST(RelativeMotion, FindsTheContactThatSamplingFinds) {
         const Disc one{5, 5, uniform(random), uniform(random)};
         const Disc two{5 + 2.5 * uniform(random), 5 + 2.5 * uniform(random), 2 * uniform(random),
                        2 * uniform(random)};
-        const RelativeMotion motion(one, two, reach * reach);
+        const auto motion = motion_of(one, two, reach * reach);
         const double limit = motion.b < 0 ? way_back.all : way_back.step;
         const double sampled = contact_by_sampling(one, two, limit);
         if (motion.met(way_back)) {
@@ -63,9 +65,35 @@ TEST(RelativeMotion, FindsTheContactThatSamplingFinds) {
 
 TEST(RelativeMotion, KnowsNoContactOfDiscsThatMoveAlike) {
     const Disc one{5, 5, 0.5, 0.5};
-    EXPECT_FALSE(RelativeMotion(one, {6, 5, 0.5, 0.5}, reach * reach).met(way_back));
-    EXPECT_FALSE(RelativeMotion(one, {7, 5, 0.5, 0.5}, reach * reach).met(way_back));
-    EXPECT_FALSE(RelativeMotion(one, {5, 5, 0.5, 0.5}, reach * reach).met(way_back));
+    EXPECT_FALSE(motion_of(one, {6, 5, 0.5, 0.5}, reach * reach).met(way_back));
+    EXPECT_FALSE(motion_of(one, {7, 5, 0.5, 0.5}, reach * reach).met(way_back));
+    EXPECT_FALSE(motion_of(one, {5, 5, 0.5, 0.5}, reach * reach).met(way_back));
+}
+
+TEST(RelativeMotion, OfTwoPairsAtOnceIsThatOfEach) {
+    std::mt19937_64 random(20);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<Disc> discs(400);
+    for (Disc& disc : discs) {
+        disc = {2 * uniform(random), 2 * uniform(random), uniform(random), uniform(random)};
+    }
+    int met = 0;
+    for (int i = 0; i + 3 < static_cast<int>(discs.size()); ++i) {
+        const std::array<OverlappingDiscs, 2> pairs{{{i, i + 1}, {i + 3, i + 2}}};
+        const auto both = motions_of_two(pairs, discs.data(), reach * reach);
+        const auto have_met = both.met(way_back);
+        for (std::size_t n = 0; n < 2; ++n) {
+            const auto one = motion_of(discs[static_cast<std::size_t>(pairs[n].first)],
+                                       discs[static_cast<std::size_t>(pairs[n].second)], reach * reach);
+            EXPECT_EQ(both.a[n], one.a);
+            EXPECT_EQ(both.b[n], one.b);
+            EXPECT_EQ(both.c[n], one.c);
+            EXPECT_EQ(have_met[n] != 0, one.met(way_back) != 0);
+            met += one.met(way_back);
+        }
+    }
+    EXPECT_GT(met, 40);
+    EXPECT_LT(met, 760);
 }
 
 TEST(CollideBack, EndsWhereTheReferenceDoes) {
@@ -76,7 +104,7 @@ TEST(CollideBack, EndsWhereTheReferenceDoes) {
     ASSERT_EQ(reference.pair_collisions(), 1);
     Disc one{20.75, 20.25, 0.75, 0.25};
     Disc two{21.25, 21, -0.75, 0};
-    const RelativeMotion motion(one, two, reach * reach);
+    const auto motion = motion_of(one, two, reach * reach);
     ASSERT_TRUE(motion.met(way_back));
     ASSERT_TRUE(
         collide_back(motion.time_since_contact(), one, two, ApproachTolerance<double>(Tolerance::relative)));
@@ -110,7 +138,7 @@ Drift drift_of_energy(double radius) {
         Disc one{0, 0, uniform(random), uniform(random)};
         Disc two{2 * radius * uniform(random), 2 * radius * uniform(random), uniform(random),
                  uniform(random)};
-        const RelativeMotion motion(one, two, 4 * radius * radius);
+        const auto motion = motion_of(one, two, 4 * radius * radius);
         const long double before = energy(one, two);
         if (motion.c < 0 && collide_back(motion.time_since_contact(), one, two,
                                          ApproachTolerance<double>(Tolerance::relative))) {
