@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <iterator>
+#include <vector>
 
 #include "collide.hpp"
 #include "contacts.hpp"
@@ -241,20 +242,23 @@ template <Policies policies, class SomeProbe>
 Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const auto back = way_back(state, tuning);
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
-    const StripTurns turns(state.grid.strip_count(strip_height(policies.order)));
-    Wavefront wavefront(turns.strips);
+    const int strips = state.grid.strip_count(strip_height(policies.order));
+    const std::vector<Turn> turns = turns_of(strips, 2, strips);
+    Wavefront wavefront(strips);
     return sweep_impacts(tuning, probe, [&](int sweep, int threads) {
         return parallel_for<policies.resolve_schedule>(
-            threads, 2 * turns.strips, tuning.resolve_chunk, probe,
-            [&](int turn) {
-                const int strip = turns.strip(turn);
-                const bool looks = turns.sweep(turn) == 0;
-                const Changes changes = looks ? look_back(state, strip, sweep, back)
-                                              : collide_earliest(state, strip, sweep, back, approaching);
-                wavefront.ends(strip, 2 * sweep + turns.sweep(turn));
+            threads, static_cast<int>(turns.size()), tuning.resolve_chunk, probe,
+            [&](int index) {
+                const auto [strip, half] = turns[static_cast<std::size_t>(index)];
+                const Changes changes = half == 0 ? look_back(state, strip, sweep, back)
+                                                  : collide_earliest(state, strip, sweep, back, approaching);
+                wavefront.ends(strip, 2 * sweep + half);
                 return Tally(changes);
             },
-            [&](int turn) { return wavefront.can_begin(turns.strip(turn), 2 * sweep + turns.sweep(turn)); });
+            [&](int index) {
+                const auto [strip, half] = turns[static_cast<std::size_t>(index)];
+                return wavefront.can_begin(strip, 2 * sweep + half);
+            });
     });
 }
 

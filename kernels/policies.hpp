@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <type_traits>
 
 namespace carom {
@@ -144,7 +145,8 @@ struct Tuning {
     int resolve_chunk = 5; ///< boxes, rows or strips, where the resolve schedule has a chunk
     int substeps = 1;      ///< dt = 1 / substeps
     Tolerance tolerance = Tolerance::relative;
-    int sweep_limit = 100'000; ///< sweeps in one step after which a resolve is given up as endless
+    std::size_t cache_bytes = 12 << 20; ///< sweeps that touch more follow one another a few strips behind
+    int sweep_limit = 100'000;          ///< sweeps in one step after which a resolve is given up as endless
 };
 
 } // namespace carom

@@ -17,6 +17,7 @@ Tally resolve_in_place(State<policies>& state, const Tuning& tuning, SomeProbe& 
     [[maybe_unused]] Remembered remembered;
     [[maybe_unused]] Wavefront wavefront(
         policies.order == Order::wavefront ? state.grid.strip_count(strip_height(policies.order)) : 0);
+    [[maybe_unused]] const bool skewed = policies.order == Order::wavefront && exceeds_cache(state, tuning);
     Tuning one_thread = tuning;
     one_thread.threads = 1;
     Tally total;
@@ -37,8 +38,8 @@ Tally resolve_in_place(State<policies>& state, const Tuning& tuning, SomeProbe& 
             last = sweep_discs(state, approaching);
         } else if constexpr (policies.order == Order::wavefront) {
             const int done = static_cast<int>(total.sweeps);
-            last =
-                sweep_wavefront(state, wavefront, done, tuning.sweep_limit - done, now, approaching, probe);
+            last = sweep_wavefront(state, wavefront, done, tuning.sweep_limit - done, skewed, now,
+                                   approaching, probe);
         } else {
             last = sweep_strips(state, now, approaching, probe);
         }

@@ -28,19 +28,37 @@
 
 namespace carom {
 
-/// The turns of some sweeps over strips, in each the even ones first.
-struct StripTurns {
-    int strips;
-
-    explicit StripTurns(int its_strips) : strips(its_strips) {}
-
-    int sweep(int turn) const { return turn / strips; }
-    int strip(int turn) const {
-        const int even = every_other(strips, 0);
-        const int k = turn % strips;
-        return k < even ? 2 * k : 2 * (k - even) + 1;
-    }
+/// A strip in a sweep.
+struct Turn {
+    int strip;
+    int sweep;
 };
+
+/// The turns of some sweeps over all strips, each after those that it waits for. They are taken by groups of
+/// `pairs_at_once` pairs, of an even strip and the odd one before it: the even strips of a group, then the
+/// odd ones.
+///
+/// One group that holds all goes through one sweep after the other. Of several, each sweep follows two groups
+/// behind the one before it (the odd strip that a group's last even one waits for is in the next group), so
+/// that what one sweep has brought into the cache the next ones find there. (Time skewing: McCalpin and
+/// Wonnacott, Rutgers DCS-TR-379, 1999.)
+inline std::vector<Turn> turns_of(int strips, int sweeps, int pairs_at_once) {
+    std::vector<Turn> turns;
+    turns.reserve(static_cast<std::size_t>(strips) * static_cast<std::size_t>(sweeps));
+    const int groups = strips / 2 / pairs_at_once + 1;
+    for (int stage = 0; stage < groups + 2 * (sweeps - 1); ++stage) {
+        for (int odd = 0; odd < 2; ++odd) {
+            for (int sweep = 0; sweep < sweeps; ++sweep) {
+                const int group = stage - 2 * sweep;
+                const int end = std::min((group + 1) * pairs_at_once, (strips + odd + 1) / 2);
+                for (int pair = std::max(group * pairs_at_once, odd); pair < end; ++pair) {
+                    turns.push_back({2 * pair - odd, sweep});
+                }
+            }
+        }
+    }
+    return turns;
+}
 
 /// How far each strip has come in the resolve of one step.
 class Wavefront {
@@ -75,32 +93,52 @@ class Wavefront {
 /// So many sweeps at most run as one.
 inline constexpr int most_sweeps_at_once = 8;
 
+/// Does a sweep touch more memory than it finds in the cache the next time?
+template <Policies policies> bool exceeds_cache(const State<policies>& state, const Tuning& tuning) {
+    if constexpr (policies.overlaps != Overlaps::contacts || policies.worklist != Worklist::active) {
+        return false;
+    } else {
+        std::size_t bytes =
+            state.discs.size() * (sizeof state.discs.front() + sizeof state.blocks_of_disc.front());
+        for (const auto& strip : state.strips) {
+            bytes += strip.contacts.size() * sizeof strip.contacts.front();
+        }
+        return bytes > tuning.cache_bytes;
+    }
+}
+
 /// The next sweeps after the first `done` ones, `most` at most: each as one of `strips`, up to the first that
 /// changes nothing. On one thread one sweep, elsewhere twice as many each time, so that few are run in vain.
+/// `skewed`: as many as may be, a few strips behind each other.
 template <Policies policies, class SomeProbe>
-Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, int most, const Tuning& tuning,
-                      const ApproachToleranceOf<policies>& approaching, SomeProbe& probe) {
-    const int count = tuning.threads == 1 ? 1 : std::min({done + 1, most, most_sweeps_at_once});
-    const StripTurns turns(state.grid.strip_count(strip_height(policies.order)));
-    const auto sweep_of = [=](int turn) { return turns.sweep(turn); };
-    const auto strip_of = [=](int turn) { return turns.strip(turn); };
+Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, int most, bool skewed,
+                      const Tuning& tuning, const ApproachToleranceOf<policies>& approaching,
+                      SomeProbe& probe) {
+    const int wanted = skewed ? most_sweeps_at_once : tuning.threads == 1 ? 1 : done + 1;
+    const int count = std::min({wanted, most, most_sweeps_at_once});
+    const int strips = state.grid.strip_count(strip_height(policies.order));
+    const std::vector<Turn> turns = turns_of(strips, count, skewed ? tuning.threads / 4 + 1 : strips);
     std::array<std::atomic<int>, most_sweeps_at_once> changes{};
     std::array<std::atomic<int>, most_sweeps_at_once> attempts{};
-    const auto resolve_turn = [&](int turn) {
-        Changes made = resolve_strip(state, strip_of(turn), approaching);
-        attempts[static_cast<std::size_t>(sweep_of(turn))].fetch_add(std::exchange(made.attempts, 0),
-                                                                     std::memory_order_relaxed);
+    const auto resolve_turn = [&](int index) {
+        const auto [strip, sweep] = turns[static_cast<std::size_t>(index)];
+        Changes made = resolve_strip(state, strip, approaching);
+        attempts[static_cast<std::size_t>(sweep)].fetch_add(std::exchange(made.attempts, 0),
+                                                            std::memory_order_relaxed);
         if (made.any()) {
-            changes[static_cast<std::size_t>(sweep_of(turn))].fetch_add(made.count(),
-                                                                        std::memory_order_relaxed);
+            changes[static_cast<std::size_t>(sweep)].fetch_add(made.count(), std::memory_order_relaxed);
         }
-        wavefront.ends(strip_of(turn), done + sweep_of(turn));
+        wavefront.ends(strip, done + sweep);
         return Tally(made);
     };
     Swept swept;
-    swept.work = parallel_for<policies.resolve_schedule>(
-        tuning.threads, count * turns.strips, tuning.resolve_chunk, probe, resolve_turn,
-        [&](int turn) { return wavefront.can_begin(strip_of(turn), done + sweep_of(turn)); });
+    swept.work =
+        parallel_for<policies.resolve_schedule>(tuning.threads, static_cast<int>(turns.size()),
+                                                tuning.resolve_chunk, probe, resolve_turn, [&](int index) {
+                                                    const auto [strip, sweep] =
+                                                        turns[static_cast<std::size_t>(index)];
+                                                    return wavefront.can_begin(strip, done + sweep);
+                                                });
     const auto last = std::find(changes.begin(), changes.begin() + count - 1, 0);
     swept.work.sweeps = last - changes.begin() + 1;
     // Of those that were run in vain, whose number depends on that of the threads, nothing is counted.

@@ -119,7 +119,7 @@ template <Policies policies> Tally sweep_of(State<policies>& state, int threads)
         return sweep_checkered(state, tuning, approaching, probe).work;
     } else if constexpr (policies.order == Order::wavefront) {
         Wavefront wavefront(state.grid.strip_count(strip_height(policies.order)));
-        return sweep_wavefront(state, wavefront, 0, 1, tuning, approaching, probe).work;
+        return sweep_wavefront(state, wavefront, 0, 1, false, tuning, approaching, probe).work;
     } else {
         return sweep_strips(state, tuning, approaching, probe).work;
     }
