@@ -58,7 +58,7 @@ def evaluate(
     on and, where more can settle it, how many are `needed`.
 
     Everything is judged on the records of `study`, except the claim about machines, which needs all of them.
-    Those that may be decided at its scale are corrected for their number (see `family`). Raises InputError
+    Those that are decided at its scale are corrected for their number (see `family`). Raises InputError
     for a test that there is not.
     """
     evidence = Evidence(study, studies, published)
@@ -85,7 +85,7 @@ def _tested(evidence: Evidence, claim: Claim) -> Outcome:
 def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[str, object]:
     runs = study.runs[study.runs["experiment"].isin(claim.experiments)]
     tested = tuple(sorted(int(number) for number in runs["threads"].unique()))
-    outcome = _with_failures(_at_threads(outcome, claim, tested), claim, study)
+    outcome = _with_failures(_elsewhere(outcome, claim, tested, study.scale), claim, study)
     if not math.isnan(wanted):
         told = missing.said(study, claim, outcome.blocks, wanted)
         outcome = replace(outcome, why=f"{outcome.why}; {told}" if outcome.why else told)
@@ -103,17 +103,25 @@ def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[st
     }
 
 
-def _at_threads(outcome: Outcome, claim: Claim, tested: tuple[int, ...]) -> Outcome:
-    """A verdict on other threads than those of the claim is one about them alone."""
-    claimed = claim.published.threads
-    if claimed is None or tested == (claimed,):
+def _elsewhere(outcome: Outcome, claim: Claim, tested: tuple[int, ...], scale: str) -> Outcome:
+    """A verdict on other threads than those of the claim, or at a smaller scale, is one about them alone."""
+    if outcome.verdict not in ELSEWHERE:
         return outcome
-    return replace(outcome, verdict=ELSEWHERE.get(outcome.verdict, outcome.verdict))
+    if scale not in claim.scales:
+        why = "; ".join(part for part in (outcome.why, claim.other_scales) if part)
+        return replace(outcome, verdict=ELSEWHERE[outcome.verdict], why=why)
+    if _on_its_threads(claim, tested):
+        return outcome
+    return replace(outcome, verdict=ELSEWHERE[outcome.verdict])
+
+
+def _on_its_threads(claim: Claim, tested: tuple[int, ...]) -> bool:
+    return claim.published.threads is None or tested == (claim.published.threads,)
 
 
 def _at_scale(outcome: Outcome, claim: Claim, scale: str) -> Outcome:
-    """A scale at which a claim may not be decided leaves what was measured, and no verdict."""
-    if scale in claim.scales or (outcome.verdict == OPEN and not outcome.measured):
+    """A scale that says nothing of a claim leaves what was measured, and no verdict."""
+    if claim.speaks_of(scale) or (outcome.verdict == OPEN and not outcome.measured):
         return outcome
     return replace(outcome, verdict=Verdict.OTHER_SCALE, why=claim.other_scales, p=None, blocks=0)
 
@@ -133,7 +141,11 @@ def _said(verdict: Verdict, claim: Claim, tested: tuple[int, ...], scale: str) -
     plain = {elsewhere: plain for plain, elsewhere in ELSEWHERE.items()}.get(verdict)
     if plain is None:
         return str(verdict)
-    return f"{plain} at {_threads(tested)} (claimed at {claim.published.threads})"
+    at_scale = "" if scale in claim.scales else f" at {scale} scale"
+    if _on_its_threads(claim, tested):
+        return f"{plain}{at_scale}"
+    comma = "," if at_scale else ""
+    return f"{plain}{at_scale}{comma} at {_threads(tested)} (claimed at {claim.published.threads})"
 
 
 def _threads(tested: tuple[int, ...]) -> str:

@@ -35,8 +35,9 @@ class Origin:
 class Claim:
     """A claim in our words, where it comes from, on which scales it may be decided and by which test.
 
-    `other_scales` says why records of another scale do not decide it; `questions` is the folder of its
-    question, empty for a published one.
+    On a scale of `smaller_scales` its question can be settled as well, with a verdict that speaks of that
+    scale alone; `other_scales` says why records of another scale do not decide the claim itself; `questions`
+    is the folder of its question, empty for a published one.
     """
 
     id: str
@@ -47,6 +48,11 @@ class Claim:
     test: str
     arguments: Mapping[str, Any] = field(default_factory=dict)
     questions: str = ""
+    smaller_scales: tuple[str, ...] = ()
+
+    def speaks_of(self, scale: str) -> bool:
+        """Tell whether records of a scale settle the claim, or its question at that scale."""
+        return scale in self.scales or scale in self.smaller_scales
 
     @property
     def experiments(self) -> Sequence[str]:
@@ -109,6 +115,7 @@ def _claim(path: Path, number: int, content: Mapping[str, Any], table: dict[str,
             scales=scales,
             other_scales=content.get("other_scales", {}).get(why, why or ""),
             questions=content.get("questions", ""),
+            smaller_scales=tuple(table.pop("smaller_scales", ())),
             **table,
         )
     except TypeError as error:

@@ -14,19 +14,21 @@ from analysis.support.wording import count, percent
 
 
 class Verdict(StrEnum):
-    """What can be said of a claim; one made on another number of threads is neither confirmed nor refuted."""
+    """What can be said of a claim; one tested elsewhere, on other threads or at a smaller scale than it was
+    made, is neither confirmed nor refuted.
+    """
 
     HOLDS = "holds"
     FAILS = "does not hold"
-    HOLDS_ELSEWHERE = "holds at another number of threads"
-    FAILS_ELSEWHERE = "does not hold at another number of threads"
+    HOLDS_ELSEWHERE = "holds elsewhere than claimed"
+    FAILS_ELSEWHERE = "does not hold elsewhere than claimed"
     OPEN = "cannot be decided here"
     OTHER_SCALE = "cannot be decided at this scale"
 
 
 HOLDS, FAILS, OPEN = Verdict.HOLDS, Verdict.FAILS, Verdict.OPEN
 ELSEWHERE = {HOLDS: Verdict.HOLDS_ELSEWHERE, FAILS: Verdict.FAILS_ELSEWHERE}
-"""A verdict, and what is left of it where the claim was made on another number of threads."""
+"""A verdict, and what is left of it where the claim was made on other threads or at another scale."""
 
 NO_RECORDS = "no records yet"
 TOO_FEW = "the interval reaches across the margin: more blocks or a quieter machine would decide"

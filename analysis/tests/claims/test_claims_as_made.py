@@ -10,7 +10,7 @@ from analysis.claims.outcome import FAILS, HOLDS, OPEN, Verdict
 from analysis.records import published
 from analysis.tests.claims.judging import Records, figures, row_of, slowed
 from analysis.tests.synthetic import Machine, Point, bench, failure
-from analysis.tests.synthetic_noise import QUIET
+from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_study import study
 
 # Threads
@@ -62,15 +62,43 @@ def test_every_claim_says_what_the_study_measured_and_where_it_may_be_decided() 
 # Scale and size
 
 
-@pytest.mark.parametrize("scale", ["quick", "unstated"])
-def test_a_scale_of_another_physics_shows_what_was_measured_and_decides_nothing(
-    tmp_path: Path, scale: str
+@pytest.mark.parametrize(
+    ("threads", "factor", "verdict", "said"),
+    [
+        (20, 1.0, Verdict.HOLDS_ELSEWHERE, "holds at quick scale"),
+        (20, 1.2, Verdict.FAILS_ELSEWHERE, "does not hold at quick scale"),
+        (2, 1.0, Verdict.HOLDS_ELSEWHERE, "holds at quick scale, at 2 threads (claimed at 20)"),
+    ],
+)
+def test_a_verdict_at_a_smaller_scale_speaks_of_it_alone(
+    tmp_path: Path, threads: int, factor: float, verdict: Verdict, said: str
 ) -> None:
-    row = row_of(tmp_path, study(["neighbourhood"], noise=QUIET, scale=scale, threads=20), "four_boxes")
+    records = study(["neighbourhood"], noise=QUIET, scale="quick", threads=threads)
+    row = row_of(tmp_path, slowed(records, factor, series="four"), "four_boxes")
+    assert row["verdict"] == verdict
+    assert row["said"].replace("\u00a0", " ") == said
+    assert "24 rows" in row["why"]
+
+
+def test_what_is_open_at_a_smaller_scale_says_what_is_missing(tmp_path: Path) -> None:
+    records = study(["neighbourhood"], noise=Noise(process=0.2), scale="quick", threads=20, blocks=5)
+    row = row_of(tmp_path, records, "four_boxes")
+    assert row["verdict"] == OPEN
+    assert "24 rows" not in row["why"]
+    assert "SCALE=quick" in row["why"] or "not in sight" in row["why"]
+
+
+@pytest.mark.parametrize(
+    ("scale", "experiment", "claim"), [("quick", "threads", "threads"), ("unstated", "neighbourhood", "four_boxes")]
+)
+def test_a_scale_that_says_nothing_of_a_claim_shows_what_was_measured_and_decides_nothing(
+    tmp_path: Path, scale: str, experiment: str, claim: str
+) -> None:
+    row = row_of(tmp_path, study([experiment], noise=QUIET, scale=scale, threads=20), claim)
     assert row["verdict"] == Verdict.OTHER_SCALE
     assert row["said"] == f"cannot be decided at {scale} scale"
     assert "24 rows" in row["why"]
-    assert "[" in row["measured"]
+    assert row["measured"]
 
 
 def test_the_row_claim_is_judged_at_its_150_rows_and_not_at_the_largest_scene(tmp_path: Path) -> None:
