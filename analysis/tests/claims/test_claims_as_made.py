@@ -89,7 +89,8 @@ def test_what_is_open_at_a_smaller_scale_says_what_is_missing(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    ("scale", "experiment", "claim"), [("quick", "threads", "threads"), ("unstated", "neighbourhood", "four_boxes")]
+    ("scale", "experiment", "claim"),
+    [("quick", "threads", "threads"), ("unstated", "neighbourhood", "four_boxes")],
 )
 def test_a_scale_that_says_nothing_of_a_claim_shows_what_was_measured_and_decides_nothing(
     tmp_path: Path, scale: str, experiment: str, claim: str
