@@ -16,11 +16,14 @@ from analysis.records.reading import load
 from analysis.records.studies import Study, split
 from analysis.statistics.forecast import blocks_to_decide
 from analysis.statistics.intervals import FEWEST
-from analysis.statistics.looks import ERROR, next_look
+from analysis.statistics.looks import ERROR, LOOKS, next_look
 from analysis.support.wording import change
 
 COMPARED = ("comparison", "control")
 """Kinds of figures whose every difference has a verdict, also in a question that no claim is about."""
+
+KNOWN = LOOKS[3]
+"""Blocks from which on a forecast is believed that has nothing in sight: of fewer, noise alone makes one."""
 
 
 def open_questions(results: Path) -> dict[str, Any]:
@@ -28,7 +31,8 @@ def open_questions(results: Path) -> dict[str, Any]:
     are `needed` to settle the first thing that is open in it, and which points, by series and x, need no more
     of them (`stopped`); `settled`: the experiments in which nothing is; `said`: name -> what was decided.
 
-    Of the first study in the folder. What is not in sight is neither open nor settled.
+    Of the first study in the folder. What is not in sight is neither open nor settled, but where that is told
+    from few blocks: there those are needed that halve the interval.
     """
     studies = split(load(results))
     found: dict[str, Any] = {"open": {}, "settled": [], "said": {}}
@@ -42,7 +46,7 @@ def open_questions(results: Path) -> dict[str, Any]:
     items = [*_claims(table), *_comparisons(studies[0], claimed, found["said"])]
     experiments = dict.fromkeys(experiment for experiment, _, _ in items)
     for experiment in experiments:
-        own = [(blocks, needed) for name, blocks, needed in items if name == experiment]
+        own = [(blocks, _worth(blocks, needed)) for name, blocks, needed in items if name == experiment]
         in_sight = [(needed, blocks) for blocks, needed in own if math.isfinite(needed)]
         if in_sight:
             needed, blocks = min(in_sight)
@@ -55,6 +59,10 @@ def open_questions(results: Path) -> dict[str, Any]:
         elif all(math.isnan(needed) for _, needed in own):
             found["settled"].append(experiment)
     return found
+
+
+def _worth(blocks: int, needed: float) -> float:
+    return 4 * blocks if math.isinf(needed) and blocks < KNOWN else needed
 
 
 def _stopped(table: pd.DataFrame) -> dict[str, list[tuple[str, float]]]:

@@ -2,6 +2,7 @@
 
 import io
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_study import study
 
 NOISY = Noise(process=0.03)
+NOISIER = Noise(process=0.2)
 
 
 def found(folder: Path, names: list[str], blocks: int, noise: Noise) -> dict[str, Any]:
@@ -53,6 +55,17 @@ def test_too_few_blocks_need_the_first_look(tmp_path: Path) -> None:
     answer = found(tmp_path, ["neighbourhood", "control"], 2, QUIET)
     expected = {"blocks": 2, "next": 4, "needed": 4, "stopped": []}
     assert answer["open"] == {"neighbourhood": expected, "control": expected}
+
+
+@pytest.mark.parametrize(("blocks", "needed"), [(4, 16), (14, None)])
+def test_that_nothing_is_in_sight_is_believed_from_enough_blocks_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, blocks: int, needed: int | None
+) -> None:
+    monkeypatch.setattr("analysis.claims.missing.blocks_to_decide", lambda *_: math.inf)
+    answer = found(tmp_path, ["neighbourhood"], blocks, NOISIER)
+    assert "four_boxes" not in answer["said"]
+    assert answer["open"].get("neighbourhood", {}).get("needed") == needed
+    assert answer["settled"] == []
 
 
 def test_what_hardware_lacks_is_not_open(tmp_path: Path) -> None:
