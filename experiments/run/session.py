@@ -23,6 +23,9 @@ DRAWING_LIMIT = 600.0
 DECIDING_SHARE = 0.25
 """The part of a scale's time that what is open gets for certain."""
 
+MEASURED_A_LOOK = 2.0
+"""The least time measured between two looks, in those that the look took."""
+
 REPORT_PAUSE, REPORT_SHARE = 300.0, 0.05
 """Least seconds between two reports of what is there, and the most of the time that they may take."""
 
@@ -111,18 +114,32 @@ class Session:
         grown: dict[str, None] = {}
         while True:
             self._report.now("looking at what is decided", self._schedule.status)
+            began = time.monotonic()
             verdicts = ask(self._analysis)
             if isinstance(verdicts, str):
                 warn(f"what is open is not known, so that nothing is measured to settle it: {verdicts}")
                 return frozenset()
             self._tell_decisions(verdicts)
-            chosen = self._schedule.cheapest(verdicts, self._until - time.monotonic())
-            if chosen is None:
+            looked = time.monotonic()
+            chosen = self._measure_cheapest(verdicts, until=looked + MEASURED_A_LOOK * (looked - began))
+            if not chosen:
                 self._to_draw += [name for name in grown if name not in self._to_draw]
                 return verdicts.settled
+            grown |= dict.fromkeys(chosen)
+
+    def _measure_cheapest(self, verdicts: Verdicts, until: float) -> list[str]:
+        """Bring what is settled soonest to its next look, and the next such, for as long as to make a look
+        worth its time. Returns their names.
+        """
+        names: list[str] = []
+        while not names or time.monotonic() < until:
+            chosen = self._schedule.cheapest(verdicts, self._until - time.monotonic())
+            if chosen is None:
+                break
             self._schedule.give(chosen, verdicts.open[chosen.name])
             self._measure(chosen)
-            grown[chosen.name] = None
+            names.append(chosen.name)
+        return names
 
     def _tell_decisions(self, verdicts: Verdicts) -> None:
         for name, said in verdicts.said.items():
