@@ -1,20 +1,22 @@
 """Whether anything measured beside a choice is faster than it."""
 
+import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import pandas as pd
 
 from analysis.claims.outcome import FAILS, TOO_FEW, Outcome, judged
 from analysis.statistics.looks import ERROR
 from analysis.statistics.moderation import NOTHING_KNOWN, Prior
-from analysis.statistics.verdicts import MARGIN, judge, not_faster
+from analysis.statistics.verdicts import MARGIN, judge, judge_one
 from analysis.support.wording import share
 
 
 @dataclass(frozen=True)
 class Alternatives:
     """`table` is a row of `judge` an alternative, by `name`, for its time against that of the choice, with
-    `behind`, the p-value of its not being faster.
+    `behind`, the p-value of its not being faster, and `ahead`, that of its being so, infinite if slower.
     """
 
     table: pd.DataFrame
@@ -37,7 +39,8 @@ class Alternatives:
         said = f"not settled against {undecided} of {others} others; {TOO_FEW}"
         found = judged(row, "not faster", measured, unsettled=said)
         why = found.why or f"none of {others} others is faster by more than {share(MARGIN)}"
-        return replace(found, why=why)
+        against = float(self.table["ahead"].min()) * others if undecided else None
+        return replace(found, why=why, against=against)
 
 
 def alternatives(pairs: pd.DataFrame, prior: Prior = NOTHING_KNOWN) -> Alternatives:
@@ -46,6 +49,15 @@ def alternatives(pairs: pd.DataFrame, prior: Prior = NOTHING_KNOWN) -> Alternati
     That nothing is faster needs evidence against every alternative (an intersection of tests, each at 5 %);
     that something is faster is Holm-corrected over the alternatives.
     """
-    behind = {name: not_faster(group["log_ratio"], prior=prior) for name, group in pairs.groupby("name")}
+    alone = {name: judge_one(group["log_ratio"], prior=prior) for name, group in pairs.groupby("name")}
     table = judge(pairs, ["name"], prior=prior)
-    return Alternatives(table.assign(behind=table["name"].map(behind)))
+    behind, ahead = ([p(alone[name]) for name in table["name"]] for p in (_behind, _ahead))
+    return Alternatives(table.assign(behind=behind, ahead=ahead))
+
+
+def _behind(row: dict[str, Any]) -> float:
+    return float(row["not_faster"])
+
+
+def _ahead(row: dict[str, Any]) -> float:
+    return float(row["not_equivalent"]) if row["ratio"] < 1 else math.inf

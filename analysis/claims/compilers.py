@@ -6,7 +6,7 @@ import pandas as pd
 
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import Compared, Outcome, judged, no_records
+from analysis.claims.outcome import Compared, Outcome, judged, no_records, told
 from analysis.statistics.moderation import Prior
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
@@ -49,7 +49,8 @@ def _against(reference: pd.DataFrame, candidate: pd.DataFrame, how: str, prior: 
         for side in (candidate, reference)
     ]
     row = judge_one(log_ratios(reference, candidate)["log_ratio"], prior=prior)
-    measured = f"{names[0]} against {names[1]}: {change(row)} of time, {blocks(row)} ({row['verdict']})"
+    said = told(row, "faster")
+    measured = f"{names[0]} against {names[1]}: {change(row)} of time, {blocks(row)} ({said})"
     figure = Compared(f"time of {names[0]} against {names[1]}", "–", change(row))
     outcome = judged(row, "faster", measured, (figure,))
-    return replace(outcome, why=outcome.why or f"{row['verdict']} {how}")
+    return replace(outcome, why=outcome.why or f"{said} {how}")

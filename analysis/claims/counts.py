@@ -1,17 +1,19 @@
 """The claim about work that is counted, not timed."""
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, judged, no_records
+from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, judged, no_records, told
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, count
 
-OF_COUNTS = {"faster": "fewer", "slower": "more"}
+OF_COUNTS = {"faster": "fewer", "slower": "more", "not faster": "not fewer"}
 """The verdicts on a ratio in words for a number of things; the others are the same."""
 
 
@@ -39,8 +41,7 @@ def fewer_wasted_attempts(
     times = process_medians(evidence.study.times_of(experiment))
     seconds = judge_one(_over_blocks(*(times[times[axis] == value] for value in (reference, candidate))))
     said = "; ".join(
-        f"{change(row)} of {value.replace('_', ' ')} ({OF_COUNTS.get(row['verdict'], row['verdict'])})"
-        for value, row in rows.items()
+        f"{change(row)} of {value.replace('_', ' ')} ({_told(row)})" for value, row in rows.items()
     )
     wasted = rows["wasted_attempts"]
     measured = (
@@ -54,6 +55,11 @@ def fewer_wasted_attempts(
     unsettled = TOO_FEW.replace("blocks or a quieter machine", "seeds")
     found = judged(wasted, "faster", measured, figures, unsettled, unit="seed")
     return replace(found, blocks=0)  # more blocks bring no further seed
+
+
+def _told(row: Mapping[str, Any]) -> str:
+    verdict = told(row, "faster")
+    return OF_COUNTS.get(verdict, verdict)
 
 
 def _over_seeds(before: pd.DataFrame, after: pd.DataFrame, value: str) -> pd.Series:

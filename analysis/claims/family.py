@@ -35,8 +35,15 @@ def both(outcomes: Sequence[Outcome]) -> Outcome:
         tuple(dict.fromkeys(figure for outcome in outcomes for figure in outcome.figures)),
         all(outcome.missing for outcome in outcomes),
         (min(p) if verdict == FAILS else max(p)) if p else None,
-        min((outcome.blocks for outcome in decisive), default=0),
+        blocks=min((outcome.blocks for outcome in decisive), default=0),
+        against=_against(parts) if verdict == OPEN else None,
     )
+
+
+def _against(parts: Sequence[Outcome]) -> float | None:
+    """Return the p-value of any part's not holding, corrected for their number."""
+    against = [one.against for one in parts if one.against is not None]
+    return len(parts) * min(against) if against else None
 
 
 def corrected(claims: Sequence[Outcome]) -> list[Outcome]:

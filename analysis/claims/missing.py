@@ -24,7 +24,9 @@ def needed(outcome: Outcome, open_claims: int) -> float:
     """
     if outcome.blocks == 0:
         return math.nan
-    return blocks_to_decide(1.0 if outcome.p is None else outcome.p, outcome.blocks, max(1, open_claims))
+    p = 1.0 if outcome.p is None else outcome.p
+    nearest = p if outcome.against is None else min(p, outcome.against)
+    return blocks_to_decide(nearest, outcome.blocks, max(1, open_claims))
 
 
 def said(study: Study, claim: Claim, blocks: int, wanted: float) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.statistics.intervals import FEWEST
+from analysis.statistics.looks import ERROR
 from analysis.statistics.verdicts import MARGIN
 from analysis.support.wording import count, percent
 
@@ -31,6 +32,12 @@ ELSEWHERE = {HOLDS: Verdict.HOLDS_ELSEWHERE, FAILS: Verdict.FAILS_ELSEWHERE}
 """A verdict, and what is left of it where the claim was made on other threads or at another scale."""
 
 NO_RECORDS = "no records yet"
+SETTLES = {
+    "faster": ("faster", "not faster"),
+    "slower": ("slower", "not slower"),
+    "equivalent": ("equivalent", "faster", "slower"),
+}
+"""What settles a claim that expects a verdict on a ratio."""
 TOO_FEW = "the interval reaches across the margin: more blocks or a quieter machine would decide"
 
 
@@ -50,7 +57,8 @@ class Outcome:
     verdict, or of the one best supported; None where nothing could be tested. `blocks` is how many it rests
     on, 0 where more of them would not help. `behind` are the alternatives, by series and x, of which nothing
     but being faster is asked any more, each with the p-value of its not being so; `not_asked` are the points
-    on which the claim does not rest.
+    on which the claim does not rest. `against` is, of a claim that is open, the p-value of its not holding,
+    infinite if nothing speaks against it, None if `p` is of whatever speaks for the nearest verdict.
     """
 
     verdict: Verdict
@@ -59,6 +67,7 @@ class Outcome:
     figures: tuple[Compared, ...] = ()
     missing: bool = False
     p: float | None = None
+    against: float | None = None
     blocks: int = 0
     behind: tuple[tuple[str, float, float], ...] = ()
     not_asked: tuple[tuple[str, float], ...] = ()
@@ -85,20 +94,38 @@ def judged(
     margin: float = MARGIN,
 ) -> Outcome:
     """Return what a verdict with its `p`, from so many `blocks` (or another unit), says of a claim that
-    expects
-    one; `unsettled` is why it is open where they are enough and do not decide.
+    expects one; `unsettled` is why it is open where they are enough and do not decide.
+
+    It does not hold where the interval has no part in what was expected, whether or not it tells the other
+    verdicts from each other. A row without the p-value of that, e.g. `not_faster`, fails by another verdict.
     """
     if row["blocks"] < FEWEST:
         why = f"rests on {count(row['blocks'], unit)}: a verdict needs at least {FEWEST}"
         return Outcome(OPEN, measured, why, figures, blocks=row["blocks"])
-    if row["verdict"] == "inconclusive":
-        unsettled += _short(row, margin)
-        return Outcome(OPEN, measured, unsettled, figures, p=row["p"], blocks=row["blocks"])
-    verdict = HOLDS if row["verdict"] == expected else FAILS
-    return Outcome(verdict, measured, figures=figures, p=row["p"], blocks=row["blocks"])
+    against = row.get(denial(expected))
+    if row["verdict"] == expected:
+        return Outcome(HOLDS, measured, figures=figures, p=row["p"], blocks=row["blocks"])
+    if against is not None and against <= ERROR:
+        return Outcome(FAILS, measured, figures=figures, p=against, blocks=row["blocks"])
+    if row["verdict"] != "inconclusive":
+        return Outcome(FAILS, measured, figures=figures, p=row["p"], blocks=row["blocks"])
+    unsettled += _short(row, expected, margin)
+    return Outcome(OPEN, measured, unsettled, figures, p=row["p"], against=against, blocks=row["blocks"])
 
 
-def _short(row: Mapping[str, Any], margin: float) -> str:
+def told(row: Mapping[str, Any], expected: str) -> str:
+    """Return the verdict of a row in words, with what it denies where it tells no more."""
+    if row["verdict"] == "inconclusive" and row.get(denial(expected), 1.0) <= ERROR:
+        return denial(expected).replace("_", " ")
+    return str(row["verdict"])
+
+
+def denial(expected: str) -> str:
+    """Return the name of the p-value of an expected verdict's contrary (see `judge_one`)."""
+    return f"not_{expected}"
+
+
+def _short(row: Mapping[str, Any], expected: str, margin: float) -> str:
     """Say by how much the interval of a ratio misses the verdict that it comes closest to; nothing of a row
     without one.
     """
@@ -109,6 +136,8 @@ def _short(row: Mapping[str, Any], margin: float) -> str:
         "faster": row["high"] - least,
         "slower": most - row["low"],
         "equivalent": max(row["high"] - most, least - row["low"]),
+        "not faster": least - row["low"],
+        "not slower": row["high"] - most,
     }
-    nearest = min(by, key=lambda verdict: by[verdict])
+    nearest = min(SETTLES[expected], key=lambda verdict: by[verdict])
     return f" ({percent(by[nearest]).lstrip('+')} short of {nearest})" if by[nearest] > 0 else ""

@@ -1,7 +1,7 @@
 """Claims that one choice is faster than, or as fast as, another.
 
-One rule for ties: a choice said to be faster has to be faster by more than the margin; where the two are
-equivalent, the claim does not hold.
+One rule for ties: a choice said to be faster has to be faster by more than the margin; where it is not, be
+the two equivalent or the other one faster, the claim does not hold.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ import pandas as pd
 from analysis.claims import published_curves
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records, points_of
+from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records, points_of, told
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, exact, percent
@@ -61,9 +61,8 @@ def _one_pair(
     if at is not None and at not in rows:
         return Outcome(OPEN, why=f"needs {name} = {exact(at)}", figures=figures)
     where, row = ("", rows[shared[-1]]) if at is None else (f" at {name} = {exact(at)}", rows[at])
-    measured = (
-        f"{candidate} against {reference}{where}: {change(row)} of time, {blocks(row)} ({row['verdict']})"
-    )
+    said = told(row, expected)
+    measured = f"{candidate} against {reference}{where}: {change(row)} of time, {blocks(row)} ({said})"
     not_asked = () if at is None else points_of(times[times["x"] != at])
     return replace(judged(row, expected, measured, figures), not_asked=not_asked)
 

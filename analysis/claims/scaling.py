@@ -9,7 +9,7 @@ from analysis.claims import published_curves
 from analysis.claims.curves import published_processes
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, Compared, Outcome, judged, no_records
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, Compared, Outcome, judged, no_records, told
 from analysis.statistics.moderation import NOTHING_KNOWN, Prior
 from analysis.statistics.pairs import log_ratios
 from analysis.statistics.scalability import doubt
@@ -82,7 +82,7 @@ def _judged(stretch: Stretch, processes: pd.DataFrame, cores: int, prior: Prior)
     outcome = judged(row, stretch.expected, measured, margin=stretch.margin)
     if outcome.verdict != FAILS:
         return outcome
-    return replace(outcome, why=f"from {span} {row['verdict']}, expected {stretch.expected}")
+    return replace(outcome, why=f"from {span} {told(row, stretch.expected)}, expected {stretch.expected}")
 
 
 def _compared(

@@ -9,7 +9,7 @@ import pandas as pd
 from analysis.claims.alternatives import Alternatives, alternatives
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records
+from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records, told
 from analysis.records.published import Published
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
@@ -20,6 +20,7 @@ ONE_THREAD = "on a single thread a schedule shares nothing out: needs 2 hardware
 NOT_BETTER = {
     "equivalent": "equivalent to the others on average: it does not matter which is chosen",
     "slower": "slower than the others on average",
+    "not faster": "not faster than the others on average by more than the margin",
 }
 
 
@@ -83,7 +84,7 @@ def _matters(average: dict[str, Any]) -> Outcome:
     """Judge the choice against the average of the others."""
     measured = f"against the others on average {change(average)} of time, {blocks(average)}"
     outcome = judged(average, "faster", measured)
-    return replace(outcome, why=NOT_BETTER[average["verdict"]]) if outcome.verdict == FAILS else outcome
+    return replace(outcome, why=NOT_BETTER[told(average, "faster")]) if outcome.verdict == FAILS else outcome
 
 
 def _fastest(published: Published, experiment: str, processes: pd.DataFrame) -> tuple[str, str]:

@@ -8,11 +8,11 @@ from scipy import stats
 
 from analysis.statistics.intervals import Interval
 from analysis.statistics.looks import ERROR, share
-from analysis.statistics.verdicts import MARGIN, decide, verdict_row
+from analysis.statistics.verdicts import MARGIN, decide, denials, verdict_row
 
 
 def judge_unpaired(reference: ArrayLike, candidate: ArrayLike, margin: float = MARGIN) -> dict[str, Any]:
-    """Return the columns of `verdicts.judge` for candidate / reference, from the times of one process each.
+    """Return the columns of `verdicts.judge_one` for candidate / reference, from the times of a process each.
 
     Uses Welch's t on the logarithms. Whatever changed between the two measurements besides the programs (the
     machine's mood on that day) is not in the interval: only interleaving can see it. `blocks` is the smaller
@@ -28,11 +28,9 @@ def judge_unpaired(reference: ArrayLike, candidate: ArrayLike, margin: float = M
     def p_value(shift: float, alternative: str) -> float:
         return float(stats.ttest_ind(second - shift, first, equal_var=False, alternative=alternative).pvalue)
 
-    verdict, p = decide(
-        faster=p_value(-bound, "less"),
-        slower=p_value(bound, "greater"),
-        equivalent=max(p_value(-bound, "greater"), p_value(bound, "less")),
-        blocks=fewest,
-    )
+    faster, slower = p_value(-bound, "less"), p_value(bound, "greater")
+    not_faster, not_slower = p_value(-bound, "greater"), p_value(bound, "less")
+    verdict, p = decide(faster, slower, equivalent=max(not_faster, not_slower), blocks=fewest)
     shown = stats.ttest_ind(second, first, equal_var=False).confidence_interval(1 - ERROR * share(fewest))
-    return verdict_row(Interval(estimate, float(shown.low), float(shown.high)), fewest, p, verdict)
+    row = verdict_row(Interval(estimate, float(shown.low), float(shown.high)), fewest, p, verdict)
+    return {**row, **denials(faster, slower, not_faster, not_slower, fewest)}

@@ -50,16 +50,14 @@ def corrected(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def judge_one(log_ratios: ArrayLike, margin: float = MARGIN, prior: Prior = NOTHING_KNOWN) -> dict[str, Any]:
-    """Return the row of one comparison standing alone: the columns that `judge` adds."""
+    """Return the row of one comparison standing alone: the columns that `judge` adds, and `denials`."""
     values = np.asarray(log_ratios, dtype=float)
-    bound = np.log1p(margin)
-    verdict, p = decide(
-        faster=p_value(values, -bound, "less", prior),
-        slower=p_value(values, bound, "greater", prior),
-        equivalent=max(p_value(values, -bound, "greater", prior), p_value(values, bound, "less", prior)),
-        blocks=len(values),
-    )
-    return verdict_row(centre(values, prior=prior), len(values), p, verdict)
+    bound, blocks = np.log1p(margin), len(values)
+    faster, slower = p_value(values, -bound, "less", prior), p_value(values, bound, "greater", prior)
+    not_faster, not_slower = p_value(values, -bound, "greater", prior), p_value(values, bound, "less", prior)
+    verdict, p = decide(faster, slower, equivalent=max(not_faster, not_slower), blocks=blocks)
+    row = verdict_row(centre(values, prior=prior), blocks, p, verdict)
+    return {**row, **denials(faster, slower, not_faster, not_slower, blocks)}
 
 
 def verdict_row(log_ratio: Interval, blocks: int, p: float, verdict: str) -> dict[str, Any]:
@@ -74,6 +72,16 @@ def verdict_row(log_ratio: Interval, blocks: int, p: float, verdict: str) -> dic
         "verdict": verdict,
         "alone": p,
     }
+
+
+def denials(
+    faster: float, slower: float, not_faster: float, not_slower: float, blocks: int
+) -> dict[str, float]:
+    """Return the p-values of what denies each verdict, given those of four one-sided tests: the smallest
+    error at which the interval has no part in what the verdict says, whatever else it reaches into.
+    """
+    contrary = {"not_faster": not_faster, "not_slower": not_slower, "not_equivalent": min(faster, slower)}
+    return {name: two_sided(p, blocks) for name, p in contrary.items()}
 
 
 def decide(faster: float, slower: float, equivalent: float, blocks: int) -> tuple[str, float]:
@@ -93,14 +101,6 @@ def two_sided(p: float, blocks: int) -> float:
     all looks; 1 from fewer than `FEWEST` blocks. It is not cut at 1, so that it tells how far a verdict is.
     """
     return 2 * p / share(blocks) if blocks >= FEWEST else 1.0
-
-
-def not_faster(log_ratios: ArrayLike, margin: float = MARGIN, prior: Prior = NOTHING_KNOWN) -> float:
-    """Return the p-value of the candidate not being faster than the reference by more than the margin: at
-    most `ERROR` where its interval lies above 1 / (1 + margin).
-    """
-    values = np.asarray(log_ratios, dtype=float)
-    return two_sided(p_value(values, -np.log1p(margin), "greater", prior), len(values))
 
 
 def holm(p_values: Sequence[float] | pd.Series) -> list[float]:

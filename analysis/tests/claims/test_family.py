@@ -1,10 +1,15 @@
 """Claims and their parts are corrected for their number, in one place."""
 
+from dataclasses import replace
+
 import numpy as np
+import pandas as pd
 import pytest
 
+from analysis.claims.alternatives import alternatives
 from analysis.claims.family import both, corrected
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, Outcome, judged
+from analysis.claims.missing import needed
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, Outcome, judged, told
 from analysis.statistics.verdicts import judge_one
 
 
@@ -46,6 +51,42 @@ def test_of_seventeen_claims_on_their_border_any_is_decided_in_one_study_of_twen
         rows = [judge_one(np.log(1.02) + generator.normal(0, 0.01, 7)) for _ in range(17)]
         wrong += any(one.verdict != OPEN for one in corrected([judged(row, "slower", "") for row in rows]))
     assert wrong <= 13, "of 150, 7.5 and two standard errors; 87 if they were not corrected"
+
+
+def test_a_claim_to_be_faster_does_not_hold_where_its_interval_has_no_part_in_that() -> None:
+    row = judge_one(0.02 + 0.002 * np.array([4, -3, 2, -4, 3, -2, 1]))
+    assert row["low"] < 1.02 < row["high"]
+    outcome = judged(row, "faster", "")
+    assert (row["verdict"], outcome.verdict, told(row, "faster")) == ("inconclusive", FAILS, "not faster")
+    assert outcome.p == row["not_faster"]
+    mirrored = judge_one(-0.02 - 0.002 * np.array([4, -3, 2, -4, 3, -2, 1]))
+    assert (judged(mirrored, "slower", "").verdict, told(mirrored, "slower")) == (FAILS, "not slower")
+    undecided = judged(row, "equivalent", "")
+    assert (undecided.verdict, told(row, "equivalent")) == (OPEN, "inconclusive")
+    assert "short of slower" in undecided.why or "short of equivalent" in undecided.why
+
+
+def test_what_is_open_says_how_near_it_is_to_either_outcome() -> None:
+    row = judge_one(-0.02 + 0.01 * np.array([4, -3, 2, -4, 3.5, -2, 1]))
+    outcome = judged(row, "faster", "")
+    assert (outcome.verdict, outcome.against) == (OPEN, row["not_faster"])
+    assert "short of not faster" in outcome.why or "short of faster" in outcome.why
+    near = replace(outcome, p=3.0, against=0.06)
+    assert needed(near, 1) < needed(replace(near, against=None), 1)
+    assert both([near, replace(outcome, p=0.5, against=0.4)]).against == pytest.approx(0.12)
+    assert both([held(0.01), replace(outcome, against=None)]).against is None
+
+
+@pytest.mark.parametrize("ahead", [-0.035, -0.02])
+def test_a_choice_that_is_nearly_beaten_is_nearly_settled(ahead: float) -> None:
+    scatter = np.array([0.02, -0.02, 0.015, -0.015, 0.005, -0.005, 0.01, -0.01, 0.0])
+    pairs = pd.concat(
+        pd.DataFrame({"name": name, "log_ratio": scatter + mean})
+        for name, mean in (("near", ahead), ("behind", 0.2), ("far", 0.3))
+    )
+    outcome = alternatives(pairs).outcome("")
+    assert outcome.verdict == OPEN
+    assert (needed(outcome, 1) < 50) == (ahead == -0.035)
 
 
 @pytest.mark.parametrize("blocks", [1, 2, 3])

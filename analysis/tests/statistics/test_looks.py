@@ -68,6 +68,35 @@ def test_looking_until_it_is_decided_errs_in_at_most_one_in_twenty(noise: object
         assert sum(verdict == "slower" for verdict, _ in found) >= 0.9 * len(found)
 
 
+def settled(logs: Floats) -> list[str]:
+    """Return what is said of a claim that the candidate is faster: the first that the looks settle."""
+    said = []
+    for row in logs:
+        rows = (judge_one(row[:look]) for look in LOOKS)
+        found = ((one["verdict"] == "faster", one["not_faster"] <= ERROR) for one in rows)
+        holds, denied = next((one for one in found if any(one)), (False, False))
+        said.append("holds" if holds else "does not hold" if denied else "open")
+    return said
+
+
+@pytest.mark.parametrize("noise", NOISES)
+@pytest.mark.parametrize(("effect", "wrong"), [(-0.019, "holds"), (-0.021, "does not hold")])
+def test_what_is_denied_near_its_border_is_wrong_in_at_most_one_of_twenty(
+    noise: object, effect: float, wrong: str
+) -> None:
+    generator = np.random.default_rng(8)
+    assert callable(noise)
+    said = [one for _ in range(4) for one in settled(noise(generator) - np.log1p(-effect))]
+    assert said.count(wrong) <= 0.05 * len(said)
+
+
+def test_a_claim_is_denied_where_equivalent_and_slower_are_not_told_apart() -> None:
+    logs = np.random.default_rng(9).normal(np.log1p(MARGIN), 0.02, (200, LAST))
+    verdicts = [verdict for verdict, _ in decide(logs, moderated=False)]
+    assert verdicts.count("inconclusive") >= 180
+    assert settled(logs).count("does not hold") >= 195
+
+
 def test_intervals_that_forget_the_looks_err_more_often_than_they_say() -> None:
     """What the shares are for: the same looks, each at 95 % as if it were the only one."""
     generator = np.random.default_rng(6)
