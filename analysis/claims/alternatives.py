@@ -32,7 +32,7 @@ class Alternatives:
         faster = self.table[self.table["verdict"] == "faster"]
         if len(faster):
             why = f"faster by more than {share(MARGIN)}: {', '.join(faster['name'])}"
-            return Outcome(FAILS, measured, why, p=float(faster["p"].min()))
+            return Outcome(FAILS, measured, why, p=float(faster["p"].min()), blocks=blocks)
         p = float(self.table["behind"].max())
         undecided = int((self.table["behind"] > ERROR).sum())
         row = {"blocks": blocks, "p": p, "verdict": "inconclusive" if undecided else "not faster"}

@@ -35,9 +35,17 @@ def both(outcomes: Sequence[Outcome]) -> Outcome:
         tuple(dict.fromkeys(figure for outcome in outcomes for figure in outcome.figures)),
         all(outcome.missing for outcome in outcomes),
         (min(p) if verdict == FAILS else max(p)) if p else None,
-        blocks=min((outcome.blocks for outcome in decisive), default=0),
+        blocks=_blocks(decisive, verdict),
         against=_against(parts) if verdict == OPEN else None,
     )
+
+
+def _blocks(decisive: Sequence[Outcome], verdict: Verdict) -> int:
+    """Return the blocks that a verdict rests on: the fewest, but those of the surest part that refutes it."""
+    tested = [one for one in decisive if one.p is not None]
+    if verdict == FAILS and tested:
+        return min(tested, key=lambda one: one.p or 0.0).blocks
+    return min((one.blocks for one in decisive), default=0)
 
 
 def _against(parts: Sequence[Outcome]) -> float | None:

@@ -9,7 +9,7 @@ import pandas as pd
 from analysis.claims.alternatives import Alternatives, alternatives
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records, told
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, Compared, Outcome, judged, no_records, told
 from analysis.records.published import Published
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
@@ -62,8 +62,8 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     )  # fmt: skip
     matters = _matters(average)
     joined = replace(both([found.outcome(measured), matters]), figures=figures)
-    # The average needs every one of them, as long as it is open.
-    return joined if matters.verdict == OPEN else replace(joined, behind=_behind(found, pairs))
+    # The average needs every one of them, as long as it may settle the claim.
+    return replace(joined, behind=_behind(found, pairs)) if matters.verdict == HOLDS else joined
 
 
 def _behind(found: Alternatives, pairs: pd.DataFrame) -> tuple[tuple[str, float, float], ...]:

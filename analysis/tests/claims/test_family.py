@@ -8,7 +8,7 @@ import pytest
 
 from analysis.claims.alternatives import alternatives
 from analysis.claims.family import both, corrected
-from analysis.claims.missing import needed
+from analysis.claims.missing import is_open, needed
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, Outcome, judged, told
 from analysis.statistics.verdicts import judge_one
 
@@ -66,6 +66,12 @@ def test_a_claim_to_be_faster_does_not_hold_where_its_interval_has_no_part_in_th
     assert "short of slower" in undecided.why or "short of equivalent" in undecided.why
 
 
+def test_a_refuted_claim_rests_on_the_blocks_of_what_refutes_it() -> None:
+    weak, sure = replace(refuted(0.02), blocks=6), replace(refuted(0.001), blocks=9)
+    assert both([weak, sure, replace(held(0.01), blocks=4)]).blocks == 9
+    assert both([replace(held(0.001), blocks=6), replace(held(0.01), blocks=9)]).blocks == 6
+
+
 def test_what_is_open_says_how_near_it_is_to_either_outcome() -> None:
     row = judge_one(-0.02 + 0.01 * np.array([4, -3, 2, -4, 3.5, -2, 1]))
     outcome = judged(row, "faster", "")
@@ -87,6 +93,14 @@ def test_a_choice_that_is_nearly_beaten_is_nearly_settled(ahead: float) -> None:
     outcome = alternatives(pairs).outcome("")
     assert outcome.verdict == OPEN
     assert (needed(outcome, 1) < 50) == (ahead == -0.035)
+
+
+def test_a_choice_beaten_alone_is_open_among_many_and_goes_on() -> None:
+    scatter = np.array([0.02, -0.02, 0.015, -0.015, 0.005, -0.005, 0.01, -0.01, 0.0])
+    outcome = alternatives(pd.DataFrame({"name": "ahead", "log_ratio": scatter - 0.042})).outcome("")
+    among = corrected([outcome, *[Outcome(OPEN, p=1.0, blocks=9)] * 9])[0]
+    assert (outcome.verdict, among.verdict) == (FAILS, OPEN)
+    assert is_open(among)
 
 
 @pytest.mark.parametrize("blocks", [1, 2, 3])
