@@ -14,16 +14,18 @@ from analysis.figures.comparisons import differences, reference
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
-from analysis.statistics.forecast import blocks_to_decide
+from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
 from analysis.statistics.intervals import FEWEST
-from analysis.statistics.looks import ERROR, LOOKS, next_look
+from analysis.statistics.looks import ERROR, next_look
 from analysis.support.wording import change
 
 COMPARED = ("comparison", "control")
 """Kinds of figures whose every difference has a verdict, also in a question that no claim is about."""
 
-KNOWN = LOOKS[3]
-"""Blocks from which on a forecast is believed that has nothing in sight: of fewer, noise alone makes one."""
+OPTIMISM = 12
+"""How many times the blocks there are settle what seems to lie on a margin, should it lie a standard error
+off: the square of the 3.5 standard errors that a look at one of a dozen claims asks for.
+"""
 
 
 def open_questions(results: Path) -> dict[str, Any]:
@@ -31,8 +33,8 @@ def open_questions(results: Path) -> dict[str, Any]:
     are `needed` to settle the first thing that is open in it, and which points, by series and x, need no more
     of them (`stopped`); `settled`: the experiments in which nothing is; `said`: name -> what was decided.
 
-    Of the first study in the folder. What is not in sight is neither open nor settled, but where that is told
-    from few blocks: there those are needed that halve the interval.
+    Of the first study in the folder. What is not in sight, as measured, is given the benefit of a standard
+    error (`OPTIMISM`), up to `MOST_BLOCKS`; beyond, it is neither open nor settled.
     """
     studies = split(load(results))
     found: dict[str, Any] = {"open": {}, "settled": [], "said": {}}
@@ -62,7 +64,7 @@ def open_questions(results: Path) -> dict[str, Any]:
 
 
 def _worth(blocks: int, needed: float) -> float:
-    return 4 * blocks if math.isinf(needed) and blocks < KNOWN else needed
+    return OPTIMISM * blocks if math.isinf(needed) and OPTIMISM * blocks <= MOST_BLOCKS else needed
 
 
 def _stopped(table: pd.DataFrame) -> dict[str, list[tuple[str, float]]]:

@@ -57,8 +57,8 @@ def test_too_few_blocks_need_the_first_look(tmp_path: Path) -> None:
     assert answer["open"] == {"neighbourhood": expected, "control": expected}
 
 
-@pytest.mark.parametrize(("blocks", "needed"), [(4, 16), (14, None)])
-def test_that_nothing_is_in_sight_is_believed_from_enough_blocks_only(
+@pytest.mark.parametrize(("blocks", "needed"), [(4, 48), (32, 384), (84, None)])
+def test_what_is_not_in_sight_has_the_benefit_of_a_standard_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, blocks: int, needed: int | None
 ) -> None:
     monkeypatch.setattr("analysis.claims.missing.blocks_to_decide", lambda *_: math.inf)
