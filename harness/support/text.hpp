@@ -2,11 +2,13 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 
 namespace carom {
 
@@ -21,11 +23,18 @@ template <class Number> std::optional<Number> parse_number(std::string_view text
     return value;
 }
 
-/// Appends the shortest text that reads back as the same number.
+/// Appends the shortest text that reads back as the same number; of a whole number up to 1e15 its digits,
+/// since programs that read whole numbers stop at the e of 1e+05.
 template <class Number> void append_number(std::string& text, Number value) {
     std::array<char, 32> digits;
-    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-    text.append(digits.data(), end);
+    char* const begin = digits.data();
+    char* end = std::to_chars(begin, begin + digits.size(), value).ptr;
+    if constexpr (std::is_floating_point_v<Number>) {
+        if (std::abs(value) < Number(1e15) && value == std::trunc(value)) {
+            end = std::to_chars(begin, begin + digits.size(), value, std::chars_format::fixed).ptr;
+        }
+    }
+    text.append(begin, end);
 }
 
 template <class Number> std::string number_text(Number value) {

@@ -152,7 +152,7 @@ TEST_F(ProcessesCommand, RefusesAProcessThatCannotBeBeforeAnyRuns) {
 TEST_F(ProcessesCommand, RefusesSlicesThatCannotBe) {
     const Json one = Json::array({described("exit 0", "one")});
     EXPECT_TRUE(refused(processes(one, {"--slice", "0"}), 1,
-                        {"--slice: found '0', expected a number from 0.001 to 1e+06"}));
+                        {"--slice: found '0', expected a number from 0.001 to 1000000"}));
     EXPECT_TRUE(
         refused(processes(one, {"--seed", "-1"}), 1, {"--seed: found '-1', expected a whole number"}));
 }

@@ -118,7 +118,7 @@ TEST_F(TurnsCommand, RefusesAContenderThatCannotBeAndSaysWhichOne) {
 TEST_F(TurnsCommand, RefusesTurnsThatCannotBe) {
     const Json contenders{words("published", "one")};
     EXPECT_TRUE(refused(turns(contenders, {"--turn", "0"}), 1,
-                        {"--turn: found '0', expected a number from 1e-06 to 1e+06"}));
+                        {"--turn: found '0', expected a number from 1e-06 to 1000000"}));
     EXPECT_TRUE(
         refused(turns(contenders, {"--seed", "-1"}), 1, {"--seed: found '-1', expected a whole number"}));
 }

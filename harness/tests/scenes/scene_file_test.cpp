@@ -118,6 +118,12 @@ TEST_F(CommaLocale, ChangesNothingInAScene) {
 TEST_F(CommaLocale, ChangesNothingInANumber) {
     EXPECT_EQ(number_text(1234.5), "1234.5");
     EXPECT_EQ(number_text(1234567), "1234567");
+    // The published programs read the side as a whole number, and would take 1e+05 for 1.
+    EXPECT_EQ(number_text(100000.0), "100000");
+    EXPECT_EQ(number_text(-2e9), "-2000000000");
+    EXPECT_EQ(number_text(-0.0), "-0");
+    EXPECT_EQ(number_text(1e+300), "1e+300");
+    EXPECT_EQ(number_text(1e-07), "1e-07");
     EXPECT_EQ(parse_number<double>("1234.5"), 1234.5);
     EXPECT_EQ(parse_number<double>("1234,5"), std::nullopt);
 }
