@@ -138,7 +138,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     add("--site", help="a name in experiments/sites, or a file (default: %(default)s)")
     add("--results", type=Path, help="folder of the records (default: %(default)s)")
     add("--build", type=Path, help="folder of the programs (default: %(default)s)")
-    built = "only what these builds can measure, in its share of the time; the rest comes later"
+    built = "only the least blocks of what these builds can measure; all else comes later"
     add("--builds", type=names, metavar="A,B", help=built)
     add("--questions", type=Path, help="folder of questions (default: this package's)")
     add("--blocks", type=positive_number, help="repeat every experiment so many times, whatever the budget")

@@ -54,8 +54,12 @@ class Schedule:
         given.blocks = max(given.blocks, found.next)
 
     def cheapest(self, verdicts: Verdicts, seconds_left: float) -> Experiment | None:
-        """The experiment in which something is settled soonest, of those whose next look there is time for;
-        None if there is none. One that has its blocks waits for the others that a claim rests on.
+        """The experiment in which something is settled at the least expense, of those whose next look there
+        is time for; None if there is none. One that has its blocks waits for the others that a claim rests
+        on.
+
+        What was spent on it since its least blocks counts as well: else an effect near a border, which always
+        seems a few blocks from being settled, gets all of the time.
         """
         best, least = None, math.inf
         for one in self.experiments:
@@ -66,7 +70,7 @@ class Schedule:
                 continue
             goes_on = [point for point in one.points if (point.series, point.x) not in found.points_stopped]
             block = sum(map(self._costs.point, goes_on))
-            seconds = block * (found.needed - found.blocks)
+            seconds = block * (found.needed - one.question.blocks.minimum)
             if seconds < least and block * (found.next - found.blocks) <= seconds_left:
                 best, least = one, seconds
         return best

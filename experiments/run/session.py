@@ -84,7 +84,9 @@ class Session:
             self._until = max(self._until, time.monotonic() + for_certain)
 
     def run(self) -> int:
-        """Run what is missing. First blocks come first: they tell what each block costs here."""
+        """Run what is missing. First blocks come first: they tell what each block costs here. Before all
+        builds are there nothing is decided: what needs the others is to have its part of the time.
+        """
         for experiment in self._study.experiments:
             if self._schedule.is_complete(experiment):
                 self._schedule.begin(experiment)  # it may have fewer points than when it was completed
@@ -97,6 +99,9 @@ class Session:
             if experiment.question.blocks.wanted > 1:
                 self._rest(experiment)
         settings = self._study.settings
+        if settings.builds:
+            self._draw()
+            return self._conclude()
         if self._has_more or settings.until_decided or settings.budget_seconds is not None:
             looks = settings.figures and settings.blocks is None
             settled = self._settle() if looks else frozenset()
@@ -128,8 +133,8 @@ class Session:
             grown |= dict.fromkeys(chosen)
 
     def _measure_cheapest(self, verdicts: Verdicts, until: float) -> list[str]:
-        """Bring what is settled soonest to its next look, and the next such, for as long as to make a look
-        worth its time. Returns their names.
+        """Bring what is settled at the least expense to its next look, and the next such, for as long as to
+        make a look worth its time. Returns their names.
         """
         names: list[str] = []
         while not names or time.monotonic() < until:
@@ -237,9 +242,11 @@ class Session:
 
     def _conclude(self) -> int:
         root = self._study.store.root
-        self._study.finish()
+        comes_back = bool(self._study.settings.builds)
+        if not comes_back:
+            self._study.finish()
         if not self._failures:
-            if self._study.is_whole:
+            if self._study.is_whole and not comes_back:
                 self._report.line(f"the study is complete: {root / 'records'}")
             return 0
         points = ", ".join(f"{name} ({number})" for name, number in self._failures.items())

@@ -117,6 +117,14 @@ def test_a_slow_machine_still_has_time_to_decide(
     assert blocks_of(needing, "pair") == blocks
 
 
+def test_nothing_is_decided_before_all_builds_are_there(needing: Workplace) -> None:
+    want(needing, pair=8, chunks=2)
+    assert finish(needing.start("run", "--builds", "gcc", "--budget", "5"))[0] == 0
+    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (2, 2)
+    assert finish(needing.start("run", "--budget", "5"))[0] == 0
+    assert blocks_of(needing, "pair") == 8
+
+
 def test_a_killed_study_comes_to_the_same_decisions(needing: Workplace) -> None:
     want(needing, pair=8, chunks=5)
     needing.behave(FAKE_SECONDS="0.05")
@@ -184,6 +192,10 @@ def test_the_cheapest_to_settle_comes_first(workplace: Workplace) -> None:
         chosen = schedule.cheapest(Verdicts({"pair": pair, "chunks": chunks}), 1e6)
         assert chosen is not None
         assert chosen.name == first
+    near = Open(28, 42, 34)
+    chosen = schedule.cheapest(Verdicts({"pair": near, "chunks": Open(2, 4, 12)}), 1e6)
+    assert chosen is not None
+    assert chosen.name == "chunks", "what has had many blocks counts"
     assert schedule.cheapest(Verdicts({"pair": one}), 0.0) is None, "there is no time for its next look"
     assert schedule.cheapest(Verdicts(), 1e6) is None
 
