@@ -12,6 +12,7 @@ from pathlib import Path
 import pandas as pd
 
 from analysis.derived.accuracy import MEASURES
+from analysis.derived.ways import KIND, bias_sentence
 from analysis.figures import (
     comparisons,
     counters,
@@ -29,6 +30,7 @@ from analysis.figures import (
     speed_against_error,
     sweeps,
     timeline,
+    ways,
 )
 from analysis.figures.captions import growth_sentence, linear_sentence, minimum_sentence
 from analysis.figures.style import FORMATS, Data, Drawing, Table, mark_partial, partial, save, styled
@@ -111,6 +113,9 @@ _EARLY = "Resolving self-contained pairs early, on against off, under the"
 FIGURES = [
     _pair("control", "Control: the same variant twice", "A-again", "A",
           "The same variant under two labels", ("A again", "A")),
+    _of_kind("ways", "In turns, and in processes of their own", ways.ways, "The same comparisons both ways"),
+    _of_kind("ways_of_processes", "Whole processes in slices, and alone", ways.ways,
+             "The same whole processes both ways"),
     _of_kind("threads", "Threads", scaling.scaling, "Time, speed-up and efficiency over threads"),
     _own("oversubscription", "More threads than the machine has", scaling.oversubscription),
     _of_kind("machine", "Machines", machines.machines, "One scene on every machine"),
@@ -166,6 +171,7 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
     "phases": phases.profile,
     "ladder": ladder.waterfall,
     "limits": limits.phases_against_limits,
+    KIND: ways.ways,
 }
 """How an experiment without a figure of its own is drawn, given its name and title, by its tag `figure`."""
 
@@ -200,6 +206,8 @@ def _draw(entry: Entry, data: Data, folder: Path, name: str, formats: Sequence[s
     missing = partial(data, entry.experiment)
     mark_partial(drawing.figure, missing)
     caption = f"{drawing.caption} {missing[0].upper()}{missing[1:]}." if missing else drawing.caption
+    if drawing.verdicts is not None and data.study.times_of(entry.experiment)["in_turns"].all():
+        caption += bias_sentence(data.study)
     return caption, save(drawing, folder, name, formats), drawing.verdicts, drawing.tables
 
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from analysis.derived.noise_prior import prior
 from analysis.figures.captions import opening, time_axis
-from analysis.figures.dots import dots
+from analysis.figures.curves import dots
 from analysis.figures.hover import Told, tell
 from analysis.figures.league import league
 from analysis.figures.pairs import Sides, bounded, pair_drawing

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from analysis.figures.dots import dots
+from analysis.figures.curves import dots
 from analysis.figures.style import BLUE, Data, Drawing, lighten, new_figure
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import process_medians

@@ -6,8 +6,7 @@ from analysis.derived.ladder import per_disc_step
 from analysis.derived.noise_prior import prior
 from analysis.figures.captions import opening
 from analysis.figures.comparisons import differences, differences_sentence, reference
-from analysis.figures.curves import curve
-from analysis.figures.dots import dots, faint_dots
+from analysis.figures.curves import curve, dots, faint_dots
 from analysis.figures.labels import label_ends
 from analysis.figures.style import (
     BAND,

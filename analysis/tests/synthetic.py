@@ -77,6 +77,7 @@ class Point:
     scene_name: str | None = None
     errors: dict[str, Any] | None = None
     tags: dict[str, str | float] = field(default_factory=dict)
+    in_turns: bool = False
 
 
 AXES: dict[str, Any] = {
@@ -114,11 +115,13 @@ def bench(
     axes, scene = AXES | point.axes, SCENE | point.scene
     area = scene["particles"] * np.pi * scene["radius"] ** 2 / scene["side"] ** 2
     repetitions = [{"steps_seconds": float(value), "cpu_seconds": float(value) * 1.9} for value in seconds]
+    turns = [value["steps_seconds"] for value in repetitions]
     return record("bench", tags_of(experiment, point, block, machine) | tags, block) | {
         "axes": axes,
         "scene": {**scene, "sha256": digest(scene), "area_fraction": float(area)},
         "warm_ups": 1,
         "repetitions": repetitions,
+        "turns": {"contenders": 2, "seed": 1, "seconds": turns} if point.in_turns else None,
         "parse_seconds": 0.01,
         "process_seconds": float(sum(value["steps_seconds"] for value in repetitions)) + 0.02,
         "work": {
@@ -146,7 +149,7 @@ def record(kind: str, tags: Mapping[str, str | float], minute: int = 0) -> dict[
 def tags_of(experiment: str, point: Point, block: int, machine: Machine) -> dict[str, str | float]:
     """Return the tags that say where a record stands in the study."""
     named = (point.label, point.scene_name, *point.tags.values())
-    identity = (machine.host, experiment, point.series, point.x, *named)
+    identity = (machine.host, experiment, point.series, point.x, point.in_turns, *named)
     tags: dict[str, str | float] = {
         "experiment": experiment,
         "series": point.series,

@@ -231,6 +231,29 @@ def _limits() -> list[Point]:
     ]
 
 
+TRUE_BIAS = 0.01
+"""How much longer a pair's other one takes by turns than in a process of its own."""
+
+
+def _ways() -> list[Point]:
+    def point(scene: str, number: int, series: str, seconds: float, *, in_turns: bool) -> Point:
+        longer = TRUE_BIAS if in_turns and number > 1 else 0
+        return Point(
+            series, 0, seconds * (1 + longer), axes={"variant": series}, scene_name=scene,
+            tags={"series_number": number}, in_turns=in_turns,
+        )  # fmt: skip
+
+    return [
+        point(scene, number, series, seconds, in_turns=in_turns)
+        for scene, both in (
+            ("large", {"published": 1.0, "nine": 1.1}),
+            ("small", {"published": 0.1, "row": 0.1}),
+        )
+        for number, (series, seconds) in enumerate(both.items(), start=1)
+        for in_turns in (True, False)
+    ]
+
+
 SEQUENTIAL = {"track": 2.3, "repeat": 3.7, "once": 3.3}
 FIND = {"guided": [2, 3, 4, 5, 7], "dynamic": [5, 10, 20, 30, 40, 50], "static": [10, 15, 20, 25, 30, 40, 80]}
 RESOLVE = {"guided": [3, 4, 5, 6, 10], "dynamic": [5, 10, 20, 30, 40, 50, 51, 52, 53, 55, 60, 100]}
@@ -264,4 +287,6 @@ EXPERIMENTS: dict[str, Callable[[], list[Point]]] = {
     "speed_against_error": _speed_against_error,
     "hard_cases": _hard_cases,
     "promises": _promises,
+    "ways": _ways,
+    "ways_of_processes": _ways,
 }

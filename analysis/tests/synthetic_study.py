@@ -66,6 +66,8 @@ def _figure(experiment: str) -> str:
         "promises",
     ):
         return experiment
+    if any(point.in_turns for point in points):
+        return "ways"
     if points[0].x_name in ("none", "chunk"):
         return "comparison"
     return "scaling" if points[0].x_name == "threads" else "trend"

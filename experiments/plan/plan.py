@@ -167,6 +167,7 @@ def _point(
         errors=question.errors,
         simulated=around.scale.simulated(question),
         openmp=_openmp(question, run["threads"], around),
+        apart=series.apart,
         **run,
     )
 

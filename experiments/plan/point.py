@@ -44,13 +44,15 @@ class Measurement:
     errors: bool
     simulated: int
     openmp: tuple[tuple[str, str], ...]
+    apart: bool
 
     @cached_property
     def id(self) -> str:
         """`p` and 16 hexadecimal digits; equal ids are the same measurement in any figure."""
         content = {field.name: getattr(self, field.name) for field in fields(Measurement)}
-        if self.command is None:
-            del content["command"]  # so that ids of variants are what they were before others were measured
+        for later in ("command", "apart"):  # so that other ids are what they were before there was this field
+            if not content[later]:
+                del content[later]
         # The letter keeps the id a text: the program takes a tag that reads as a number for one.
         return "p" + digest(json.dumps(content, sort_keys=True, default=_content))
 

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from experiments.plan.claims import CLAIMS, PUBLISHED_CLAIMS, require_claim
 from experiments.plan.scenes import AnyScene, HardCase, NoScene, Scene
-from experiments.plan.series import Series, read_series
+from experiments.plan.series import Series, read_series, require_both_ways
 from experiments.support.errors import InputError, nearest
 from experiments.support.schema import read_toml
 
@@ -17,7 +17,7 @@ CONTROL = "control"
 _NUMBER = re.compile(r"\s*-?(0|[1-9]\d*)(\.\d+)?([eE][+-]?\d+)?\s*")
 _OF_THE_RUN = ("threads", "find_chunk", "resolve_chunk", "substeps")
 _OF_ERRORS = ("speed_against_error", "hard_cases")
-_OF_SCENES = (*_OF_ERRORS, "ladder", "limits", "promises")
+_OF_SCENES = (*_OF_ERRORS, "ladder", "limits", "promises", "ways")
 _OF_A_SCENE = (
     "particles", "side", "radius", "steps", "min_velocity", "max_velocity", "area_fraction", "seed",
 )  # fmt: skip
@@ -170,6 +170,8 @@ def _require_valid(question: Question) -> None:
     _require_what_processes_can(question)
     _require_what_errors_need(question)
     _require_published_tolerance(question)
+    if question.figure == "ways":
+        require_both_ways(file, question.series)
     if sweep.parameter == "substeps" and question.substeps != 1:
         raise InputError(f"{file}: substeps: found beside a sweep of it, expected either")
     for key, only in (("unit", "threads"), ("limit", "threads"), ("constant", "particles")):
@@ -191,9 +193,9 @@ def _require_names(question: Question) -> None:
     for key, name in named.items():
         if _NUMBER.fullmatch(name):
             raise InputError(f'{question.file}: {key}: found "{name}", expected a name that is no number')
-    curves = [(series.name, series.label) for series in question.series]
-    for number, (name, label) in enumerate(curves, start=1):
-        if (name, label) in curves[: number - 1]:
+    curves = [(series.name, series.label, series.apart) for series in question.series]
+    for number, (name, *others) in enumerate(curves, start=1):
+        if (name, *others) in curves[: number - 1]:
             raise InputError(
                 f'{question.file}: series[{number}].name: found "{name}" twice, expected each once'
             )

@@ -52,6 +52,8 @@ class Series:
     find_chunk: int | None = None
     resolve_chunk: int | None = None
     optional: bool = False
+    apart: bool = False
+    """In a process of its own, also where the others of the question take turns."""
     is_one_of_many: bool = False
     """Found by a pattern: if it cannot be run, that is its own failure and not one of the question."""
     values: tuple[float, ...] = ()
@@ -79,6 +81,17 @@ def read_series(
     ]
     _require_kinds(path, tables)
     return tuple(found)
+
+
+def require_both_ways(path: Path, series: Sequence[Series]) -> None:
+    """Each of a figure of the kind ways is measured by turns and apart. Raises InputError with one line."""
+    for number, one in enumerate(series, start=1):
+        if not any(other.name == one.name and other.apart != one.apart for other in series):
+            missing = "without" if one.apart else "with"
+            raise InputError(
+                f'{path}: series[{number}]: found "{one.name}" once, expected another one {missing} '
+                "apart = true for figure ways"
+            )
 
 
 def _with_values(table: Mapping[str, Any], of_sweep: Mapping[str, tuple[float, ...]]) -> dict[str, Any]:

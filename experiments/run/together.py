@@ -41,6 +41,8 @@ def _process(point: Point) -> tuple[object, ...]:
     is compared of them is at the same place of the sweep. Those that time themselves would count it as their
     own while they stand still.
     """
+    if point.apart:
+        return (point.id,)
     if point.verb == PROCESS:
         alone = point.command is not None and point.command.times_itself
         return point.scene_name, point.x, point.id if alone else None
@@ -52,7 +54,7 @@ def _may_take_turns(experiment: Experiment, block: int) -> bool:
     scene as many take turns in each process, since a turn among many finds colder caches. Whole processes do
     nothing else.
     """
-    points = experiment.points
+    points = [point for point in experiment.points if not point.apart]
     if all(point.verb == PROCESS for point in points):
         return experiment.question.turns
     once = all(

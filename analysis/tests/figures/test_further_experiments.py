@@ -30,9 +30,10 @@ LIKE = [
     ("phases", "phases"),
     ("ladder", "ladder"),
     ("limits", "limits"),
+    ("ways", "ways"),
 ]
 
-NAMING = ("ladder", "limits")
+NAMING = ("ladder", "limits", "ways")
 """The kinds that name the published variant, which is a series of their synthetic records."""
 
 

@@ -63,6 +63,7 @@ CONTENT: dict[str, st.SearchStrategy[Any]] = {
     "errors": st.booleans(),
     "simulated": st.integers(0, 2),
     "openmp": st.sampled_from([(), (("OMP_PLACES", "cores"),)]),
+    "apart": st.booleans(),
 }
 # What only says where in a figure the point stands, and so is no part of its id.
 SHOWN: dict[str, st.SearchStrategy[Any]] = {

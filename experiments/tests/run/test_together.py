@@ -9,6 +9,7 @@ from experiments.plan.point import Point
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import _bytes, together
+from experiments.support.errors import InputError
 from experiments.tests.conftest import CHUNKS, ERRORS, FOUR_AND_NINE, PAIR, SCENE, Workplace
 
 THREADS = f"""
@@ -18,6 +19,23 @@ figure = "scaling"
 [sweep]
 parameter = "threads"
 values = [1, 2]
+
+{FOUR_AND_NINE}"""
+
+
+WAYS = f"""
+title = "Both ways"
+figure = "ways"
+{SCENE}
+[[series]]
+name = "four"
+variant = "published"
+apart = true
+
+[[series]]
+name = "nine"
+variant = "nine"
+apart = true
 
 {FOUR_AND_NINE}"""
 
@@ -71,6 +89,24 @@ def test_what_turns_would_distort_is_measured_alone(
     empty_workplace: Workplace, change: Callable[[str], str]
 ) -> None:
     assert sizes(groups_of(empty_workplace, change(PAIR))) == [1, 1]
+
+
+def test_what_is_to_be_apart_is_and_the_others_still_take_turns(empty_workplace: Workplace) -> None:
+    groups = groups_of(empty_workplace, WAYS)
+    assert sizes(groups) == [1, 1, 2]
+    assert all(point.apart == (len(group) == 1) for group in groups for point in group)
+
+
+def test_of_whole_processes_too(empty_workplace: Workplace) -> None:
+    text = WAYS.replace("[scene]", 'verb = "process"\n[scene]')
+    assert sizes(groups_of(empty_workplace, text)) == [1, 1, 2]
+
+
+def test_a_figure_of_both_ways_needs_both(empty_workplace: Workplace) -> None:
+    alone = '[[series]]\nname = "nine"\nvariant = "nine"\napart = true\n'
+    assert alone in WAYS
+    with pytest.raises(InputError, match=r'series\[3\]: found "nine" once, expected another one with apart'):
+        groups_of(empty_workplace, WAYS.replace(alone, ""))
 
 
 def test_a_block_that_measures_errors_besides_is_measured_alone(empty_workplace: Workplace) -> None:

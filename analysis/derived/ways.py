@@ -1,0 +1,115 @@
+"""Two ways to measure what is compared: in turns within one process, and in processes of their own. How far
+the ratios by turns are off, and how soon either way knows a ratio.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from analysis.records.studies import Study
+from analysis.statistics.intervals import FEWEST, Interval, centre
+from analysis.statistics.pairs import PAIR, log_ratios, process_medians
+from analysis.support.wording import change, listed, percent
+
+KIND = "ways"
+"""The kind of the experiments that measure each point both ways."""
+
+TURNS, APART = "by turns", "apart"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A series against the first one on a scene, both ways: `pairs` has a row a block, with `scene_name`,
+    `series`, node, block and the log ratios `by turns` and `apart`; `seconds` what a block took, by way.
+    """
+
+    name: str
+    pairs: pd.DataFrame
+    seconds: dict[str, float]
+
+    @property
+    def bias(self) -> Interval:
+        """How far the log ratio by turns is off, with its 95 % interval over the blocks."""
+        return centre(self.pairs[TURNS] - self.pairs[APART], 0.95)
+
+    def log_ratio(self, way: str, blocks: int | None = None) -> Interval:
+        """The log ratio as one way has it, from the first blocks alone if so many are given."""
+        return centre(self.pairs[way].to_numpy()[:blocks], 0.95)
+
+    def half_widths(self, way: str) -> pd.DataFrame:
+        """Return the `seconds` spent and half of the interval of the log ratio, `half`, after each block from
+        the fourth on.
+        """
+        blocks = range(FEWEST, len(self.pairs) + 1)
+        found = [self.log_ratio(way, number) for number in blocks]
+        return pd.DataFrame(
+            {
+                "seconds": [number * self.seconds[way] for number in blocks],
+                "half": [(one.high - one.low) / 2 for one in found],
+            }
+        )
+
+
+def comparisons(study: Study, experiment: str) -> list[Comparison]:
+    """Return the comparisons of an experiment that have four blocks both ways, in the order of its file."""
+    times = study.times_of(experiment)
+    processes = process_medians(times.assign(scene_name=times["scene_name"].fillna("")))
+    spent = study.runs_of(experiment).set_index("file")["process_seconds"]
+    processes = processes.assign(seconds=processes["file"].map(spent))
+    found = []
+    for scene, group in processes.groupby("scene_name", sort=False):
+        order = group.sort_values("series_number")["series"].drop_duplicates()
+        for series in order.iloc[1:]:
+            name = f"{scene}: {series} / {order.iloc[0]}" if scene else f"{series} / {order.iloc[0]}"
+            one = _comparison(name, group, str(order.iloc[0]), str(series))
+            if len(one.pairs) >= FEWEST:
+                found.append(one)
+    return sorted(found, key=lambda one: one.name)
+
+
+def _comparison(name: str, processes: pd.DataFrame, reference: str, candidate: str) -> Comparison:
+    both = processes[processes["series"].isin([reference, candidate])]
+    ways = {TURNS: both[both["in_turns"]], APART: both[~both["in_turns"]]}
+    tables = []
+    for way, part in ways.items():
+        pairs = log_ratios(*(part[part["series"] == series] for series in (reference, candidate)))
+        tables.append(pairs.set_index(PAIR)["log_ratio"].rename(way))
+    seconds = {
+        way: float(part.groupby(PAIR)["seconds"].sum().median()) if len(part) else np.nan
+        for way, part in ways.items()
+    }
+    return Comparison(name, pd.concat(tables, axis=1, join="inner").reset_index(), seconds)
+
+
+def bias_sentence(study: Study) -> str:
+    """Say how far ratios by turns are off on this machine, as far as the study measured it; else nothing."""
+    names = study.times.loc[study.times["figure"] == KIND, "experiment"].unique()
+    found = [one for name in sorted(names) for one in comparisons(study, str(name))]
+    if not found:
+        return ""
+    widest = max(found, key=lambda one: abs(one.bias.estimate))
+    return (
+        f" Measured by turns. Against processes of their own, {len(found)} ratios by turns came out "
+        f"{said(overall(found))} on average here; the one farthest off, {widest.name}, {said(widest.bias)} "
+        f"({listed(sorted(names))})."
+    )
+
+
+def overall(found: list[Comparison]) -> Interval:
+    """Return the mean of the biases, with its interval over the blocks that all comparisons have."""
+    tables = [
+        (one.pairs.set_index(PAIR)[TURNS] - one.pairs.set_index(PAIR)[APART]).rename(number)
+        for number, one in enumerate(found)
+    ]
+    shared = pd.concat(tables, axis=1, join="inner")
+    return centre(shared.mean(axis=1), 0.95)
+
+
+def said(log_ratio: Interval) -> str:
+    """Return a log ratio as a change with its interval, e.g. `−0.2 % [−0.9 %, +0.5 %]`."""
+    row = {name: float(np.exp(getattr(log_ratio, end))) for name, end in _ENDS.items()}
+    return change(row) if np.isfinite(row["high"]) else percent(row["ratio"] - 1)
+
+
+_ENDS = {"ratio": "estimate", "low": "low", "high": "high"}

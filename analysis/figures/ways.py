@@ -1,0 +1,90 @@
+"""What is compared, measured in turns and in processes of their own: the ratios of both ways, and how soon
+either knows them.
+"""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from analysis.derived.ways import APART, TURNS, Comparison, comparisons, overall, said
+from analysis.figures.captions import PROCESSES, opening
+from analysis.figures.hover import Told, tell
+from analysis.figures.style import (
+    BLUE,
+    FAINT,
+    VERMILLION,
+    Cell,
+    Data,
+    Drawing,
+    Table,
+    key,
+    logarithmic_ticks,
+    new_figure,
+)
+from analysis.support.wording import number
+
+COLOURS = {TURNS: BLUE, APART: VERMILLION}
+
+
+def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
+    """Draw the ratios of an experiment both ways, and the width of their intervals over the time spent."""
+    found = comparisons(data.study, experiment)
+    if not found:
+        return None
+    figure, (left, right) = new_figure(1.0 + 0.42 * max(len(found), 4), columns=2, widths=[1.1, 1.0])
+    _ratios(left, found)
+    _widths(right, found)
+    key(right, [(f"{way}, each line a comparison", colour) for way, colour in COLOURS.items()])
+    caption = (
+        f"{opening(data.study.times_of(experiment), subject, PROCESSES)} Ratios of the times of the steps "
+        "with 95 % intervals, and half of these intervals after each block over the time that the processes "
+        f"took. Ratios by turns are {said(overall(found))} off those apart, on average."
+    )
+    return Drawing(figure, caption, tables=[_table(found)])
+
+
+def _ratios(axes: Axes, found: list[Comparison]) -> None:
+    axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
+    for height, one in enumerate(reversed(found)):
+        for way, aside in ((TURNS, 0.13), (APART, -0.13)):
+            value = one.log_ratio(way)
+            estimate, low, high = (100 * (np.exp(end) - 1) for end in (value.estimate, value.low, value.high))
+            axes.plot([low, high], [height + aside] * 2, color=COLOURS[way], linewidth=1.4)
+            (dot,) = axes.plot(estimate, height + aside, "o", color=COLOURS[way], markersize=4)
+            tell(dot, [Told(f"{one.name}, {way}", said(value))])
+    axes.set_yticks(range(len(found)), [one.name.replace(": ", "\n") for one in reversed(found)])
+    axes.tick_params(axis="y", length=0)
+    axes.set(ylim=(-0.5, len(found) - 0.5), xlabel="time against the other, %")
+
+
+def _widths(axes: Axes, found: list[Comparison]) -> None:
+    axes.set(xscale="log", yscale="log", xlabel="time spent, s", ylabel="half of the interval, %")
+    for way, colour in COLOURS.items():
+        for one in found:
+            table = one.half_widths(way)
+            (line,) = axes.plot(table["seconds"], 100 * table["half"], color=colour, linewidth=0.9)
+            tell(line, [_told(one, way, row) for _, row in table.iterrows()])
+    for axis in (axes.xaxis, axes.yaxis):
+        logarithmic_ticks(axis)
+
+
+def _told(one: Comparison, way: str, row: pd.Series) -> Told:
+    return Told(f"{one.name}, {way}", f"{number(row['seconds'])} s", f"{number(100 * row['half'])} %")
+
+
+def _table(found: list[Comparison]) -> Table:
+    rows = [
+        [
+            Cell(one.name),
+            *(Cell(said(one.log_ratio(way))) for way in (TURNS, APART)),
+            Cell(said(one.bias)),
+            Cell(str(len(one.pairs))),
+            *(Cell(number(one.seconds[way])) for way in (TURNS, APART)),
+        ]
+        for one in found
+    ]
+    columns = [
+        "comparison", TURNS, APART, "by turns against apart", "blocks",
+        f"s a block, {TURNS}", f"s a block, {APART}",
+    ]  # fmt: skip
+    return Table("The same comparisons both ways, with 95 % intervals over the blocks", columns, rows)
