@@ -23,7 +23,8 @@ def fewer_wasted_attempts(
     """Test that `candidate` wastes fewer attempts: pairs asked whether they collide that then do not.
 
     A count is the same in each repetition, so that its repetitions are the seeds of the scene: the interval
-    is over them. Attempts, resolves and the time stand beside, and do not decide.
+    is over them. The question says how many, so that they are looked at once. Attempts, resolves and the
+    time stand beside, and do not decide.
     """
     runs = evidence.study.runs_of(experiment)
     runs = runs[runs["x_name"] == "seed"].assign(
@@ -35,7 +36,7 @@ def fewer_wasted_attempts(
     if runs["pair_attempts"].isna().any():
         return Outcome(OPEN, why="attempts were not counted by the program that made the records")
     rows = {
-        value: judge_one(_over_seeds(before, after, value))
+        value: judge_one(_over_seeds(before, after, value), once=True)
         for value in ("wasted_attempts", "pair_attempts", "pair_resolves")
     }
     times = process_medians(evidence.study.times_of(experiment))

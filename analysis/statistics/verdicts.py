@@ -49,15 +49,22 @@ def corrected(table: pd.DataFrame) -> pd.DataFrame:
     return table.assign(p=p, verdict=verdicts)
 
 
-def judge_one(log_ratios: ArrayLike, margin: float = MARGIN, prior: Prior = NOTHING_KNOWN) -> dict[str, Any]:
-    """Return the row of one comparison standing alone: the columns that `judge` adds, and `denials`."""
+def judge_one(
+    log_ratios: ArrayLike, margin: float = MARGIN, prior: Prior = NOTHING_KNOWN, *, once: bool = False
+) -> dict[str, Any]:
+    """Return the row of one comparison standing alone: the columns that `judge` adds, and `denials`.
+
+    `once`: how many values there are was settled before the first of them, so that they are looked at once,
+    and the whole of the error is this look's.
+    """
     values = np.asarray(log_ratios, dtype=float)
     bound, blocks = np.log1p(margin), len(values)
+    part = 1.0 if once else share(blocks)
     faster, slower = p_value(values, -bound, "less", prior), p_value(values, bound, "greater", prior)
     not_faster, not_slower = p_value(values, -bound, "greater", prior), p_value(values, bound, "less", prior)
-    verdict, p = decide(faster, slower, equivalent=max(not_faster, not_slower), blocks=blocks)
-    row = verdict_row(centre(values, prior=prior), blocks, p, verdict)
-    return {**row, **denials(faster, slower, not_faster, not_slower, blocks)}
+    verdict, p = decide(faster, slower, max(not_faster, not_slower), blocks, part)
+    row = verdict_row(centre(values, 1 - ERROR * part, prior), blocks, p, verdict)
+    return {**row, **denials(faster, slower, not_faster, not_slower, blocks, part)}
 
 
 def verdict_row(log_ratio: Interval, blocks: int, p: float, verdict: str) -> dict[str, Any]:
@@ -75,16 +82,18 @@ def verdict_row(log_ratio: Interval, blocks: int, p: float, verdict: str) -> dic
 
 
 def denials(
-    faster: float, slower: float, not_faster: float, not_slower: float, blocks: int
+    faster: float, slower: float, not_faster: float, not_slower: float, blocks: int, part: float | None = None
 ) -> dict[str, float]:
     """Return the p-values of what denies each verdict, given those of four one-sided tests: the smallest
     error at which the interval has no part in what the verdict says, whatever else it reaches into.
     """
     contrary = {"not_faster": not_faster, "not_slower": not_slower, "not_equivalent": min(faster, slower)}
-    return {name: two_sided(p, blocks) for name, p in contrary.items()}
+    return {name: two_sided(p, blocks, part) for name, p in contrary.items()}
 
 
-def decide(faster: float, slower: float, equivalent: float, blocks: int) -> tuple[str, float]:
+def decide(
+    faster: float, slower: float, equivalent: float, blocks: int, part: float | None = None
+) -> tuple[str, float]:
     """Return the verdict and its p-value, given the one-sided p-value against each of the three being untrue.
 
     They are doubled: at most `ERROR` then is where the two-sided interval lies wholly within what the verdict
@@ -92,15 +101,16 @@ def decide(faster: float, slower: float, equivalent: float, blocks: int) -> tupl
     """
     support = {"faster": faster, "slower": slower, "equivalent": equivalent}
     best = min(support, key=lambda verdict: support[verdict])
-    p = two_sided(support[best], blocks)
+    p = two_sided(support[best], blocks, part)
     return best if p <= ERROR else "inconclusive", p
 
 
-def two_sided(p: float, blocks: int) -> float:
+def two_sided(p: float, blocks: int, part: float | None = None) -> float:
     """Return the p-value at which the two-sided interval decides what a one-sided test gives `p` for, over
-    all looks; 1 from fewer than `FEWEST` blocks. It is not cut at 1, so that it tells how far a verdict is.
+    all looks, or over that `part` of the error; 1 from fewer than `FEWEST` blocks. It is not cut at 1, so
+    that it tells how far a verdict is.
     """
-    return 2 * p / share(blocks) if blocks >= FEWEST else 1.0
+    return 2 * p / (share(blocks) if part is None else part) if blocks >= FEWEST else 1.0
 
 
 def holm(p_values: Sequence[float] | pd.Series) -> list[float]:

@@ -143,6 +143,16 @@ def test_intervals_that_forget_the_looks_err_more_often_than_they_say() -> None:
     assert misses(0.95) > 2 * ERROR
 
 
+def test_what_is_looked_at_once_has_the_whole_of_the_error() -> None:
+    logs = np.random.default_rng(10).normal(0, 0.03, (1000, 60))
+    once = [judge_one(row, once=True) for row in logs]
+    misses = np.mean([not one["low"] < 1 < one["high"] for one in once])
+    assert 0.03 <= misses <= 0.065
+    among_looks = judge_one(logs[0])
+    assert once[0]["low"] > among_looks["low"]
+    assert once[0]["not_faster"] == pytest.approx(among_looks["not_faster"] * share(60))
+
+
 def test_the_shares_of_all_looks_are_a_whole() -> None:
     looks = [LOOKS[0]]
     while looks[-1] < 1_000_000:
