@@ -34,11 +34,11 @@ def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
     figure, (left, right) = new_figure(1.0 + 0.42 * max(len(found), 4), columns=2, widths=[1.1, 1.0])
     _ratios(left, found)
     _widths(right, found)
-    key(right, [(f"{way}, each line a comparison", colour) for way, colour in COLOURS.items()])
+    key(right, list(COLOURS.items()))
     caption = (
         f"{opening(data.study.times_of(experiment), subject, PROCESSES)} Ratios of the times of the steps "
-        "with 95 % intervals, and half of these intervals after each block over the time that the processes "
-        f"took. Ratios by turns are {said(overall(found))} off those apart, on average."
+        "with 95 % intervals, and, a line a comparison, half of these after each block over the time that "
+        f"they took. Ratios by turns are {said(overall(found))} off those apart, on average."
     )
     return Drawing(figure, caption, tables=[_table(found)])
 
