@@ -58,8 +58,8 @@ class Schedule:
         is time for; None if there is none. One that has its blocks waits for the others that a claim rests
         on.
 
-        What was spent on it since its least blocks counts as well: else an effect near a border, which always
-        seems a few blocks from being settled, gets all of the time.
+        What was spent on it since its least blocks counts as well: an effect near a border always seems a few
+        blocks from being settled.
         """
         best, least = None, math.inf
         for one in self.experiments:
