@@ -32,19 +32,11 @@ def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str)
             return no_records(experiment, f"{phase} and {early} of the variant {variant}")
     walls = walls.dropna()
     with_early, without = (walls[variant] for variant in VARIANTS)
-    whole = with_early.sum(axis=1)
-    resolved_early = with_early[early] - without[early]
-    resolving = with_early[phase] + resolved_early
-    row = _row(with_early[phase], resolving, whole)
-    parts = pd.DataFrame({phase: with_early[phase], early: with_early[early], "early": resolved_early})
-    part = parts.div(whole, axis=0).median()
+    row, of, said = _judged(with_early, without, phase, early)
     measured = (
-        f"resolving takes {share(float((resolving / whole).median()))} of a step: {share(part[phase])} in "
-        f"{phase} and {share(part['early'])} early, of the {share(part[early])} of {early}; the ratio to all "
-        f"the rest of {row['of']} is {number(row['ratio'])} [{number(row['low'])}, {number(row['high'])}], "
-        f"{count(row['blocks'], 'block')}"
+        f"resolving takes {of}; the ratio to all the rest is {number(row['ratio'])} [{number(row['low'])}, "
+        f"{number(row['high'])}], {count(row['blocks'], 'block')}"
     )
-    said = f"{share(float((resolving / whole).median()))}, {share(part[phase])} without early resolves"
     figures = (Compared("share of a step that resolving takes", "–", said),)
     return replace(
         judged(row, "slower", measured, figures),
@@ -52,12 +44,25 @@ def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str)
     )
 
 
-def _row(late: pd.Series, resolving: pd.Series, whole: pd.Series) -> dict[str, Any]:
-    """Return the verdict on the ratio of resolving to the rest, and which resolving it is `of`: without what
-    was done early where that is more than half already, since what is done early only adds. It is a share
-    within one process, and so the surer one.
+def _judged(
+    with_early: pd.DataFrame, without: pd.DataFrame, phase: str, early: str
+) -> tuple[dict[str, Any], str, str]:
+    """Return the verdict on the ratio of resolving to the rest, of which shares of a step it is, and the
+    share in short.
+
+    Where the later resolves are more than half already they are what is judged, since what is done early
+    only adds: theirs is a share within one process, and so the surer one.
     """
-    alone = judge_one(np.log(late / (whole - late)))
-    if alone["ratio"] > 1 and alone["verdict"] != "equivalent":
-        return {**alone, "of": "resolving without what is done early"}
-    return {**judge_one(np.log(resolving / (whole - resolving))), "of": "all resolving"}
+    whole = with_early.sum(axis=1)
+    resolved_early = with_early[early] - without[early]
+    late, resolving = with_early[phase], with_early[phase] + resolved_early
+    parts = pd.DataFrame({"late": late, early: with_early[early], "early": resolved_early, "all": resolving})
+    part = parts.div(whole, axis=0).median().map(share)
+    row = judge_one(np.log(late / (whole - late)))
+    if row["ratio"] > 1 and row["verdict"] != "equivalent":
+        of = f"{part['late']} of a step in {phase} alone, without what is done early in {early}"
+        return row, of, f"{part['late']} without early resolves"
+    of = (
+        f"{part['all']} of a step: {part['late']} in {phase} and {part['early']} early, of the {part[early]} "
+    )
+    return judge_one(np.log(resolving / (whole - resolving))), f"{of}of {early}", str(part["all"])

@@ -26,9 +26,11 @@ def log_ratios(
 ) -> pd.DataFrame:
     """Return a row a pair: the columns of `match`, node, block and `log_ratio` = ln(candidate / reference).
 
-    Takes one row a process on either side. Drift from block to block cancels in the ratio, which is why
-    blocks and not samples are the unit of every interval. A block that was interrupted and finished by a
-    later session still is a pair, marked `split`; a process without its partner has no ratio.
+    Takes a row a process on either side; of the replicates that a block has of one configuration it takes the
+    mean logarithm, since the median of several lies below a single time wherever noise is skewed. Drift from
+    block to block cancels in the ratio, which is why blocks and not samples are the unit of every interval. A
+    block that was interrupted and finished by a later session still is a pair, marked `split`; a process
+    without its partner has no ratio.
     """
     keys = [*match, *PAIR]
     joined = _per_block(reference, keys, value).merge(
@@ -39,7 +41,7 @@ def log_ratios(
     )
     ratios = pd.DataFrame(
         {
-            "log_ratio": np.log(joined[f"{value}_candidate"]) - np.log(joined[f"{value}_reference"]),
+            "log_ratio": joined["log_candidate"] - joined["log_reference"],
             "split": joined["session_reference"] != joined["session_candidate"],
         },
         index=joined.index,
@@ -48,4 +50,5 @@ def log_ratios(
 
 
 def _per_block(processes: pd.DataFrame, keys: list[str], value: str) -> pd.DataFrame:
-    return processes.groupby(keys).agg({value: "median", "session": "first"})
+    logs = processes.assign(log=np.log(processes[value]))
+    return logs.groupby(keys).agg({"log": "mean", "session": "first"})

@@ -1,6 +1,7 @@
 """From questions to points: what would be measured, on which machine, at which scale."""
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -55,11 +56,17 @@ def plan(question: Question, around: Surroundings) -> Experiment:
     would measure the same thing twice.
     """
     points = [
-        _point(question, number, series, scene, value, around)
+        point
         for scene in around.scale.scenes(question)
-        for number, series in enumerate(question.series, start=1)
-        if not _left_out(series, scene, around)
-        for value in _values(question, _known(question, number, series, around), around)
+        for point in _with_replicates(
+            [
+                _point(question, number, series, scene, value, around)
+                for number, series in enumerate(question.series, start=1)
+                if not _left_out(series, scene, around)
+                for value in _values(question, _known(question, number, series, around), around)
+            ],
+            question,
+        )
     ]
     if not points:
         raise InputError(
@@ -75,6 +82,21 @@ def plan(question: Question, around: Surroundings) -> Experiment:
                 f"{other.x:g} measures; expected different points, or a label for one of them"
             )
     return Experiment(question, tuple(points), f"{around.seed} {question.name}")
+
+
+def _with_replicates(points: Sequence[Point], question: Question) -> Iterator[Point]:
+    """The points of one scene, those that all others are compared with several times.
+
+    Of many comparisons with one and the same each is told most by a share of the time if that one has the
+    square root of the others' number of replicates (Dunnett, J. Am. Stat. Assoc. 50, 1955).
+    """
+    replicates = round(math.sqrt(max(1, len(points) - 1)))
+    for point in points:
+        yield point
+        if point.x in question.series[point.series_number - 1].replicated:
+            for number in range(2, replicates + 1):
+                label = " ".join(part for part in (point.label, f"replicate {number}") if part)
+                yield replace(point, label=label)
 
 
 def _left_out(series: Series, scene: NamedScene, around: Surroundings) -> bool:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from experiments.plan.claims import CLAIMS, PUBLISHED_CLAIMS, require_claim
 from experiments.plan.scenes import AnyScene, HardCase, NoScene, Scene
-from experiments.plan.series import Series, read_series, require_both_ways
+from experiments.plan.series import Series, read_series, require_both_ways, require_replicated
 from experiments.support.errors import InputError, nearest
 from experiments.support.schema import read_toml
 
@@ -302,6 +302,7 @@ def _require_values(question: Question, key: str, series: Series) -> None:
         raise InputError(f"{question.file}: {key}.values: found values, expected none without a sweep")
     if parameter is not None and not series.values:
         raise InputError(f"{question.file}: {key}.values: missing; expected the values of {parameter}")
+    require_replicated(question.file, key, series, question.sweep.unit)
     if parameter in _OF_SERIES and getattr(series, parameter) is not None:
         raise InputError(f"{question.file}: {key}.{parameter}: found beside a sweep of it, expected either")
     if question.sweep.unit or parameter not in _WHOLE_NUMBERS:

@@ -54,6 +54,8 @@ class Series:
     optional: bool = False
     apart: bool = False
     """In a process of its own, also where the others of the question take turns."""
+    replicated: tuple[float, ...] = ()
+    """The values that all others of the question are compared with; a block measures them several times."""
     is_one_of_many: bool = False
     """Found by a pattern: if it cannot be run, that is its own failure and not one of the question."""
     values: tuple[float, ...] = ()
@@ -94,12 +96,24 @@ def require_both_ways(path: Path, series: Sequence[Series]) -> None:
             )
 
 
+def require_replicated(path: Path, key: str, series: Series, unit: str | None) -> None:
+    """What has replicates is measured at either scale. Raises InputError with one line."""
+    if series.replicated and unit is not None:
+        raise InputError(f"{path}: {key}.replicated: found beside sweep.unit, expected either")
+    for name, values in (("values", series.values), ("quick_values", series.quick_values)):
+        for value in series.replicated:
+            if value not in values:
+                raise InputError(f"{path}: {key}.replicated: found {value:g}, expected one of its {name}")
+
+
 def _with_values(table: Mapping[str, Any], of_sweep: Mapping[str, tuple[float, ...]]) -> dict[str, Any]:
     """A series has the sweep's values unless it has its own; quick values default to the values."""
+    replicated = {"replicated": tuple(table.get("replicated", ()))}
     if "values" not in table:
-        return {**of_sweep, "quick_values": of_sweep["quick_values"] or of_sweep["values"], **table}
+        quick = of_sweep["quick_values"] or of_sweep["values"]
+        return {**of_sweep, "quick_values": quick, **table, **replicated}
     own = {key: tuple(table.get(key, table["values"])) for key in ("values", "quick_values")}
-    return {**table, **own}
+    return {**table, **own, **replicated}
 
 
 def _require_kinds(path: Path, tables: Sequence[Mapping[str, Any]]) -> None:

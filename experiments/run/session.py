@@ -23,7 +23,7 @@ DRAWING_LIMIT = 600.0
 DECIDING_SHARE = 0.25
 """The part of a scale's time that what is open gets for certain."""
 
-MEASURED_A_LOOK = 2.0
+MEASURED_A_LOOK = 4.0
 """The least time measured between two looks, in those that the look took."""
 
 REPORT_PAUSE, REPORT_SHARE = 300.0, 0.05

@@ -130,6 +130,21 @@ def test_quick_values_are_taken_at_quick_scale(workplace: Workplace) -> None:
     assert {generated(point).particles for point in points} == {10}
 
 
+def test_what_all_others_are_compared_with_is_measured_several_times(workplace: Workplace) -> None:
+    values = ", ".join(map(str, range(1, 18)))
+    text = CHUNKS.replace("values = [1, 2, 3]\n", f"values = [{values}]\n")
+    alone = plan(load_question(workplace.question("alone", text)), surroundings(workplace)).points
+    text = text.replace('"published"', '"published"\nreplicated = [2]')
+    question = load_question(workplace.question("alone", text))
+    points = plan(question, surroundings(workplace)).points
+    replicates = [point for point in points if point.x == 2]
+    assert [point.label for point in replicates] == [None, "replicate 2", "replicate 3", "replicate 4"]
+    assert len({point.id for point in points}) == len(points) == 17 + 3
+    assert {point.id for point in alone} <= {point.id for point in points}
+    few = plan(question, surroundings(workplace, "quick")).points
+    assert [point.x for point in few] == [1, 2]
+
+
 def test_a_sweep_of_seeds_makes_a_scene_of_each(workplace: Workplace) -> None:
     text = CHUNKS.replace('"find_chunk"', '"seed"')
     points = plan(load_question(workplace.question("seeds", text)), surroundings(workplace)).points
@@ -245,6 +260,20 @@ MISTAKES = {
     "the same twice": (
         PAIR.replace('variant = "nine"', 'variant = "published"'),
         'series: "nine" at 0 measures what "four" at 0 measures',
+    ),
+    "a replicate of nothing": (
+        CHUNKS.replace('"published"', '"published"\nreplicated = [4]'),
+        "series[1].replicated: found 4, expected one of its values",
+    ),
+    "a replicate of nothing at quick scale": (
+        CHUNKS.replace('"published"', '"published"\nreplicated = [3]'),
+        "series[1].replicated: found 3, expected one of its quick_values",
+    ),
+    "replicates of a share of the machine": (
+        CHUNKS.replace('"find_chunk"', '"threads"\nunit = "hardware_threads"').replace(
+            '"published"', '"published"\nreplicated = [1]'
+        ),
+        "series[1].replicated: found beside sweep.unit, expected either",
     ),
     "nothing left": (
         CHUNKS.replace('"find_chunk"', '"threads"').replace("[1, 2, 3]", "[9]\nlimit = 1"),

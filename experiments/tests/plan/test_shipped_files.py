@@ -103,8 +103,24 @@ def test_while_one_loop_s_schedule_is_swept_the_other_has_the_published_chunk() 
         assert {getattr(point, chunk) for point in planned(name).points} == {published}
 
 
-@pytest.mark.parametrize(("scale", "asked"), [("paper", range(21, 81)), ("quick", range(1, 21))])
-def test_a_count_is_taken_on_several_seeds(scale: str, asked: range) -> None:
+@pytest.mark.parametrize(
+    ("name", "choice"),
+    [
+        ("schedule_find", ("guided", 4)),
+        ("schedule_resolve", ("guided", 5)),
+        ("schedule_resolve_row", ("dynamic", 1)),
+    ],
+)
+@pytest.mark.parametrize("scale", ["paper", "quick"])
+def test_the_schedule_to_choose_has_replicates(name: str, choice: tuple[str, float], scale: str) -> None:
+    points = [(point.series, point.x) for point in planned(name, scale).points]
+    repeated = {point: points.count(point) for point in points if points.count(point) > 1}
+    assert repeated == {choice: 4 if scale == "paper" else points.count(choice)}
+
+
+@pytest.mark.parametrize("scale", ["paper", "quick"])
+def test_a_count_is_taken_on_seeds_that_did_not_tell_their_number(scale: str) -> None:
+    asked = range(81, 201)
     points = planned("reverse", scale).points
     seeds = {
         point.series: [generated(one).seed for one in points if one.series == point.series]

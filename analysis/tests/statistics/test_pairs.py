@@ -1,0 +1,58 @@
+"""Ratios within blocks, of what a block measures once and of what it measures several times."""
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from analysis.claims.alternatives import alternatives
+from analysis.statistics.looks import ERROR
+from analysis.statistics.pairs import log_ratios
+
+OTHERS = 16
+REPLICATES = 4
+STUDIES = 12
+
+
+def processes(logs: NDArray[np.float64]) -> pd.DataFrame:
+    """Return a row a process of one configuration, of ln(time) as blocks x replicates."""
+    block, _ = (axis.ravel() for axis in np.indices(logs.shape))
+    return pd.DataFrame(
+        {"node": "node", "session": "session", "block": block, "steps_seconds": np.exp(logs.ravel())}
+    )
+
+
+def test_replicates_in_skewed_noise_are_as_slow_as_a_single_run() -> None:
+    generator = np.random.default_rng(3)
+    single, several = (generator.exponential(0.1, (4000, number)) for number in (1, REPLICATES))
+    ratios = log_ratios(processes(several), processes(single))["log_ratio"]
+    assert abs(ratios.mean()) < 3 * ratios.std() / np.sqrt(len(ratios))
+    of_medians = single[:, 0] - np.median(several, axis=1)
+    assert of_medians.mean() > 3 * of_medians.std() / np.sqrt(len(of_medians))
+
+
+def test_replicates_of_the_choice_leave_less_open_in_the_same_time() -> None:
+    """Sixteen others, a margin from being faster: 14 blocks of 20 processes take the time of 16 of 17."""
+    assert unsettled(REPLICATES, blocks=14) < 0.75 * unsettled(1, blocks=16)
+
+
+def test_replicates_of_the_choice_halve_the_deviation_from_the_average_of_the_others() -> None:
+    several, single = (
+        comparisons(replicates, 3000, seed=1).groupby("block")["log_ratio"].mean().std()
+        for replicates in (REPLICATES, 1)
+    )
+    assert several < 0.6 * single
+
+
+def comparisons(replicates: int, blocks: int, seed: int) -> pd.DataFrame:
+    """Return the log ratios of the others against a choice that has replicates, all equally fast."""
+    generator = np.random.default_rng(seed)
+    choice, *others = (
+        processes(generator.normal(0, 0.015, (blocks, number))) for number in (replicates, *[1] * OTHERS)
+    )
+    return pd.concat(log_ratios(choice, one).assign(name=str(k)) for k, one in enumerate(others))
+
+
+def unsettled(replicates: int, blocks: int) -> int:
+    """Return of how many others, over all studies, it is not settled that they are no faster."""
+    tables = [alternatives(comparisons(replicates, blocks, seed)).table for seed in range(STUDIES)]
+    return sum(int((table["behind"] > ERROR).sum()) for table in tables)
