@@ -51,6 +51,7 @@ class Session:
     def __init__(
         self, study: Study, runner: Runner, schedule: Schedule, report: Report, analysis: Coprocess
     ) -> None:
+        self._began = time.monotonic()
         self._study = study
         self._runner = runner
         self._schedule = schedule
@@ -72,8 +73,9 @@ class Session:
         given = study.settings.budget_seconds is not None
         if study.settings.until_decided and not given:
             return math.inf
-        done = self._schedule.status().seconds_done if self._has_more or not given else 0.0
-        return now + study.measuring_seconds - done
+        if given and not self._has_more:
+            return now + study.measuring_seconds
+        return now + study.measuring_seconds - max(self._schedule.status().seconds_done, study.seconds_begun)
 
     def _keep_time_to_decide(self) -> None:
         """On a slow machine the least of everything takes all of a scale's time, and what is open may need
@@ -243,7 +245,9 @@ class Session:
     def _conclude(self) -> int:
         root = self._study.store.root
         comes_back = bool(self._study.settings.builds)
-        if not comes_back:
+        if comes_back:
+            self._study.begin(time.monotonic() - self._began)
+        else:
             self._study.finish()
         if not self._failures:
             if self._study.is_whole and not comes_back:

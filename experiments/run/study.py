@@ -24,6 +24,7 @@ from experiments.support.files import write_text
 ROOT = question.FOLDER.parents[1]
 COSTS = "costs.json"
 FINISHED = "finished.json"
+BEGUN = "begun.json"
 POINTS_FAILED = 2
 
 REPORT_SECONDS = 40.0
@@ -109,6 +110,23 @@ class Study:
         """Write down that a session came to the end."""
         if not self.is_finished:
             self.store.keep_note(FINISHED, [*(self.store.note(FINISHED) or []), self._key])
+
+    @property
+    def seconds_begun(self) -> float:
+        """How long the part of the study took that some of the builds can measure, checks and figures
+        included; 0 if there was none.
+        """
+        begun = self.store.note(BEGUN)
+        seconds = begun.get(self._asked) if isinstance(begun, dict) else None
+        return float(seconds) if isinstance(seconds, int | float) else 0.0
+
+    def begin(self, seconds: float) -> None:
+        """Write down how long that part took."""
+        self.store.keep_note(BEGUN, {self._asked: max(seconds, self.seconds_begun)})
+
+    @property
+    def _asked(self) -> str:
+        return f"{self.scale.name}: {', '.join(self.settings.study)}"
 
     @property
     def _key(self) -> str:

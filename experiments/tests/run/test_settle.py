@@ -125,6 +125,17 @@ def test_nothing_is_decided_before_all_builds_are_there(needing: Workplace) -> N
     assert blocks_of(needing, "pair") == 8
 
 
+def test_the_time_of_the_part_before_the_other_builds_is_part_of_the_budget(needing: Workplace) -> None:
+    want(needing, pair=8, chunks=2)
+    assert finish(needing.start("run", "--builds", "gcc", "--budget", "5"))[0] == 0
+    note = needing.settings.results / "begun.json"
+    ((asked, seconds),) = json.loads(note.read_text()).items()
+    assert 0 < seconds < 60
+    note.write_text(json.dumps({asked: 300 + seconds}))
+    assert finish(needing.start("run", "--budget", "5"))[0] == 0
+    assert blocks_of(needing, "pair") == 2
+
+
 def test_a_killed_study_comes_to_the_same_decisions(needing: Workplace) -> None:
     want(needing, pair=8, chunks=5)
     needing.behave(FAKE_SECONDS="0.05")
