@@ -58,7 +58,7 @@ class Scale:
 
 SCALES = {
     "paper": Scale("paper", divisor=1, steps_divisor=1, blocks_divisor=1, budget_seconds=45 * 60),
-    "quick": Scale("quick", divisor=10, steps_divisor=2, blocks_divisor=2, budget_seconds=2.5 * 60),
+    "quick": Scale("quick", divisor=10, steps_divisor=2, blocks_divisor=2, budget_seconds=3.5 * 60),
 }
 
 
