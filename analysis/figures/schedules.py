@@ -20,6 +20,7 @@ from analysis.figures.style import (
     plain_ticks,
 )
 from analysis.statistics.bootstrap import summarise
+from analysis.statistics.pairs import join_replicates
 from analysis.support.wording import exact, interval_of, number
 
 Choice = tuple[str, int]
@@ -38,7 +39,7 @@ def schedule(data: Data, experiment: str, subject: str, chosen: Choice | None = 
     times = data.study.times_of(experiment)
     if times.empty:
         return None
-    summary = summarise(times, ["series", "x"])
+    summary = summarise(join_replicates(times), ["series", "x"])
     published = data.published.experiment(experiment).rename(columns={"seconds": "median"})
     shades = colours(times) | COLOURS
     tables = [summary] if published.empty else [summary, published]

@@ -18,6 +18,19 @@ def process_medians(times: pd.DataFrame, value: str = "steps_seconds") -> pd.Dat
     return first.assign(**{value: medians}).reset_index()
 
 
+def join_replicates(times: pd.DataFrame) -> pd.DataFrame:
+    """Return the times with the replicates that a block has of one point, by series and x, as one process:
+    the geometric mean of theirs. What the block suffers they share, so that they are no samples of it; times
+    without replicates are returned as they are.
+    """
+    keys = ["series", "x", *PAIR]
+    processes = process_medians(times)
+    if not processes.duplicated(keys).any():
+        return times
+    logs = np.log(processes["steps_seconds"]).groupby([processes[key] for key in keys]).transform("mean")
+    return processes.assign(steps_seconds=np.exp(logs)).drop_duplicates(keys)
+
+
 def log_ratios(
     reference: pd.DataFrame,
     candidate: pd.DataFrame,

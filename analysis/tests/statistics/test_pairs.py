@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from analysis.claims.alternatives import alternatives
 from analysis.statistics.looks import ERROR
-from analysis.statistics.pairs import log_ratios
+from analysis.statistics.pairs import join_replicates, log_ratios
 
 OTHERS = 16
 REPLICATES = 4
@@ -28,6 +28,16 @@ def test_replicates_in_skewed_noise_are_as_slow_as_a_single_run() -> None:
     assert abs(ratios.mean()) < 3 * ratios.std() / np.sqrt(len(ratios))
     of_medians = single[:, 0] - np.median(several, axis=1)
     assert of_medians.mean() > 3 * of_medians.std() / np.sqrt(len(of_medians))
+
+
+def test_replicates_are_one_sample_of_their_block() -> None:
+    logs = np.array([[0.0, 0.2], [1.0, 1.4]])
+    times = processes(logs).assign(series="guided", x=4.0, file=["a", "b", "c", "d"])
+    joined = join_replicates(times)
+    assert list(joined["block"]) == [0, 1]
+    assert np.allclose(np.log(joined["steps_seconds"]), [0.1, 1.2])
+    single = times.drop_duplicates("block")
+    assert join_replicates(single) is single
 
 
 def test_replicates_of_the_choice_leave_less_open_in_the_same_time() -> None:
