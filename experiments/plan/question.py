@@ -302,7 +302,7 @@ def _require_values(question: Question, key: str, series: Series) -> None:
         raise InputError(f"{question.file}: {key}.values: found values, expected none without a sweep")
     if parameter is not None and not series.values:
         raise InputError(f"{question.file}: {key}.values: missing; expected the values of {parameter}")
-    require_replicated(question.file, key, series, question.sweep.unit)
+    require_replicated(question.file, key, series, question.figure, question.sweep.unit)
     if parameter in _OF_SERIES and getattr(series, parameter) is not None:
         raise InputError(f"{question.file}: {key}.{parameter}: found beside a sweep of it, expected either")
     if question.sweep.unit or parameter not in _WHOLE_NUMBERS:

@@ -96,8 +96,12 @@ def require_both_ways(path: Path, series: Sequence[Series]) -> None:
             )
 
 
-def require_replicated(path: Path, key: str, series: Series, unit: str | None) -> None:
-    """What has replicates is measured at either scale. Raises InputError with one line."""
+def require_replicated(path: Path, key: str, series: Series, figure: str, unit: str | None) -> None:
+    """What has replicates is measured at either scale, and only one figure draws those of a block as one
+    sample. Raises InputError with one line.
+    """
+    if series.replicated and figure != "schedule":
+        raise InputError(f"{path}: {key}.replicated: found for figure {figure}, expected for schedule only")
     if series.replicated and unit is not None:
         raise InputError(f"{path}: {key}.replicated: found beside sweep.unit, expected either")
     for name, values in (("values", series.values), ("quick_values", series.quick_values)):

@@ -269,6 +269,10 @@ MISTAKES = {
         CHUNKS.replace('"published"', '"published"\nreplicated = [3]'),
         "series[1].replicated: found 3, expected one of its quick_values",
     ),
+    "replicates in a figure that would take them for samples": (
+        CHUNKS.replace('"schedule"', '"trend"').replace('"published"', '"published"\nreplicated = [1]'),
+        "series[1].replicated: found for figure trend, expected for schedule only",
+    ),
     "replicates of a share of the machine": (
         CHUNKS.replace('"find_chunk"', '"threads"\nunit = "hardware_threads"').replace(
             '"published"', '"published"\nreplicated = [1]'
