@@ -14,7 +14,7 @@ from experiments.plan.scale import Scale
 from experiments.plan.scenes import AnyScene, NoScene, Scene
 from experiments.plan.series import Series
 from experiments.plan.site import Machine, Site
-from experiments.support.errors import InputError, nearest
+from experiments.support.errors import InputError, nearest, quoted
 
 SEED = 1
 
@@ -115,7 +115,7 @@ def _known(question: Question, number: int, series: Series, around: Surroundings
     if series.program not in around.programs:
         names = list(around.programs)
         raise InputError(
-            f'{key}.program: found "{series.program}", expected one of {", ".join(names)}'
+            f"{key}.program: found {quoted(series.program)}, expected one of {', '.join(names)}"
             f"{nearest(series.program, names)}"
         )
     program = around.programs[series.program]

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from experiments.plan.claims import CLAIMS, PUBLISHED_CLAIMS, require_claim
 from experiments.plan.scenes import AnyScene, HardCase, NoScene, Scene
 from experiments.plan.series import Series, read_series, require_both_ways, require_replicated
-from experiments.support.errors import InputError, nearest
+from experiments.support.errors import InputError, nearest, quoted
 from experiments.support.schema import read_toml
 
 FOLDER = Path(__file__).parents[1] / "questions"
@@ -204,8 +204,8 @@ def _require_names(question: Question) -> None:
         for place, name in enumerate(scene.series, start=1):
             if name not in known:
                 raise InputError(
-                    f'{question.file}: scenes[{number}].series[{place}]: found "{name}", expected one of '
-                    f"{', '.join(known)}{nearest(name, known)}"
+                    f"{question.file}: scenes[{number}].series[{place}]: found {quoted(name)}, expected "
+                    f"one of {', '.join(known)}{nearest(name, known)}"
                 )
 
 
@@ -246,7 +246,7 @@ def _require_what_processes_can(question: Question) -> None:
     known = (*_OF_THE_RUN, *_OF_A_SCENE)
     if parameter is not None and parameter not in known and len(foreign) < len(question.series):
         raise InputError(
-            f'{file}: sweep.parameter: found "{parameter}", expected one of {", ".join(known)}'
+            f"{file}: sweep.parameter: found {quoted(parameter)}, expected one of {', '.join(known)}"
             f"{nearest(parameter, known)}"
         )
     if parameter in _OF_A_SCENE and any(isinstance(named.scene, NoScene) for named in question.scenes):

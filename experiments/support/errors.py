@@ -1,6 +1,7 @@
 """The one exception that a user is meant to see, and the hint that goes with a misspelt name."""
 
 import difflib
+import json
 from collections.abc import Iterable
 
 
@@ -14,6 +15,11 @@ class Interrupted(BaseException):
     def __init__(self, signal_number: int) -> None:
         super().__init__(f"stopped by signal {signal_number}")
         self.signal_number = signal_number
+
+
+def quoted(found: str) -> str:
+    """What was found, between quotes and on one line, whatever characters it has."""
+    return json.dumps(found, ensure_ascii=False)
 
 
 def nearest(found: str, names: Iterable[str]) -> str:
