@@ -20,7 +20,6 @@ configure = CXX=$(CXX_$*) $(generator) cmake --preset release -B build/$* -DCARO
 sources := find kernels variants harness -name '*.[ch]pp'
 study := $${STUDY:+--study "$$STUDY"} $${SCALE:+--scale "$$SCALE"} $${SITE:+--site "$$SITE"} $${QUESTIONS:+--questions "$$QUESTIONS"}
 results := $${RESULTS:+--results "$$RESULTS"}
-asked := $${STUDY:+--study "$$STUDY"}
 limits := $${BUDGET:+--budget "$$BUDGET"} $${UNTIL:+"--until-$$UNTIL"}
 picture := $${OUT:+--output "$$OUT"} $${STEP:+--step "$$STEP"}
 dry_run := $${DRY_RUN:+--dry-run}
@@ -32,7 +31,7 @@ dry_run := $${DRY_RUN:+--dry-run}
 #:   SITE=       where it runs: a name in experiments/sites, or a file *.toml (local)
 #:   QUESTIONS=  folder of questions of your own (experiments/questions)
 #:   RESULTS=    folder of records, figures and report (results)
-#:   BUDGET=     minutes for the whole study, report included (45 at paper scale, 3.5 at quick scale)
+#:   BUDGET=     minutes for the whole study, report included (45 at paper scale, 2.5 at quick scale)
 #:   UNTIL=      decided: measure until all that can be decided is (no: for the budget)
 #:   DRY_RUN=    1: say what would be done, do nothing (no)
 #:   SCENE=      the scene file of a movie
@@ -147,8 +146,7 @@ experiments: environment settings ## run the study, then report (STUDY= SCALE= S
 		$(run) --builds gcc; case $$? in 0|2) ;; *) exit $$?;; esac; \
 		$(MAKE) --no-print-directory build-clang || exit;; \
 	esac; \
-	code=0; $(run) || code=$$?; \
-	case $$code in 0|2) $(python) analysis report $(results) $(asked) && exit $$code;; *) exit $$code;; esac
+	$(run)
 
 # analysis/report/graphs.toml says which graphs these are.
 appendix: ## draw the graphs of the published appendix, measuring what is missing (SCALE= RESULTS= BUDGET=)
@@ -174,7 +172,7 @@ figures: environment ## draw the figures of whatever is there (RESULTS=)
 	$(python) analysis figures $(results)
 
 report: environment ## write the report of whatever is there (RESULTS=; STUDY= puts questions first)
-	$(python) analysis report $(results) $(asked)
+	$(python) analysis report $(results) $${STUDY:+--study "$$STUDY"}
 
 movie: environment ## draw a run (SCENE= OUT=*.mp4|*.gif|*.png VARIANT= STEP=)
 	$(call need,SCENE,a scene file (make movie SCENE=scene.in))

@@ -47,7 +47,7 @@ def _parser() -> argparse.ArgumentParser:
         (
             "follow",
             _follow,
-            "answer each line of standard input, as a running study asks: draw, open, report",
+            "answer each line of standard input, as a running study asks: open, report",
         ),
         ("performance", _performance, "print the ladder and the limits as Markdown tables"),
     ):
@@ -107,26 +107,23 @@ def _figures(options: argparse.Namespace) -> int:
 
 
 def _follow(options: argparse.Namespace) -> int:
-    """Answer a line with a line: `draw A,B` with the number of figures drawn, `open` with what is open,
-    `report HOW FAR` with the report of what is there.
+    """Answer a line with a line of JSON: `open` with what is open; `report` with the files of the report,
+    `report HOW FAR` with that of what is there so far.
     """
     from analysis.commands.open_questions import open_questions
-    from analysis.figures.studies import draw_all
-    from analysis.report import write_meanwhile
+    from analysis.report import write, write_meanwhile
 
     for line in sys.stdin:
         match line.split():
-            case ["draw", names]:
-                # A first look: the report draws all figures in every format.
-                print(len(draw_all(options.results, names.split(","), formats=("svg",))), flush=True)
             case ["open"]:
-                print(json.dumps(open_questions(options.results)), flush=True)
+                answer: object = open_questions(options.results)
+            case ["report"]:
+                answer = [str(path) for path in write(options.results, _asked(options))]
             case ["report", *how_far]:
-                print(write_meanwhile(options.results, _asked(options), " ".join(how_far)), flush=True)
+                answer = [str(write_meanwhile(options.results, _asked(options), " ".join(how_far)))]
             case _:
-                raise InputError(
-                    f"follow: found {line.strip()!r}, expected `draw A,B`, `open` or `report ...`"
-                )
+                raise InputError(f"follow: found {line.strip()!r}, expected `open`, `report` or `report ...`")
+        print(json.dumps(answer), flush=True)
     return 0
 
 

@@ -147,7 +147,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     until = "measure until what can be decided is, instead of for a time (with --budget: at most so long)"
     add("--until-decided", action="store_true", help=until)
     add("--seed", type=int, help="of the order within blocks (default: %(default)s)")
-    add("--no-figures", action="store_false", dest="figures", help="draw nothing, look at no verdict")
+    add("--no-figures", action="store_false", dest="figures", help="write no report, look at no verdict")
     parser.set_defaults(**{field.name: field.default for field in fields(Settings)})
 
 
@@ -180,7 +180,7 @@ class _Verb:
 
 
 _VERBS = {
-    "run": _Verb("measure what is missing, then draw it", lambda options: run(_settings(options))),
+    "run": _Verb("measure what is missing, then write the report", lambda options: run(_settings(options))),
     "plan": _Verb(
         "say what a run would do and about how long it would take",
         lambda options: show_plan(_settings(options)),

@@ -9,8 +9,8 @@ RESERVE = 0.1
 
 @dataclass(frozen=True)
 class Load:
-    """What an experiment still costs: seconds a block, seconds once (scenes, checks, figure, less the blocks
-    that are done), and its limits.
+    """What an experiment still costs: seconds a block, seconds once (scenes and checks, less the blocks that
+    are done), and its limits.
     """
 
     name: str

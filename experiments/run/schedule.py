@@ -24,11 +24,9 @@ class Schedule:
         experiments: Sequence[Experiment],
         found: Mapping[str, Found],
         costs: Costs,
-        figure_seconds: float,
     ) -> None:
         """An experiment begins with its least number of blocks, or with what an earlier session gave it."""
         self.experiments = tuple(experiments)
-        self.figure_seconds = figure_seconds
         self._store = store
         self._found = found
         self._costs = costs
@@ -119,7 +117,7 @@ class Schedule:
         self._costs.learn(point, seconds)
 
     def status(self) -> Status:
-        """How far the study is; what is left counts scenes, checks and figures too."""
+        """How far the study is; what is left counts scenes and checks too."""
         missing = self._all_missing()
         planned = sum(len(self.given[one.name].keys(one.points)) for one in self.experiments)
         return Status(
@@ -152,7 +150,7 @@ class Schedule:
         return Load(experiment.name, sum(seconds.values()), once - done, minimum, wanted)
 
     def _once_seconds(self) -> dict[str, float]:
-        """What each experiment that is not complete still costs once: its figure, scenes and checks.
+        """What each experiment that is not complete still costs once: its scenes and checks.
 
         What several need is counted for the first of them only.
         """
@@ -161,7 +159,6 @@ class Schedule:
         for one in self.experiments:
             if self.is_complete(one):
                 continue
-            seconds[one.name] = self.figure_seconds
             measured = {point for point, _ in self._found[one.name].seconds}
             for point, key, cost in self._once_each[one.name]:
                 if key not in counted and point not in measured:

@@ -1,5 +1,6 @@
-"""The whole study on this machine: measure, decide, draw; and go on where an earlier run stopped."""
+"""The whole study on this machine: measure, decide, report; and go on where an earlier run stopped."""
 
+import json
 import math
 import time
 from collections import Counter
@@ -9,16 +10,13 @@ from experiments.plan.point import Point
 from experiments.run.progress import Report, warn
 from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.schedule import Schedule, split
-from experiments.run.study import POINTS_FAILED, Settings, Study, keep_claims, summary
+from experiments.run.study import POINTS_FAILED, REPORT_FAILED, Settings, Study, keep_claims, summary
 from experiments.run.together import together
 from experiments.run.verdicts import Verdicts, ask
 from experiments.support.process import Coprocess
 
-DRAWING_PAUSE = 10.0
-"""Seconds between two drawings: what is complete sooner is drawn together, which takes less time."""
-
-DRAWING_LIMIT = 600.0
-"""Seconds after which a drawing or a report is given up."""
+REPORT_LIMIT = 600.0
+"""Seconds after which a report is given up."""
 
 DECIDING_SHARE = 0.25
 """The part of a scale's time that what is open gets for certain."""
@@ -31,7 +29,9 @@ REPORT_PAUSE, REPORT_SHARE = 300.0, 0.05
 
 
 def run(settings: Settings) -> int:
-    """Run what is missing of the study. Returns the exit code: 0, or 2 where a point failed."""
+    """Run what is missing of the study, then write the report. Returns the exit code: 0, 2 where a point
+    failed, or 1 where the report could not be written.
+    """
     study = Study(settings)
     with study.store.opened(), Report() as report:
         report.now("planning")
@@ -58,8 +58,6 @@ class Session:
         self._report = report
         self._analysis = analysis
         self._failures: Counter[str] = Counter()
-        self._to_draw: list[str] = []
-        self._drawn_at = -math.inf
         self._report_due = time.monotonic() + REPORT_PAUSE
         self._said: set[str] = set()
         self._others, self._control = split(study.experiments)
@@ -96,29 +94,29 @@ class Session:
             self._run_control(everything=False)
             self._block(experiment, 0)
             if experiment.question.blocks.wanted == 1:
-                self._rest(experiment)
+                self._measure(experiment)
         for experiment in self._incomplete:
             if experiment.question.blocks.wanted > 1:
-                self._rest(experiment)
+                self._measure(experiment)
         settings = self._study.settings
         if settings.builds:
-            self._draw()
-            return self._conclude()
+            self._study.begin(time.monotonic() - self._began)
+            return self._failed()
         if self._has_more or settings.until_decided or settings.budget_seconds is not None:
             looks = settings.figures and settings.blocks is None
             settled = self._settle() if looks else frozenset()
             if not settings.until_decided:
                 self._share(settled)
         self._run_control(everything=True)
-        self._draw()
-        return self._conclude()
+        self._study.finish()
+        failed = self._failed()
+        return self._report_all() or failed
 
     def _settle(self) -> frozenset[str]:
         """Measure what settles something soonest, and look again, as long as there is time; what is settled
         gets no more. Returns the experiments in which nothing is open.
         """
         self._keep_time_to_decide()
-        grown: dict[str, None] = {}
         while True:
             self._report.now("looking at what is decided", self._schedule.status)
             began = time.monotonic()
@@ -128,25 +126,22 @@ class Session:
                 return frozenset()
             self._tell_decisions(verdicts)
             looked = time.monotonic()
-            chosen = self._measure_cheapest(verdicts, until=looked + MEASURED_A_LOOK * (looked - began))
-            if not chosen:
-                self._to_draw += [name for name in grown if name not in self._to_draw]
+            if not self._measure_cheapest(verdicts, until=looked + MEASURED_A_LOOK * (looked - began)):
                 return verdicts.settled
-            grown |= dict.fromkeys(chosen)
 
-    def _measure_cheapest(self, verdicts: Verdicts, until: float) -> list[str]:
+    def _measure_cheapest(self, verdicts: Verdicts, until: float) -> bool:
         """Bring what is settled at the least expense to its next look, and the next such, for as long as to
-        make a look worth its time. Returns their names.
+        make a look worth its time. Returns whether there was any.
         """
-        names: list[str] = []
-        while not names or time.monotonic() < until:
+        found = False
+        while not found or time.monotonic() < until:
             chosen = self._schedule.cheapest(verdicts, self._until - time.monotonic())
             if chosen is None:
                 break
             self._schedule.give(chosen, verdicts.open[chosen.name])
             self._measure(chosen)
-            names.append(chosen.name)
-        return names
+            found = True
+        return found
 
     def _tell_decisions(self, verdicts: Verdicts) -> None:
         for name, said in verdicts.said.items():
@@ -160,11 +155,7 @@ class Session:
         for experiment in self._others:
             if not self._schedule.is_complete(experiment):
                 self._schedule.share(self._until - time.monotonic(), settled)
-                self._rest(experiment)
-
-    def _rest(self, experiment: Experiment) -> None:
-        self._measure(experiment)
-        self._complete(experiment)
+                self._measure(experiment)
 
     def _measure(self, experiment: Experiment) -> None:
         for block in range(self._schedule.begin(experiment)):
@@ -179,8 +170,6 @@ class Session:
         blocks = self._schedule.begin(control)
         for block in range(blocks if everything else self._schedule.control_due(control)):
             self._block(control, block)
-        if self._schedule.is_complete(control):
-            self._complete(control)
 
     def _block(self, experiment: Experiment, block: int) -> None:
         missing = self._schedule.missing(experiment, block)
@@ -195,7 +184,7 @@ class Session:
                     self._tell(point, outcome)
         if missing:
             self._report.block(what, self._schedule.status)
-            self._write_report()
+            self._report_meanwhile()
 
     def _tell(self, point: Point, failed: Outcome) -> None:
         where = f"{point.experiment}, {point.series}, {point.x_name} {point.x:g}"
@@ -204,53 +193,40 @@ class Session:
         if point.program.sha256 is not None:
             self._failures[point.experiment] += 1
 
-    def _complete(self, experiment: Experiment) -> None:
-        self._to_draw.append(experiment.name)
-        if time.monotonic() - self._drawn_at > DRAWING_PAUSE:
-            self._draw()
-
-    def _draw(self) -> None:
-        """Draw what was completed since the last time: together, on all processors; what fails, alone."""
-        names, self._to_draw = self._to_draw, []
-        if not names or not self._study.settings.figures:
-            return
-        self._report.now(f"{', '.join(names)}: drawing")
-        began = time.monotonic()
-        together = self._analysis.ask(f"draw {','.join(names)}", DRAWING_LIMIT)
-        for name in names:
-            done = together
-            if together.exit_code != 0 and len(names) > 1:
-                done = self._analysis.ask(f"draw {name}", DRAWING_LIMIT)
-            if done.exit_code == 0:
-                self._report.line(f"{name}: complete, drawn into {self._study.store.root / 'figures'}")
-            else:
-                warn(f"{name}: complete, but its figure could not be drawn: {done.reason}")
-        self._drawn_at = time.monotonic()
-        self._schedule.figure_seconds = (self._drawn_at - began) / len(names)
-
-    def _write_report(self) -> None:
+    def _report_meanwhile(self) -> None:
         """Write the report of what is there every few minutes, which says that the study goes on."""
         began = time.monotonic()
         if not self._study.settings.figures or began < self._report_due:
             return
         self._report.now("writing the report of what is there")
-        done = self._analysis.ask(f"report {self._schedule.status()}", DRAWING_LIMIT)
+        done = self._analysis.ask(f"report {self._schedule.status()}", REPORT_LIMIT)
         now = time.monotonic()
         self._report_due = now + max(REPORT_PAUSE, (now - began) / REPORT_SHARE)
         if done.exit_code == 0:
-            self._report.line(f"report of what is there: {done.output.strip()}")
+            self._report.line(f"report of what is there: {json.loads(done.output)[0]}")
         else:
             warn(f"the report of what is there could not be written: {done.reason}")
 
-    def _conclude(self) -> int:
+    def _report_all(self) -> int:
+        """Write the report with all its figures. Returns the exit code."""
+        if not self._study.settings.figures:
+            return 0
+        self._report.now("writing the report")
+        done = self._analysis.ask("report", REPORT_LIMIT)
+        if done.exit_code != 0:
+            warn(f"the report could not be written: {done.reason}")
+            return REPORT_FAILED
+        for line in done.error.splitlines():
+            warn(line)
+        for path in json.loads(done.output):
+            self._report.line(path)
+        return 0
+
+    def _failed(self) -> int:
+        """Tell what became of the study; returns the exit code that its points make."""
         root = self._study.store.root
-        comes_back = bool(self._study.settings.builds)
-        if comes_back:
-            self._study.begin(time.monotonic() - self._began)
-        else:
-            self._study.finish()
         if not self._failures:
-            if self._study.is_whole and not comes_back:
+            if self._study.is_whole and not self._study.settings.builds:
                 self._report.line(f"the study is complete: {root / 'records'}")
             return 0
         points = ", ".join(f"{name} ({number})" for name, number in self._failures.items())

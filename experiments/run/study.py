@@ -25,13 +25,11 @@ ROOT = question.FOLDER.parents[1]
 COSTS = "costs.json"
 FINISHED = "finished.json"
 BEGUN = "begun.json"
+REPORT_FAILED = 1
 POINTS_FAILED = 2
 
 REPORT_SECONDS = 40.0
-"""What the report takes, which comes after the study and out of the same budget."""
-
-FIGURE_SECONDS = 2.0
-"""What drawing one experiment's figure takes, until one has been drawn."""
+"""What the report takes, which comes last and out of the same budget."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +79,7 @@ class Study:
         self.store = Store(settings.results, new_session())
 
     def analysis_command(self) -> list[str]:
-        """What draws the figures of the experiments that it is told, says what is open, writes the report."""
+        """What says what is open, and writes the report."""
         asked = ["--study", ",".join(self.settings.study)] if self.settings.study else []
         return [sys.executable, "-m", "analysis", "follow", "--results", str(self.store.root), *asked]
 
@@ -98,8 +96,7 @@ class Study:
         look = self.store.settle if settle else self.store.find
         found = {experiment.name: look(experiment) for experiment in self.experiments}
         costs = Costs(self._probes(runner), seconds_by_point(found.values()))
-        figure_seconds = FIGURE_SECONDS if self.settings.figures else 0.0
-        return Schedule(self.store, self.experiments, found, costs, figure_seconds)
+        return Schedule(self.store, self.experiments, found, costs)
 
     @property
     def is_finished(self) -> bool:

@@ -90,10 +90,13 @@ class Coprocess:
         self._errors.close()
 
     def ask(self, question: str, time_limit: float) -> Completed:
-        """Its answer to one line. A child that ends instead, or takes too long, has failed."""
+        """Its answer to one line, with what it said on standard error meanwhile. A child that ends instead,
+        or takes too long, has failed.
+        """
+        # The child sleeps, and goes on at the place in the file that is left here: they share it.
+        self._errors.seek(0)
+        self._errors.truncate()
         if self._child is None:
-            self._errors.seek(0)
-            self._errors.truncate()
             self._child = _start(self._command, None, subprocess.PIPE, self._errors)
         child = self._child
         assert child.stdin is not None
@@ -105,11 +108,14 @@ class Coprocess:
             said = f"took longer than {time_limit:g} s and was stopped"
             return Completed(self._command, TIMED_OUT, "", said)
         if answer := child.stdout.readline():
-            return Completed(self._command, 0, answer, "")
+            return Completed(self._command, 0, answer, self._said())
         exit_code = child.wait()
         self._end()
+        return Completed(self._command, exit_code or 1, "", self._said())
+
+    def _said(self) -> str:
         self._errors.seek(0)
-        return Completed(self._command, exit_code or 1, "", self._errors.read())
+        return self._errors.read()
 
     def _end(self) -> None:
         if self._child is not None:

@@ -1,6 +1,5 @@
 """The command line as a user meets it: exit codes, one line for a mistake, the lock, Ctrl-C, figures."""
 
-import os
 import re
 import signal
 import time
@@ -179,33 +178,32 @@ def test_a_signal_stops_cleanly(workplace: Workplace, number: signal.Signals) ->
     assert kept.items() <= workplace.records().items()
 
 
-def test_a_figure_is_drawn_as_soon_as_its_experiment_is_complete(workplace: Workplace) -> None:
-    log = workplace.root / "drawn"
+REPORTING = """
+import glob, sys
+for line in sys.stdin:
+    if line == 'open\\n':
+        print('{"open": {}, "settled": [], "said": {}}', flush=True)
+        continue
+    with open('told', 'a') as file:
+        print(*sys.argv[1:], line.strip(), len(glob.glob('results/records/*/*.json')), file=file)
+    if glob.glob('no_paper'):
+        sys.exit('no paper')
+    print('no ink for the PDF', file=sys.stderr)
+    print('["results/report.html"]', flush=True)
+"""
+
+
+def test_the_report_comes_last_and_of_everything(workplace: Workplace) -> None:
     (workplace.root / "analysis").mkdir()
     (workplace.root / "analysis" / "__init__.py").touch()
-    (workplace.root / "analysis" / "__main__.py").write_text(
-        "import sys, glob\n"
-        "for line in sys.stdin:\n"
-        "    if line == 'open\\n':\n"
-        '        print(\'{"open": {}, "settled": [], "said": {}}\', flush=True)\n'
-        "        continue\n"
-        f"    with open({os.fspath(log)!r}, 'a') as file:\n"
-        "        records = glob.glob('results/records/*/*.json')\n"
-        "        print(*sys.argv[1:], line.strip(), len(records), file=file)\n"
-        "    if 'pair' in line:\n"
-        "        sys.exit('no paper')\n"
-        "    print(1, flush=True)\n"
-    )
+    (workplace.root / "analysis" / "__main__.py").write_text(REPORTING)
+    first = workplace.start("run", "--builds", "gcc")
+    assert (finish(first)[0], (workplace.root / "told").exists()) == (0, False), "another part follows"
     code, output, error = finish(workplace.start())
-    assert code == 0
-    drawn = [line.split() for line in log.read_text().splitlines()]
-    assert {tuple(words[:-2]) for words in drawn} == {("follow", "--results", "results", "draw")}
-    told = [words[-2] for words in drawn]
-    assert told[0] == "chunks"
-    together, late = ["pair,control", "pair", "control"], ["pair", "control"]
-    assert told[1:] in (together, late), "what follows soon together, and each alone where that fails"
-    records = [int(words[-1]) for words in drawn]
-    assert 8 <= records[0] < 16
-    assert records[-1] == 16
-    assert "chunks: complete, drawn into results/figures" in output
-    assert error == "pair: complete, but its figure could not be drawn: no paper\n"
+    assert (code, error) == (0, "no ink for the PDF\n")
+    assert (workplace.root / "told").read_text() == "follow --results results report 16\n"
+    assert output.splitlines()[-2:] == ["the study is complete: results/records", "results/report.html"]
+    (workplace.root / "no_paper").touch()
+    code, _, error = finish(workplace.start())
+    assert (code, error) == (1, "the report could not be written: no paper\n")
+    assert len(workplace.records()) == 16

@@ -37,6 +37,12 @@ Json openmp_json() {
             {"environment", environment_with_prefixes({"OMP_", "GOMP_", "KMP_"})}};
 }
 
+/// Of the program that runs, which stays the same: a process that leaves many records reads it once.
+const std::string& own_sha256() {
+    static const std::string digest = sha256(read_file("/proc/self/exe"));
+    return digest;
+}
+
 Json slurm_json() {
     const auto variables = environment_with_prefixes(
         {"SLURM_JOB_", "SLURM_ARRAY_", "SLURMD_NODENAME", "SLURM_RESTART_COUNT", "SLURM_CPUS_PER_TASK"});
@@ -66,7 +72,7 @@ Json provenance_json(int threads) {
             {"commit", text_or_null(build_info::commit)},
             {"dirty", dirty.empty() ? Json(nullptr) : Json(dirty == "true")},
             {"diff_sha256", text_or_null(build_info::diff_sha256)},
-            {"binary_sha256", sha256(read_file("/proc/self/exe"))},
+            {"binary_sha256", own_sha256()},
             {"slurm", slurm_json()}};
 }
 

@@ -82,14 +82,14 @@ def test_the_conversation_is_a_line_for_a_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write(tmp_path, study(["neighbourhood"], blocks=4, noise=QUIET, threads=20))
-    monkeypatch.setattr("sys.stdin", io.StringIO("open\ndraw neighbourhood\ndance\n"))
+    monkeypatch.setattr("sys.stdin", io.StringIO("open\nreport\ndance\n"))
     assert main(["follow", "--results", str(tmp_path)]) == 1
     said = capsys.readouterr()
-    answer, drawn = said.out.splitlines()
-    assert set(json.loads(answer)) == {"open", "settled", "said"}
-    assert drawn == "1"
-    assert "found 'dance', expected `draw A,B`, `open` or `report ...`" in said.err
-    assert [path.name for path in (tmp_path / "figures").iterdir()] == ["neighbourhood.svg"]
+    answer, written = map(json.loads, said.out.splitlines())
+    assert set(answer) == {"open", "settled", "said"}
+    assert written[0] == str(tmp_path / "report.html")
+    assert "found 'dance', expected `open`, `report` or `report ...`" in said.err
+    assert (tmp_path / "figures" / "neighbourhood.pdf").exists()
 
 
 def test_the_forecast_is_what_a_larger_sample_alike_takes() -> None:

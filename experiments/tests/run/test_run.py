@@ -91,6 +91,10 @@ def test_cachegrind_counts_once_a_point(workplace: Workplace) -> None:
     counted = [call["words"] for call in workplace.calls() if "--simulated" in call["words"]]
     assert len(counted) == len({point["tags"]["point"] for point in workplace.records("pair").values()})
     assert all(words[words.index("--simulated-steps") + 1] == "3" for words in counted)
+    assert run(replace(workplace.settings, scale="quick", results=workplace.root / "quick")) == 0
+    assert len([words for call in workplace.calls() if "--simulated" in (words := call["words"])]) == len(
+        counted
+    )
 
 
 def test_only_a_profile_can_be_counted_under_cachegrind(workplace: Workplace) -> None:

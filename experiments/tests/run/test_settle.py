@@ -21,10 +21,7 @@ for line in sys.stdin:
     if line.startswith("report"):
         with open(REPORTS, "a") as file:
             file.write(line)
-        print("results/report.html", flush=True)
-        continue
-    if line != "open\\n":
-        print(1, flush=True)
+        print(json.dumps(["results/report.html"]), flush=True)
         continue
     records = [json.load(open(path)) for path in glob.glob("results/records/*/*.json")]
     blocks = {}
@@ -154,9 +151,11 @@ def test_an_analysis_that_fails_leaves_the_budget_to_the_old_rule(needing: Workp
     (needing.root / "analysis" / "__main__.py").write_text("import sys; sys.exit('no statistics')")
     needing.question("pair", PAIR.replace("wanted = 2", "wanted = 4"))
     code, _, error = finish(needing.start("run", "--budget", "5"))
-    assert code == 0
-    said = "what is open is not known, so that nothing is measured to settle it: no statistics"
-    assert said in error.splitlines()
+    assert code == 1
+    assert error.splitlines() == [
+        "what is open is not known, so that nothing is measured to settle it: no statistics",
+        "the report could not be written: no statistics",
+    ]
     assert blocks_of(needing, "pair") == 4
 
 
@@ -169,8 +168,9 @@ def test_the_report_of_what_is_there_is_written_while_the_study_runs(
     monkeypatch.setattr(session, "REPORT_SHARE", 1e6)
     settings = replace(needing.settings, figures=True, study=("pair", "chunks"))
     assert run(settings) == 0
-    asked = (needing.root / "reports").read_text().splitlines()
+    *asked, last = (needing.root / "reports").read_text().splitlines()
     assert len(asked) >= 7, "after each block"
+    assert last == "report"
     assert all(
         re.fullmatch(r"report \d+ of 16 processes done, about \d+ (s|min) left", line) for line in asked
     )
@@ -179,7 +179,7 @@ def test_the_report_of_what_is_there_is_written_while_the_study_runs(
     monkeypatch.setattr(session, "REPORT_PAUSE", 300.0)
     shutil.rmtree(needing.results)
     assert run(settings) == 0
-    assert not (needing.root / "reports").exists(), "a short study needs none"
+    assert (needing.root / "reports").read_text() == "report\n", "a short study needs no other"
 
 
 def test_values_taken_out_of_a_finished_question_are_no_longer_planned(workplace: Workplace) -> None:

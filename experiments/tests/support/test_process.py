@@ -58,6 +58,8 @@ from pathlib import Path
 for line in sys.stdin:
     if line == 'fail\\n':
         sys.exit('it fails')
+    if line == 'murmur\\n':
+        print('on the side', file=sys.stderr)
     if line == 'sleep\\n':
         __import__('time').sleep(600)
     print(__import__('os').getpid(), line.strip(), flush=True)
@@ -71,6 +73,12 @@ def test_a_companion_answers_again_and_again() -> None:
     assert (one, two) == ("one", "two")
     assert first == second, "the same process"
     assert not Path(f"/proc/{first}").exists(), "it ends with its context"
+
+
+def test_what_a_companion_says_on_the_side_comes_with_its_answer() -> None:
+    with Coprocess(python(ECHO)) as coprocess:
+        said = [coprocess.ask(word, time_limit=20).error for word in ("murmur", "more", "murmur", "murmur")]
+    assert said == ["on the side\n", "", "on the side\n", "on the side\n"]
 
 
 def test_a_companion_that_fails_says_why_and_starts_anew() -> None:
