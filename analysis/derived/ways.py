@@ -17,6 +17,9 @@ KIND = "ways"
 
 TURNS, APART = "by turns", "apart"
 
+_SHOWN = 60
+"""Enough for a curve. An interval of hundreds of blocks takes a good part of a second."""
+
 
 @dataclass(frozen=True)
 class Comparison:
@@ -38,10 +41,10 @@ class Comparison:
         return centre(self.pairs[way].to_numpy()[:blocks], 0.95)
 
     def half_widths(self, way: str) -> pd.DataFrame:
-        """Return the `seconds` spent and half of the interval of the log ratio, `half`, after each block from
-        the fourth on.
+        """Return the `seconds` spent and half of the interval of the log ratio, `half`, after four blocks and
+        more, at `_SHOWN` numbers of blocks that grow by the same factor.
         """
-        blocks = range(FEWEST, len(self.pairs) + 1)
+        blocks = np.unique(np.geomspace(FEWEST, len(self.pairs), _SHOWN).round().astype(int))
         found = [self.log_ratio(way, number) for number in blocks]
         return pd.DataFrame(
             {

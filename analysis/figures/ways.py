@@ -37,7 +37,7 @@ def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
     key(right, list(COLOURS.items()))
     caption = (
         f"{opening(data.study.times_of(experiment), subject, PROCESSES)} Ratios of the times of the steps "
-        "with 95 % intervals, and, a line a comparison, half of these after each block over the time that "
+        "with 95 % intervals, and, a line a comparison, half of these as blocks came, over the time that "
         f"they took. Ratios by turns are {said(overall(found))} off those apart, on average."
     )
     return Drawing(figure, caption, tables=[_table(found)])
