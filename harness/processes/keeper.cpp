@@ -32,20 +32,34 @@ std::set<pid_t>& keepers() {
     return all;
 }
 
-/// Of a keeper that somebody killed, what it kept falls to this process.
+std::set<pid_t> as_set(const std::vector<pid_t>& processes) { return {processes.begin(), processes.end()}; }
+
+/// The descendants of this process that no keeper has.
+std::vector<pid_t> orphans() {
+    std::set<pid_t> kept = keepers();
+    for (const pid_t keeper : keepers()) {
+        kept.merge(as_set(descendants_of(keeper)));
+    }
+    std::vector<pid_t> found = descendants_of(getpid());
+    std::erase_if(found, [&kept](pid_t one) { return kept.contains(one); });
+    return found;
+}
+
+/// Of a keeper that somebody killed, what it kept falls to this process: one after the other, as their own
+/// parents end, so that a single look may miss some.
 void end_orphans() {
-    for (const pid_t one : descendants_of(getpid())) {
-        if (!keepers().contains(one)) {
-            bool is_kept = false;
-            for (const pid_t keeper : keepers()) {
-                const auto kept = descendants_of(keeper);
-                is_kept = is_kept || std::ranges::find(kept, one) != kept.end();
-            }
-            if (!is_kept) {
-                kill(one, SIGKILL);
-                waitpid(one, nullptr, 0);
-            }
+    constexpr int looks_without_any = 5;
+    int seen_none = 0;
+    for (int look = 0; look < 1000 && seen_none < looks_without_any; ++look) {
+        const std::vector<pid_t> found = orphans();
+        seen_none = found.empty() ? seen_none + 1 : 0;
+        for (const pid_t one : found) {
+            kill(one, SIGKILL);
         }
+        // The ends of keepers are awaited by number; those of others nobody waits for.
+        while (waitpid(-1, nullptr, WNOHANG) > 0) {
+        }
+        usleep(1000);
     }
 }
 

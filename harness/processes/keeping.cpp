@@ -249,6 +249,7 @@ void keep(const ProcessCommand& command, const Cgroup* group, int line) {
     prctl(PR_SET_NAME, "carom-keeper");
     prctl(PR_SET_CHILD_SUBREAPER, 1);
     std::signal(SIGCHLD, SIG_DFL);
+    std::signal(SIGPIPE, SIG_IGN); // the program may end before it is told to begin
     std::vector<int> kept{line};
     if (group != nullptr) {
         kept.push_back(group->entrance());

@@ -95,9 +95,12 @@ void Process::advance(double seconds) {
 }
 
 void Process::end_it() {
+    constexpr double most_seconds_for_the_keeper = 5;
     end_.out_of_time = true;
     keeper_->end_all();
-    tree_->kill();
+    if (!keeper_->await_end(most_seconds_for_the_keeper)) {
+        tree_->kill();
+    }
 }
 
 void Process::take_report(double slice_began) {

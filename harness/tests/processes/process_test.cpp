@@ -147,8 +147,9 @@ TEST_P(ProcessKept, NamesWhatGoesOnWithoutItForTooLong) {
 }
 
 TEST_P(ProcessKept, CountsTheTimeOfAllThatItStarted) {
-    const ProcessEnd end = run(shell("setsid sh -c '" + counting(300'000) + "' & exit 0"));
-    EXPECT_GT(end.cpu_seconds(), 0.5 * end.wall_seconds()) << "it had but one to do all the work";
+    const ProcessEnd by_itself = run(shell(counting(300'000)));
+    const ProcessEnd by_others = run(shell("setsid sh -c '" + counting(300'000) + "' & exit 0"));
+    EXPECT_GT(by_others.cpu_seconds(), 0.3 * by_itself.cpu_seconds());
 }
 
 TEST_P(ProcessKept, KeepsTheEndOfWhatItPrintsAndCountsTheRest) {
@@ -220,7 +221,7 @@ TEST_P(ProcessKept, OnesInTurnEndTogetherThoughOneTakesTwiceAsLong) {
         // Standing still counts neither as wall nor as CPU time; clocks of a tick or so differ.
         EXPECT_GT(process->end().wall_seconds(), 0.8 * process->end().cpu_seconds() - 0.02);
     }
-    EXPECT_EQ(all[0].seconds_alone > 0, all[1].seconds_alone == 0) << "one of them is the last";
+    EXPECT_TRUE(all[0].seconds_alone == 0 || all[1].seconds_alone == 0) << "there is but one last";
 }
 
 TEST(Slices, AreInProportionToWhatEachTakes) {
