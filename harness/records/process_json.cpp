@@ -45,6 +45,14 @@ Json provenance_of(const ProcessMeasurement& measurement) {
     return provenance;
 }
 
+Json counters_json(const std::map<std::string, std::optional<double>>& counters) {
+    Json json = Json::object();
+    for (const auto& [name, value] : counters) {
+        json[name] = or_null(value);
+    }
+    return json;
+}
+
 Json turns_json(const ProcessMeasurement& measurement) {
     if (!measurement.turns) {
         return nullptr;
@@ -89,7 +97,7 @@ Json process_json(const ProcessMeasurement& measurement) {
               {"system_seconds", end.system_seconds},
               {"peak_memory_bytes", end.peak_memory_bytes},
               {"time_from", stated ? "the program" : "outside"},
-              {"counters", stated ? Json(stated->counters) : Json::object()}}},
+              {"counters", stated ? counters_json(stated->counters) : Json::object()}}},
             {"turns", turns_json(measurement)},
             {"check",
              {{"verdict", measurement.checked.empty() ? "unchecked" : "passed"},
