@@ -11,8 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/measure/benchmark_json.hpp"
 #include "harness/measure/stated_time.hpp"
+#include "harness/support/benchmark_json.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/json.hpp"
 #include "harness/support/text.hpp"

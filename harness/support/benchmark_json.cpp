@@ -1,4 +1,4 @@
-#include "harness/measure/benchmark_json.hpp"
+#include "harness/support/benchmark_json.hpp"
 
 #include <algorithm>
 #include <array>
