@@ -117,7 +117,7 @@ def what_limits() -> str:
     if processors < online:
         limits.append(f"an affinity of {processors} of {online} processors")
     if quota is not None and quota < processors:
-        limits.append(f"a CPU quota of {quota:g} processors")
+        limits.append(f"a CPU quota of {quota:g} processor{'s' if quota != 1 else ''}")
     if not limits:
         return ""
     machine = this_machine()

@@ -24,7 +24,6 @@ from experiments.support.files import move, read_json
 from experiments.support.process import NOT_FOUND, Completed
 from experiments.support.schema import is_record
 
-
 SUSPENDED = "was suspended for some time while it was measured"
 """What the program says where it, or the machine, stood still: nothing of that run counts."""
 

@@ -2,9 +2,9 @@
 
 The environment says what goes wrong: FAKE_SECONDS (each measurement takes that long),
 FAKE_CHECK_SECONDS (each check), FAKE_CHECK_FAILS, FAKE_BENCH_CRASHES, FAKE_RESULT_WRONG, FAKE_NO_RECORD,
-FAKE_HANGS (the variant concerned), FAKE_SUSPENDED (the verb concerned), FAKE_LIMITS_FAIL, FAKE_PROMISES_FAIL. FAKE_LOG is a file that gets a
-line for every call, FAKE_SPANS one that gets a line for every call that computes: its verb, when it began
-and when it ended.
+FAKE_HANGS (the variant concerned), FAKE_SUSPENDED (the verb concerned), FAKE_LIMITS_FAIL,
+FAKE_PROMISES_FAIL. FAKE_LOG is a file that gets a line for every call, FAKE_SPANS one that gets a line for
+every call that computes: its verb, when it began and when it ended.
 """
 
 import hashlib

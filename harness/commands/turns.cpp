@@ -23,6 +23,7 @@
 #include "harness/support/errors.hpp"
 #include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -113,7 +114,7 @@ void turns(const TurnsOptions& options) {
     Suspensions suspensions;
     suspensions.start();
     const auto seconds = compete(contenders, options);
-    suspensions.require_none(options.file);
+    suspensions.require_none("turns of " + counted(contenders.size(), "contender"));
     const VariantContender* failed = nullptr;
     for (std::size_t k = 0; k < contenders.size(); ++k) {
         VariantContender& one = contenders[k];

@@ -62,7 +62,7 @@ TEST_F(Suspended, ContendersHaveNoRecords) {
     const std::string file = directory.write("contenders.json", contenders.dump());
     const ChildEnd end = suspended({"turns", file});
     EXPECT_EQ(end.exit_code, 1) << end.output;
-    EXPECT_EQ(end.output, "carom: " + file + ": " + reason);
+    EXPECT_EQ(end.output, std::string("carom: turns of 2 contenders: ") + reason);
     EXPECT_FALSE(std::filesystem::exists(record));
     EXPECT_FALSE(std::filesystem::exists(record + "2"));
 }

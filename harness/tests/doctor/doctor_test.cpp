@@ -109,7 +109,8 @@ TEST(Doctor, ALimitOfProcessorsIsShownWithTheThreadsThatFollow) {
     const std::string text = unwrapped(json);
     EXPECT_NE(text.find("affinity 3 CPUs: 2-4, of 8 hardware threads "), std::string::npos) << text;
     EXPECT_NE(text.find("CPU quota time of 1.5 processors in all (cgroup)"), std::string::npos) << text;
-    EXPECT_NE(text.find("threads Carom takes 1 thread by default, on 1 usable processor "), std::string::npos) << text;
+    EXPECT_NE(text.find("threads Carom takes 1 thread by default, on 1 usable processor "), std::string::npos)
+        << text;
     json["affinity"]["cpu_quota"] = nullptr;
     json["affinity"]["hardware_threads"] = 3;
     EXPECT_EQ(unwrapped(json).find("CPU quota"), std::string::npos);
