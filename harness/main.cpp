@@ -47,6 +47,8 @@ int main(int count, char** arguments) {
     carom::settle_waiting();
     // A file that may not grow further is then told as a full disk is, in one line.
     std::signal(SIGXFSZ, SIG_IGN);
+    // Whoever started this may ignore it, and the system would not tell how a child ended.
+    std::signal(SIGCHLD, SIG_DFL);
     CLI::App program("Carom: a performance study of colliding discs that checks itself", "carom");
     program.formatter(std::make_shared<carom::Help>());
     program.require_subcommand(1);

@@ -94,9 +94,13 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
 
 
 def machine_of(origin: dict[str, Any]) -> str:
-    """Return what a record's machine is called: the partition or host, and its processor."""
+    """Return what a record's machine is called: the partition or host, its processor, and the quota if that
+    grants less than the processors that the process may run on.
+    """
     partition = (origin["slurm"] or {}).get("SLURM_JOB_PARTITION")
-    return f"{partition or origin['host']}: {origin['cpu_model']}"
+    quota = origin.get("cpu_quota")
+    limited = f", a quota of {quota:g} processors" if quota and quota < origin["affinity_count"] else ""
+    return f"{partition or origin['host']}: {origin['cpu_model']}{limited}"
 
 
 def _compiler_family(compiler: str) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from experiments.plan.cluster import Cluster, read_cluster
+from experiments.plan.cpu_quota import read_cpu_quota
 from experiments.support.errors import InputError, nearest
 from experiments.support.schema import read_toml
 
@@ -95,13 +96,33 @@ def _cluster(path: Path, document: Mapping[str, Any]) -> Cluster | None:
 
 
 def this_machine() -> Machine:
-    """The machine that this process runs on, as far as its affinity mask lets it."""
+    """The machine that this process runs on, as far as its affinity mask and its CPU quota let it: of a quota
+    whole processors count, one at least.
+    """
     processors = os.sched_getaffinity(0)
     siblings = (
         Path(f"/sys/devices/system/cpu/cpu{number}/topology/thread_siblings_list") for number in processors
     )
     cores = {path.read_text(encoding="ascii") if path.exists() else str(path) for path in siblings}
-    return Machine(_cpu_model(), len(cores), len(processors))
+    quota = read_cpu_quota()
+    most = max(1, int(quota)) if quota is not None else len(processors)
+    return Machine(_cpu_model(), min(len(cores), most), min(len(processors), most))
+
+
+def what_limits() -> str:
+    """In one line, why not all of this machine's processors can be used; empty if they can."""
+    processors, quota = len(os.sched_getaffinity(0)), read_cpu_quota()
+    online = os.cpu_count() or processors
+    limits = []
+    if processors < online:
+        limits.append(f"an affinity of {processors} of {online} processors")
+    if quota is not None and quota < processors:
+        limits.append(f"a CPU quota of {quota:g} processor{'s' if quota != 1 else ''}")
+    if not limits:
+        return ""
+    machine = this_machine()
+    threads = f"{machine.hardware_threads} hardware thread{'s' if machine.hardware_threads != 1 else ''}"
+    return f"this machine counts as one with {threads}, because of {' and '.join(limits)}"
 
 
 def clean_environment(openmp: Mapping[str, str]) -> dict[str, str]:

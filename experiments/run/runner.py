@@ -24,6 +24,9 @@ from experiments.support.files import move, read_json
 from experiments.support.process import NOT_FOUND, Completed
 from experiments.support.schema import is_record
 
+SUSPENDED = "was suspended for some time while it was measured"
+"""What the program says where it, or the machine, stood still: nothing of that run counts."""
+
 
 @dataclass(frozen=True)
 class Task:
@@ -142,7 +145,11 @@ class Runner:
         ]
 
     def _measure_in_turns(self, ready: Sequence[Ready]) -> list[Outcome] | None:
-        """All of them in one process; None if it broke off: each must show alone what is wrong with it."""
+        """All of them in one process; None if it broke off: each must show alone what is wrong with it.
+
+        Nothing is wrong with those that stood still: they have failed, and are measured together again by the
+        next run. Alone they would be no pairs.
+        """
         folder = self._store.temporary / "turns"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
@@ -156,7 +163,8 @@ class Runner:
         command = (commands[0][0], "turns", str(contenders), "--seed", str(first.block + 1))
         done = run_alone(command, first.point.openmp, self._time_limit * len(ready))
         if done.exit_code not in (0, CHECK_FAILED):
-            return None
+            is_suspended = done.exit_code > 0 and SUSPENDED in done.reason
+            return [self._fail(task, done) for task, _ in ready] if is_suspended else None
         return [
             self._keep(task, folder / f"{number}.json", Completed(words, done.exit_code, "", done.error))
             for number, ((task, _), words) in enumerate(zip(ready, commands, strict=True))

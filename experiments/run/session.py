@@ -7,6 +7,7 @@ from collections import Counter
 
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
+from experiments.plan.site import what_limits
 from experiments.run.progress import Report, warn
 from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.schedule import Schedule, split
@@ -39,6 +40,8 @@ def run(settings: Settings) -> int:
         runner = study.runner()
         schedule = study.schedule(runner, settle=True)
         report.line(summary(schedule, study.budget_seconds))
+        if limits := what_limits():
+            report.line(limits)
         with Coprocess(study.analysis_command()) as analysis:
             return Session(study, runner, schedule, report, analysis).run()
 

@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from experiments.plan.plan import Experiment
+from experiments.plan.site import what_limits
 from experiments.results.store import Store
 from experiments.run.given import Given, given_before
 from experiments.run.study import Settings, Study, summary
@@ -100,9 +101,9 @@ def show_plan(settings: Settings) -> int:
         table.add_row(experiment.name, *map(str, counts), *told)
     console = new_console()
     console.print(table)
-    console.print(summary(schedule, study.budget_seconds))
-    if others:
-        console.print(others)
+    for line in (summary(schedule, study.budget_seconds), what_limits(), others):
+        if line:
+            console.print(line)
     return 0
 
 

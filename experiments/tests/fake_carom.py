@@ -2,9 +2,9 @@
 
 The environment says what goes wrong: FAKE_SECONDS (each measurement takes that long),
 FAKE_CHECK_SECONDS (each check), FAKE_CHECK_FAILS, FAKE_BENCH_CRASHES, FAKE_RESULT_WRONG, FAKE_NO_RECORD,
-FAKE_HANGS (the variant concerned), FAKE_LIMITS_FAIL, FAKE_PROMISES_FAIL. FAKE_LOG is a file that gets a
-line for every call, FAKE_SPANS one that gets a line for every call that computes: its verb, when it began
-and when it ended.
+FAKE_HANGS (the variant concerned), FAKE_SUSPENDED (the verb concerned), FAKE_LIMITS_FAIL,
+FAKE_PROMISES_FAIL. FAKE_LOG is a file that gets a line for every call, FAKE_SPANS one that gets a line for
+every call that computes: its verb, when it began and when it ended.
 """
 
 import hashlib
@@ -31,6 +31,10 @@ def main(words: list[str]) -> int:
 
 
 def answer(words: list[str]) -> int:
+    if os.environ.get("FAKE_SUSPENDED") == words[0]:
+        said = "was suspended for some time while it was measured; measure it again"
+        print(f"carom: {words[1]}: {said}", file=sys.stderr)
+        return 1
     if words[0] == "turns":
         return max(answer(said) for said in contenders(words))
     if words[0] == "list":

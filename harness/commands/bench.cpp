@@ -95,16 +95,23 @@ nlohmann::ordered_json record_with_errors(BenchCase& one, bool errors) {
     return record;
 }
 
-/// Writes the record asked for, then fails with the first violation, if any.
+/// Writes the record asked for, then fails with the first violation, if any. What stood still has no record,
+/// unless its result was wrong, which is true of it all the same.
 void finish(std::deque<BenchCase>& cases, const BenchOptions& options) {
     for (BenchCase& one : cases) {
-        if (!options.measurement.record.empty() && !one.measurement().repetitions.empty()) {
+        const bool counts = one.measurement().violation || !one.suspended();
+        if (!options.measurement.record.empty() && !one.measurement().repetitions.empty() && counts) {
             write_record(options.measurement.record, record_with_errors(one, options.errors));
         }
     }
     for (const BenchCase& one : cases) {
         if (one.measurement().violation) {
             throw CheckError(one.name() + ": " + *one.measurement().violation);
+        }
+    }
+    for (const BenchCase& one : cases) {
+        if (one.suspended()) {
+            throw InputError(one.name() + ": " + *one.suspended());
         }
     }
 }

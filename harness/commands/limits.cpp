@@ -11,6 +11,7 @@
 #include "harness/commands/commands.hpp"
 #include "harness/machine/machine.hpp"
 #include "harness/machine/provenance.hpp"
+#include "harness/machine/suspensions.hpp"
 #include "harness/machine/threads.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/json.hpp"
@@ -36,7 +37,10 @@ void limits(const LimitsOptions& options) {
     require_writable(options.record);
     const std::int64_t most_bytes =
         options.memory_mebibytes ? *options.memory_mebibytes * mebibyte : read_machine().memory_bytes / 4;
+    Suspensions suspensions;
+    suspensions.start();
     const Json found = limits_json(options.threads, options.seconds, most_bytes);
+    suspensions.require_none("limits");
     std::cout << (options.json ? json_text(found, 2) + "\n" : limits_text(found));
     if (!options.record.empty()) {
         write_record(options.record, {{"schema_version", 1},

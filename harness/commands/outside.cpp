@@ -7,6 +7,7 @@
 #include "harness/commands/commands.hpp"
 #include "harness/commands/measurement_options.hpp"
 #include "harness/machine/provenance.hpp"
+#include "harness/machine/suspensions.hpp"
 #include "harness/measure/chipmunk.hpp"
 #include "harness/measure/energy_drift.hpp"
 #include "harness/measure/measure.hpp"
@@ -48,7 +49,10 @@ void outside(const OutsideOptions& options) {
     tags_json(options.tags);
     require_writable(options.record);
     const LoadedScene loaded = load_scene(options.scene);
+    Suspensions suspensions;
+    suspensions.start();
     const ChipmunkRun run = run_chipmunk(loaded.scene, options.substeps, options.iterations);
+    suspensions.require_none(loaded.name);
     std::cout << format("%s: %s, %s, Chipmunk %s, 1 thread\n", loaded.name.c_str(),
                         counted(loaded.scene.discs.size(), "disc").c_str(),
                         counted(loaded.scene.steps, "step").c_str(), run.version.c_str());

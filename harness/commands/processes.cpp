@@ -176,6 +176,21 @@ std::string keep(const AskedProcess& one, const Measured& measured, const std::o
     return reason;
 }
 
+/// Times of unlike versions of a library are none of one kind: none of them counts.
+void refuse_unlike_times(const std::vector<std::unique_ptr<AskedProcess>>& all,
+                         std::vector<Measured>& measured) {
+    for (std::size_t one = 0; one < all.size(); ++one) {
+        for (std::size_t other = one + 1; other < all.size(); ++other) {
+            if (all[one]->stated.empty() || all[other]->stated.empty()) {
+                continue;
+            }
+            if (const auto why = unlike_times(all[one]->stated.back(), all[other]->stated.back())) {
+                measured[one].failure = measured[other].failure = *why;
+            }
+        }
+    }
+}
+
 void processes(const ProcessesOptions& options) {
     std::vector<std::unique_ptr<AskedProcess>> all;
     for (DescribedProcess& one : read_processes(options.file)) {
@@ -185,7 +200,8 @@ void processes(const ProcessesOptions& options) {
     for (const auto& one : all) {
         contenders.push_back(contender_of(*one));
     }
-    const std::vector<Measured> measured = measure_together(contenders, options.how);
+    std::vector<Measured> measured = measure_together(contenders, options.how);
+    refuse_unlike_times(all, measured);
     std::string first_reason;
     for (std::size_t k = 0; k < all.size(); ++k) {
         const auto turns = turns_of(measured[k], static_cast<int>(all.size()), options.how.seed);

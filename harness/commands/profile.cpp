@@ -13,6 +13,7 @@
 #include "harness/counters/cachegrind.hpp"
 #include "harness/counters/counters.hpp"
 #include "harness/machine/disturbance.hpp"
+#include "harness/machine/suspensions.hpp"
 #include "harness/machine/threads.hpp"
 #include "harness/measure/profiler.hpp"
 #include "harness/measure/timeline.hpp"
@@ -90,6 +91,8 @@ void profile(const ProfileOptions& options) {
     }
     Measurement measurement = measurement_of(loaded, variant, options.simulation.tuning, options.measurement);
 
+    Suspensions suspensions;
+    suspensions.start();
     for (int k = 0; k < options.measurement.warm_ups; ++k) {
         bare_run(measurement, CheckScope::nothing);
     }
@@ -105,6 +108,7 @@ void profile(const ProfileOptions& options) {
                          .cost = run.steps_seconds / bare.steps_seconds,
                          .sweeps = run.work.sweeps,
                          .counters = all_counters(options, measurement)};
+    suspensions.require_none(measurement.scene_name + ", variant " + std::string(variant.name));
     print_profile(result, measurement);
     if (!options.timeline.empty()) {
         write_timeline(options.timeline, profiler,

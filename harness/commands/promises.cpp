@@ -12,6 +12,7 @@
 #include "harness/commands/error_bound.hpp"
 #include "harness/commands/measurement_options.hpp"
 #include "harness/machine/provenance.hpp"
+#include "harness/machine/suspensions.hpp"
 #include "harness/machine/threads.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/format.hpp"
@@ -118,12 +119,15 @@ void keep_promises(const PromisesOptions& options) {
         "%s: %s, %s of time, %s\n", loaded.name.c_str(), counted(loaded.scene.discs.size(), "disc").c_str(),
         counted(loaded.scene.steps, "unit").c_str(), counted(options.tuning.threads, "thread").c_str());
     std::cout << "  error of          below   promised  delivered             run ms    times  chosen\n";
+    Suspensions suspensions;
+    suspensions.start();
     Promises promises(loaded.scene, options.tuning);
     std::vector<Asked> asked;
     for (const ErrorBound& bound : bounds) {
         asked.push_back({.bound = bound, .promise = promises.keep(bound.measure, bound.below)});
         print_asked(asked.back());
     }
+    suspensions.require_none(loaded.name);
     std::cout << format("  kept %d of %d\n", static_cast<int>(std::ranges::count_if(asked, &Asked::is_kept)),
                         static_cast<int>(asked.size()));
     if (!options.record.empty()) {

@@ -16,12 +16,14 @@
 #include "harness/commands/commands.hpp"
 #include "harness/commands/measurement_options.hpp"
 #include "harness/commands/simulation_options.hpp"
+#include "harness/machine/suspensions.hpp"
 #include "harness/machine/threads.hpp"
 #include "harness/measure/variant_contender.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -109,7 +111,10 @@ void turns(const TurnsOptions& options) {
         contenders.emplace_back(measurement_of(
             scene, require_variant(one.simulation.variant, scene.scene, tuning), tuning, one.measurement));
     }
+    Suspensions suspensions;
+    suspensions.start();
     const auto seconds = compete(contenders, options);
+    suspensions.require_none("turns of " + counted(contenders.size(), "contender"));
     const VariantContender* failed = nullptr;
     for (std::size_t k = 0; k < contenders.size(); ++k) {
         VariantContender& one = contenders[k];

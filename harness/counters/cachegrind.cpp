@@ -55,6 +55,9 @@ void require_success(const ChildEnd& end) {
     if (!end.started) {
         throw Obstacle(no_valgrind());
     }
+    if (!end.is_known) {
+        throw Obstacle({"how cachegrind ended is not known", "run it again"});
+    }
     if (end.signal == SIGILL) {
         throw Obstacle(
             {"valgrind " + valgrind_version() + " does not know an instruction of this program (SIGILL)",

@@ -14,6 +14,7 @@
 #include "harness/machine/machine.hpp"
 #include "harness/machine/noise.hpp"
 #include "harness/machine/provenance.hpp"
+#include "harness/machine/threads.hpp"
 #include "harness/machine/topology.hpp"
 #include "harness/support/child_process.hpp"
 #include "harness/support/json.hpp"
@@ -156,12 +157,15 @@ Json doctor_json(double noise_seconds) {
     };
     Json machine = picked({"host", "operating_system", "cpu_model", "virtualised", "memory_bytes"});
     machine["memory_available_bytes"] = or_null(memory_bytes("MemAvailable"));
+    Json affinity = picked({"affinity", "affinity_count", "hardware_threads", "cpu_quota"});
+    affinity["usable_processors"] = usable_processors();
+    affinity["threads_by_default"] = default_threads();
     // Noise comes first: what follows starts programs, which may still be at work.
     Json noise = noise_json(noise_seconds);
     return {{"machine", machine},
             {"topology", topology_json()},
             {"frequency", {{"governor", provenance["governor"]}, {"turbo", or_null(turbo())}}},
-            {"affinity", picked({"affinity", "affinity_count"})},
+            {"affinity", affinity},
             {"openmp", provenance["openmp"]},
             {"perf_events", perf_json()},
             {"counters", counters_json()},

@@ -109,8 +109,20 @@ void show_cpu(const Json& findings, Screen& screen) {
                                  word(frequency["turbo"], "not told") +
                                  (host_decides ? "; the host of this virtual machine decides" : ""));
     const Json& affinity = findings["affinity"];
+    const bool is_part = affinity["affinity_count"] < affinity["hardware_threads"];
     screen.line("affinity",
-                plural(affinity["affinity_count"], "CPU") + ": " + affinity["affinity"].get<std::string>());
+                plural(affinity["affinity_count"], "CPU") + ": " + affinity["affinity"].get<std::string>() +
+                    (is_part ? ", of " + plural(affinity["hardware_threads"], "hardware thread") : ""));
+    const Json& quota = affinity["cpu_quota"];
+    if (!quota.is_null()) {
+        screen.line("CPU quota",
+                    "time of " + number("%.4g", quota) + (quota == 1 ? " processor" : " processors") +
+                        " in all (cgroup); on more threads than that each is halted for a part of "
+                        "the time");
+    }
+    screen.line("threads", "Carom takes " + plural(affinity["threads_by_default"], "thread") +
+                               " by default, on " +
+                               plural(affinity["usable_processors"], "usable processor"));
 }
 
 void show_openmp(const Json& openmp, Screen& screen) {

@@ -14,6 +14,8 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include "harness/machine/cpu_quota.hpp"
+
 namespace carom {
 namespace {
 
@@ -146,6 +148,7 @@ Machine read_machine() {
     machine.governor = first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
     machine.operating_system = read_operating_system();
     read_affinity(machine);
+    machine.cpu_quota = read_cpu_quota();
     return machine;
 }
 

@@ -15,6 +15,7 @@ struct Machine {
     int hardware_threads = 1;
     std::string affinity; ///< the CPUs this process may run on, as 0-3,8
     int affinity_count = 1;
+    std::optional<double> cpu_quota; ///< processors' time that control groups grant; empty if they limit none
     std::int64_t memory_bytes = 0;
     bool virtualised = false;            ///< the CPU shows the hypervisor flag
     std::optional<std::string> governor; ///< of CPU frequency

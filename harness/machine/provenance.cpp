@@ -60,6 +60,7 @@ Json provenance_json(int threads) {
             {"hardware_threads", machine.hardware_threads},
             {"affinity", machine.affinity},
             {"affinity_count", machine.affinity_count},
+            {"cpu_quota", or_null(machine.cpu_quota)},
             {"oversubscribed", threads > machine.affinity_count},
             {"memory_bytes", machine.memory_bytes},
             {"virtualised", machine.virtualised},

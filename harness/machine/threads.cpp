@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <string>
@@ -11,6 +12,7 @@
 #include <omp.h>
 #include <unistd.h>
 
+#include "harness/machine/cpu_quota.hpp"
 #include "harness/machine/machine.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/text.hpp"
@@ -38,10 +40,17 @@ int others_running() {
 } // namespace
 
 int default_threads() {
-    return std::clamp(std::min(omp_get_max_threads(), omp_get_thread_limit()), 1, most_threads);
+    const int wanted =
+        std::getenv("OMP_NUM_THREADS") != nullptr ? omp_get_max_threads() : usable_processors();
+    return std::clamp(std::min(wanted, omp_get_thread_limit()), 1, most_threads);
 }
 
-int usable_processors() { return omp_get_num_procs(); }
+int usable_processors() {
+    // Asked for by every verb, and no process is moved to another control group while it computes.
+    static const std::optional<double> quota = read_cpu_quota();
+    const double most = std::floor(quota.value_or(most_threads));
+    return static_cast<int>(std::clamp<double>(omp_get_num_procs(), 1, std::max(most, 1.0)));
+}
 
 int free_processors() {
     const auto online = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));

@@ -7,10 +7,12 @@ namespace carom {
 
 inline constexpr int most_threads = 1024;
 
-/// As many threads as OpenMP would use by itself, and no more than it grants.
+/// As many threads as OMP_NUM_THREADS says, or else one for each processor that may be used; no more than
+/// OpenMP grants.
 int default_threads();
 
-/// How many processors this process may use.
+/// How many processors this process may use at once: those of its affinity mask, and no more than whole ones
+/// of its CPU quota; one at least.
 int usable_processors();
 
 /// How many of them are not taken by other programs now, at least one. Who is gone in a moment is not

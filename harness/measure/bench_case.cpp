@@ -17,6 +17,7 @@ void BenchCase::run(benchmark::State& state) {
         warm_up(measurement_);
     }
     double seconds = 0;
+    suspensions_.start();
     for (auto iteration : state) {
         static_cast<void>(iteration);
         if (measurement_.violation) {
@@ -32,8 +33,13 @@ void BenchCase::run(benchmark::State& state) {
         state.SetIterationTime(measurement_.repetitions.back().steps_seconds);
         seconds += measurement_.repetitions.back().steps_seconds;
     }
+    if (!suspended_) {
+        suspended_ = suspensions_.reason();
+    }
     if (measurement_.violation) {
         state.SkipWithError(measurement_.violation->c_str());
+    } else if (suspended_) {
+        state.SkipWithError(suspended_->c_str());
     } else {
         set_counters(state, seconds / static_cast<double>(state.iterations()));
     }

@@ -1,14 +1,11 @@
 #include "harness/measure/stated_time.hpp"
 
+#include <algorithm>
 #include <array>
 #include <regex>
-#include <set>
 #include <sstream>
 #include <string_view>
-#include <utility>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "harness/support/errors.hpp"
 #include "harness/support/text.hpp"
@@ -16,58 +13,45 @@
 namespace carom {
 namespace {
 
-using Json = nlohmann::json;
-
 /// The library's matcher calls itself for each character: a longer line could take it off the stack.
 constexpr std::size_t longest_line = 4096;
 
-const std::set<std::string> fields_of_benchmark{"name",
-                                                "family_index",
-                                                "per_family_instance_index",
-                                                "run_name",
-                                                "run_type",
-                                                "repetitions",
-                                                "repetition_index",
-                                                "threads",
-                                                "iterations",
-                                                "real_time",
-                                                "cpu_time",
-                                                "time_unit",
-                                                "label",
-                                                "error_occurred",
-                                                "error_message",
-                                                "aggregate_name",
-                                                "aggregate_unit",
-                                                "skipped",
-                                                "skip_message"};
+/// What `real_time` of several threads is, of a version of the library.
+enum class RealTime { divided_by_threads, whole, not_known };
 
-double seconds_of_unit(const std::string& unit) {
-    constexpr std::array<std::pair<std::string_view, double>, 4> units{
-        {{"ns", 1e-9}, {"us", 1e-6}, {"ms", 1e-3}, {"s", 1.0}}};
-    for (const auto& [name, seconds] : units) {
-        if (name == unit) {
-            return seconds;
+/// Its three numbers, as in v1.9.1 or v1.9.1-4-g8b3f2a6; empty if it is no such text.
+std::optional<std::array<int, 3>> numbers_of(std::string_view version) {
+    std::array<int, 3> numbers{};
+    version.remove_prefix(version.starts_with('v') ? 1 : 0);
+    for (int& number : numbers) {
+        const std::size_t length = std::min(version.find_first_not_of("0123456789"), version.size());
+        const auto parsed = parse_number<int>(version.substr(0, length));
+        if (!parsed) {
+            return std::nullopt;
         }
+        number = *parsed;
+        version.remove_prefix(std::min(length + 1, version.size()));
     }
-    throw InputError("time_unit: found '" + unit + "', expected ns, us, ms or s");
+    return numbers;
 }
 
-/// The runs that are no means or deviations of others, and are of the case: those of exactly that name if
-/// there are any, or else those whose name goes on after it, as in BM_sort/8/real_time.
-std::vector<Json> runs_of(const Json& benchmarks, const std::string& name) {
-    std::vector<Json> exact;
-    std::vector<Json> longer;
-    for (const Json& run : benchmarks) {
-        const std::string own = run.value("run_name", run.value("name", ""));
-        if (run.value("run_type", "iteration") == "iteration") {
-            if (own == name) {
-                exact.push_back(run);
-            } else if (own.starts_with(name + "/")) {
-                longer.push_back(run);
-            }
-        }
+/// Reports did not name a version before some 1.8. Not known is what was made between 1.8.5 and 1.9.1, and
+/// what was built from a source without its history, which calls itself v0.0.0.
+RealTime real_time_of(const std::optional<std::string>& version) {
+    constexpr std::array last_divided{1, 8, 5};
+    constexpr std::array first_whole{1, 9, 1};
+    if (!version) {
+        return RealTime::divided_by_threads;
     }
-    return exact.empty() ? longer : exact;
+    const auto numbers = numbers_of(*version);
+    const bool is_beyond = numbers == last_divided && version->find('-') != std::string::npos;
+    if (!numbers || *numbers == std::array{0, 0, 0} || is_beyond) {
+        return RealTime::not_known;
+    }
+    if (*numbers <= last_divided) {
+        return RealTime::divided_by_threads;
+    }
+    return *numbers >= first_whole ? RealTime::whole : RealTime::not_known;
 }
 
 std::regex regex_of(const std::string& pattern) {
@@ -105,48 +89,26 @@ StatedTime time_in_output(const std::string& output, const std::string& pattern,
     if (!number || !(*number > 0)) {
         throw InputError("time: found '" + found.front() + "', expected a positive number");
     }
-    return {.seconds = *number * unit_seconds, .cpu_seconds = 0, .counters = {}};
+    StatedTime time;
+    time.seconds = *number * unit_seconds;
+    return time;
 }
 
-StatedTime time_of_benchmark(const std::string& json, const std::string& name) {
-    const Json document = Json::parse(json, nullptr, false);
-    if (!document.is_object() || !document.contains("benchmarks") || !document["benchmarks"].is_array()) {
-        throw InputError("benchmark: found no JSON of Google Benchmark, expected what "
-                         "--benchmark_out_format=json writes");
+std::optional<std::string> unlike_times(const StatedTime& one, const StatedTime& other) {
+    const RealTime meaning = real_time_of(one.library_version);
+    const RealTime other_meaning = real_time_of(other.library_version);
+    const bool alike = one.library_version == other.library_version ||
+                       (meaning == other_meaning && meaning != RealTime::not_known);
+    if (std::max(one.threads, other.threads) == 1 || alike) {
+        return std::nullopt;
     }
-    const std::vector<Json> runs = runs_of(document["benchmarks"], name);
-    std::set<std::string> names;
-    for (const Json& run : runs) {
-        names.insert(run.value("run_name", run.value("name", "")));
-    }
-    if (names.size() != 1) {
-        std::string found;
-        for (const std::string& one : names) {
-            found += (found.empty() ? ": " : ", ") + one;
-        }
-        throw InputError("benchmark: '" + name + "' is the name of " + std::to_string(names.size()) +
-                         " cases" + found + "; expected one");
-    }
-    StatedTime time;
-    const auto count = static_cast<double>(runs.size());
-    for (const Json& run : runs) {
-        if (run.value("error_occurred", false) || run.contains("skipped")) {
-            throw InputError("benchmark: " + name + ": " +
-                             run.value("error_message", run.value("skip_message", "it failed")));
-        }
-        const double unit = seconds_of_unit(run.value("time_unit", "ns"));
-        time.seconds += run.value("real_time", 0.0) * unit / count;
-        time.cpu_seconds += run.value("cpu_time", 0.0) * unit / count;
-        for (const auto& [key, value] : run.items()) {
-            if (value.is_number() && !fields_of_benchmark.contains(key)) {
-                time.counters[key] += value.get<double>() / count;
-            }
-        }
-    }
-    if (!(time.seconds > 0)) {
-        throw InputError("benchmark: " + name + ": found no time, expected a positive real_time");
-    }
-    return time;
+    const auto text = [](const StatedTime& time) {
+        return time.library_version ? in_quotes(*time.library_version) : std::string("without a version");
+    };
+    return "Google Benchmark " + text(one) + " beside " + text(other) +
+           ": of a case on several threads they do not mean the same by real_time (before 1.9 it is divided "
+           "by "
+           "the number of threads); build both with one version";
 }
 
 } // namespace carom

@@ -37,7 +37,7 @@ std::string why_failed(const ProcessCommand& command, const ProcessEnd& end, con
                end.not_started;
     }
     if (!end.suspended.empty()) {
-        return end.suspended + "; it is to be measured again";
+        return end.suspended;
     }
     if (end.out_of_time) {
         const std::string limit = format("took longer than %g s and was stopped", command.most_seconds);

@@ -61,6 +61,7 @@ void Process::advance(double seconds) {
         tree_->go_on();
     } else {
         has_begun_ = true;
+        suspensions_.start();
         first_slice_began_ = began;
         keeper_->begin();
     }
@@ -72,7 +73,8 @@ void Process::advance(double seconds) {
         const bool all_ended = keeper_->await_end(step);
         const double overslept = steady_seconds() - before - step;
         if (overslept > late) {
-            end_.suspended = format("stood still for %.1f s while it was timed", overslept);
+            end_.suspended =
+                format("stood still for %.1f s while it was measured; measure it again", overslept);
         }
         if (all_ended) {
             take_report(began);
@@ -106,6 +108,7 @@ void Process::end_it() {
 void Process::take_report(double slice_began) {
     const nlohmann::ordered_json report = keeper_->report();
     has_ended_ = true;
+    end_.suspended = suspensions_.reason().value_or(end_.suspended);
     if (!report.is_object()) {
         tree_->kill();
         end_.unknown = "what looked after it was ended by somebody";

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "harness/machine/suspensions.hpp"
 #include "harness/processes/keeper.hpp"
 #include "harness/processes/process_command.hpp"
 #include "harness/processes/process_end.hpp"
@@ -36,6 +37,7 @@ class Process {
     bool has_begun_ = false;
     bool has_ended_ = false;
     double first_slice_began_ = 0;
+    Suspensions suspensions_;
     ProcessEnd end_;
 };
 

@@ -43,17 +43,18 @@ Json turns_json(const ProcessMeasurement& measurement) {
             {"seconds_alone", measurement.measured.seconds_alone}};
 }
 
-/// The mean of each.
+/// The mean of each over the runs; null where one of them has no finite number.
 Json counters_json(const std::vector<StatedTime>& stated) {
-    std::map<std::string, double> sums;
+    std::map<std::string, std::optional<double>> sums;
     for (const StatedTime& one : stated) {
         for (const auto& [name, value] : one.counters) {
-            sums[name] += value;
+            std::optional<double>& sum = sums.try_emplace(name, 0.0).first->second;
+            sum = sum && value ? std::optional(*sum + *value) : std::nullopt;
         }
     }
     Json counters = Json::object();
-    for (const auto& [name, sum] : sums) {
-        counters[name] = sum / static_cast<double>(stated.size());
+    for (auto& [name, sum] : sums) {
+        counters[name] = sum ? Json(*sum / static_cast<double>(stated.size())) : Json(nullptr);
     }
     return counters;
 }
@@ -103,7 +104,10 @@ Json process_json(const ProcessMeasurement& measurement) {
                  {"sources", measurement.sources.json()},
                  {"changed", measurement.sources.changed()},
                  {"time_from", measurement.stated.empty() ? "outside" : "the program"},
-                 {"counters", counters_json(measurement.stated)}};
+                 {"counters", counters_json(measurement.stated)},
+                 {"library_version", measurement.stated.empty()
+                                         ? Json(nullptr)
+                                         : or_null(measurement.stated.back().library_version)}};
     process.update(ends_json(measurement));
     return {{"schema_version", 1},
             {"kind", "process"},

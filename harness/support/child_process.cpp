@@ -35,17 +35,29 @@ class Redirections {
     posix_spawn_file_actions_t actions_{};
 };
 
-std::string read_all(int descriptor) {
-    std::string text;
+/// All that comes, but of much only its beginning and its end.
+std::string read_ends(int descriptor) {
+    std::string beginning;
+    std::string rest;
+    bool is_cut = false;
     std::array<char, 4096> buffer;
     while (true) {
         const auto count = read(descriptor, buffer.data(), buffer.size());
         if (count > 0) {
+            std::string& text = beginning.size() < kept_output ? beginning : rest;
             text.append(buffer.data(), static_cast<std::size_t>(count));
         } else if (count == 0 || errno != EINTR) {
-            return text;
+            break;
+        }
+        if (rest.size() > 2 * kept_output) {
+            rest.erase(0, rest.size() - kept_output);
+            is_cut = true;
         }
     }
+    if (is_cut || rest.size() > kept_output) {
+        return beginning + '\n' + rest.substr(rest.size() - kept_output);
+    }
+    return beginning + rest;
 }
 
 [[noreturn]] void refuse(const std::string& program, int error) {
@@ -74,15 +86,18 @@ ChildEnd run_child(const std::vector<std::string>& command) {
     ChildEnd end;
     end.started = error == 0;
     if (end.started) {
-        end.output = read_all(ends[0]);
+        end.output = read_ends(ends[0]);
     }
     close(ends[0]);
     if (error == EAGAIN || error == ENOMEM) {
         refuse(command.front(), error);
     }
     int status = 0;
-    while (end.started && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    pid_t waited = 0;
+    while (end.started && (waited = waitpid(child, &status, 0)) < 0 && errno == EINTR) {
     }
+    // Where SIGCHLD is ignored nobody keeps how a child ended.
+    end.is_known = waited == child && end.started;
     end.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
     end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     return end;

@@ -158,6 +158,16 @@ def test_the_nodes_of_a_partition_are_one_machine(tmp_path: Path) -> None:
     assert set(studies[0].runs["node"]) == {"n1", "n2"}
 
 
+def test_a_machine_with_a_quota_is_another_one(tmp_path: Path) -> None:
+    for number, quota in enumerate((None, 1.5, 64.0)):
+        records = study(["steps"], blocks=2)
+        for record in records:
+            record["provenance"]["cpu_quota"] = quota
+        write(tmp_path / str(number), records)
+        (one,) = split(load(tmp_path / str(number)))
+        assert one.machine.endswith(", a quota of 1.5 processors") == (quota == 1.5)
+
+
 def test_a_series_of_two_programs_makes_two_studies_and_two_series_one(tmp_path: Path) -> None:
     def measured(series: str, compiler: str, block: int) -> dict[str, Any]:
         point = Point(series, 20, 1.0, "steps", compiler=compiler)

@@ -59,6 +59,25 @@ def test_a_failed_point_is_tried_again_by_the_next_run(workplace: Workplace) -> 
     assert not workplace.failures()
 
 
+def test_what_was_suspended_is_measured_again_together(workplace: Workplace) -> None:
+    reason = "was suspended for some time while it was measured; measure it again"
+    workplace.behave(FAKE_SUSPENDED="turns")
+    assert run(workplace.settings) == POINTS_FAILED
+    assert not workplace.records("pair")
+    failures = workplace.failures()
+    assert all(one["exit_code"] == 1 and one["reason"].endswith(reason) for one in failures)
+    failed = {(one["tags"]["experiment"], one["tags"]["series"]) for one in failures}
+    calls = workplace.calls()
+    together = {call["pid"] for call in calls if call["words"][0] == "turns"}
+    alone = [call for call in calls if "--tag" in call["words"] and call["pid"] not in together]
+    assert failed >= {("pair", "four"), ("pair", "nine")}
+    assert not alone, "nobody's partner is measured without it"
+    workplace.behave(FAKE_SUSPENDED="none")
+    assert run(workplace.settings) == 0
+    assert not workplace.failures()
+    assert len(workplace.records("pair")) == 4
+
+
 def test_a_process_that_hangs_is_stopped(workplace: Workplace) -> None:
     site = Path(__file__).parents[2] / "sites" / "local.toml"
     impatient = workplace.root / "impatient.toml"

@@ -225,6 +225,26 @@ TEST_F(ProcessesCommand, BenchmarksRunRoundAfterRoundAndNothingIsTakenTwice) {
     EXPECT_TRUE(refused(processes(Json::array({forgetful})), 1, {"report"}));
 }
 
+TEST_F(ProcessesCommand, RefusesTimesOfUnlikeVersionsOfALibrary) {
+    const auto benchmark = [this](const std::string& name, const std::string& version) {
+        const std::string json =
+            R"({"context": {"library_version": ")" + version +
+            R"("}, "benchmarks": [{"name": "BM", "threads": 4, "real_time": 3, "bad": NaN}]})";
+        const std::string report = directory / (name + ".report");
+        Json one =
+            described("cp " + directory.write(name + ".json", json) + " " + report + "; sleep 0.5", name);
+        one.update({{"benchmark", "BM"}, {"output", report}});
+        return one;
+    };
+    const auto result = processes({benchmark("old", "v1.8.3"), benchmark("new", "v1.9.1")});
+    EXPECT_TRUE(refused(result, 1, {"v1.8.3", "v1.9.1", "real_time"}));
+    EXPECT_EQ(record("old")["kind"], "failure");
+    EXPECT_EQ(record("new")["kind"], "failure");
+    ASSERT_EQ(processes({benchmark("old", "v1.8.3"), benchmark("new", "v1.8.4")}).exit_code, 0);
+    EXPECT_TRUE(record("old")["process"]["counters"]["bad"].is_null());
+    EXPECT_EQ(record("old")["process"]["library_version"], "v1.8.3");
+}
+
 TEST_F(ProcessesCommand, RefusesSlicesThatCannotBe) {
     const Json one = Json::array({described("exit 0", "one")});
     EXPECT_TRUE(refused(processes(one, {"--slice", "0"}), 1,

@@ -102,6 +102,21 @@ TEST(Doctor, WhatTheSystemTellsIsShown) {
     EXPECT_NE(text.find("slurm 22.05.8, inside job 4711"), std::string::npos);
 }
 
+TEST(Doctor, ALimitOfProcessorsIsShownWithTheThreadsThatFollow) {
+    Json json = findings();
+    json["affinity"] = {{"affinity", "2-4"}, {"affinity_count", 3},    {"hardware_threads", 8},
+                        {"cpu_quota", 1.5},  {"usable_processors", 1}, {"threads_by_default", 1}};
+    const std::string text = unwrapped(json);
+    EXPECT_NE(text.find("affinity 3 CPUs: 2-4, of 8 hardware threads "), std::string::npos) << text;
+    EXPECT_NE(text.find("CPU quota time of 1.5 processors in all (cgroup)"), std::string::npos) << text;
+    EXPECT_NE(text.find("threads Carom takes 1 thread by default, on 1 usable processor "), std::string::npos)
+        << text;
+    json["affinity"]["cpu_quota"] = nullptr;
+    json["affinity"]["hardware_threads"] = 3;
+    EXPECT_EQ(unwrapped(json).find("CPU quota"), std::string::npos);
+    EXPECT_EQ(unwrapped(json).find("2-4, of"), std::string::npos);
+}
+
 TEST(Doctor, TheProgramPrintsNothingElse) {
     const auto result = tests::run_carom({"doctor", "--json"});
     EXPECT_EQ(result.exit_code, 0);

@@ -44,59 +44,5 @@ TEST(StatedTime, RefusesWhatTellsNone) {
               "time: '(a|b)*c' matches 0 lines of standard output, expected one");
 }
 
-std::string report(const Json& benchmarks) { return Json{{"benchmarks", benchmarks}}.dump(); }
-
-TEST(TimeOfBenchmark, IsThatOfTheCaseInItsUnitOverItsRepetitions) {
-    const std::string json = report({{{"name", "BM_sort/8"},
-                                      {"run_name", "BM_sort/8"},
-                                      {"run_type", "iteration"},
-                                      {"real_time", 2.0},
-                                      {"cpu_time", 1.0},
-                                      {"time_unit", "us"},
-                                      {"iterations", 10},
-                                      {"items_per_second", 5.0}},
-                                     {{"name", "BM_sort/8"},
-                                      {"run_name", "BM_sort/8"},
-                                      {"run_type", "iteration"},
-                                      {"real_time", 4.0},
-                                      {"cpu_time", 3.0},
-                                      {"time_unit", "us"},
-                                      {"iterations", 10},
-                                      {"items_per_second", 7.0}},
-                                     {{"name", "BM_sort/8_mean"},
-                                      {"run_name", "BM_sort/8"},
-                                      {"run_type", "aggregate"},
-                                      {"real_time", 99.0},
-                                      {"time_unit", "us"}},
-                                     {{"name", "BM_sort/80"}, {"real_time", 77.0}, {"time_unit", "us"}}});
-    const StatedTime time = time_of_benchmark(json, "BM_sort/8");
-    EXPECT_DOUBLE_EQ(time.seconds, 3e-6);
-    EXPECT_DOUBLE_EQ(time.cpu_seconds, 2e-6);
-    EXPECT_EQ(time.counters, (std::map<std::string, double>{{"items_per_second", 6.0}}));
-}
-
-TEST(TimeOfBenchmark, FindsACaseWhoseNameGoesOn) {
-    const std::string json =
-        report({{{"name", "BM_sort/8/real_time"}, {"real_time", 2.0}, {"time_unit", "ms"}}});
-    EXPECT_DOUBLE_EQ(time_of_benchmark(json, "BM_sort/8").seconds, 2e-3);
-}
-
-TEST(TimeOfBenchmark, RefusesNoneSeveralAndFailed) {
-    const auto said = [](const std::string& json) {
-        return refusal([&] { time_of_benchmark(json, "BM_x"); });
-    };
-    EXPECT_EQ(said("nonsense"), "benchmark: found no JSON of Google Benchmark, expected what "
-                                "--benchmark_out_format=json writes");
-    EXPECT_EQ(said(report(Json::array())), "benchmark: 'BM_x' is the name of 0 cases; expected one");
-    const Json one{{"name", "BM_x/1"}, {"real_time", 1.0}};
-    const Json two{{"name", "BM_x/2"}, {"real_time", 1.0}};
-    EXPECT_EQ(said(report({one, two})),
-              "benchmark: 'BM_x' is the name of 2 cases: BM_x/1, BM_x/2; expected one");
-    EXPECT_EQ(said(report({{{"name", "BM_x"}, {"error_occurred", true}, {"error_message", "no room"}}})),
-              "benchmark: BM_x: no room");
-    EXPECT_EQ(said(report({{{"name", "BM_x"}}})),
-              "benchmark: BM_x: found no time, expected a positive real_time");
-}
-
 } // namespace
 } // namespace carom

@@ -1,0 +1,157 @@
+#include "harness/machine/cpu_quota.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/machine/machine.hpp"
+#include "harness/support/text.hpp"
+
+namespace carom {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A hierarchy of control groups that can limit processors, at one place where it is mounted.
+struct Mount {
+    fs::path place;
+    fs::path top; ///< the group that is seen there
+    bool is_version_2 = false;
+};
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    std::istringstream stream(text);
+    for (std::string part; std::getline(stream, part, separator);) {
+        parts.push_back(part);
+    }
+    return parts;
+}
+
+bool contains(const std::vector<std::string>& parts, std::string_view part) {
+    return std::ranges::find(parts, part) != parts.end();
+}
+
+/// A blank, tab, line break or backslash stands as three octal digits in mountinfo.
+std::string unescaped(const std::string& text) {
+    std::string result;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        const std::string digits = text.substr(k + 1, 3);
+        if (text[k] == '\\' && digits.size() == 3 &&
+            digits.find_first_not_of("01234567") == std::string::npos && digits[0] < '4') {
+            result += static_cast<char>((digits[0] - '0') * 64 + (digits[1] - '0') * 8 + (digits[2] - '0'));
+            k += 3;
+        } else {
+            result += text[k];
+        }
+    }
+    return result;
+}
+
+std::vector<Mount> read_mounts(const fs::path& root) {
+    std::vector<Mount> mounts;
+    std::ifstream file(root / "proc/self/mountinfo");
+    for (std::string line; std::getline(file, line);) {
+        const std::size_t dash = line.find(" - ");
+        if (dash == std::string::npos) {
+            continue;
+        }
+        const auto fields = split(line.substr(0, dash), ' ');
+        const auto kind = split(line.substr(dash + 3), ' ');
+        if (fields.size() < 5 || kind.empty()) {
+            continue;
+        }
+        const bool is_version_2 = kind[0] == "cgroup2";
+        if (is_version_2 || (kind[0] == "cgroup" && contains(split(kind.back(), ','), "cpu"))) {
+            mounts.push_back({unescaped(fields[4]), unescaped(fields[3]), is_version_2});
+        }
+    }
+    return mounts;
+}
+
+/// The path of this process's group in a hierarchy; empty if it is in none.
+std::optional<fs::path> own_group(const fs::path& root, bool is_version_2) {
+    std::ifstream file(root / "proc/self/cgroup");
+    for (std::string line; std::getline(file, line);) {
+        const std::size_t first = line.find(':');
+        const std::size_t second = line.find(':', std::min(first, line.size() - 1) + 1);
+        if (first == std::string::npos || second == std::string::npos) {
+            continue;
+        }
+        const std::string controllers = line.substr(first + 1, second - first - 1);
+        const bool is_wanted = is_version_2 ? line.starts_with("0:") && controllers.empty()
+                                            : contains(split(controllers, ','), "cpu");
+        if (is_wanted) {
+            return line.substr(second + 1);
+        }
+    }
+    return std::nullopt;
+}
+
+/// The groups that are seen at a mount: its top, and those from there down to this process's own. Empty if
+/// that one is not below the top.
+std::vector<fs::path> groups_at(const fs::path& root, const Mount& mount, const fs::path& own) {
+    const fs::path inside = own.lexically_relative(mount.top);
+    if (inside.empty() || *inside.begin() == "..") {
+        return {};
+    }
+    std::vector<fs::path> groups{root / mount.place.relative_path()};
+    for (const fs::path& part : inside) {
+        groups.push_back(groups.back() / part);
+    }
+    return groups;
+}
+
+/// The groups that limit this process in one version's hierarchy, as far as it sees them.
+std::vector<fs::path> limiting_groups(const fs::path& root, bool is_version_2) {
+    const auto own = own_group(root, is_version_2);
+    std::vector<fs::path> groups;
+    std::vector<fs::path> tops;
+    for (const Mount& mount : read_mounts(root)) {
+        if (own && mount.is_version_2 == is_version_2) {
+            const auto more = groups_at(root, mount, *own);
+            groups.insert(groups.end(), more.begin(), more.end());
+            tops.push_back(root / mount.place.relative_path());
+        }
+    }
+    // A container may be told its group by another name than the one that it sees it by, as the top.
+    return groups.empty() ? tops : groups;
+}
+
+std::optional<double> quotient(std::string_view quota, std::string_view period) {
+    const auto microseconds = parse_number<std::int64_t>(quota);
+    const auto of = parse_number<std::int64_t>(period);
+    return microseconds && of && *microseconds > 0 && *of > 0
+               ? std::optional(static_cast<double>(*microseconds) / static_cast<double>(*of))
+               : std::nullopt;
+}
+
+/// What one group allows by itself.
+std::optional<double> quota_of(const fs::path& group, bool is_version_2) {
+    if (is_version_2) {
+        const auto numbers = split(first_line(group / "cpu.max").value_or(""), ' ');
+        return numbers.size() == 2 ? quotient(numbers[0], numbers[1]) : std::nullopt;
+    }
+    return quotient(first_line(group / "cpu.cfs_quota_us").value_or(""),
+                    first_line(group / "cpu.cfs_period_us").value_or(""));
+}
+
+} // namespace
+
+std::optional<double> read_cpu_quota(const fs::path& root) {
+    std::optional<double> least;
+    for (const bool is_version_2 : {false, true}) {
+        for (const fs::path& group : limiting_groups(root, is_version_2)) {
+            if (const auto quota = quota_of(group, is_version_2)) {
+                least = std::min(*quota, least.value_or(*quota));
+            }
+        }
+    }
+    return least;
+}
+
+} // namespace carom

@@ -1,0 +1,162 @@
+#include "harness/support/benchmark_json.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "harness/support/errors.hpp"
+#include "harness/support/text.hpp"
+
+namespace carom {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The longest first: one is the beginning of another. Those in lower case are of before version 1.5.
+constexpr std::array<std::string_view, 7> words_of_numbers{"-Infinity", "Infinity", "NaN", "-nan",
+                                                           "-inf",      "nan",      "inf"};
+
+/// How many bytes from here on are one character of UTF-8 (RFC 3629); 0 if these are none.
+std::size_t utf8_length(std::string_view text) {
+    const auto byte = [text](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+    const std::size_t length = byte(0) < 0x80   ? 1
+                               : byte(0) < 0xC2 ? 0
+                               : byte(0) < 0xE0 ? 2
+                               : byte(0) < 0xF0 ? 3
+                               : byte(0) < 0xF5 ? 4
+                                                : 0;
+    if (length > text.size()) {
+        return 0;
+    }
+    for (std::size_t k = 1; k < length; ++k) {
+        if ((byte(k) & 0xC0) != 0x80) {
+            return 0;
+        }
+    }
+    const bool overlong =
+        length > 2 && ((byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xF0 && byte(1) < 0x90));
+    const bool no_character =
+        length > 2 && ((byte(0) == 0xED && byte(1) > 0x9F) || (byte(0) == 0xF4 && byte(1) > 0x8F));
+    return overlong || no_character ? 0 : length;
+}
+
+/// Appends the character of a string that begins `rest`, as JSON wants it; returns its length.
+std::size_t append_character(std::string& json, std::string_view rest) {
+    constexpr std::string_view replacement = "\xEF\xBF\xBD"; // U+FFFD
+    const auto first = static_cast<unsigned char>(rest.front());
+    if (first < ' ') {
+        constexpr std::string_view digits = "0123456789abcdef";
+        json += "\\u00";
+        json += digits[first >> 4U];
+        json += digits[first & 0xFU];
+        return 1;
+    }
+    const std::size_t length = utf8_length(rest);
+    json += length == 0 ? replacement : rest.substr(0, length);
+    return std::max<std::size_t>(length, 1);
+}
+
+/// The word of a number that begins `rest`, or nothing.
+std::string_view word_at(std::string_view rest) {
+    const auto word = std::ranges::find_if(words_of_numbers, [rest](std::string_view one) {
+        const std::string_view after = rest.substr(std::min(one.size(), rest.size()), 1);
+        return rest.starts_with(one) &&
+               (after.empty() || std::isalpha(static_cast<unsigned char>(after.front())) == 0);
+    });
+    return word == words_of_numbers.end() ? std::string_view() : *word;
+}
+
+/// The same as JSON: a number that is none becomes a list of its word, which the library itself never writes.
+std::string as_json(std::string_view text) {
+    std::string json;
+    json.reserve(text.size());
+    bool in_string = false;
+    for (std::size_t k = 0; k < text.size();) {
+        const std::string_view rest = text.substr(k);
+        if (in_string && rest.front() == '\\' && rest.size() > 1) {
+            json += '\\';
+            k += 1 + append_character(json, rest.substr(1));
+        } else if (in_string && rest.front() != '"') {
+            k += append_character(json, rest);
+        } else if (const auto word = word_at(rest); !in_string && !word.empty()) {
+            json.append("[\"").append(word).append("\"]");
+            k += word.size();
+        } else {
+            in_string = in_string != (rest.front() == '"');
+            json += rest.front();
+            ++k;
+        }
+    }
+    return json;
+}
+
+[[noreturn]] void refuse_report(const std::string& found) {
+    throw InputError("benchmark: found " + found + ", expected what --benchmark_out_format=json writes");
+}
+
+/// The rest of the line from there on, or its beginning.
+std::string line_from(std::string_view text) {
+    return in_quotes(text.substr(0, std::min(text.find_first_of("\r\n"), text.size())));
+}
+
+/// What stands where the parser stopped, of which it names the number of bytes up to there.
+std::string found_at(const std::string& json, std::size_t bytes) {
+    constexpr std::size_t shown = 40;
+    const std::size_t begin = json.find_first_not_of(" \t\r\n");
+    if (begin == std::string::npos) {
+        return json.empty() ? "an empty file" : "nothing but blanks";
+    }
+    const std::string_view text = json;
+    if (text[begin] != '{') {
+        return "no JSON of Google Benchmark but " + line_from(text.substr(begin));
+    }
+    const std::size_t end = text.find_last_not_of(" \t\r\n") + 1;
+    if (bytes > end) {
+        return "JSON that breaks off after " + in_quotes(text.substr(end - std::min(end, shown)), shown);
+    }
+    const std::string_view before = text.substr(0, std::max<std::size_t>(bytes, 1) - 1);
+    return "no JSON in line " + number_text(1 + std::ranges::count(before, '\n')) + ": " +
+           line_from(text.substr(before.size()));
+}
+
+/// Parses it, the first of several fields of one name being the one that counts.
+Json parse_report(const std::string& json) {
+    std::map<int, std::set<std::string>> names; // of the objects that are open, by their depth
+    const auto take = [&names](int depth, Json::parse_event_t event, Json& parsed) {
+        if (event == Json::parse_event_t::object_start) {
+            names[depth + 1].clear();
+        }
+        return event != Json::parse_event_t::key || names[depth].insert(parsed.get<std::string>()).second;
+    };
+    try {
+        return Json::parse(json, take);
+    } catch (const Json::parse_error& error) {
+        refuse_report(found_at(json, error.byte));
+    } catch (const Json::out_of_range&) {
+        refuse_report("a number that is too large");
+    }
+}
+
+} // namespace
+
+Json read_benchmark_json(const std::string& text) {
+    Json document = parse_report(as_json(text));
+    if (!document.is_object() || !document.contains("benchmarks") || !document["benchmarks"].is_array()) {
+        refuse_report("JSON without a list `benchmarks`");
+    }
+    if (!std::ranges::all_of(document["benchmarks"], [](const Json& run) { return run.is_object(); })) {
+        refuse_report("something in the list `benchmarks` that is no object");
+    }
+    return document;
+}
+
+std::string not_finite(const Json& value) {
+    return value.is_array() && value.size() == 1 && value.front().is_string()
+               ? value.front().get<std::string>()
+               : "";
+}
+
+} // namespace carom

@@ -1,0 +1,100 @@
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/scenes/scene_file.hpp"
+#include "harness/support/child_process.hpp"
+#include "harness/tests/program.hpp"
+#include "harness/tests/temporary_directory.hpp"
+#include "kernels/tests/scenes.hpp"
+
+namespace carom {
+namespace {
+
+using tests::run_carom;
+
+constexpr const char* reason = "was suspended for some time while it was measured; measure it again\n";
+
+/// A run that is stopped and continued all the time, by a shell that has its number: where it spends most of
+/// its time, and be that milliseconds, some stop comes.
+class Suspended : public testing::Test {
+  protected:
+    /// What the program says, on both of its outputs, and how it ends.
+    static ChildEnd suspended(std::vector<std::string> words) {
+        const std::string script = R"("$0" "$@" & child=$!
+            while kill -STOP $child 2>/dev/null; do
+                kill -CONT $child; sleep 0.005
+            done
+            wait $child)";
+        words.insert(words.begin(), {"sh", "-c", script, CAROM_PROGRAM});
+        return run_child(words);
+    }
+
+    tests::TemporaryDirectory directory;
+    const std::string scene =
+        directory.write("scene.in", scene_text(tests::random_scene_of_density(3000, 0.6, 100, 9)));
+    const std::string record = directory / "record.json";
+};
+
+TEST_F(Suspended, ABenchHasNoRecord) {
+    const ChildEnd end = suspended({"bench", scene, "--threads", "1", "--record", record});
+    EXPECT_EQ(end.exit_code, 1) << end.output;
+    EXPECT_TRUE(end.output.ends_with("carom: published/scene.in/threads:1: " + std::string(reason)))
+        << end.output;
+    EXPECT_FALSE(std::filesystem::exists(record));
+}
+
+TEST_F(Suspended, TheReportOfGoogleBenchmarkSaysSo) {
+    const std::string out = directory / "out.json";
+    suspended({"bench", scene, "--threads", "1", "--benchmark_out=" + out, "--benchmark_min_time=0.01"});
+    const auto report = nlohmann::json::parse(tests::content_of(out));
+    const auto& run = report["benchmarks"][0];
+    EXPECT_EQ(run.value("error_occurred", false), true) << report;
+    EXPECT_EQ(run.value("error_message", "") + "\n", reason);
+}
+
+TEST_F(Suspended, ContendersHaveNoRecords) {
+    const nlohmann::json contenders{{scene, "--threads", "1", "--record", record},
+                                    {scene, "--threads", "1", "--variant", "nine", "--record", record + "2"}};
+    const std::string file = directory.write("contenders.json", contenders.dump());
+    const ChildEnd end = suspended({"turns", file});
+    EXPECT_EQ(end.exit_code, 1) << end.output;
+    EXPECT_EQ(end.output, std::string("carom: turns of 2 contenders: ") + reason);
+    EXPECT_FALSE(std::filesystem::exists(record));
+    EXPECT_FALSE(std::filesystem::exists(record + "2"));
+}
+
+TEST_F(Suspended, AProfileHasNoRecord) {
+    const ChildEnd end = suspended({"profile", scene, "--threads", "1", "--record", record});
+    EXPECT_EQ(end.exit_code, 1) << end.output;
+    EXPECT_EQ(end.output, std::string("carom: scene.in, variant published: ") + reason);
+    EXPECT_FALSE(std::filesystem::exists(record));
+}
+
+TEST_F(Suspended, ProgramsOfOthersFail) {
+    const nlohmann::json one{{"command", {"sleep", "0.5"}}, {"record", record}};
+    const std::string file = directory.write("processes.json", nlohmann::json::array({one}).dump());
+    const ChildEnd end = suspended({"processes", file});
+    EXPECT_EQ(end.exit_code, 1) << end.output;
+    EXPECT_EQ(end.output, std::string("carom: sleep: ") + reason);
+    const auto failure = nlohmann::json::parse(tests::content_of(record));
+    EXPECT_EQ(failure["kind"], "failure");
+    EXPECT_EQ(failure["reason"].get<std::string>() + "\n", reason);
+}
+
+TEST_F(Suspended, AMachineThatSleptLeavesNoRecord) {
+    const std::vector<std::string> asleep{std::string("LD_PRELOAD=") + CAROM_JUMPING_CLOCK,
+                                          "CAROM_TEST_SLEEPS=1", "ASAN_OPTIONS=verify_asan_link_order=0"};
+    for (const char* verb : {"bench", "profile"}) {
+        const auto result = run_carom({verb, scene, "--threads", "1", "--record", record}, asleep);
+        EXPECT_EQ(result.exit_code, 1) << verb;
+        EXPECT_TRUE(result.error.ends_with(reason)) << result.error;
+        EXPECT_FALSE(std::filesystem::exists(record)) << verb;
+    }
+}
+
+} // namespace
+} // namespace carom
