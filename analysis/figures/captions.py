@@ -43,7 +43,9 @@ def _alone(times: pd.DataFrame) -> str:
 
 def by_series(runs: pd.DataFrame) -> str:
     """Return how many runs there are of each series, in words."""
-    return listed([f"{number} of {series}" for series, number in runs["series"].value_counts(sort=False).items()])
+    return listed(
+        [f"{number} of {series}" for series, number in runs["series"].value_counts(sort=False).items()]
+    )
 
 
 def time_axis(times: pd.DataFrame) -> str:

@@ -80,9 +80,9 @@ def partners(study: Study) -> str:
     if not lone:
         return ""
     return (
-        "A ratio is taken only of what one session measured together. These records have no partner, and count "
-        f"in times alone: {'; '.join(lone)}. A partner is lost where a program or a question was changed, a "
-        "point failed, or a run ended within a block. What lost it is measured again with it."
+        "A ratio is taken only of what one session measured together. These records have no partner, and "
+        f"count in times alone: {'; '.join(lone)}. A partner is lost where a program or a question was "
+        "changed, a point failed, or a run ended within a block. What lost it is measured again with it."
     )
 
 

@@ -1,4 +1,4 @@
-"""Paired ratios: two configurations measured in the same block of the interleaving, by one session on one node."""
+"""Paired ratios: two configurations measured in one block of the interleaving, by one session on one node."""
 
 import numpy as np
 import pandas as pd

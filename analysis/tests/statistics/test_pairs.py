@@ -85,7 +85,9 @@ def test_a_series_has_its_partners_at_the_same_x() -> None:
 def test_a_single_series_has_its_partners_along_the_sweep() -> None:
     whole = [("a", x, 0, "1") for x in (1.0, 2.0)]
     assert list(without_partner(measured(*whole, ("a", 1.0, 1, "1"), ("a", 2.0, 1, "2"))).index) == [2, 3]
-    assert without_partner(measured(("a", 1.0, 0, "1"), ("a", 1.0, 1, "2"))).empty, "it is compared with nothing"
+    assert without_partner(measured(("a", 1.0, 0, "1"), ("a", 1.0, 1, "2"))).empty, (
+        "it is compared with nothing"
+    )
 
 
 def test_scenes_are_no_partners() -> None:

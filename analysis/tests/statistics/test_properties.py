@@ -103,7 +103,9 @@ def test_a_pair_is_of_one_session_and_all_else_is_named(sessions: list[tuple[str
         for series, session in zip("ab", sides, strict=True)
         if session
     ]  # fmt: skip
-    table = pd.DataFrame(rows, columns=["node", "block", "session", "series", "x", "scene_name", "steps_seconds"])
+    table = pd.DataFrame(
+        rows, columns=["node", "block", "session", "series", "x", "scene_name", "steps_seconds"]
+    )
     a, b = (table[table["series"] == name] for name in "ab")
     met = {(block, one) for block, (one, other) in enumerate(sessions) if one == other != ""}
     pairs = log_ratios(a, b)

@@ -30,8 +30,9 @@ def folder_of(workplace: Workplace) -> PartitionFolder:
 def job_of(workplace: Workplace, tasks: int = 1) -> Path:
     """Write the list of blocks of a job, dealt out to so many tasks."""
     folder = folder_of(workplace)
-    wanted = [unit for unit, _, _ in units(folder.study())]
-    job, path = folder.next_job([wanted[first::tasks] for first in range(tasks)])
+    study = folder.study()
+    wanted = [unit for unit, _, _ in units(study)]
+    job, path = folder.next_job(study, [wanted[first::tasks] for first in range(tasks)])
     path.parent.mkdir(parents=True)
     write_json(path, job.content(), path.parent)
     return path
