@@ -173,9 +173,7 @@ def _where(point: Point) -> Tags:
 
 
 def new_session() -> str:
-    """An id for one invocation of the runner, which no other one has: the time in UTC, to the microsecond, and
-    the process.
-    """
+    """An id for one invocation of the runner, and no other: the time in UTC and the process."""
     return f"{datetime.now(UTC):%Y%m%dT%H%M%S.%f}-{os.uname().nodename}-{os.getpid()}"
 
 
