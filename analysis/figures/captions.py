@@ -43,9 +43,7 @@ def _alone(times: pd.DataFrame) -> str:
 
 def by_series(runs: pd.DataFrame) -> str:
     """Return how many runs there are of each series, in words."""
-    return listed(
-        [f"{number} of {series}" for series, number in runs["series"].value_counts(sort=False).items()]
-    )
+    return listed(f"{number} of {series}" for series, number in runs.groupby("series").size().items())
 
 
 def time_axis(times: pd.DataFrame) -> str:
