@@ -43,7 +43,10 @@ class WholeBlocks:
         self._found = found
         self._session = session
         self._given_up = frozenset(given_up)
-        self._left_out = self._given_up | {point for point, _ in found.failures}
+        # No block that counts lies beyond that, whatever a file in the folder is called.
+        most = given.blocks + len({block for _, block in found.seconds})
+        self._failed = {key for key in found.failures if key[1] < most}
+        self._left_out = self._given_up | {point for point, _ in self._failed}
         self._busy = frozenset(busy)
         self._scenes: dict[str, list[Point]] = {}
         for point in experiment.points:
@@ -98,7 +101,7 @@ class WholeBlocks:
         alone.
         """
         last = [block for numbers in self.numbers.values() for block in numbers[:most]]
-        again = [block for point, block in self._found.failures if point not in self._given_up]
+        again = [block for point, block in self._failed if point not in self._given_up]
         return 1 + max([*last, *again], default=-1)
 
     def ordinal(self, block: int) -> int:
@@ -145,7 +148,7 @@ class WholeBlocks:
 
     def _may_lack(self, block: int, counting: Collection[str]) -> bool:
         """Whether a look at each of its points is worth while."""
-        return bool(counting) or block == 0 or any(block == at for _, at in self._found.failures)
+        return bool(counting) or block == 0 or any(block == at for _, at in self._failed)
 
     def _is_missing(self, point: Point, block: int, counting: Collection[str]) -> bool:
         key, place = (point.id, block), (_scene(point), block)
@@ -154,7 +157,7 @@ class WholeBlocks:
         if place[0] in counting and (block in self._busy or not self._is_old(place)):
             return True
         # What is done in the first block alone is done there all the same.
-        return key in self._found.failures or (self._is_old(place) and _does_more(point, block))
+        return key in self._failed or (self._is_old(place) and _does_more(point, block))
 
     def _counts(self, place: Place) -> bool:
         """Whether the block is of one session, or still can be."""

@@ -117,6 +117,16 @@ def test_a_point_that_failed_late_keeps_its_earlier_pairs(pair: Workplace) -> No
     assert (row.blocks, row.done, row.missing, row.alone) == (4, 8, 0, 3)
 
 
+def test_a_failure_of_a_block_that_cannot_be_is_of_no_account(pair: Workplace) -> None:
+    pair.behave(FAKE_BENCH_CRASHES="nine")
+    run(pair.settings)
+    [failure] = pair.results.glob("failures/pair/*-b0.json")
+    failure.rename(failure.with_name(failure.name.replace("-b0", "-b999999999")))
+    pair.behave(FAKE_BENCH_CRASHES="none")
+    assert run(pair.settings) == 0
+    assert whole(pair, "four", "nine") == [2, 3]
+
+
 def test_a_block_that_a_kill_cut_through_is_measured_anew(pair: Workplace) -> None:
     pair.question("pair", SWEPT_APART.replace("minimum = 2\nwanted = 2", "minimum = 3\nwanted = 3"))
     pair.behave(FAKE_SECONDS="0.5")
