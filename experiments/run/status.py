@@ -109,6 +109,8 @@ def show_plan(settings: Settings) -> int:
         table.add_row(experiment.name, *map(str, counts), *told)
     console = new_console()
     console.print(table)
+    for line in schedule.measured_again():
+        console.print(line)
     console.print(summary(schedule, study.budget_seconds))
     if others:
         console.print(others)
