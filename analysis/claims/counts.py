@@ -9,7 +9,7 @@ import pandas as pd
 
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, judged, no_records, told
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, count
 
@@ -73,4 +73,4 @@ def _over_seeds(before: pd.DataFrame, after: pd.DataFrame, value: str) -> pd.Ser
 def _over_blocks(before: pd.DataFrame, after: pd.DataFrame) -> pd.Series:
     """Return the mean over the seeds of each block: what a block suffers, all its seeds do."""
     pairs = log_ratios(before, after, match=("x",))
-    return pairs.groupby(["node", "block"])["log_ratio"].mean()
+    return pairs.groupby(PAIR)["log_ratio"].mean()

@@ -8,6 +8,7 @@ from analysis.claims.entry import Claim, setting
 from analysis.claims.outcome import ELSEWHERE, FAILS, HOLDS, OPEN, Outcome
 from analysis.records.studies import Study
 from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
+from analysis.statistics.pairs import PAIR, without_partner
 from analysis.support.wording import count, number
 
 DECIDED = frozenset({HOLDS, FAILS, *ELSEWHERE.values()})
@@ -46,7 +47,7 @@ def seconds_per_block(study: Study, experiment: str) -> float:
     any.
     """
     runs = study.runs[study.runs["experiment"] == experiment]
-    each = runs.groupby(["node", "block"])["process_seconds"].sum()
+    each = runs.drop(without_partner(runs).index).groupby(PAIR)["process_seconds"].sum()
     return float(each.median()) if len(each) else 0.0
 
 

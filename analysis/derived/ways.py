@@ -24,7 +24,8 @@ _SHOWN = 60
 @dataclass(frozen=True)
 class Comparison:
     """A series against the first one on a scene, both ways: `pairs` has a row a block, with `scene_name`,
-    `series`, node, block and the log ratios `by turns` and `apart`; `seconds` what a block took, by way.
+    `series`, the columns of `PAIR` and the log ratios `by turns` and `apart`; `seconds` what a block took, by
+    way.
     """
 
     name: str

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from analysis.statistics.intervals import Interval
-from analysis.statistics.pairs import process_medians
+from analysis.statistics.pairs import process_medians, without_partner
 from analysis.statistics.trends import growth, linearity, minimum
 from analysis.support.wording import change, count, exact, interval, listed, number
 
@@ -26,8 +26,24 @@ def opening(times: pd.DataFrame, subject: str, dots: str = MEDIANS) -> str:
     return (
         f"{subject[0].upper()}{subject[1:]} ({setting}). {dots}: {processes} in "
         f"{count(times['block'].nunique(), 'block')} and {count(sessions, 'session')}, "
-        f"{count(len(times), 'timed run')}, none left out.{_kind_of_time(times)}"
+        f"{count(len(times), 'timed run')}, none left out.{_alone(times)}{_kind_of_time(times)}"
     )
+
+
+def _alone(times: pd.DataFrame) -> str:
+    """Say which processes are in no ratio; nothing if all of them are."""
+    lone = without_partner(times.drop_duplicates("file"))
+    if lone.empty:
+        return ""
+    return (
+        f" In no ratio: {by_series(lone)}, beside which their session measured nothing to compare them with "
+        "in that block."
+    )
+
+
+def by_series(runs: pd.DataFrame) -> str:
+    """Return how many runs there are of each series, in words."""
+    return listed(f"{number} of {series}" for series, number in runs.groupby("series").size().items())
 
 
 def time_axis(times: pd.DataFrame) -> str:

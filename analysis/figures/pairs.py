@@ -68,7 +68,7 @@ def pair_drawing(data: Data, sides: Sides, work: bool = False) -> Drawing | None
 def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:
     """Return one row a block: where it holds several scenes of a sweep, the geometric mean of their times."""
     logs = processes.assign(steps_seconds=np.log(processes["steps_seconds"]))
-    table = logs.groupby(PAIR, as_index=False).agg({"steps_seconds": "mean", "session": "first"})
+    table = logs.groupby(PAIR, as_index=False).agg({"steps_seconds": "mean"})
     return table.assign(steps_seconds=np.exp(table["steps_seconds"]))
 
 

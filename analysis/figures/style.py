@@ -206,21 +206,26 @@ def partial(data: Data, experiment: str) -> str | None:
     study = data.study
     runs = study.runs[study.runs["experiment"] == experiment]
     known = planned_runs(data.folder, study.scale, experiment, set(runs["point"]))
-    planned = _planned(runs) if known is None else float(known)
+    planned = len(runs) + _lacking(runs) if known is None else float(known)
     if runs.empty or np.isnan(planned) or len(runs) >= planned:
         return None
     return f"partial: {len(runs)} of {int(planned)} runs"
 
 
-def _planned(runs: pd.DataFrame) -> float:
-    """Return how many records were planned: later blocks may have fewer points than the first, since what is
-    settled stops. A block without any record is taken to be as the one before.
+def _lacking(runs: pd.DataFrame) -> float:
+    """Return how many records are missing of as many blocks as were planned, those that lack least; NaN where
+    the records do not tell. A block that was begun and left has another one in its place.
+
+    Later blocks may have fewer points than the first, since what is settled stops. A block without any record
+    is taken to be as the one before.
     """
-    blocks = runs["blocks_planned"].max()
-    if np.isnan(blocks):
+    planned = runs["blocks_planned"].max()
+    if np.isnan(planned):
         return np.nan
-    points = runs.groupby("block")["points_planned"].max().reindex(range(int(blocks)))
-    return float(points.ffill().bfill().sum())
+    blocks = runs.groupby("block").agg(points=("points_planned", "max"), runs=("file", "size"))
+    blocks = blocks.reindex(range(max(int(planned), int(blocks.index.max()) + 1)))
+    lacking = blocks["points"].ffill().bfill() - blocks["runs"].fillna(0)
+    return float(lacking.clip(lower=0).nsmallest(int(planned)).sum())
 
 
 def mark_partial(figure: Figure, text: str | None) -> None:

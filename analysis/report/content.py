@@ -87,6 +87,7 @@ def _study(
         "warning": warning(noise, settled),
         "noise": [_noise_row(row, settled) for row in noise.to_dict("records")],
         "checks": provenance.checks(study),
+        "partners": provenance.partners(study),
         "states": missing.tally(table if study is studies[0] else table[~table["missing"]]),
         **_claims(table, {part.experiment: (part.anchor, part.title) for part in shown}, asked),
         "without_records": list(table.loc[table["missing"], "id"]) if study is studies[0] else [],

@@ -7,8 +7,10 @@ import pandas as pd
 
 from analysis.claims.entry import setting
 from analysis.figures import experiments
+from analysis.figures.captions import by_series
 from analysis.records.reading import Records
 from analysis.records.studies import Study
+from analysis.statistics.pairs import without_partner
 from analysis.support.wording import count, exact, number
 
 CONTROL = "control"
@@ -65,6 +67,23 @@ def checks(study: Study) -> str:
     unchecked = int((runs["check_verdict"] == "unchecked").sum())
     unseen = f"; {count(unchecked, 'process')} of programs whose results are not checked" if unchecked else ""
     return f"{said} ({scopes}){energy}{outside}{unseen}."
+
+
+def partners(study: Study) -> str:
+    """Say which records are in no ratio, and why; nothing if all of them are."""
+    runs = study.runs[study.runs["check_verdict"] != "failed"]
+    lone = [
+        f"{by_series(alone)} ({name})"
+        for name, group in runs.groupby("experiment")
+        if len(alone := without_partner(group))
+    ]
+    if not lone:
+        return ""
+    return (
+        "A ratio is taken only of what one session measured together. These records have no partner, and "
+        f"count in times alone: {'; '.join(lone)}. A partner is lost where a program or a question was "
+        "changed, a point failed, or a run ended within a block. What lost it is measured again with it."
+    )
 
 
 def missing_counters(counters: pd.DataFrame) -> list[dict[str, str]]:

@@ -42,7 +42,9 @@ def process_noise(times: pd.DataFrame) -> pd.DataFrame:
     for experiment, group in processes.groupby("experiment"):
         keys = ["series", "x", "label", "scene_name"]
         table = group.pivot_table(index=PAIR, columns=keys, values="steps_seconds", aggfunc="median")
-        # A configuration that soon failed would leave no block whole.
+        # What has no partner tells nothing of the noise, and a configuration that soon failed would leave no
+        # block whole.
+        table = table[table.notna().sum(axis=1) > 1]
         table = table.loc[:, 2 * table.notna().sum() >= len(table)].dropna()
         if min(table.shape) < 2:
             continue

@@ -1,9 +1,10 @@
-"""Paired ratios: two configurations measured in the same block of the interleaving, on the same node."""
+"""Paired ratios: two configurations measured in one block of the interleaving, by one session on one node."""
 
 import numpy as np
 import pandas as pd
 
-PAIR = ["node", "block"]
+PAIR = ["node", "block", "session"]
+"""What two records of a pair have in common: nothing else was measured together."""
 
 
 def process_medians(times: pd.DataFrame, value: str = "steps_seconds") -> pd.DataFrame:
@@ -37,13 +38,13 @@ def log_ratios(
     match: tuple[str, ...] = (),
     value: str = "steps_seconds",
 ) -> pd.DataFrame:
-    """Return a row a pair: the columns of `match`, node, block and `log_ratio` = ln(candidate / reference).
+    """Return a row a pair: the columns of `match`, those of `PAIR` and `log_ratio` = ln(candidate /
+    reference).
 
     Takes a row a process on either side; of the replicates that a block has of one configuration it takes the
     mean logarithm, since the median of several lies below a single time wherever noise is skewed. Drift from
     block to block cancels in the ratio, which is why blocks and not samples are the unit of every interval. A
-    block that was interrupted and finished by a later session still is a pair, marked `split`; a process
-    without its partner has no ratio.
+    process without a partner of its own session has no ratio: the machine may have been another since.
     """
     keys = [*match, *PAIR]
     joined = _per_block(reference, keys, value).merge(
@@ -52,16 +53,26 @@ def log_ratios(
         right_index=True,
         suffixes=("_reference", "_candidate"),
     )
-    ratios = pd.DataFrame(
-        {
-            "log_ratio": joined["log_candidate"] - joined["log_reference"],
-            "split": joined["session_reference"] != joined["session_candidate"],
-        },
-        index=joined.index,
-    )
-    return ratios.reset_index()
+    ratios = joined["log_candidate"] - joined["log_reference"]
+    return ratios.rename("log_ratio").reset_index()
+
+
+def without_partner(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return the runs, a row each, that are in no ratio: of what they are compared with, nothing was measured
+    in their block by their session.
+
+    Compared are the series of a scene at one x, or the values of x where a single series has that x.
+    """
+    scene = runs["scene_name"].fillna("")
+    place = [scene, runs["x"]]
+    several = runs["series"].groupby(place).transform("nunique") > 1
+    together = [scene, *(runs[key] for key in PAIR)]
+    beside = runs["series"].groupby([*together, runs["x"]]).transform("nunique")
+    along = runs["x"].groupby(together).transform("nunique")
+    has_others = several | (runs["x"].groupby(scene).transform("nunique") > 1)
+    return runs[has_others & (beside.where(several, along) < 2)]
 
 
 def _per_block(processes: pd.DataFrame, keys: list[str], value: str) -> pd.DataFrame:
     logs = processes.assign(log=np.log(processes[value]))
-    return logs.groupby(keys).agg({"log": "mean", "session": "first"})
+    return logs.groupby(keys).agg({"log": "mean"})

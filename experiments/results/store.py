@@ -27,6 +27,8 @@ class Found:
 
     seconds: dict[Key, float] = field(default_factory=dict)
     """Whole-process wall time of each finished process."""
+    sessions: dict[Key, str] = field(default_factory=dict)
+    """Which session measured it."""
     failures: dict[Key, str] = field(default_factory=dict)
     """Reason of each failed process that has not been measured since."""
     stale: list[Path] = field(default_factory=list)
@@ -80,6 +82,7 @@ class Store:
                 found.stale.append(path)
             else:
                 found.seconds[key] = float(record["process_seconds"])
+                found.sessions[key] = str(record["tags"].get("session", ""))
         for path in sorted((self.root / "failures" / experiment.name).glob("*.json")):
             failure, key = read_json(path), _key(path)
             is_failure = is_record(failure) and failure["kind"] == "failure"
@@ -170,8 +173,8 @@ def _where(point: Point) -> Tags:
 
 
 def new_session() -> str:
-    """An id for one invocation of the runner: the time in UTC, and the process."""
-    return f"{datetime.now(UTC):%Y%m%dT%H%M%S}-{os.uname().nodename}-{os.getpid()}"
+    """An id for one invocation of the runner, and no other: the time in UTC and the process."""
+    return f"{datetime.now(UTC):%Y%m%dT%H%M%S.%f}-{os.uname().nodename}-{os.getpid()}"
 
 
 def unusable(record: Any, point: Point, block: int) -> str | None:  # noqa: ANN401 - read from a file

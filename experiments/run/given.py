@@ -21,16 +21,7 @@ class Given:
 
     def includes(self, point: Point, block: int) -> bool:
         """Whether the point is part of the block."""
-        return block < min(self.blocks, self.stopped.get(point.id, self.blocks))
-
-    def keys(self, points: Sequence[Point]) -> list[tuple[str, int]]:
-        """Point id and block of every process."""
-        return [
-            (point.id, block)
-            for point in points
-            for block in range(self.blocks)
-            if self.includes(point, block)
-        ]
+        return block < self.stopped.get(point.id, block + 1)
 
 
 def given_before(
@@ -38,7 +29,8 @@ def given_before(
 ) -> dict[str, Given]:
     """What an earlier session gave to the experiments that it began.
 
-    A question that now asks for more blocks than that has changed, and is decided anew.
+    A question that now asks for more blocks than that has changed, and is decided anew. Where a point is new,
+    those that had stopped are measured on with it: what was settled was so against others.
     """
     plan = store.note(PLAN) or {}
     given = {}
@@ -46,15 +38,18 @@ def given_before(
         kept = plan.get(experiment.points[0].scale, {}).get(experiment.name)
         minimum = experiment.question.blocks.minimum
         if kept and found[experiment.name].seconds and minimum <= kept["blocks"]:
-            given[experiment.name] = Given(int(kept["blocks"]), dict(kept.get("stopped", {})))
+            is_known = {point.id for point in experiment.points} <= set(kept["points"])
+            stopped = dict(kept.get("stopped", {})) if is_known else {}
+            given[experiment.name] = Given(int(kept["blocks"]), stopped)
     return given
 
 
-def keep(store: Store, experiment: Experiment, given: Given) -> None:
-    """Write down what an experiment was given."""
+def keep(store: Store, experiment: Experiment, given: Given, runs: int) -> None:
+    """Write down what an experiment was given, and how many runs there are once it has that."""
     plan = store.note(PLAN) or {}
     entry = {
         "blocks": given.blocks,
+        "runs": runs,
         "order_seed": experiment.order_seed,
         "points": [point.id for point in experiment.points],
         **({"stopped": given.stopped} if given.stopped else {}),

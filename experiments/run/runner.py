@@ -175,7 +175,8 @@ class Runner:
         scratch = self._store.temporary / "record.json"
         scratch.unlink(missing_ok=True)
         tags = task.tags(self._store.session)
-        timeline = self._store.temporary / "timeline.json" if _is_drawn(task) else None
+        drawn = is_drawn(point, task.block)
+        timeline = self._store.temporary / "timeline.json" if drawn else None
         command = point.bench_words(_path(scene), scratch, tags, timeline, point.besides(task.block))
         done = run_alone(command, point.openmp, self._time_limit)
         outcome = self._keep(task, scratch, done)
@@ -214,9 +215,9 @@ def _path(scene: SceneFile | None) -> Path:
     return scene.path
 
 
-def _is_drawn(task: Task) -> bool:
+def is_drawn(point: Point, block: int) -> bool:
     """Whether the process leaves a timeline: one a point of the phases is enough to see who waits."""
-    return task.point.verb == "profile" and task.point.figure == "phases" and task.block == 0
+    return point.verb == "profile" and point.figure == "phases" and block == 0
 
 
 def _violation(record: object) -> str | None:

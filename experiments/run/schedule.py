@@ -1,7 +1,7 @@
 """How many blocks each experiment has, what is still to be run, and who gets the next ones."""
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
@@ -13,6 +13,7 @@ from experiments.run.given import Given, given_before, keep
 from experiments.run.progress import Status
 from experiments.run.verdicts import Open, Verdicts
 from experiments.run.verify import representative
+from experiments.run.whole_blocks import WholeBlocks
 
 
 class Schedule:
@@ -35,6 +36,27 @@ class Schedule:
         self._begun = given_before(store, experiments, found)
         least = {one.name: Given(one.question.blocks.minimum) for one in experiments}
         self.given = least | self._begun
+        self._laid_out: dict[str, WholeBlocks] = {}
+
+    def blocks_of(self, experiment: Experiment) -> WholeBlocks:
+        """Its blocks, as its records stand now."""
+        name = experiment.name
+        if name not in self._laid_out:
+            given_up = {point for one, point in self._given_up if one == name}
+            self._laid_out[name] = WholeBlocks(
+                experiment, self.given[name], self._found[name], self._store.session, given_up
+            )
+        return self._laid_out[name]
+
+    def blocks(self, experiment: Experiment, most: int | None = None) -> Iterator[int]:
+        """The numbers of its blocks, up to the last one in which something may be missing, or of the first
+        so many alone. They may grow more while they are measured: what failed in an earlier session and now
+        does not is measured again with all others.
+        """
+        block = 0
+        while block < self.blocks_of(experiment).end(most):
+            yield block
+            block += 1
 
     def share(self, seconds_left: float, settled: Collection[str] = ()) -> None:
         """Share the time left among the experiments that are not settled; none loses a block it was given."""
@@ -42,14 +64,16 @@ class Schedule:
         loads = [self._load(one, once[one.name], stopped=one.name in settled) for one in self.experiments]
         for name, blocks in allocate(loads, seconds_left).items():
             self.given[name].blocks = blocks
+        self._laid_out.clear()
 
     def give(self, experiment: Experiment, found: Open) -> None:
         """Give an experiment the blocks up to its next look, without the points of which nothing is asked."""
         given = self.given[experiment.name]
         for point in experiment.points:
             if (point.series, point.x) in found.points_stopped:
-                given.stopped.setdefault(point.id, given.blocks)
+                given.stopped.setdefault(point.id, self.blocks_of(experiment).next(point))
         given.blocks = max(given.blocks, found.next)
+        self._laid_out.pop(experiment.name, None)
 
     def cheapest(self, verdicts: Verdicts, seconds_left: float) -> Experiment | None:
         """The experiment in which something is settled at the least expense, of those whose next look there
@@ -76,64 +100,65 @@ class Schedule:
     def _is_given_up(self, experiment: Experiment, point: Point) -> bool:
         return (experiment.name, point.id) in self._given_up
 
-    def begin(self, experiment: Experiment) -> int:
-        """The experiment's number of blocks, fixed and written down."""
+    def begin(self, experiment: Experiment) -> None:
+        """Write down the experiment's number of blocks, which it gets for certain from now on."""
         given = self._begun[experiment.name] = self.given[experiment.name]
-        keep(self._store, experiment, given)
-        return given.blocks
+        seconds = self._found[experiment.name].seconds
+        lacking = sum(key not in seconds for key in self.blocks_of(experiment).keys)
+        keep(self._store, experiment, given, len(seconds) + lacking)
 
     def promised(self, experiment: Experiment) -> int:
         """The blocks that the experiment gets for certain: those decided, until then the least."""
         begun = self._begun.get(experiment.name)
         return begun.blocks if begun else experiment.question.blocks.minimum
 
-    def size(self, experiment: Experiment, block: int) -> int:
-        """How many points the block has."""
-        given = self.given[experiment.name]
-        return sum(given.includes(point, block) for point in experiment.points)
-
-    def missing(self, experiment: Experiment, block: int) -> list[tuple[int, Point]]:
-        """Position and point of what is still to be run in one block, in the block's order."""
-        seconds, given = self._found[experiment.name].seconds, self.given[experiment.name]
-        return [
-            (position, point)
-            for position, point in enumerate(experiment.block(block))
-            if given.includes(point, block)
-            and (point.id, block) not in seconds
-            and not self._is_given_up(experiment, point)
-        ]
+    def left(self, experiment: Experiment) -> list[Point]:
+        """The points of all processes that are still to be run."""
+        blocks = self.blocks_of(experiment)
+        return [point for block in range(blocks.end()) for _, point in blocks.missing(block)]
 
     def is_complete(self, experiment: Experiment) -> bool:
         """Whether nothing of it is still to be run."""
-        blocks = self.given[experiment.name].blocks
-        return not any(self.missing(experiment, block) for block in range(blocks))
+        blocks = self.blocks_of(experiment)
+        return not any(blocks.missing(block) for block in range(blocks.end()))
+
+    def measured_again(self) -> Iterator[str]:
+        """Say of each experiment that has lost partners what is measured again with them."""
+        for one in self.experiments:
+            blocks = self.blocks_of(one)
+            if not blocks.broken or self.is_complete(one):
+                continue
+            lost = f"without {', '.join(blocks.lost())}" if blocks.lost() else "not of one session"
+            yield (
+                f"{one.name}: {len(blocks.broken)} earlier blocks are {lost} (changed, failed or cut off); "
+                "what lost its partner is measured again with it"
+            )
 
     def finish(self, experiment: Experiment, point: Point, block: int, seconds: float | None) -> None:
         """A process ended after so many seconds; None if it failed, and then its point is not tried again."""
+        self._laid_out.pop(experiment.name, None)
         if seconds is None:
             self._given_up.add((experiment.name, point.id))
             return
-        self._found[experiment.name].seconds[point.id, block] = seconds
+        found, key = self._found[experiment.name], (point.id, block)
+        found.seconds[key], found.sessions[key] = seconds, self._store.session
+        found.failures.pop(key, None)
         self._costs.learn(point, seconds)
 
     def status(self) -> Status:
-        """How far the study is; what is left counts scenes and checks too."""
-        missing = self._all_missing()
-        planned = sum(len(self.given[one.name].keys(one.points)) for one in self.experiments)
+        """How far the study is; what is left counts scenes and checks too. What stands without its partners
+        is not part of it.
+        """
+        missing = [point for one in self.experiments for point in self.left(one)]
+        planned = [(one.name, key) for one in self.experiments for key in self.blocks_of(one).keys]
+        done = [
+            seconds for name, key in planned if (seconds := self._found[name].seconds.get(key)) is not None
+        ]
         return Status(
-            planned=planned,
-            done=planned - len(missing) - self._without_hope(),
-            seconds_done=sum(sum(found.seconds.values()) for found in self._found.values()),
+            planned=len(planned),
+            done=len(done),
+            seconds_done=sum(done),
             seconds_left=sum(self._once_seconds().values()) + sum(map(self._costs.point, missing)),
-        )
-
-    def _without_hope(self) -> int:
-        """How many processes of points that failed will not be run."""
-        return sum(
-            (point.id, block) not in self._found[one.name].seconds and self._is_given_up(one, point)
-            for one in self.experiments
-            for point in one.points
-            for block in range(self.given[one.name].blocks)
         )
 
     def control_due(self, control: Experiment) -> int:
@@ -146,7 +171,8 @@ class Schedule:
         seconds = {point.id: self._costs.point(point) for point in experiment.points}
         minimum = self.given[experiment.name].blocks
         wanted = minimum if stopped else max(minimum, experiment.question.blocks.wanted)
-        done = sum(seconds[point] for point, block in self._found[experiment.name].seconds if block < minimum)
+        measured = self._found[experiment.name].seconds
+        done = sum(seconds[key[0]] for key in self.blocks_of(experiment).keys if key in measured)
         return Load(experiment.name, sum(seconds.values()), once - done, minimum, wanted)
 
     def _once_seconds(self) -> dict[str, float]:
@@ -165,14 +191,6 @@ class Schedule:
                     seconds[one.name] += cost
                 counted.add(key)
         return seconds
-
-    def _all_missing(self) -> list[Point]:
-        return [
-            point
-            for one in self.experiments
-            for block in range(self.given[one.name].blocks)
-            for _, point in self.missing(one, block)
-        ]
 
 
 def _once_each(experiment: Experiment, costs: Costs) -> list[tuple[str, object, float]]:

@@ -39,6 +39,8 @@ def run(settings: Settings) -> int:
         keep_claims(settings.questions, settings.results)
         runner = study.runner()
         schedule = study.schedule(runner, settle=True)
+        for line in schedule.measured_again():
+            report.line(line)
         report.line(summary(schedule, study.budget_seconds))
         if limits := what_limits():
             report.line(limits)
@@ -95,7 +97,7 @@ class Session:
                 self._schedule.begin(experiment)  # it may have fewer points than when it was completed
         for experiment in self._incomplete:
             self._run_control(everything=False)
-            self._block(experiment, 0)
+            self._first_block(experiment)
             if experiment.question.blocks.wanted == 1:
                 self._measure(experiment)
         for experiment in self._incomplete:
@@ -161,8 +163,14 @@ class Session:
                 self._measure(experiment)
 
     def _measure(self, experiment: Experiment) -> None:
-        for block in range(self._schedule.begin(experiment)):
+        self._schedule.begin(experiment)
+        for block in self._schedule.blocks(experiment):
             self._run_control(everything=False)
+            self._block(experiment, block)
+        self._schedule.begin(experiment)
+
+    def _first_block(self, experiment: Experiment) -> None:
+        for block in self._schedule.blocks(experiment, most=1):
             self._block(experiment, block)
 
     def _run_control(self, *, everything: bool) -> None:
@@ -170,14 +178,15 @@ class Session:
         control = self._control
         if control is None or self._schedule.is_complete(control):
             return
-        blocks = self._schedule.begin(control)
-        for block in range(blocks if everything else self._schedule.control_due(control)):
+        self._schedule.begin(control)
+        due = None if everything else self._schedule.control_due(control)
+        for block in self._schedule.blocks(control, due):
             self._block(control, block)
 
     def _block(self, experiment: Experiment, block: int) -> None:
-        missing = self._schedule.missing(experiment, block)
-        blocks, size = self._schedule.promised(experiment), self._schedule.size(experiment, block)
-        what = f"{experiment.name}, block {block + 1} of {blocks}"
+        laid_out, blocks = self._schedule.blocks_of(experiment), self._schedule.promised(experiment)
+        missing, size = laid_out.missing(block), laid_out.size(block)
+        what = f"{experiment.name}, block {laid_out.ordinal(block)} of {blocks}"
         for group in together(experiment, block, missing):
             self._report.now(what, self._schedule.status)
             tasks = [Task(experiment, point, block, position, blocks, size) for position, point in group]

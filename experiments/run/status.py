@@ -12,6 +12,7 @@ from experiments.plan.site import what_limits
 from experiments.results.store import Store
 from experiments.run.given import Given, given_before
 from experiments.run.study import Settings, Study, summary
+from experiments.run.whole_blocks import WholeBlocks
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,8 @@ class Row:
     done: int
     failed: int
     stale: int
+    alone: int
+    """Records of blocks that are not of one session, and give no ratio."""
     reason: str
 
     @property
@@ -44,12 +47,13 @@ def rows(store: Store, experiments: Sequence[Experiment]) -> list[Row]:
     result = []
     for experiment in experiments:
         one = found[experiment.name]
-        # A run that was told how many blocks to make may have made more than the question asks for.
-        begun = 1 + max((block for _, block in one.seconds), default=-1)
         given = decided.get(experiment.name, Given(experiment.question.blocks.minimum))
+        # A run that was told how many blocks to make may have made more than the question asks for.
+        begun = WholeBlocks(experiment, given, one, store.session).whole
         given.blocks = max(begun, given.blocks)
+        blocks = WholeBlocks(experiment, given, one, store.session)
         failed_points = {point for point, _ in one.failures}
-        keys = given.keys(experiment.points)
+        keys = blocks.keys
         result.append(
             Row(
                 name=experiment.name,
@@ -60,6 +64,7 @@ def rows(store: Store, experiments: Sequence[Experiment]) -> list[Row]:
                 done=sum(key in one.seconds for key in keys),
                 failed=sum(key not in one.seconds and key[0] in failed_points for key in keys),
                 stale=len(one.stale),
+                alone=len(one.seconds.keys() - set(keys)),
                 reason=next(iter(one.failures.values()), ""),
             )
         )
@@ -82,6 +87,10 @@ def show_status(settings: Settings) -> int:
     for row in state:
         if row.failed:
             console.print(f"{row.name}: failed: {row.reason}")
+        if row.alone:
+            console.print(
+                f"{row.name}: {row.alone} more records are in blocks that no session measured whole"
+            )
     return 0
 
 
@@ -94,14 +103,14 @@ def show_plan(settings: Settings) -> int:
     table = new_table("experiment", "points", "blocks", "to be run", "figure", "claim", "title")
     for experiment in study.experiments:
         blocks = schedule.given[experiment.name].blocks
-        missing = sum(len(schedule.missing(experiment, block)) for block in range(blocks))
+        missing = len(schedule.left(experiment))
         question = experiment.question
         counts = (len(experiment.points), blocks, missing)
         told = (question.figure, question.claim or "-", question.title)
         table.add_row(experiment.name, *map(str, counts), *told)
     console = new_console()
     console.print(table)
-    for line in (summary(schedule, study.budget_seconds), what_limits(), others):
+    for line in (*schedule.measured_again(), summary(schedule, study.budget_seconds), what_limits(), others):
         if line:
             console.print(line)
     return 0

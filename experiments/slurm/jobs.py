@@ -7,7 +7,7 @@ whether its blocks are measured is told by the records alone.
 import hashlib
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -18,7 +18,10 @@ from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.site import Machine, Site, load_site
+from experiments.run.given import Given
 from experiments.run.study import Settings, Study
+from experiments.run.whole_blocks import WholeBlocks
+from experiments.support.digest import digest
 from experiments.support.errors import InputError
 from experiments.support.files import read_json
 
@@ -31,13 +34,16 @@ _OF_ONE_RUN: dict[str, Any] = {"budget_seconds": None, "figures": False}
 
 @dataclass(frozen=True)
 class Job:
-    """One job array: its name in the queue, the settings of the study, the units of each task."""
+    """One job array: its name in the queue, the settings of the study, the units of each task; and in a word
+    (`made_of`), by the experiment's name, what its blocks were made of and how long they might take.
+    """
 
     name: str
     partition: str
     settings: Settings
     tasks: tuple[tuple[Unit, ...], ...]
     submitted_at: str
+    made_of: Mapping[str, str]
 
     def content(self) -> dict[str, Any]:
         """As JSON."""
@@ -47,6 +53,7 @@ class Job:
             "partition": self.partition,
             "tasks": self.tasks,
             "submitted_at": self.submitted_at,
+            "made_of": dict(self.made_of),
             **{key: os.fspath(value) if isinstance(value, Path) else value for key, value in kept.items()},
         }
 
@@ -59,8 +66,9 @@ def read_job(path: Path) -> Job:
         kept = {key: _like(default, content[key]) for key, default in defaults.items()}
         tasks = tuple(tuple((str(name), int(block)) for name, block in task) for task in content["tasks"])
         settings = Settings(**_OF_ONE_RUN, **kept)
-        return Job(content["name"], content["partition"], settings, tasks, content["submitted_at"])
-    except (TypeError, KeyError, ValueError):
+        made_of = {str(name): str(word) for name, word in content.get("made_of", {}).items()}
+        return Job(content["name"], content["partition"], settings, tasks, content["submitted_at"], made_of)
+    except (TypeError, KeyError, ValueError, AttributeError):
         raise InputError(f"{path}: is not the list of blocks of a job") from None
 
 
@@ -100,8 +108,8 @@ class PartitionFolder:
         """All jobs ever submitted, the first one first."""
         return [read_job(path) for path in sorted(self.jobs.glob("*.json"))]
 
-    def next_job(self, tasks: Sequence[Sequence[Unit]]) -> tuple[Job, Path]:
-        """A job of these tasks with a name of its own, and the path to write it to."""
+    def next_job(self, study: Study, tasks: Sequence[Sequence[Unit]]) -> tuple[Job, Path]:
+        """A job of these tasks of the study with a name of its own, and the path to write it to."""
         numbers = [int(path.stem) for path in self.jobs.glob("*.json") if re.fullmatch(r"\d+", path.stem)]
         number = f"{max(numbers, default=0) + 1:04d}"
         # Another study of the same user may have jobs of the same number in the queue.
@@ -109,7 +117,13 @@ class PartitionFolder:
         name = f"carom-{self.partition.name}-{folder}-{number}"
         units = tuple(tuple(task) for task in tasks)
         now = datetime.now(UTC).isoformat()
-        return Job(name, self.partition.name, self.settings, units, now), self.jobs / f"{number}.json"
+        words = {one.name: self.made_of(one) for one in study.experiments}
+        return Job(name, self.partition.name, self.settings, units, now, words), self.jobs / f"{number}.json"
+
+    def made_of(self, experiment: Experiment) -> str:
+        """The points of an experiment and a task's time limit in a word: another one where any is another."""
+        words = sorted(point.id for point in experiment.points)
+        return digest(" ".join([*words, str(self.partition.minutes)]))
 
 
 def folders(settings: Settings) -> list[PartitionFolder]:
@@ -150,16 +164,25 @@ def results_of(settings: Settings, site: Site) -> Path:
     return cluster_of(site).results or settings.results.absolute() / "slurm" / site.name
 
 
-def units(study: Study) -> Iterator[tuple[Unit, Experiment, list[tuple[int, Point]]]]:
-    """Every block of the study with position and point of what is not measured yet.
+def blocks_of(study: Study, experiment: Experiment, busy: Collection[int] = ()) -> WholeBlocks:
+    """The experiment's blocks as the records stand; those that are `busy` wait in a queue or run."""
+    given = Given(experiment.question.blocks.minimum)
+    return WholeBlocks(experiment, given, study.store.find(experiment), study.store.session, busy=busy)
+
+
+def units(
+    study: Study, active: Collection[Unit] = ()
+) -> Iterator[tuple[Unit, Experiment, list[tuple[int, Point]]]]:
+    """Every block of the study with position and point of what is not measured yet; those of `active` units
+    are being measured.
 
     The first blocks of all experiments come before the second ones, so that the control is spread over all.
     """
-    found = {one.name: study.store.find(one).seconds for one in study.experiments}
-    most = max(one.question.blocks.minimum for one in study.experiments)
-    for block in range(most):
+    found = {
+        one.name: blocks_of(study, one, {block for name, block in active if name == one.name})
+        for one in study.experiments
+    }
+    for block in range(max(blocks.end() for blocks in found.values())):
         for one in study.experiments:
-            if block < one.question.blocks.minimum:
-                points = enumerate(one.block(block))
-                missing = [(at, point) for at, point in points if (point.id, block) not in found[one.name]]
-                yield (one.name, block), one, missing
+            if block < found[one.name].end():
+                yield (one.name, block), one, found[one.name].missing(block)

@@ -8,9 +8,9 @@ from experiments.run.progress import warn
 from experiments.run.status import new_console, new_table
 from experiments.run.study import Settings, Study
 from experiments.slurm import scheduler
-from experiments.slurm.jobs import PartitionFolder, Unit, folders, submitted, units
+from experiments.slurm.jobs import PartitionFolder, Unit, blocks_of, folders, submitted, units
 from experiments.slurm.scheduler import Queue, TaskState
-from experiments.slurm.submit import is_active
+from experiments.slurm.submit import is_active, of_scale, said, too_long
 from experiments.support.errors import InputError
 
 _STATES = ("done", "running", "waiting", "failed", "missing")
@@ -54,6 +54,8 @@ def show_cluster_status(settings: Settings) -> int:
             for reason, number in row.reasons.items()
         ]
         explained += _explain(folder, study, queue)
+        without = too_long(folder, study, is_active(folder, queue))
+        explained += [said(folder.partition.name, name, number) for name, number in without.items()]
     screen.print(shown)
     for line in explained:
         screen.print(line)
@@ -66,8 +68,10 @@ def rows(folder: PartitionFolder, study: Study, queue: Queue) -> list[Row]:
     by_name = {one.name: one for one in study.experiments}
     counts: dict[str, Counter[str]] = {name: Counter() for name in by_name}
     missing: dict[Unit, list[str]] = {}
-    for unit, experiment, points in units(study):
-        counts[experiment.name]["done"] += len(experiment.points) - len(points)
+    for experiment in study.experiments:
+        blocks, measured = blocks_of(study, experiment), study.store.find(experiment).seconds
+        counts[experiment.name]["done"] = sum(key in measured for key in blocks.keys)
+    for unit, _, points in units(study, of_scale(study, active)):
         missing[unit] = [point.id for _, point in points]
     result = []
     for name, experiment in by_name.items():
@@ -87,7 +91,8 @@ def rows(folder: PartitionFolder, study: Study, queue: Queue) -> list[Row]:
 
 def _explain(folder: PartitionFolder, study: Study, queue: Queue) -> list[str]:
     """Why tasks wait, and what became of those that left blocks unfinished."""
-    unfinished = {(study.scale.name, unit) for unit, _, points in units(study) if points}
+    active = of_scale(study, is_active(folder, queue))
+    unfinished = {(study.scale.name, unit) for unit, _, points in units(study, active) if points}
     told: Counter[tuple[str, str]] = Counter()
     # Of the jobs that a block was part of, the last one tells what became of it.
     for job in reversed(folder.known_jobs()):

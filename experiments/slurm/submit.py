@@ -1,18 +1,30 @@
 """Hand what is missing of a study to Slurm: one job array for each partition."""
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from experiments.plan.site import load_site
 from experiments.run.progress import warn
 from experiments.run.study import Settings, Study
 from experiments.slurm import scheduler
-from experiments.slurm.jobs import Job, PartitionFolder, Unit, folders, results_of, submitted, units
+from experiments.slurm.jobs import (
+    Job,
+    PartitionFolder,
+    Unit,
+    blocks_of,
+    folders,
+    results_of,
+    submitted,
+    units,
+)
 from experiments.slurm.scheduler import DEFAULT_MAX_ARRAY_SIZE, Queue
 from experiments.slurm.script import render
 from experiments.support.errors import InputError
 from experiments.support.files import locked, write_json, write_text
+
+MOST_CUT_OFF = 2
+"""Blocks of an experiment that allocations may cut off, in those that the question asks for."""
 
 
 def submit(settings: Settings, *, dry_run: bool = False) -> int:
@@ -61,6 +73,41 @@ def is_active(folder: PartitionFolder, queue: Queue) -> dict[tuple[str, Unit], s
     return active
 
 
+def of_scale(study: Study, active: Collection[tuple[str, Unit]]) -> set[Unit]:
+    """The units of the study itself."""
+    return {unit for scale, unit in active if scale == study.scale.name}
+
+
+def too_long(folder: PartitionFolder, study: Study, active: Collection[tuple[str, Unit]]) -> dict[str, int]:
+    """The experiments of which so many blocks were cut off that no further ones are submitted, with their
+    number: else a block that is longer than its allocation would be submitted for ever.
+    """
+    busy, found = of_scale(study, active), {}
+    for one in study.experiments:
+        word = folder.made_of(one)
+        handed_out = {
+            block
+            for job in folder.known_jobs()
+            if job.made_of.get(one.name) == word and job.settings.scale == study.scale.name
+            for task in job.tasks
+            for name, block in task
+            if name == one.name
+        }
+        blocks = blocks_of(study, one, {block for name, block in busy if name == one.name})
+        cut_off = sum(map(blocks.cut_off, handed_out))
+        if cut_off >= MOST_CUT_OFF * one.question.blocks.minimum:
+            found[one.name] = cut_off
+    return found
+
+
+def said(partition: str, experiment: str, cut_off: int) -> str:
+    """Say that no further blocks are submitted."""
+    return (
+        f"{partition}: {experiment}: {cut_off} blocks were cut off before they were whole; no further ones "
+        "are submitted: raise `minutes` in the site file"
+    )
+
+
 def _submit(folder: PartitionFolder, study: Study, queue: Queue, array_size: int) -> None:
     active = is_active(folder, queue)
     for experiment in study.experiments:
@@ -68,12 +115,16 @@ def _submit(folder: PartitionFolder, study: Study, queue: Queue, array_size: int
     if not active:
         # What tasks that were killed left half-written.
         shutil.rmtree(study.store.root / ".running", ignore_errors=True)
-    wanted, points = _missing(study, active)
+    without = too_long(folder, study, active)
+    wanted, points = _missing(study, active, without)
     name = folder.partition.name
+    for one, cut_off in without.items():
+        print(said(name, one, cut_off))
     if not wanted:
-        print(f"{name}: nothing to submit; " + ("the rest waits or runs" if active else "all is measured"))
+        rest = "waits or runs" if active else "was cut off" if without else ""
+        print(f"{name}: nothing to submit; " + (f"the rest {rest}" if rest else "all is measured"))
         return
-    job, path = folder.next_job(pack(wanted, folder.partition.blocks_per_task, array_size))
+    job, path = folder.next_job(study, pack(wanted, folder.partition.blocks_per_task, array_size))
     script = path.with_suffix(".sbatch")
     text = _script(folder, study, job, path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -89,22 +140,25 @@ def _submit(folder: PartitionFolder, study: Study, queue: Queue, array_size: int
     print(f"{name}: job {number}, {points} processes in {len(job.tasks)} tasks: {script}")
 
 
-def _missing(study: Study, active: dict[tuple[str, Unit], str]) -> tuple[list[Unit], int]:
-    """Units to submit, and the number of their processes."""
+def _missing(
+    study: Study, active: Collection[tuple[str, Unit]], without: Collection[str]
+) -> tuple[list[Unit], int]:
+    """Units to submit, and the number of their processes, `without` those of some experiments."""
+    busy = of_scale(study, active)
     lacking = {
         unit: len(points)
-        for unit, _, points in units(study)
-        if points and (study.scale.name, unit) not in active
+        for unit, experiment, points in units(study, busy)
+        if points and unit not in busy and experiment.name not in without
     }
     return list(lacking), sum(lacking.values())
 
 
 def _print_script(folder: PartitionFolder, study: Study, array_size: int) -> None:
-    wanted, points = _missing(study, {})
+    wanted, points = _missing(study, (), too_long(folder, study, ()))
     if not wanted:
         print(f"# {folder.partition.name}: nothing to submit")
         return
-    job, path = folder.next_job(pack(wanted, folder.partition.blocks_per_task, array_size))
+    job, path = folder.next_job(study, pack(wanted, folder.partition.blocks_per_task, array_size))
     print(f"# {folder.partition.name}: {points} processes in {len(job.tasks)} tasks")
     print(_script(folder, study, job, path))
 

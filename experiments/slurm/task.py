@@ -9,7 +9,7 @@ from experiments.run.progress import Report
 from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import together
-from experiments.slurm.jobs import PartitionFolder, folders, read_job, units
+from experiments.slurm.jobs import PartitionFolder, Unit, blocks_of, folders, read_job
 from experiments.support.errors import InputError
 
 
@@ -18,7 +18,8 @@ def work(manifest: Path, index: int) -> int:
 
     Others may work in the same folder, even at the same points: a copy of this task that Slurm started
     because it had lost sight of this one. So everything half-made is in a folder of this process's own, a
-    record comes to its place whole, by a rename, and the last one stays.
+    record comes to its place whole, by a rename, and the last one stays. A block that another session has
+    begun is left as it is: what is compared is measured by one.
     """
     job = read_job(manifest)
     if not 0 <= index < len(job.tasks):
@@ -28,7 +29,7 @@ def work(manifest: Path, index: int) -> int:
         raise InputError(f'{job.settings.site}: has no partition "{job.partition}" any more')
     study = partitions[job.partition].study()
     with study.store.shared(), Report() as report:
-        return _Worker(study, report).run(set(job.tasks[index]))
+        return _Worker(study, report).run(job.tasks[index])
 
 
 class _Worker:
@@ -43,17 +44,20 @@ class _Worker:
         self._runner = Runner(store, scenes, study.generator, study.site.time_limit_seconds)
         self._failed: set[tuple[str, str]] = set()
 
-    def run(self, own: set[tuple[str, int]]) -> int:
-        for (_, block), experiment, missing in units(self._study):
-            if (experiment.name, block) in own:
-                hopeful = [one for one in missing if (experiment.name, one[1].id) not in self._failed]
-                for group in together(experiment, block, hopeful):
-                    size = len(experiment.points)
-                    tasks = [
-                        Task(experiment, point, block, at, _blocks(experiment), size) for at, point in group
-                    ]
-                    self._measure([one for one in tasks if not self._study.store.has(one.point, block)])
+    def run(self, own: Sequence[Unit]) -> int:
+        experiments = {one.name: one for one in self._study.experiments}
+        for name, block in own:
+            if name in experiments:
+                self._block(experiments[name], block)
         return POINTS_FAILED if self._failed else 0
+
+    def _block(self, experiment: Experiment, block: int) -> None:
+        missing = blocks_of(self._study, experiment).missing_if_given(block)
+        hopeful = [one for one in missing if (experiment.name, one[1].id) not in self._failed]
+        for group in together(experiment, block, hopeful):
+            size = len(experiment.points)
+            tasks = [Task(experiment, point, block, at, _blocks(experiment), size) for at, point in group]
+            self._measure([one for one in tasks if not self._study.store.has(one.point, block)])
 
     def _measure(self, tasks: Sequence[Task]) -> None:
         for task, outcome in zip(tasks, self._runner.run(tasks), strict=True):

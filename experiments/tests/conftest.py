@@ -211,6 +211,10 @@ class Workplace:
         study = Study(self.settings)
         return {row.name: row for row in status.rows(study.store, study.experiments)}
 
+    def is_whole(self) -> bool:
+        """Whether every question has all the blocks that it was given, each of one session."""
+        return all(row.done == row.planned for row in self.rows().values())
+
 
 def damage(path: Path, kind: str) -> None:
     """Put something else in the place of a record: `torn`, `foreign`, `of another kind` or `a folder`."""

@@ -2,6 +2,7 @@ import json
 import re
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -70,20 +71,33 @@ def test_partial_data_are_marked_in_figure_and_caption(tmp_path: Path) -> None:
     assert drawn.caption.endswith("Partial: 30 of 40 runs.")
 
 
+def test_a_block_that_was_left_has_another_in_its_place(tmp_path: Path) -> None:
+    records = study(["steps"], blocks=5)
+    for record in records:
+        record["tags"]["blocks_planned"] = 4
+    left = [record for record in records if record["tags"]["block"] != 1 or record["tags"]["x"] < 100]
+    assert len(left) < 50
+    write(tmp_path, left)
+    assert "artial" not in draw_all(tmp_path, formats=("svg",))[0].caption
+    for path in tmp_path.glob("records/steps/*-b4.json"):
+        path.unlink()
+    missing = 50 - len(left)
+    assert draw_all(tmp_path, formats=("svg",))[0].caption.endswith(f"Partial: {40 - missing} of 40 runs.")
+
+
 def test_what_is_planned_is_what_the_runner_wrote_down_last(tmp_path: Path) -> None:
     """Records of a question of ten values, of which two were taken out."""
     records = [record for record in study(["steps"], blocks=4) if record["tags"]["x"] <= 160]
     write(tmp_path, records)
     assert draw_all(tmp_path, formats=("svg",))[0].caption.endswith("Partial: 32 of 40 runs.")
     points = sorted({record["tags"]["point"] for record in records})
-    plan = {"paper": {"steps": {"blocks": 4, "points": points}}}
+    plan: dict[str, Any] = {"paper": {"steps": {"runs": 32, "points": points}}}
     (tmp_path / "plan.json").write_text(json.dumps(plan))
     assert "artial" not in draw_all(tmp_path, formats=("svg",))[0].caption
-    plan["paper"]["steps"]["blocks"] = 5
-    plan["paper"]["steps"]["stopped"] = {points[0]: 4}
+    plan["paper"]["steps"]["runs"] = 39
     (tmp_path / "plan.json").write_text(json.dumps(plan))
     assert draw_all(tmp_path, formats=("svg",))[0].caption.endswith("Partial: 32 of 39 runs.")
-    for other in ({"paper": {"steps": {"blocks": 4, "points": points[1:]}}}, {"paper": {"steps": 3}}, {}, 7):
+    for other in ({"paper": {"steps": {"runs": 32, "points": points[1:]}}}, {"paper": {"steps": 3}}, {}, 7):
         (tmp_path / "plan.json").write_text(json.dumps(other))
         assert draw_all(tmp_path, formats=("svg",))[0].caption.endswith("Partial: 32 of 40 runs."), (
             "it is not the plan of these"

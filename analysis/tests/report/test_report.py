@@ -138,6 +138,23 @@ def test_sessions_without_a_control_and_results_that_failed_are_counted(tmp_path
     assert "1 result failed the program's own check" in said
 
 
+def test_records_without_a_partner_are_named_where_they_are_compared_and_why(tmp_path: Path) -> None:
+    """Of six blocks half have a side that was measured again later, as after an edit."""
+    records = study(["neighbourhood"], blocks=6, noise=QUIET)
+    again = [one for one in records if one["tags"]["series"] == "nine" and one["tags"]["block"] < 3]
+    for record in again:
+        record["tags"]["session"] = "later"
+        record["repetitions"][0]["steps_seconds"] *= 2
+    write(tmp_path, records)
+    said = text_of(report.render(tmp_path)).replace("\u00a0", " ")
+    assert len(again) == 3
+    assert "In no ratio: 3 of four, 3 of nine, beside which their session measured nothing" in said
+    assert "count in times alone: 3 of four, 3 of nine (neighbourhood). A partner is lost where" in said
+    assert "from 3 blocks" in said
+    write(tmp_path / "whole", study(["neighbourhood"], blocks=6, noise=QUIET))
+    assert "no ratio" not in text_of(report.render(tmp_path / "whole"))
+
+
 def test_a_failed_control_is_shouted(tmp_path: Path) -> None:
     records = study(["control"], blocks=6, noise=QUIET)
     for record in records:

@@ -55,6 +55,13 @@ def test_a_label_on_one_side_and_a_configuration_that_soon_failed_leave_the_esti
     assert process_noise(failed)["blocks"].tolist() == [8]
 
 
+def test_what_has_no_partner_leaves_the_estimate_as_it_is() -> None:
+    table = times_table({"a": 1.0, "b": 1.3}, 20, 1, Noise(burst_rate=0, drift=0), seed=1)
+    changed = table[(table["series"] == "a") | (table["block"] >= 12)].assign(figure="comparison")
+    whole = table[table["block"] >= 12].assign(figure="comparison")
+    assert process_noise(changed).equals(process_noise(whole))
+
+
 def test_the_warning_names_the_worst_and_what_to_do() -> None:
     loud, quiet = (Noise(process=level, repetition=0, burst_rate=0) for level in (0.03, 0.001))
     table = process_noise(

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from analysis.claims.alternatives import alternatives
 from analysis.statistics.looks import ERROR
-from analysis.statistics.pairs import join_replicates, log_ratios
+from analysis.statistics.pairs import join_replicates, log_ratios, without_partner
 
 OTHERS = 16
 REPLICATES = 4
@@ -66,3 +66,31 @@ def unsettled(replicates: int, blocks: int) -> int:
     """Return of how many others, over all studies, it is not settled that they are no faster."""
     tables = [alternatives(comparisons(replicates, blocks, seed)).table for seed in range(STUDIES)]
     return sum(int((table["behind"] > ERROR).sum()) for table in tables)
+
+
+def measured(*rows: tuple[str, float, int, str]) -> pd.DataFrame:
+    """Return a row a run: its series, x, block and session."""
+    table = pd.DataFrame(rows, columns=["series", "x", "block", "session"])
+    return table.assign(node="n", scene_name=None)
+
+
+def test_a_series_has_its_partners_at_the_same_x() -> None:
+    first = [(name, x, 0, "1") for name in "ab" for x in (1.0, 2.0)]
+    later = [("a", x, 1, "1") for x in (1.0, 2.0)]
+    assert list(without_partner(measured(*first, *later)).index) == [4, 5], "of b nothing is left"
+    again = [("b", 2.0, 1, "2")]
+    assert list(without_partner(measured(*first, *later, *again)).index) == [4, 5, 6]
+
+
+def test_a_single_series_has_its_partners_along_the_sweep() -> None:
+    whole = [("a", x, 0, "1") for x in (1.0, 2.0)]
+    assert list(without_partner(measured(*whole, ("a", 1.0, 1, "1"), ("a", 2.0, 1, "2"))).index) == [2, 3]
+    assert without_partner(measured(("a", 1.0, 0, "1"), ("a", 1.0, 1, "2"))).empty, (
+        "it is compared with nothing"
+    )
+
+
+def test_scenes_are_no_partners() -> None:
+    runs = measured(("a", 0.0, 0, "1"), ("b", 0.0, 0, "1"), ("a", 0.0, 1, "1"), ("b", 0.0, 1, "1"))
+    named = runs.assign(scene_name=["one", "one", "one", "other"])
+    assert list(without_partner(named).index) == [2]

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.looks import ERROR
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios, process_medians, without_partner
 from analysis.statistics.verdicts import MARGIN, holm, judge_one
 
 RATIOS = st.lists(st.floats(-3, 3), min_size=1, max_size=20)
@@ -90,3 +90,28 @@ def test_holm_only_raises_keeps_the_order_and_does_not_ask_for_it(p: list[float]
     order = list(range(len(p)))
     random.shuffle(order)  # type: ignore[attr-defined]
     assert [adjusted[index] for index in order] == pytest.approx(holm([p[index] for index in order]))
+
+
+@given(st.lists(st.tuples(*[st.sampled_from(["", "1", "2", "3"])] * 2), min_size=1, max_size=8))
+@settings(max_examples=100, deadline=None)
+def test_a_pair_is_of_one_session_and_all_else_is_named(sessions: list[tuple[str, str]]) -> None:
+    """Each block has a session for either side, or none where the side was not measured in it."""
+    rows = [
+        {"node": "n", "block": block, "session": session, "series": series, "x": 0.0, "scene_name": None,
+         "steps_seconds": 1.0 + block}
+        for block, sides in enumerate(sessions)
+        for series, session in zip("ab", sides, strict=True)
+        if session
+    ]  # fmt: skip
+    table = pd.DataFrame(
+        rows, columns=["node", "block", "session", "series", "x", "scene_name", "steps_seconds"]
+    )
+    a, b = (table[table["series"] == name] for name in "ab")
+    met = {(block, one) for block, (one, other) in enumerate(sessions) if one == other != ""}
+    pairs = log_ratios(a, b)
+    assert set(zip(pairs["block"], pairs["session"], strict=True)) == met
+    alone = without_partner(table)
+    if len(a) and len(b):
+        assert len(alone) == len(table) - 2 * len(met)
+    else:
+        assert alone.empty, "nothing is compared with anything"

@@ -39,6 +39,15 @@ def test_an_interrupted_block_does_not_move_the_exponent() -> None:
     assert growth(cut).exponent == growth(bent[bent["block"] < 4]).exponent
 
 
+def test_a_curve_of_two_sessions_is_none() -> None:
+    bent = curve({10.0: 1.0, 100.0: 1.5, 1000.0: 40.0, 2000.0: 90.0}, blocks=6)
+    before = bent[bent["block"] < 5]
+    parted = bent.assign(session=np.where((bent["block"] == 5) & (bent["x"] > 50), "later", "session"))
+    assert growth(parted) == growth(before)
+    assert linearity(parted) == linearity(before)
+    assert minimum(parted) == minimum(before)
+
+
 def test_a_constant_time_is_flat_or_undecided_and_never_a_trend() -> None:
     verdicts = [
         growth(curve(dict.fromkeys((1.0, 2.0, 4.0), 1.0), 12, seed=seed)).verdict for seed in range(40)
@@ -109,6 +118,7 @@ def table(curves: Floats) -> pd.DataFrame:
             "steps_seconds": curves.ravel(),
             "node": "n",
             "block": np.repeat(np.arange(blocks), points),
+            "session": "s",
         }
     )
 

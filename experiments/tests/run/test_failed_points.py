@@ -55,7 +55,7 @@ def test_a_failed_point_is_tried_again_by_the_next_run(workplace: Workplace) -> 
     run(workplace.settings)
     workplace.behave(FAKE_BENCH_CRASHES="none")
     assert run(workplace.settings) == 0
-    assert len(workplace.records("pair")) == 4
+    assert workplace.is_whole()
     assert not workplace.failures()
 
 
@@ -97,7 +97,8 @@ def test_a_build_that_is_missing_is_a_gap_with_a_remedy(workplace: Workplace) ->
     assert "is not built; build it with `make build COMPILER=clang`" in failure["reason"]
     workplace.build("clang")
     assert run(workplace.settings) == 0
-    assert len(workplace.records("pair")) == 4
+    assert workplace.is_whole()
+    assert workplace.rows()["pair"].done == 4
     assert not workplace.failures()
 
 

@@ -18,7 +18,8 @@ BLOCKS = 6
 
 def test_ten_kills_lose_at_most_one_process_each(empty_workplace: Workplace) -> None:
     workplace = empty_workplace
-    for name, text in (("chunks", CHUNKS), ("pair", PAIR), ("control", CONTROL)):
+    apart = PAIR.replace("[scene]", "turns = false\n[scene]", 1)
+    for name, text in (("chunks", CHUNKS), ("pair", apart), ("control", CONTROL)):
         workplace.question(name, more_blocks(text))
     workplace.behave(FAKE_SECONDS="0.1")
     moments = random.Random(20240229)
@@ -35,12 +36,16 @@ def test_ten_kills_lose_at_most_one_process_each(empty_workplace: Workplace) -> 
         for record in records.values():
             jsonschema.validate(record, json.loads(RECORD_SCHEMA.read_text(encoding="utf-8")))
         before = records
-    assert 0 < len(before) < 7 * BLOCKS, "the kills came while there was something to do"
+    assert before, "something was finished"
+    assert not workplace.is_whole(), "the kills came while there was something to do"
     assert run(workplace.settings) == 0
-    assert len(workplace.records()) == 7 * BLOCKS
-    assert before.items() <= workplace.records().items()
+    after = workplace.records()
+    assert before.items() <= after.items()
+    rows = workplace.rows().values()
+    assert [(row.done, row.missing) for row in rows] == [(3 * BLOCKS, 0), (2 * BLOCKS, 0), (2 * BLOCKS, 0)]
     most_together = 3
-    assert workplace.measured() <= 7 * BLOCKS + most_together * KILLS, "each kill cost one process at most"
+    assert len(after) <= 7 * BLOCKS + (most_together - 1) * KILLS, "each kill cuts through one block at most"
+    assert workplace.measured() <= len(after) + most_together * KILLS, "each kill cost one process at most"
     assert not (workplace.results / ".running").exists()
     assert not workplace.failures()
 

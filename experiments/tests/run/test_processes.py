@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from experiments.__main__ import main
+from experiments.run import status
 from experiments.run.session import run
-from experiments.run.study import POINTS_FAILED, Settings
+from experiments.run.study import POINTS_FAILED, Settings, Study
 from experiments.support.schema import is_record
 from experiments.tests.conftest import ROOT, SCENE, Workplace, finish
 
@@ -133,7 +134,7 @@ def test_every_kind_is_measured_or_fails_with_its_reason(programs: Workplace) ->
     assert crashed["command"][0].endswith('crash it\'s "here"')
 
 
-def test_a_changed_program_is_measured_again_and_no_other(programs: Workplace) -> None:
+def test_a_changed_program_is_measured_again_with_its_partners(programs: Workplace) -> None:
     run(settings(programs))
     before = programs.records("others")
     with (programs.root / "questions" / "mine").open("a") as file:
@@ -141,8 +142,10 @@ def test_a_changed_program_is_measured_again_and_no_other(programs: Workplace) -
     run(settings(programs))
     after = programs.records("others")
     series = {record["tags"]["series"] for name, record in after.items() if name not in before}
-    assert series == {"right"}
-    assert len(after) == 8
+    assert series == {"right", "variant", "says", "benchmark"}, "with those that it is compared with"
+    left = {record["tags"]["series"] for name, record in before.items() if after.get(name) != record}
+    assert left == {"right"}
+    assert len(after) == 6 + 8
 
 
 SLOW = """
@@ -185,7 +188,10 @@ def test_killed_and_resumed_it_measures_what_is_missing(empty_workplace: Workpla
     code, _, _ = finish(empty_workplace.start("run", *more))
     assert code == 0
     records = empty_workplace.records("counts")
-    assert len(records) == 8
+    study = Study(settings(empty_workplace))
+    (row,) = status.rows(study.store, study.experiments)
+    assert (row.done, row.missing) == (8, 0)
+    assert len(records) == 8 + row.alone, "of the block that the kill cut through"
     assert kept.items() <= {name: record["recorded_at"] for name, record in records.items()}.items()
 
 

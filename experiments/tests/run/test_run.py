@@ -133,13 +133,24 @@ def test_running_again_measures_nothing_twice(workplace: Workplace) -> None:
 
 def test_only_what_is_missing_is_run(workplace: Workplace) -> None:
     run(workplace.settings)
-    lost = sorted(workplace.results.glob("records/*/*.json"))[::3]
+    lost = sorted(workplace.results.glob("records/*/*-b1.json"))
     for path in lost:
         path.unlink()
     done = workplace.measured()
     assert run(workplace.settings) == 0
     assert workplace.measured() - done == len(lost)
     assert all(path.exists() for path in lost)
+
+
+def test_what_has_lost_its_partners_is_run_again_with_them(workplace: Workplace) -> None:
+    run(workplace.settings)
+    lost = sorted(workplace.results.glob("records/chunks/*-b1.json"))[0]
+    lost.unlink()
+    before, done = workplace.records(), workplace.measured()
+    assert run(workplace.settings) == 0
+    assert workplace.measured() - done == 3, "a block of the question"
+    assert before.items() <= workplace.records().items()
+    assert {one["tags"]["block"] for one in workplace.records("chunks").values()} == {0, 1, 2}
 
 
 def test_another_program_makes_every_record_stale(workplace: Workplace) -> None:

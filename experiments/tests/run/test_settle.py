@@ -220,9 +220,9 @@ def test_points_of_which_nothing_is_asked_stop_and_stay_so(workplace: Workplace)
         schedule = study.schedule(study.runner(), settle=False)
         schedule.give(chunks, Open(2, 4, 6, [[last.series, last.x]]))
         schedule.begin(chunks)
-        assert [schedule.size(chunks, block) for block in range(4)] == [3, 3, 2, 2]
-        again = study.schedule(study.runner(), settle=False)
-        assert last not in [point for _, point in again.missing(chunks, 2)]
-        assert len(again.missing(chunks, 2)) == 2
+        assert [schedule.blocks_of(chunks).size(block) for block in range(4)] == [3, 3, 2, 2]
+        again = study.schedule(study.runner(), settle=False).blocks_of(chunks)
+        assert last not in [point for _, point in again.missing(2)]
+        assert len(again.missing(2)) == 2
     [row] = [one for name, one in workplace.rows().items() if name == "chunks"]
     assert (row.planned, row.done, row.missing) == (10, 6, 4)

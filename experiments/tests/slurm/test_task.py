@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,12 +13,13 @@ import jsonschema
 import pytest
 
 from experiments.slurm import scheduler
-from experiments.slurm.jobs import PartitionFolder, folders, units
+from experiments.slurm.jobs import PartitionFolder, Unit, folders, units
+from experiments.slurm.submit import too_long
 from experiments.slurm.task import work
 from experiments.support.errors import InputError
 from experiments.support.files import write_json
 from experiments.support.schema import RECORD_SCHEMA
-from experiments.tests.conftest import ROOT, Workplace, hear_every_signal
+from experiments.tests.conftest import PAIR, ROOT, Workplace, hear_every_signal
 from experiments.tests.slurm.test_script import site
 
 CAROM = ROOT / "build" / "gcc" / "carom"
@@ -30,9 +32,10 @@ def folder_of(workplace: Workplace) -> PartitionFolder:
 def job_of(workplace: Workplace, tasks: int = 1) -> Path:
     """Write the list of blocks of a job, dealt out to so many tasks."""
     folder = folder_of(workplace)
-    wanted = [unit for unit, _, _ in units(folder.study())]
-    job, path = folder.next_job([wanted[first::tasks] for first in range(tasks)])
-    path.parent.mkdir(parents=True)
+    study = folder.study()
+    wanted = [unit for unit, _, points in units(study) if points]
+    job, path = folder.next_job(study, [wanted[first::tasks] for first in range(tasks)])
+    path.parent.mkdir(parents=True, exist_ok=True)
     write_json(path, job.content(), path.parent)
     return path
 
@@ -140,6 +143,78 @@ def test_the_control_is_spread_over_the_tasks(workplace: Workplace) -> None:
         *(("chunks", 1), ("control", 1), ("pair", 1)),
         ("control", 2),
     ]
+
+
+APART = PAIR.replace("[scene]", "turns = false\n[scene]", 1)
+
+
+def cut_off(workplace: Workplace, *lost: int) -> None:
+    """Leave the blocks of the question `pair` as a task does that was killed after their first process."""
+    for block in lost:
+        paths = sorted(workplace.results.glob(f"slurm/cluster/xs/records/pair/*-b{block}.json"))
+        for path in paths[1:]:
+            path.unlink()
+
+
+def missing(workplace: Workplace, active: Collection[Unit] = ()) -> dict[Unit, int]:
+    """How many processes are to be submitted, by block, while these are being measured."""
+    found = units(folder_of(workplace).study(), active)
+    return {unit: len(points) for unit, _, points in found if points and unit not in active}
+
+
+def test_a_block_that_was_cut_off_is_left_and_another_one_submitted(workplace: Workplace) -> None:
+    workplace.question("pair", APART)
+    manifest = job_of(workplace)
+    assert work(manifest, 0) == 0
+    assert missing(workplace) == {}
+    cut_off(workplace, 1)
+    before = records(workplace)
+    assert missing(workplace) == {("pair", 2): 2}
+    assert missing(workplace, active=[("pair", 1)]) == {}, "whoever measures it may go on with it"
+    assert work(manifest, 0) == 0
+    assert records(workplace) == before, "a task that was started again leaves it, too"
+    assert work(job_of(workplace), 0) == 0
+    assert len(records(workplace)) == len(before) + 2
+    assert missing(workplace) == {}
+
+
+def test_a_task_started_again_measures_what_was_not_begun(workplace: Workplace) -> None:
+    workplace.question("pair", APART)
+    manifest = job_of(workplace)
+    assert work(manifest, 0) == 0
+    cut_off(workplace, 0)
+    for path in workplace.results.glob("slurm/cluster/xs/records/pair/*-b1.json"):
+        path.unlink()
+    assert work(manifest, 0) == 0
+    assert {name[-7:] for name in records(workplace)} >= {"b1.json"}
+    assert missing(workplace) == {("pair", 2): 2}
+
+
+def test_blocks_that_never_fit_their_allocation_come_to_an_end(workplace: Workplace) -> None:
+    workplace.question("pair", APART)
+    submitted = 0
+    while wanted := missing(workplace):
+        folder, study = folder_of(workplace), folder_of(workplace).study()
+        if too_long(folder, study, ()):
+            break
+        assert work(job_of(workplace), 0) == 0
+        submitted += len(wanted)
+        cut_off(workplace, *(block for name, block in wanted if name == "pair"))
+    assert too_long(folder, study, ()) == {"pair": 4}, "twice the two blocks that the question asks for"
+    assert submitted == 7 + 2
+    site(workplace.root, "# own", "minutes = 90")
+    assert too_long(folders(folder.settings)[0], study, ()) == {}, "with more time they may be whole"
+
+
+def test_a_point_that_failed_is_tried_again_before_its_partners_are(workplace: Workplace) -> None:
+    workplace.behave(FAKE_BENCH_CRASHES="nine")
+    assert work(job_of(workplace), 0) == 2
+    assert missing(workplace) == {("pair", 0): 1}
+    workplace.behave(FAKE_BENCH_CRASHES="none")
+    assert work(job_of(workplace), 0) == 0
+    assert missing(workplace) == {("pair", 2): 2, ("pair", 3): 2}
+    assert work(job_of(workplace), 0) == 0
+    assert missing(workplace) == {}
 
 
 def answers(workplace: Workplace, **programs: str) -> None:

@@ -51,7 +51,7 @@ TEST_F(ProcessesCommand, LeavesARecordOfEach) {
                   {"turns", true},
                   {"expected_seconds", 0.05}});
     Json second = described("exit 0", "two");
-    second.update({{"turns", true}, {"expected_seconds", 0.002}});
+    second.update({{"turns", true}, {"expected_seconds", 0.05}});
     const auto result = processes({first, second}, {"--slice", "0.002", "--seed", "9"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.output, "");
