@@ -8,8 +8,9 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
+from experiments.plan.pattern import PatternError, groups_of
 from experiments.support import process
-from experiments.support.errors import InputError
+from experiments.support.errors import InputError, quoted
 
 SECONDS_OF_UNIT = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 
@@ -162,11 +163,13 @@ def _of_table(path: Path, key: str, table: dict[str, Any]) -> Iterator[Series]:
 
 def _require_one_group(key: str, pattern: str) -> None:
     try:
-        groups = re.compile(pattern).groups
-    except re.error as error:
-        raise InputError(f'{key}: found "{pattern}", expected a regular expression: {error}') from error
+        groups = groups_of(pattern)
+    except PatternError as error:
+        raise InputError(
+            f"{key}: found {quoted(pattern)}, expected a regular expression that is allowed: found {error}"
+        ) from error
     if groups != 1:
-        raise InputError(f'{key}: found "{pattern}" with {groups} groups, expected one around the number')
+        raise InputError(f"{key}: found {quoted(pattern)} with {groups} groups, expected one around the number")
 
 
 def _of_pattern(path: Path, key: str, series: Series, pattern: str) -> Iterator[Series]:
