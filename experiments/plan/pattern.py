@@ -1,8 +1,7 @@
 """The regular expressions in which a question says where a program prints its time.
 
 Here they are only looked at; the program `carom` matches them, by the ECMAScript rules of C++. Python's own
-rules accept more, and mean something else by parts of it. So what is allowed is written down here, and is what
-both understand alike.
+rules accept more, and mean something else by parts of it. What is allowed is what both understand alike.
 """
 
 from dataclasses import dataclass
@@ -26,7 +25,7 @@ _INSTEAD = {
     "?(": "write the alternatives with |",
 }
 _ESCAPES = {
-    "A": "write ^", "Z": "write $", "z": "write $", "n": "a pattern matches one line", "a": "write the letter",
+    "A": "write ^", "Z": "write $", "z": "write $", "n": "a pattern matches one line",
     "b": "write what stands there", "B": "write what stands there",
 }  # fmt: skip
 
@@ -38,7 +37,8 @@ class PatternError(Exception):
 def groups_of(pattern: str) -> int:
     """How many groups ( ) a pattern has. Raises PatternError where it is none of those that are allowed:
     characters, `.`, `[ ]`, `\\d \\w \\s` and their opposites, `^ $`, `( )`, `(?: )`, `|` and the quantifiers
-    `* + ? {n} {n,} {n,m}`, each also with a `?` behind it.
+    `* + ? {n} {n,} {n,m}`, each also with a `?` behind it. A group that is repeated has neither | nor a
+    quantifier in it.
     """
     scanner = _Scanner(pattern)
     scanner.alternatives(0)
@@ -54,6 +54,8 @@ class _Scanner:
     pattern: str
     at: int = 0
     groups: int = 0
+    choices: int = 0
+    """Alternatives and quantifiers so far."""
 
     @property
     def rest(self) -> str:
@@ -72,6 +74,7 @@ class _Scanner:
         while self.rest and not self.rest.startswith(")"):
             if self.rest.startswith("|"):
                 self.at += 1
+                self.choices += 1
             else:
                 states += self._quantified(depth)
             if states > _MOST_STATES:
@@ -79,14 +82,21 @@ class _Scanner:
         return states
 
     def _quantified(self, depth: int) -> int:
-        begin = self.at
+        begin, choices = self.at, self.choices
         first = self._next()
         states = self._part(first, depth)
         is_anchor = first in "^$"
         part = self.pattern[begin : self.at]
+        quantifier = self.rest[:1]
         times = self._times()
         if times is None:
             return states
+        if self.choices > choices and quantifier != "?":
+            # The matcher would try all ways to divide a line among the two, which may take for ever.
+            raise PatternError(
+                f"{quantifier} behind a group with | or a quantifier in it; repeat one of them"
+            )
+        self.choices += 1
         if is_anchor:
             raise PatternError(f"a quantifier behind {part}, which has no length; leave it out")
         if not part.isascii() and len(part) == 1:

@@ -29,16 +29,33 @@ class Program:
     sha256: str | None
     files: tuple[Path, ...] = ()
     """What it is made of, where that is more than the one file."""
+    hashes: tuple[str, ...] = ()
+    """Of each of these files, as it was first seen."""
+    inputs: tuple[Path, ...] = ()
+    """Those of them that it only reads or writes: neither the program nor what interprets it."""
+    absent: tuple[Path, ...] = ()
+    """What it may be going to write: words that could be files, and are none."""
+    written: frozenset[Path] = frozenset()
+    """Files that it, or a program beside it, is known to write: what they hold now says nothing of it."""
 
     @property
     def is_unchanged(self) -> bool:
         """Whether its files are what they were. Raises InputError if one cannot be read."""
-        return digest_of_hashes([sha256_of(file) for file in self.sources]) == self.sha256
+        return digest_of_hashes([sha256_of(file) for file in self.sources]) == self.recorded_sha256
 
     @property
     def sources(self) -> tuple[Path, ...]:
-        """Every file that it is made of."""
-        return self.files or (self.path,)
+        """Every file that it is made of, but for those that are written."""
+        return tuple(file for file in self.files if file not in self.written) or (self.path,)
+
+    @property
+    def recorded_sha256(self) -> str | None:
+        """The SHA-256 of its sources, as its records have it; unlike `sha256`, which is part of an id, it
+        knows nothing of what is written.
+        """
+        known = zip(self.files, self.hashes, strict=False)
+        sources = [sha256 for file, sha256 in known if file not in self.written]
+        return digest_of_hashes(sources) if sources else self.sha256
 
     @property
     def remedy(self) -> str:
