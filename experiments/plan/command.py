@@ -99,9 +99,9 @@ def command_of(
     words, prepare, conclude = (
         _filled(getattr(series, name), f"{key}.{name}", of_run) for name in ("command", "prepare", "conclude")
     )
-    trajectory = _filled(series.trajectory, f"{key}.trajectory", of_check)
-    if trajectory and SCENE not in of_check:
+    if series.trajectory and SCENE not in values[1]:
         raise InputError(f"{key}.trajectory: found without a scene, expected a table scene beside it")
+    trajectory = _filled(series.trajectory, f"{key}.trajectory", of_check)
     name = None
     if series.benchmark is not None:
         [name] = placed(_filled((str(series.benchmark.name),), f"{key}.benchmark.name", of_run))
@@ -123,14 +123,15 @@ def _resolved(command: Command, series: Series, key: str, place: Place) -> tuple
         words = getattr(command, name)
         if not words:
             continue
+        [first] = placed(words[:1])
         try:
-            require_executable(words[0], place.folder)
+            require_executable(first, place.folder)
         except UnfitError as unfit:
             if series.is_one_of_many:
-                return _refused(series.name, f"{words[0]}: {unfit}", place)
+                return _refused(series.name, f"{first}: {unfit}", place)
             told = "command" if name == "words" else name
-            raise InputError(f'{key}.{told}: found "{words[0]}", which {unfit.told(words[0])}') from unfit
-        resolved[name] = (_literal(os.fspath(found(words[0], place.folder))), *words[1:])
+            raise InputError(f'{key}.{told}: found "{first}", which {unfit.told(first)}') from unfit
+        resolved[name] = (_literal(os.fspath(found(first, place.folder))), *words[1:])
     folder = None if command.fresh_folder else place.folder
     others = [placed(resolved[name]) for name in ("prepare", "conclude") if name in resolved]
     try:
@@ -141,7 +142,7 @@ def _resolved(command: Command, series: Series, key: str, place: Place) -> tuple
         if series.is_one_of_many:
             return _refused(series.name, str(error), place)
         raise
-    another = _another(command.words, command.trajectory, place.folder) if checker else ""
+    another = _another(placed(command.words), trajectory, place.folder) if checker else ""
     return replace(
         command,
         words=resolved["words"],
