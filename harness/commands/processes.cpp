@@ -1,32 +1,25 @@
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
-#include <deque>
+#include <filesystem>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <vector>
-
-#include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
+#include "harness/commands/described_process.hpp"
 #include "harness/commands/measurement_options.hpp"
-#include "harness/measure/process.hpp"
 #include "harness/measure/stated_time.hpp"
+#include "harness/processes/contender_run.hpp"
+#include "harness/processes/together.hpp"
 #include "harness/records/process_json.hpp"
 #include "harness/records/record.hpp"
-#include "harness/support/child_process.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/format.hpp"
 #include "harness/support/input_file.hpp"
-#include "harness/support/json.hpp"
-#include "harness/support/output_file.hpp"
-#include "harness/support/text.hpp"
+#include "harness/support/note.hpp"
 
 namespace carom {
 namespace {
@@ -35,178 +28,19 @@ using Json = nlohmann::ordered_json;
 
 struct ProcessesOptions {
     std::string file;
-    double slice_seconds = 0.05;
-    std::uint64_t seed = 1;
+    Together how;
 };
 
-/// One program as the file describes it.
-struct Described {
-    ProcessCommand command;
-    std::string record;
-    std::vector<std::string> tags;
-    std::vector<std::string> sources;
-    std::string scene;
-    std::string checked;
-    int threads = 1;
-    int warm_ups = 0;
-    Json axes = Json::object();
-    Json build = Json::object(); ///< of its record's provenance, what is not as this program's
-    std::string pattern;         ///< of the time that it prints; empty if it is timed from outside
-    double unit_seconds = 1;
-    std::string benchmark; ///< the case of a Google Benchmark; empty if it is none
-    std::string output;    ///< the file that the benchmark writes
+/// One of them, with what is known of it before it runs and what it says of itself when it has.
+struct AskedProcess {
+    DescribedProcess described;
+    Sources sources;
+    std::vector<StatedTime> stated;
+    int exit_code = 0; ///< of the last failure
+
+    explicit AskedProcess(DescribedProcess its)
+        : described(std::move(its)), sources(described.sources, described.written) {}
 };
-
-std::vector<std::string> environment_with(const std::map<std::string, std::string>& more) {
-    std::vector<std::string> variables;
-    for (char** variable = environ; *variable != nullptr; ++variable) {
-        const std::string text = *variable;
-        if (!more.contains(text.substr(0, text.find('=')))) {
-            variables.push_back(text);
-        }
-    }
-    for (const auto& [name, value] : more) {
-        variables.push_back(name);
-        variables.back() += '=' + value;
-    }
-    return variables;
-}
-
-template <class Value> constexpr const char* kind() {
-    if constexpr (std::is_same_v<Value, std::string>) {
-        return "a text";
-    } else if constexpr (std::is_integral_v<Value>) {
-        return "a whole number";
-    } else if constexpr (std::is_floating_point_v<Value>) {
-        return "a number";
-    } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
-        return "a list of texts";
-    } else {
-        return "an object of texts";
-    }
-}
-
-/// The value of a key, or `otherwise` where the key is not there. Throws InputError.
-template <class Value>
-Value value_of(const Json& process, const char* key, const std::optional<Value>& otherwise = std::nullopt) {
-    const auto found = process.find(key);
-    if (found == process.end()) {
-        if (otherwise) {
-            return *otherwise;
-        }
-        throw InputError(std::string(key) + ": found none, expected " + kind<Value>());
-    }
-    try {
-        return found->template get<Value>();
-    } catch (const Json::exception&) {
-        throw InputError(std::string(key) + ": found " + in_quotes(json_text(*found, -1)) + ", expected " +
-                         kind<Value>());
-    }
-}
-
-std::string text_of(const Json& process, const char* key) { return value_of<std::string>(process, key, ""); }
-
-Described described(const Json& json) {
-    using Words = std::vector<std::string>;
-    Described one{.command = {.words = value_of<Words>(json, "command"),
-                              .folder = text_of(json, "folder"),
-                              .environment = environment_with(value_of(
-                                  json, "environment", std::optional(std::map<std::string, std::string>()))),
-                              .most_seconds = value_of<double>(json, "most_seconds", 600.0)},
-                  .record = value_of<std::string>(json, "record"),
-                  .tags = value_of<Words>(json, "tags", Words()),
-                  .sources = value_of<Words>(json, "sources", Words()),
-                  .scene = text_of(json, "scene"),
-                  .checked = text_of(json, "checked"),
-                  .threads = value_of<int>(json, "threads", 1),
-                  .warm_ups = value_of<int>(json, "warm_ups", 0),
-                  .axes = json.value("axes", Json::object()),
-                  .build = json.value("build", Json::object()),
-                  .pattern = text_of(json, "pattern"),
-                  .unit_seconds = value_of<double>(json, "unit_seconds", 1.0),
-                  .benchmark = text_of(json, "benchmark"),
-                  .output = text_of(json, "output")};
-    if (one.command.words.empty() || one.command.words.front().empty()) {
-        throw InputError("command: found no word, expected a program and its arguments");
-    }
-    if (one.command.most_seconds <= 0) {
-        throw InputError("most_seconds: found " + number_text(one.command.most_seconds) +
-                         ", expected a number above 0");
-    }
-    tags_json(one.tags);
-    require_writable(one.record);
-    return one;
-}
-
-/// Throws InputError.
-std::vector<Described> read_processes(const std::string& path) {
-    const Json json = Json::parse(read_file(path), nullptr, false);
-    if (!json.is_array() || json.empty() ||
-        !std::ranges::all_of(json, [](const Json& one) { return one.is_object(); })) {
-        throw InputError(path +
-                         ": found something else, expected a JSON list with an object for each process");
-    }
-    std::vector<Described> processes;
-    for (const Json& one : json) {
-        try {
-            processes.push_back(described(one));
-        } catch (const InputError& error) {
-            throw InputError(path + ", process " + std::to_string(processes.size() + 1) + ": " +
-                             error.what());
-        }
-    }
-    return processes;
-}
-
-/// Why a process that ended does not count; empty if it does.
-std::string failure_of(const Described& one, const ProcessEnd& end) {
-    const std::string said = last_line(end.error);
-    const std::string after = said.empty() ? "" : ": " + said;
-    if (!end.not_started.empty()) {
-        const std::string& folder = one.command.folder;
-        return "cannot be run" + (folder.empty() ? "" : " in " + folder) + ": " + end.not_started;
-    }
-    if (end.out_of_time) {
-        return format("took longer than %g s and was stopped", one.command.most_seconds);
-    }
-    if (end.signal != 0) {
-        return std::string("killed by SIG") + sigabbrev_np(end.signal) + after;
-    }
-    if (end.exit_code != 0) {
-        return format("exit code %d", end.exit_code) + (said.empty() ? " without a word" : after);
-    }
-    return "";
-}
-
-std::optional<StatedTime> stated_time(const Described& one, const ProcessEnd& end) {
-    if (!one.benchmark.empty()) {
-        return time_of_benchmark(read_file(one.output), one.benchmark);
-    }
-    if (!one.pattern.empty()) {
-        return time_in_output(end.output, one.pattern, one.unit_seconds);
-    }
-    return std::nullopt;
-}
-
-void write_record_of(const Described& one, const ProcessEnd& end, const std::optional<Turns>& turns) {
-    Json scene = nullptr;
-    if (!one.scene.empty()) {
-        const LoadedScene loaded = load_scene(one.scene);
-        scene = scene_json(loaded.scene, loaded.name, loaded.sha256);
-    }
-    write_record(one.record, process_json({.command = one.command,
-                                           .end = end,
-                                           .stated = stated_time(one, end),
-                                           .turns = turns,
-                                           .axes = one.axes,
-                                           .scene = scene,
-                                           .sources = sources_json(one.sources),
-                                           .build = one.build,
-                                           .checked = one.checked,
-                                           .tags = one.tags,
-                                           .threads = one.threads,
-                                           .warm_ups = one.warm_ups}));
-}
 
 int exit_code_of(const ProcessEnd& end) {
     constexpr int out_of_time = 124;
@@ -220,59 +54,144 @@ int exit_code_of(const ProcessEnd& end) {
     return end.not_started.empty() ? std::max(end.exit_code, 1) : cannot_be_run;
 }
 
+std::optional<StatedTime> stated_time(const DescribedProcess& one, const ProcessEnd& end) {
+    if (!one.benchmark.empty()) {
+        const std::string json = read_file(one.output);
+        std::filesystem::remove(one.output); // so that nothing is taken for what the next run wrote
+        return time_of_benchmark(json, one.benchmark);
+    }
+    const std::string& pattern = one.contender.command.pattern;
+    if (pattern.empty()) {
+        return std::nullopt;
+    }
+    std::string lines;
+    for (const std::string& line : end.output.matched) {
+        lines += line + '\n';
+    }
+    return time_in_output(lines, pattern, one.unit_seconds);
+}
+
+/// Takes the time that a run says, if it says one.
+std::string take(AskedProcess& one, const ProcessEnd& end) {
+    try {
+        if (auto stated = stated_time(one.described, end)) {
+            one.stated.push_back(*std::move(stated));
+        }
+    } catch (const InputError& error) {
+        one.exit_code = 1;
+        return error.what();
+    }
+    return "";
+}
+
+ProgramContender contender_of(AskedProcess& one) {
+    ProgramContender contender = one.described.contender;
+    contender.failure = [&one](const ProcessEnd& end) {
+        std::string why = why_failed(one.described.contender.command, end, one.described.exit_codes);
+        one.exit_code = exit_code_of(end);
+        return why;
+    };
+    contender.take = [&one](const ProcessEnd& end) { return take(one, end); };
+    return contender;
+}
+
+std::optional<Turns> turns_of(const Measured& measured, int contenders, std::uint64_t seed) {
+    const bool took_turns = contenders > 1 && (measured.sliced || measured.runs.size() > 1);
+    if (!took_turns) {
+        return std::nullopt;
+    }
+    Turns turns{.contenders = contenders, .seed = seed, .seconds = {}};
+    for (const ProcessEnd& run : measured.runs) {
+        turns.seconds.insert(turns.seconds.end(), run.seconds.begin(), run.seconds.end());
+    }
+    return turns;
+}
+
+void write_record_of(const AskedProcess& one, const Measured& measured, const std::optional<Turns>& turns) {
+    const DescribedProcess& described = one.described;
+    Json scene = nullptr;
+    if (!described.scene.empty()) {
+        const LoadedScene loaded = load_scene(described.scene);
+        scene = scene_json(loaded.scene, loaded.name, loaded.sha256);
+    }
+    write_record(described.record, process_json({.command = described.contender.command,
+                                                 .measured = measured,
+                                                 .stated = one.stated,
+                                                 .turns = turns,
+                                                 .axes = described.axes,
+                                                 .scene = scene,
+                                                 .sources = one.sources,
+                                                 .build = described.build,
+                                                 .checked = described.checked,
+                                                 .tags = described.tags,
+                                                 .threads = described.threads,
+                                                 .warm_ups = described.contender.warm_ups}));
+}
+
 /// In the place of the record of a process that failed.
-void write_failure(const Described& one, const ProcessEnd& end, const std::string& reason) {
-    write_record(one.record, {{"schema_version", 1},
-                              {"kind", "failure"},
-                              {"tags", tags_json(one.tags)},
-                              {"axes", one.axes},
-                              {"command", one.command.words},
-                              {"exit_code", exit_code_of(end)},
-                              {"reason", reason},
-                              {"recorded_at", utc_now()}});
+void write_failure(const AskedProcess& one, const std::string& reason) {
+    write_record(one.described.record, {{"schema_version", 1},
+                                        {"kind", "failure"},
+                                        {"tags", tags_json(one.described.tags)},
+                                        {"axes", one.described.axes},
+                                        {"command", one.described.contender.command.words},
+                                        {"exit_code", one.exit_code == 0 ? 1 : one.exit_code},
+                                        {"reason", reason},
+                                        {"recorded_at", utc_now()}});
+}
+
+/// Says what was not as one may think, of a program that was measured.
+void tell(const std::string& name, const Measured& measured) {
+    constexpr double worth_telling = 0.1;
+    if (!measured.undisturbed.empty()) {
+        note(name + ": measured without a pause, in a stretch of its own: " + measured.undisturbed);
+    }
+    const ProcessEnd& end = measured.runs.back();
+    if (measured.seconds_alone > worth_telling * end.wall_seconds()) {
+        note(format(
+            "%s: ran %.3g of its %.3g s after all others had ended, since their lengths were not those "
+            "expected",
+            name.c_str(), measured.seconds_alone, end.wall_seconds()));
+    }
+    if (end.ran_on > 0) {
+        note(format("%s: did not stand still %d times, and ran on beside the others", name.c_str(),
+                    end.ran_on));
+    }
 }
 
 /// Leaves the record of a process that ended, or of its failure; returns why it failed, or nothing.
-std::string keep(const Described& one, const ProcessEnd& end, const std::optional<Turns>& turns) {
-    std::string reason = failure_of(one, end);
+std::string keep(const AskedProcess& one, const Measured& measured, const std::optional<Turns>& turns) {
+    std::string reason = measured.failure;
     if (reason.empty()) {
         try {
-            write_record_of(one, end, turns);
+            write_record_of(one, measured, turns);
+            tell(one.described.contender.command.words.front(), measured);
         } catch (const InputError& error) {
             reason = error.what();
         }
     }
     if (!reason.empty()) {
-        write_failure(one, end, reason);
+        write_failure(one, reason);
     }
     return reason;
 }
 
 void processes(const ProcessesOptions& options) {
-    const std::vector<Described> all = read_processes(options.file);
-    for (const Described& one : all) {
-        for (int run = 0; run < one.warm_ups; ++run) {
-            Process(one.command).advance(one.command.most_seconds);
-        }
+    std::vector<std::unique_ptr<AskedProcess>> all;
+    for (DescribedProcess& one : read_processes(options.file)) {
+        all.push_back(std::make_unique<AskedProcess>(std::move(one)));
     }
-    std::deque<Process> running;
-    std::vector<Process*> everyone;
-    everyone.reserve(all.size());
-    for (const Described& one : all) {
-        everyone.push_back(&running.emplace_back(one.command));
+    std::vector<ProgramContender> contenders;
+    for (const auto& one : all) {
+        contenders.push_back(contender_of(*one));
     }
-    take_slices(everyone, options.slice_seconds, options.seed);
+    const std::vector<Measured> measured = measure_together(contenders, options.how);
     std::string first_reason;
     for (std::size_t k = 0; k < all.size(); ++k) {
-        const ProcessEnd end = running[k].end();
-        std::optional<Turns> turns;
-        if (all.size() > 1) {
-            turns = {
-                .contenders = static_cast<int>(all.size()), .seed = options.seed, .seconds = end.seconds};
-        }
-        const std::string reason = keep(all[k], end, turns);
+        const auto turns = turns_of(measured[k], static_cast<int>(all.size()), options.how.seed);
+        const std::string reason = keep(*all[k], measured[k], turns);
         if (first_reason.empty() && !reason.empty()) {
-            first_reason = all[k].command.words.front() + ": " + reason;
+            first_reason = all[k]->described.contender.command.words.front() + ": " + reason;
         }
     }
     if (!first_reason.empty()) {
@@ -291,10 +210,15 @@ void add_processes_command(CLI::App& program) {
                      "JSON file: a list with, for each process, an object with its command (a list of words) "
                      "and the file for its record")
         ->required();
-    add_number(*command, "--slice", options->slice_seconds, 1e-3, 1e6,
-               "Seconds that each runs before the next does");
-    add_number(*command, "--seed", options->seed, 0, std::numeric_limits<std::uint64_t>::max(),
+    add_number(*command, "--slice", options->how.slice_seconds, 1e-3, 1e6,
+               "Seconds that the longest runs before the next does; the others in proportion");
+    add_number(*command, "--seed", options->how.seed, 0, std::numeric_limits<std::uint64_t>::max(),
                "Of the order of the slices");
+    add_choice<KeptBy>(*command, "--kept-by", options->how.kept_by,
+                       {{"whatever-works", KeptBy::whatever_works},
+                        {"cgroup", KeptBy::cgroup},
+                        {"subreaper", KeptBy::subreaper}},
+                       "What keeps together, stops and ends all that a program starts");
     command->callback([options] { processes(*options); });
 }
 

@@ -70,9 +70,7 @@ std::vector<Json> runs_of(const Json& benchmarks, const std::string& name) {
     return exact.empty() ? longer : exact;
 }
 
-} // namespace
-
-StatedTime time_in_output(const std::string& output, const std::string& pattern, double unit_seconds) {
+std::regex regex_of(const std::string& pattern) {
     std::regex regex;
     try {
         regex.assign(pattern);
@@ -82,6 +80,15 @@ StatedTime time_in_output(const std::string& output, const std::string& pattern,
     if (regex.mark_count() != 1) {
         throw InputError("time: found '" + pattern + "', expected a regular expression with one group");
     }
+    return regex;
+}
+
+} // namespace
+
+void require_pattern(const std::string& pattern) { regex_of(pattern); }
+
+StatedTime time_in_output(const std::string& output, const std::string& pattern, double unit_seconds) {
+    const std::regex regex = regex_of(pattern);
     std::vector<std::string> found;
     std::istringstream lines(output);
     for (std::string line; std::getline(lines, line);) {

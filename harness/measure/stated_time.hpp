@@ -12,6 +12,9 @@ struct StatedTime {
     std::map<std::string, double> counters; ///< of a Google Benchmark
 };
 
+/// Throws InputError if it is no regular expression (ECMAScript) with one group.
+void require_pattern(const std::string& pattern);
+
 /// The number in the one group of a regular expression (ECMAScript), in the one line of a program's output
 /// that it matches, times `unit_seconds`. Throws InputError if it matches no line or several, has not one
 /// group, or what stands there is no positive number.

@@ -7,33 +7,30 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/measure/measurement.hpp"
-#include "harness/measure/process.hpp"
 #include "harness/measure/stated_time.hpp"
+#include "harness/processes/program_contender.hpp"
+#include "harness/records/sources.hpp"
 
 namespace carom {
 
 /// What of a whole process that was measured goes into its record (record.schema.json).
 struct ProcessMeasurement {
     const ProcessCommand& command;
-    const ProcessEnd& end;
-    std::optional<StatedTime> stated; ///< empty if the time from outside is the one that counts
-    std::optional<Turns> turns;       ///< empty if no other took turns with it
-    nlohmann::ordered_json axes;      ///< what was chosen, by name
-    nlohmann::ordered_json scene;     ///< as scene_json, or null
-    nlohmann::ordered_json sources;   ///< the files that make up the program, each with its SHA-256
-    nlohmann::ordered_json build;     ///< what is known of how it was built, as in a record's provenance
-    std::string checked;              ///< how its result was checked beforehand; empty if it was not
-    std::vector<std::string> tags;    ///< KEY=VALUE
+    const Measured& measured;       ///< with at least one run
+    std::vector<StatedTime> stated; ///< of each run; empty if the time from outside is the one that counts
+    std::optional<Turns> turns;     ///< empty if no other took turns with it
+    nlohmann::ordered_json axes;    ///< what was chosen, by name
+    nlohmann::ordered_json scene;   ///< as scene_json, or null
+    const Sources& sources;         ///< the files that make up the program
+    nlohmann::ordered_json build;   ///< what is known of how it was built, as in a record's provenance
+    std::string checked;            ///< how its result was checked beforehand; empty if it was not
+    std::vector<std::string> tags;  ///< KEY=VALUE
     int threads = 1;
     int warm_ups = 0; ///< untimed processes before it
 };
 
-/// The files with their SHA-256, in this order. Throws InputError for one that cannot be read.
-nlohmann::ordered_json sources_json(const std::vector<std::string>& files);
-
 /// The record of the process, of kind "process". Its provenance is that of this program, which measured it,
-/// but for `build`, for the environment, and for the hash of the program: of its one file, or of the hashes
-/// of all in a row.
+/// but for `build`, for the environment, and for the hash of the program.
 nlohmann::ordered_json process_json(const ProcessMeasurement& measurement);
 
 } // namespace carom

@@ -47,8 +47,12 @@ TEST_F(ProcessesCommand, LeavesARecordOfEach) {
                   {"threads", 3},
                   {"scene", scene},
                   {"build", {{"compiler", "GNU 1"}, {"openmp", {{"runtime", "none"}}}}},
-                  {"checked", "trajectory"}});
-    const auto result = processes({first, described("exit 0", "two")}, {"--slice", "0.002", "--seed", "9"});
+                  {"checked", "trajectory"},
+                  {"turns", true},
+                  {"expected_seconds", 0.05}});
+    Json second = described("exit 0", "two");
+    second.update({{"turns", true}, {"expected_seconds", 0.002}});
+    const auto result = processes({first, second}, {"--slice", "0.002", "--seed", "9"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.output, "");
     const Json one = record("one");
@@ -70,6 +74,11 @@ TEST_F(ProcessesCommand, LeavesARecordOfEach) {
     EXPECT_EQ(one["turns"]["contenders"], 2);
     EXPECT_EQ(one["turns"]["seed"], 9);
     EXPECT_GT(one["turns"]["seconds"].size(), 1);
+    EXPECT_TRUE(one["turns"]["seconds_alone"].is_number());
+    EXPECT_TRUE(one["process"]["undisturbed"].is_null());
+    EXPECT_TRUE(one["process"]["tree"] == "cgroup" || one["process"]["tree"] == "subreaper");
+    EXPECT_EQ(one["process"]["runs"], 1);
+    EXPECT_EQ(one["process"]["changed"], Json::array());
     EXPECT_EQ(one["repetitions"][0]["steps_seconds"], one["process_seconds"]);
     EXPECT_EQ(content_of(directory / "out"), "3\n") << "it runs in its folder, with its environment";
     const Json two = record("two");
@@ -145,8 +154,75 @@ TEST_F(ProcessesCommand, RefusesAProcessThatCannotBeBeforeAnyRuns) {
     EXPECT_TRUE(refused(with("command", "ls"), 1, {"process 2: command: found", "expected a list of texts"}));
     EXPECT_TRUE(refused(with("threads", "two"), 1, {"threads: found", "two", "expected a whole number"}));
     EXPECT_TRUE(refused(with("most_seconds", -1), 1, {"most_seconds: found -1, expected a number above 0"}));
+    EXPECT_TRUE(refused(with("turns", "no"), 1, {"turns: found", "no", "expected true or false"}));
+    EXPECT_TRUE(refused(with("exit_codes", {"1"}), 1, {"exit_codes: found", "a list of whole numbers"}));
+    EXPECT_TRUE(refused(with("exit_codes", Json::array()), 1, {"exit_codes: found none"}));
+    EXPECT_TRUE(refused(with("pattern", "(?i)took ([0-9]+)"), 1, {"time: found", "a regular expression"}));
+    EXPECT_TRUE(refused(with("pattern", "took [0-9]+"), 1, {"time: found", "with one group"}));
+    EXPECT_TRUE(refused(with("sources", {directory / "no"}), 1, {"/no: "}));
     EXPECT_TRUE(refused(with("record", directory / "none/one"), 1, {"none/one: cannot be written"}));
     EXPECT_FALSE(std::filesystem::exists(directory / "runs"));
+}
+
+TEST_F(ProcessesCommand, SaysWhatIsMeasuredWithoutAPauseAndWhy) {
+    const auto result = processes({described("sleep 0.2", "one"), described("sleep 0.3", "two")});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_NE(result.notes.find("measured without a pause, in a stretch of its own: it computes for only"),
+              std::string::npos)
+        << result.notes;
+    EXPECT_GE(record("one")["process_seconds"], 0.2);
+    EXPECT_GE(record("two")["process_seconds"], 0.3);
+    EXPECT_TRUE(record("one")["turns"].is_null());
+    EXPECT_TRUE(record("one")["process"]["undisturbed"].is_string());
+}
+
+TEST_F(ProcessesCommand, TellsWhichOfItsFilesAProgramChanged) {
+    const std::string data = directory.write("data", "3\n1\n2\n");
+    const std::string input = directory.write("input", "x\n");
+    Json sorting = described("sort -o " + data + " " + data + "; touch " + input, "sorting");
+    sorting["sources"] = {"/bin/sh", data, input};
+    ASSERT_EQ(processes(Json::array({sorting})).exit_code, 0);
+    EXPECT_EQ(record("sorting")["process"]["changed"], Json::array({data}));
+    const std::string first = record("sorting")["process"]["sources"][1]["sha256"];
+    // Its own output counts by what it was when it was first seen.
+    sorting["written"] = {{data, first}};
+    directory.write("data", "9\n8\n");
+    const std::string hash = record("sorting")["provenance"]["binary_sha256"];
+    ASSERT_EQ(processes(Json::array({sorting})).exit_code, 0);
+    EXPECT_EQ(record("sorting")["process"]["changed"], Json::array());
+    EXPECT_EQ(record("sorting")["provenance"]["binary_sha256"], hash);
+}
+
+TEST_F(ProcessesCommand, AllowsTheExitCodesThatAreFine) {
+    Json found = described("echo x | grep -c y", "found");
+    found["exit_codes"] = {0, 1};
+    EXPECT_EQ(processes(Json::array({found})).exit_code, 0);
+    EXPECT_EQ(record("found")["process"]["exit_code"], 1);
+    EXPECT_EQ(record("found")["process"]["output_bytes"], 2);
+}
+
+TEST_F(ProcessesCommand, BenchmarksRunRoundAfterRoundAndNothingIsTakenTwice) {
+    const std::string report = directory / "report";
+    // It writes a time that grows with each run, and at last nothing.
+    Json benchmark =
+        described("echo x >> " + (directory / "runs") + "; n=$(wc -l < " + (directory / "runs") +
+                      "); echo '{\"benchmarks\": [{\"name\": \"BM\", \"real_time\": '$n'}]}' > " + report +
+                      "; sleep 0.2",
+                  "benchmark");
+    benchmark.update({{"benchmark", "BM"}, {"output", report}});
+    ASSERT_EQ(processes(Json::array({benchmark})).exit_code, 0);
+    const Json repetitions = record("benchmark")["repetitions"];
+    EXPECT_GT(repetitions.size(), 2);
+    EXPECT_EQ(record("benchmark")["process"]["runs"], repetitions.size());
+    for (std::size_t k = 0; k < repetitions.size(); ++k) {
+        EXPECT_DOUBLE_EQ(repetitions[k]["steps_seconds"], static_cast<double>(k + 1) * 1e-9);
+    }
+    Json forgetful = described("[ -e " + (directory / "once") + " ] || cp " + (directory / "first") + " " +
+                                   report + "; touch " + (directory / "once"),
+                               "forgetful");
+    directory.write("first", R"({"benchmarks": [{"name": "BM", "real_time": 1}]})");
+    forgetful.update({{"benchmark", "BM"}, {"output", report}});
+    EXPECT_TRUE(refused(processes(Json::array({forgetful})), 1, {"report"}));
 }
 
 TEST_F(ProcessesCommand, RefusesSlicesThatCannotBe) {

@@ -1,0 +1,186 @@
+#include "harness/processes/cgroup.hpp"
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+#include "harness/support/stopwatch.hpp"
+#include "harness/support/text.hpp"
+
+namespace carom {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where the hierarchy of version 2 is mounted, alone or beside those of version 1; empty if it is not.
+std::string hierarchy() {
+    std::ifstream mounts("/proc/self/mountinfo");
+    for (std::string line; std::getline(mounts, line);) {
+        const auto separator = line.find(" - ");
+        if (separator == std::string::npos || !line.substr(separator).starts_with(" - cgroup2 ")) {
+            continue;
+        }
+        std::istringstream fields(line);
+        std::string field;
+        for (int k = 0; k < 5; ++k) {
+            fields >> field;
+        }
+        return field;
+    }
+    return "";
+}
+
+/// This process's own group, below the hierarchy's root.
+std::string own_group() {
+    std::ifstream groups("/proc/self/cgroup");
+    for (std::string line; std::getline(groups, line);) {
+        if (line.starts_with("0::")) {
+            return line.substr(3);
+        }
+    }
+    return "/";
+}
+
+/// What tells the processes of one name space from those of others, which have the same numbers.
+std::string name_space() {
+    struct stat status{};
+    return stat("/proc/self/ns/pid", &status) == 0 ? std::to_string(status.st_ino) : "0";
+}
+
+bool write_into(const std::string& path, const char* text) {
+    const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file < 0) {
+        return false;
+    }
+    const auto length = static_cast<ssize_t>(std::char_traits<char>::length(text));
+    const bool done = write(file, text, static_cast<std::size_t>(length)) == length;
+    close(file);
+    return done;
+}
+
+/// Ends what is left in a group and removes it, which works as soon as nobody is in it any more.
+void remove_group(const std::string& path) {
+    for (int attempt = 0; attempt < 200 && rmdir(path.c_str()) != 0 && errno == EBUSY; ++attempt) {
+        write_into(path + "/cgroup.kill", "1");
+        write_into(path + "/cgroup.freeze", "0");
+        usleep(5000);
+    }
+}
+
+/// Groups of runs that were killed together with what looked after them.
+void remove_abandoned(const std::string& folder) {
+    const std::string prefix = "carom-" + name_space() + "-";
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename();
+        if (!name.starts_with(prefix)) {
+            continue;
+        }
+        const std::string rest = name.substr(prefix.size());
+        const auto owner = parse_number<pid_t>(rest.substr(0, rest.find('-')));
+        if (owner && ::kill(*owner, 0) != 0 && errno == ESRCH) {
+            remove_group(entry.path());
+        }
+    }
+}
+
+bool is_frozen(int events) {
+    std::array<char, 256> buffer{};
+    const auto count = pread(events, buffer.data(), buffer.size() - 1, 0);
+    return count > 0 && std::string(buffer.data()).find("frozen 1") != std::string::npos;
+}
+
+} // namespace
+
+std::unique_ptr<Cgroup> Cgroup::make() {
+    static int number = 0;
+    static const std::string root = hierarchy();
+    if (root.empty()) {
+        return nullptr;
+    }
+    const std::string own = own_group();
+    for (const std::string& folder : {root + (own == "/" ? "" : own), root}) {
+        if (number == 0) {
+            remove_abandoned(folder);
+        }
+        std::string path = folder + "/carom-" + name_space() + "-" + std::to_string(getpid()) + "-" +
+                           std::to_string(++number);
+        if (mkdir(path.c_str(), 0755) != 0) {
+            continue;
+        }
+        const int entrance = open((path + "/cgroup.procs").c_str(), O_WRONLY | O_CLOEXEC);
+        const int events = open((path + "/cgroup.events").c_str(), O_RDONLY | O_CLOEXEC);
+        const bool complete = access((path + "/cgroup.freeze").c_str(), W_OK) == 0 &&
+                              access((path + "/cgroup.kill").c_str(), W_OK) == 0;
+        if (entrance >= 0 && events >= 0 && complete) {
+            return std::unique_ptr<Cgroup>(new Cgroup(std::move(path), entrance, events));
+        }
+        close(entrance);
+        close(events);
+        rmdir(path.c_str());
+    }
+    return nullptr;
+}
+
+Cgroup::Cgroup(std::string path, int entrance, int events)
+    : path_(std::move(path)), entrance_(entrance), events_(events) {}
+
+Cgroup::~Cgroup() {
+    close(entrance_);
+    close(events_);
+    remove_group(path_);
+}
+
+bool Cgroup::freeze(double most_seconds) const {
+    const auto begin = std::chrono::steady_clock::now();
+    if (!write_into(path_ + "/cgroup.freeze", "1")) {
+        return false;
+    }
+    while (!is_frozen(events_)) {
+        const double left = most_seconds - seconds_since(begin);
+        if (left <= 0) {
+            return false;
+        }
+        pollfd waiting{.fd = events_, .events = POLLPRI, .revents = 0};
+        poll(&waiting, 1, std::max(1, static_cast<int>(left * 1e3)));
+    }
+    return true;
+}
+
+void Cgroup::thaw() const { write_into(path_ + "/cgroup.freeze", "0"); }
+
+void Cgroup::kill() const { write_into(path_ + "/cgroup.kill", "1"); }
+
+std::optional<UserAndSystem> Cgroup::cpu_time() const {
+    std::ifstream file(path_ + "/cpu.stat");
+    std::optional<double> user;
+    std::optional<double> system;
+    double microseconds = 0;
+    for (std::string name; file >> name >> microseconds;) {
+        if (name == "user_usec") {
+            user = 1e-6 * microseconds;
+        } else if (name == "system_usec") {
+            system = 1e-6 * microseconds;
+        }
+    }
+    return user && system ? std::optional(UserAndSystem{*user, *system}) : std::nullopt;
+}
+
+std::optional<std::int64_t> Cgroup::peak_memory() const {
+    std::ifstream file(path_ + "/memory.peak");
+    std::int64_t bytes = 0;
+    return file >> bytes ? std::optional(bytes) : std::nullopt;
+}
+
+} // namespace carom

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace carom {
+
+/// CPU time in seconds.
+struct UserAndSystem {
+    double user;
+    double system;
+};
+
+/// A control group (cgroups v2) of its own for a program and all that it starts, whatever group or session
+/// that belongs to: it can be stopped, also in the middle of a vfork, and ended as one (the Linux kernel's
+/// Documentation/admin-guide/cgroup-v2.rst: cgroup.freeze, cgroup.kill).
+class Cgroup {
+  public:
+    /// A new and empty one; none where there is no such hierarchy, or no right to make a group in it: it
+    /// takes root, or a folder that was delegated, as systemd does to users.
+    static std::unique_ptr<Cgroup> make();
+
+    /// Ends all that is left in it.
+    ~Cgroup();
+    Cgroup(const Cgroup&) = delete;
+    Cgroup& operator=(const Cgroup&) = delete;
+
+    /// A file: the process that writes "0" into it belongs to the group from then on.
+    int entrance() const { return entrance_; }
+
+    const std::string& path() const { return path_; }
+
+    /// Whether all of it stands still within so many seconds; if not, it may or may not go on.
+    bool freeze(double most_seconds) const;
+    void thaw() const;
+    void kill() const;
+
+    /// Of all that was ever in it, also of what nobody waited for.
+    std::optional<UserAndSystem> cpu_time() const;
+
+    /// Of all of it together; none where the group does not account for memory.
+    std::optional<std::int64_t> peak_memory() const;
+
+  private:
+    Cgroup(std::string path, int entrance, int events);
+
+    std::string path_;
+    int entrance_;
+    int events_;
+};
+
+} // namespace carom

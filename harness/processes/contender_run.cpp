@@ -1,0 +1,108 @@
+#include "harness/processes/contender_run.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+#include "harness/support/child_process.hpp"
+#include "harness/support/errors.hpp"
+#include "harness/support/format.hpp"
+
+namespace carom {
+namespace {
+
+std::string new_folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "carom-run-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+        throw InputError(name + ": cannot be made: " + std::strerror(errno));
+    }
+    return name;
+}
+
+std::string name_of_signal(int signal) {
+    const char* const name = sigabbrev_np(signal);
+    return name != nullptr ? std::string("SIG") + name : "signal " + std::to_string(signal);
+}
+
+} // namespace
+
+std::string why_failed(const ProcessCommand& command, const ProcessEnd& end, const std::vector<int>& fine) {
+    const std::string said = last_line(end.error.end);
+    const std::string after = said.empty() ? "" : ": " + said;
+    if (!end.not_started.empty()) {
+        return "cannot be run" + (command.folder.empty() ? "" : " in " + command.folder) + ": " +
+               end.not_started;
+    }
+    if (!end.suspended.empty()) {
+        return end.suspended + "; it is to be measured again";
+    }
+    if (end.out_of_time) {
+        const std::string limit = format("took longer than %g s and was stopped", command.most_seconds);
+        return end.went_on.empty()
+                   ? limit
+                   : limit + "; it had ended, and what it had started went on: " + end.went_on;
+    }
+    if (!end.unknown.empty()) {
+        return "nobody knows how it ended: " + end.unknown;
+    }
+    if (end.signal != 0) {
+        return "killed by " + name_of_signal(end.signal) + after;
+    }
+    if (std::ranges::find(fine, end.exit_code) == fine.end()) {
+        return format("exit code %d%s", end.exit_code, said.empty() ? " without a word" : after.c_str());
+    }
+    return "";
+}
+
+ContenderRun::ContenderRun(const ProgramContender& contender, KeptBy kept_by)
+    : contender_(contender), kept_by_(kept_by) {
+    folder_ = contender.fresh_folder ? new_folder() : contender.command.folder;
+    failure_ = run_beside("prepare", contender.prepare);
+    if (failure_.empty()) {
+        ProcessCommand command = contender.command;
+        command.folder = folder_;
+        process_ = std::make_unique<Process>(command, kept_by);
+    }
+}
+
+ContenderRun::~ContenderRun() {
+    process_.reset();
+    if (!is_concluded_) {
+        try {
+            conclude();
+        } catch (const InputError&) {
+            // There is no room for a process: whatever comes next says so.
+        }
+    }
+}
+
+std::string ContenderRun::conclude() {
+    is_concluded_ = true;
+    if (process_ != nullptr) {
+        failure_ = contender_.failure(process_->end());
+    }
+    const std::string not_concluded = run_beside("conclude", contender_.conclude);
+    if (contender_.fresh_folder) {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
+    return failure_.empty() ? not_concluded : failure_;
+}
+
+std::string ContenderRun::run_beside(const std::string& what, const std::vector<std::string>& words) const {
+    if (words.empty()) {
+        return "";
+    }
+    const ProcessCommand command{.words = words,
+                                 .folder = folder_,
+                                 .environment = contender_.command.environment,
+                                 .most_seconds = contender_.command.most_seconds,
+                                 .pattern = ""};
+    const std::string why = why_failed(command, run_undisturbed(command, kept_by_), {0});
+    return why.empty() ? "" : what + ": " + why;
+}
+
+} // namespace carom

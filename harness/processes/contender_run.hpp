@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/processes/process.hpp"
+#include "harness/processes/program_contender.hpp"
+
+namespace carom {
+
+/// One run of a contender, with what is to be done before and after it.
+class ContenderRun {
+  public:
+    /// Makes its folder, if it has one of its own, and runs what prepares it. Throws InputError where there
+    /// is no room for either.
+    ContenderRun(const ProgramContender& contender, KeptBy kept_by);
+
+    /// Ends what is left of it, and concludes it.
+    ~ContenderRun();
+    ContenderRun(const ContenderRun&) = delete;
+    ContenderRun& operator=(const ContenderRun&) = delete;
+
+    /// Whether there is a process, to be advanced to its end; there is none if what prepares it failed.
+    bool can_run() const { return process_ != nullptr; }
+    Process& process() { return *process_; }
+
+    /// Once it has ended: runs what concludes it and removes its folder. Returns why the run failed, or
+    /// nothing.
+    std::string conclude();
+
+  private:
+    std::string run_beside(const std::string& what, const std::vector<std::string>& words) const;
+
+    const ProgramContender& contender_;
+    KeptBy kept_by_;
+    std::string folder_;
+    std::string failure_;
+    bool is_concluded_ = false;
+    std::unique_ptr<Process> process_;
+};
+
+/// Why a run of `words` does not count for whoever wants it to succeed: it was not started, was killed, took
+/// too long, ended with an exit code that is none of `fine`, or nobody knows. Empty if it does count.
+std::string why_failed(const ProcessCommand& command, const ProcessEnd& end, const std::vector<int>& fine);
+
+} // namespace carom

@@ -1,0 +1,265 @@
+#include "harness/processes/keeping.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/signalfd.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "harness/processes/descendants.hpp"
+#include "harness/processes/kept_program.hpp"
+#include "harness/processes/output_tail.hpp"
+#include "harness/support/json.hpp"
+
+namespace carom {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Of every other descriptor its parent's copy alone is to count: as long as a second keeper held the line of
+/// a first one, that would not close with its parent.
+void close_all_but(std::vector<int> kept) {
+    std::ranges::sort(kept);
+    unsigned int next = 0;
+    for (const int one : kept) {
+        if (static_cast<unsigned int>(one) > next) {
+            syscall(SYS_close_range, next, one - 1, 0);
+        }
+        next = static_cast<unsigned int>(one) + 1;
+    }
+    syscall(SYS_close_range, next, ~0U, 0);
+}
+
+double seconds_of(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+/// The life of one program and of all that it starts.
+class Keeping {
+  public:
+    Keeping(const ProcessCommand& command, const Cgroup* group, int line)
+        : group_(group), line_(line), output_(command.pattern), error_("") {
+        sigset_t of_children;
+        sigemptyset(&of_children);
+        sigaddset(&of_children, SIGCHLD);
+        sigprocmask(SIG_BLOCK, &of_children, nullptr);
+        children_ = signalfd(-1, &of_children, SFD_NONBLOCK | SFD_CLOEXEC);
+        void* const shared =
+            mmap(nullptr, sizeof(Beginning), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+        if (shared != MAP_FAILED) {
+            beginning_ = new (shared) Beginning;
+            program_ = fork_program(command, group != nullptr ? group->entrance() : -1, *beginning_, pipes_);
+        }
+        error_of_fork_ = program_ > 0 ? 0 : errno;
+    }
+
+    /// From the word to begin to the end of all of it.
+    void keep() {
+        tell("r");
+        if (program_ > 0 && told() == 'g') {
+            begin();
+            while (!has_ended_) {
+                wait();
+            }
+        }
+        end_all();
+        drain();
+        tell(json_text(report(), -1));
+        if (parent_is_gone_ && group_ != nullptr) {
+            rmdir(group_->path().c_str());
+        }
+    }
+
+  private:
+    void tell(const std::string& text) const {
+        std::size_t sent = 0;
+        while (sent < text.size()) {
+            const auto count = send(line_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+            if (count <= 0) {
+                return;
+            }
+            sent += static_cast<std::size_t>(count);
+        }
+    }
+
+    /// The next word of the parent, or 'k' if there is none any more.
+    char told() {
+        char word = 'k';
+        parent_is_gone_ = read(line_, &word, 1) != 1;
+        return parent_is_gone_ ? 'k' : word;
+    }
+
+    void begin() {
+        char nothing = 0;
+        [[maybe_unused]] const auto written = write(pipes_.go, "g", 1);
+        close(pipes_.go);
+        while (read(pipes_.begun, &nothing, 1) < 0 && errno == EINTR) {
+        }
+    }
+
+    void wait() {
+        std::array<pollfd, 4> waiting{{{.fd = children_, .events = POLLIN, .revents = 0},
+                                       {.fd = line_, .events = POLLIN, .revents = 0},
+                                       {.fd = pipes_.output, .events = POLLIN, .revents = 0},
+                                       {.fd = pipes_.error, .events = POLLIN, .revents = 0}}};
+        if (poll(waiting.data(), waiting.size(), -1) < 0) {
+            return;
+        }
+        if (waiting[0].revents != 0) {
+            reap();
+        }
+        if (waiting[1].revents != 0 && !has_ended_) {
+            told();
+            end_all();
+        }
+        if (waiting[2].revents != 0) {
+            read_from(pipes_.output, output_);
+        }
+        if (waiting[3].revents != 0) {
+            read_from(pipes_.error, error_);
+        }
+    }
+
+    /// Takes leave of all that have ended; nobody left is the end of the program, also if it ended before.
+    void reap() {
+        std::array<signalfd_siginfo, 8> signals{};
+        while (read(children_, signals.data(), sizeof signals) > 0) {
+        }
+        while (true) {
+            int status = 0;
+            rusage usage{};
+            const pid_t ended = wait4(-1, &status, WNOHANG, &usage);
+            if (ended < 0 && errno == ECHILD) {
+                ended_at_ = steady_seconds();
+                has_ended_ = true;
+            }
+            if (ended <= 0) {
+                return;
+            }
+            user_seconds_ += seconds_of(usage.ru_utime);
+            system_seconds_ += seconds_of(usage.ru_stime);
+            most_kilobytes_ = std::max(most_kilobytes_, usage.ru_maxrss);
+            if (ended == program_) {
+                status_ = status;
+                program_has_ended_ = true;
+            }
+        }
+    }
+
+    /// Again and again, since some may be starting others. What cannot be ended, as it waits for a broken
+    /// disk, is left after ten seconds.
+    void end_all() {
+        const double until = steady_seconds() + 10;
+        if (program_has_ended_ && !has_ended_) {
+            for (const pid_t one : descendants_of(getpid())) {
+                went_on_.push_back(name_of(one));
+            }
+        }
+        while (!has_ended_ && program_ > 0 && steady_seconds() < until) {
+            for (const pid_t one : descendants_of(getpid())) {
+                kill(one, SIGKILL);
+            }
+            if (group_ != nullptr) {
+                group_->kill();
+            }
+            reap();
+            usleep(has_ended_ ? 0 : 1000);
+        }
+    }
+
+    void drain() {
+        read_from(pipes_.output, output_);
+        read_from(pipes_.error, error_);
+    }
+
+    /// What is there by now. At its end the pipe is closed, so that nobody waits for more.
+    static void read_from(int& pipe, OutputTail& tail) {
+        std::array<char, 65536> buffer;
+        ssize_t count = 0;
+        while (pipe >= 0 && (count = read(pipe, buffer.data(), buffer.size())) > 0) {
+            tail.take({buffer.data(), static_cast<std::size_t>(count)});
+        }
+        if (pipe >= 0 && count == 0) {
+            close(pipe);
+            pipe = -1;
+        }
+    }
+
+    static Json printed_json(OutputTail& tail) {
+        const Printed printed = tail.printed();
+        return {{"bytes", printed.bytes}, {"end", printed.end}, {"matched", printed.matched}};
+    }
+
+    Json report() {
+        const int error = program_ > 0 ? beginning_->error : error_of_fork_;
+        return {{"error", error},
+                {"known", program_has_ended_},
+                {"all_ended", has_ended_},
+                {"exit_code", WIFEXITED(status_) ? WEXITSTATUS(status_) : 0},
+                {"signal", WIFSIGNALED(status_) ? WTERMSIG(status_) : 0},
+                {"went_on", went_on_},
+                {"user_seconds", user_seconds_},
+                {"system_seconds", system_seconds_},
+                {"most_kilobytes", most_kilobytes_},
+                {"inherited_kilobytes", program_ > 0 ? beginning_->inherited_kilobytes : 0},
+                {"began_at", program_ > 0 ? beginning_->at : 0.0},
+                {"ended_at", ended_at_},
+                {"output", printed_json(output_)},
+                {"error_output", printed_json(error_)}};
+    }
+
+    const Cgroup* group_;
+    int line_;
+    int children_ = -1; ///< readable when one of them has ended
+    Beginning* beginning_ = nullptr;
+    ProgramPipes pipes_;
+    pid_t program_ = -1;
+    int error_of_fork_ = 0;
+    bool parent_is_gone_ = false;
+    OutputTail output_;
+    OutputTail error_;
+    int status_ = 0;
+    bool program_has_ended_ = false;
+    bool has_ended_ = false; ///< it and all that it started
+    double ended_at_ = 0;
+    double user_seconds_ = 0;
+    double system_seconds_ = 0;
+    long most_kilobytes_ = 0;
+    std::vector<std::string> went_on_;
+};
+
+} // namespace
+
+void keep(const ProcessCommand& command, const Cgroup* group, int line) {
+    setsid();
+    prctl(PR_SET_NAME, "carom-keeper");
+    prctl(PR_SET_CHILD_SUBREAPER, 1);
+    std::signal(SIGCHLD, SIG_DFL);
+    std::vector<int> kept{line};
+    if (group != nullptr) {
+        kept.push_back(group->entrance());
+    }
+    close_all_but(kept);
+    // Its standard streams are closed with the rest: whatever opens next would take their numbers.
+    for (int stream = 0; stream < 3; ++stream) {
+        open("/dev/null", O_RDWR | O_CLOEXEC);
+    }
+    Keeping(command, group, line).keep();
+    _exit(0);
+}
+
+} // namespace carom

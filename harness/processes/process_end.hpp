@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace carom {
+
+/// What a program wrote into one of its streams: not all of it, however much it was.
+struct Printed {
+    std::int64_t bytes = 0;           ///< how many it wrote
+    std::string end;                  ///< the last of them
+    std::vector<std::string> matched; ///< the first lines that the command's pattern matched
+};
+
+/// How a program ended with all that it had started, and what that took.
+struct ProcessEnd {
+    std::string not_started; ///< why it could not be run; empty if it could
+    std::string unknown;     ///< why nobody knows how it ended; empty if that is known
+    std::string suspended;   ///< how it is known that it stood still although nobody here wanted it to
+    int exit_code = 0;
+    int signal = 0; ///< the one that killed it, or 0
+    bool out_of_time = false;
+    std::string went_on;     ///< the names of what it had started and that went on after its own end, if it
+                             ///< ran out of time
+    double user_seconds = 0; ///< of CPU time, of all that it started
+    double system_seconds = 0;
+    std::optional<std::int64_t> peak_memory_bytes; ///< of all together, or of the largest (see memory_of)
+    std::string memory_of;                         ///< of what that is the peak, or why it is not known
+    std::vector<double> seconds;                   ///< wall time of each slice in which it was let run
+    int ran_on = 0;                                ///< slices that were longer since it did not stand still
+    std::string kept_by;                           ///< what kept all of it together: cgroup or subreaper
+    Printed output;
+    Printed error;
+
+    double wall_seconds() const;
+    double cpu_seconds() const { return user_seconds + system_seconds; }
+};
+
+} // namespace carom

@@ -1,0 +1,49 @@
+#include "harness/processes/slices.hpp"
+
+#include <algorithm>
+#include <random>
+
+namespace carom {
+namespace {
+
+constexpr double least_slice = 0.002;
+
+} // namespace
+
+std::vector<double> lengths_of_slices(const std::vector<Sliced>& all, double slice_seconds) {
+    const auto [least, most] = std::ranges::minmax(all, {}, &Sliced::expected_seconds);
+    if (!(least.expected_seconds > 0)) {
+        return std::vector<double>(all.size(), slice_seconds);
+    }
+    const double rounds =
+        std::max(1.0, std::min(most.expected_seconds / slice_seconds,
+                               least.expected_seconds / std::min(least_slice, slice_seconds)));
+    std::vector<double> slices;
+    for (const Sliced& one : all) {
+        slices.push_back(one.expected_seconds / rounds);
+    }
+    return slices;
+}
+
+void take_slices(std::vector<Sliced>& all, double slice_seconds, std::uint64_t seed) {
+    const std::vector<double> slices = lengths_of_slices(all, slice_seconds);
+    std::vector<std::size_t> left;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        left.push_back(k);
+    }
+    std::mt19937_64 random(seed);
+    while (!left.empty()) {
+        std::ranges::shuffle(left, random);
+        for (const std::size_t k : left) {
+            Process& process = *all[k].process;
+            const double before = process.end().wall_seconds();
+            process.advance(left.size() == 1 ? 1e9 : slices[k]);
+            if (left.size() == 1 && all.size() > 1) {
+                all[k].seconds_alone = std::max(0.0, process.end().wall_seconds() - before);
+            }
+        }
+        std::erase_if(left, [&all](std::size_t k) { return all[k].process->has_ended(); });
+    }
+}
+
+} // namespace carom

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "harness/processes/process_end.hpp"
+
+namespace carom {
+
+/// Whether a program minds being stopped now and then, from runs without a pause and runs in slices.
+
+/// So many of either kind before it is said that it does.
+inline constexpr std::size_t runs_to_be_sure = 3;
+
+/// Why it is not to be stopped, since it waits for most of its time; empty if it does not. For a program of
+/// less than two milliseconds nobody can tell.
+std::string why_idle(const ProcessEnd& undisturbed);
+
+/// Whether all runs in slices are so much shorter, or so much longer, than all without a pause that noise
+/// does not explain it.
+bool may_disagree(const std::vector<ProcessEnd>& undisturbed, const std::vector<ProcessEnd>& in_slices);
+
+/// The same in words, with the times.
+std::string how_they_disagree(const std::vector<ProcessEnd>& undisturbed,
+                              const std::vector<ProcessEnd>& in_slices);
+
+/// What to add to the reason of a failure of a program that was stopped now and then; empty if it was not.
+std::string hint_of_slices(const ProcessEnd& end);
+
+/// Waits.
+void pause(double seconds);
+
+} // namespace carom

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "harness/processes/program_contender.hpp"
+#include "harness/processes/tree.hpp"
+
+namespace carom {
+
+struct Together {
+    double slice_seconds = 0.05;
+    std::uint64_t seed = 1; ///< of the order of slices and of stretches
+    KeptBy kept_by = KeptBy::whatever_works;
+};
+
+/// Measures programs beside each other.
+///
+/// What may be sliced takes turns (slices.hpp). Where nobody says whether a program may be, it runs once
+/// undisturbed first. It then has a stretch of its own, by itself, for each of these reasons:
+///  - it is idle for more than half of its time: what it waits for goes on while it stands still;
+///  - it succeeds undisturbed and fails in slices: a wait that was interrupted, a partner that gave it up;
+///  - three runs in slices, each beside one undisturbed, are all further from all of those than noise
+///    explains: by a tenth of the time, or by a twentieth of the time for each second of CPU time, which
+///    noise of the machine hardly changes.
+/// A run that told so and was undisturbed counts; one in slices that agrees counts as well.
+///
+/// Stretches are in random order, among themselves and with the one of all slices. What times itself within
+/// short processes has several, round after round, each round in an order of its own: so many that the
+/// longest has had a second, but no more than anyone's `most_rounds`.
+///
+/// Throws InputError if the system has no room for processes.
+std::vector<Measured> measure_together(const std::vector<ProgramContender>& contenders, const Together& how);
+
+} // namespace carom

@@ -1,0 +1,100 @@
+#include "harness/processes/tree.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
+
+#include "harness/processes/descendants.hpp"
+#include "harness/support/errors.hpp"
+#include "harness/support/stopwatch.hpp"
+
+namespace carom {
+namespace {
+
+class CgroupTree : public Tree {
+  public:
+    explicit CgroupTree(std::unique_ptr<Cgroup> group) : group_(std::move(group)) {}
+
+    bool stop(double most_seconds) override {
+        const bool stopped = group_->freeze(most_seconds);
+        if (!stopped) {
+            group_->thaw();
+        }
+        return stopped;
+    }
+    void go_on() override { group_->thaw(); }
+    void kill() override {
+        group_->kill();
+        group_->thaw();
+    }
+    const Cgroup* group() const override { return group_.get(); }
+    std::string name() const override { return "cgroup"; }
+
+  private:
+    std::unique_ptr<Cgroup> group_;
+};
+
+class SignalledTree : public Tree {
+  public:
+    void set_keeper(pid_t keeper) override { keeper_ = keeper; }
+
+    /// What is between vfork and exec cannot stop before its child has gone on, so that nothing is waited for
+    /// without a limit. Whoever is found later may have been started before its parent stood still.
+    bool stop(double most_seconds) override {
+        const auto begin = std::chrono::steady_clock::now();
+        while (true) {
+            const std::vector<pid_t> all = descendants_of(keeper_);
+            const bool still = std::ranges::all_of(all, stands_still);
+            if (still && all == stopped_) {
+                return true;
+            }
+            send(all, SIGSTOP);
+            stopped_ = all;
+            if (seconds_since(begin) > most_seconds) {
+                go_on();
+                return false;
+            }
+            usleep(still ? 0 : 50);
+        }
+    }
+
+    void go_on() override {
+        send(descendants_of(keeper_), SIGCONT);
+        stopped_.clear();
+    }
+
+    void kill() override { send(descendants_of(keeper_), SIGKILL); }
+
+    std::string name() const override { return "subreaper"; }
+
+  private:
+    static void send(const std::vector<pid_t>& processes, int signal) {
+        for (const pid_t process : processes) {
+            ::kill(process, signal);
+        }
+    }
+
+    pid_t keeper_ = 0;
+    std::vector<pid_t> stopped_; ///< told to stop, and still there when it was last looked
+};
+
+} // namespace
+
+std::unique_ptr<Tree> make_tree(KeptBy kept_by) {
+    if (kept_by != KeptBy::subreaper) {
+        if (auto group = Cgroup::make()) {
+            return std::make_unique<CgroupTree>(std::move(group));
+        }
+        if (kept_by == KeptBy::cgroup) {
+            throw InputError("--kept-by: found cgroup, expected subreaper: no group of cgroups v2 can be "
+                             "made here; it takes root, or a folder that was delegated");
+        }
+    }
+    return std::make_unique<SignalledTree>();
+}
+
+} // namespace carom

@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "harness/processes/contender_run.hpp"
+#include "harness/processes/stopping.hpp"
+#include "harness/processes/together.hpp"
+#include "harness/tests/temporary_directory.hpp"
+
+namespace carom {
+namespace {
+
+ProgramContender contender(const std::vector<std::string>& words) {
+    ProgramContender one;
+    one.command = {.words = words,
+                   .folder = "",
+                   .environment = {std::string("PATH=") + std::getenv("PATH")},
+                   .most_seconds = 60,
+                   .pattern = ""};
+    one.failure = [command = one.command](const ProcessEnd& end) { return why_failed(command, end, {0}); };
+    return one;
+}
+
+ProgramContender shell(const std::string& script) { return contender({"/bin/sh", "-c", script}); }
+
+ProgramContender python(const std::string& script) { return contender({"python3", "-c", script}); }
+
+const std::string work = "i=0; while [ $i -lt 150000 ]; do i=$((i+1)); done";
+
+std::string lines_of(const std::string& path) { return tests::content_of(path); }
+
+TEST(Together, WhatOnlyWorksTakesTurns) {
+    // Where other programs have the processors nobody can tell one that waits for them from one that sleeps.
+    ProgramContender one = shell(work);
+    one.turns = true;
+    const auto measured = measure_together({one, one}, {.slice_seconds = 0.01});
+    for (const Measured& each : measured) {
+        EXPECT_EQ(each.failure, "");
+        EXPECT_TRUE(each.sliced);
+        EXPECT_EQ(each.undisturbed, "");
+        ASSERT_EQ(each.runs.size(), 1);
+        EXPECT_GT(each.runs.front().seconds.size(), 3);
+    }
+}
+
+TEST(Together, WhatSleepsIsMeasuredWithoutAPause) {
+    const auto measured = measure_together({shell("sleep 0.3"), shell("sleep 0.4")}, {.slice_seconds = 0.02});
+    EXPECT_GE(measured[0].runs.front().wall_seconds(), 0.3);
+    EXPECT_GE(measured[1].runs.front().wall_seconds(), 0.4);
+    for (const Measured& each : measured) {
+        EXPECT_FALSE(each.sliced);
+        EXPECT_NE(each.undisturbed.find("it computes for only"), std::string::npos) << each.undisturbed;
+        EXPECT_EQ(each.runs.front().seconds.size(), 1);
+    }
+}
+
+TEST(Together, WhatFailsInSlicesIsMeasuredWithoutAPause) {
+    const ProgramContender minds = python("import sys, time\n"
+                                          "start = last = time.monotonic()\n"
+                                          "while last - start < 1.2:\n"
+                                          "    now = time.monotonic()\n"
+                                          "    if now - last > 0.3: sys.exit('stood still')\n"
+                                          "    last = now\n");
+    ProgramContender other = shell("i=0; while [ $i -lt 2000000 ]; do i=$((i+1)); done");
+    other.turns = true;
+    other.expected_seconds = 1.2;
+    const auto measured = measure_together({minds, other}, {.slice_seconds = 0.4});
+    EXPECT_EQ(measured[0].failure, "");
+    EXPECT_FALSE(measured[0].sliced);
+    EXPECT_NE(measured[0].undisturbed, "");
+    EXPECT_GE(measured[0].runs.front().wall_seconds(), 1.2);
+    EXPECT_TRUE(measured[1].sliced);
+}
+
+TEST(Together, WhatLooksAtTheClockIsMeasuredWithoutAPause) {
+    const ProgramContender minds = python("import time\n"
+                                          "until = time.monotonic() + 0.8\n"
+                                          "while time.monotonic() < until: pass\n");
+    const auto measured = measure_together({minds, minds}, {.slice_seconds = 0.05});
+    for (const Measured& each : measured) {
+        EXPECT_FALSE(each.sliced);
+        EXPECT_GE(each.runs.front().wall_seconds(), 0.8);
+        EXPECT_NE(each.undisturbed, "");
+    }
+}
+
+TEST(Together, AFailureInSlicesSaysThatItMayMind) {
+    ProgramContender minds = shell(work + "; exit 3");
+    minds.turns = true;
+    const auto measured = measure_together({minds, minds}, {.slice_seconds = 0.002});
+    EXPECT_EQ(
+        measured[0].failure,
+        "exit code 3 without a word (it was stopped now and then; if it minds that, turns = false gives "
+        "it a stretch of its own)");
+}
+
+TEST(Together, NothingIsStoppedThatIsNotToBe) {
+    ProgramContender one = shell(work);
+    one.turns = false;
+    const auto measured = measure_together({one, one}, {.slice_seconds = 0.002});
+    for (const Measured& each : measured) {
+        EXPECT_FALSE(each.sliced);
+        EXPECT_EQ(each.undisturbed, "");
+        EXPECT_EQ(each.runs.front().seconds.size(), 1);
+    }
+}
+
+TEST(Together, EachRunIsPreparedAndConcluded) {
+    const tests::TemporaryDirectory directory;
+    ProgramContender one = shell("mkdir " + (directory / "out") + " && echo run >> " + (directory / "log"));
+    one.prepare = {"sh", "-c", "echo prepare >> " + (directory / "log")};
+    one.conclude = {"rmdir", directory / "out"};
+    one.warm_ups = 1;
+    const auto measured = measure_together({one}, {});
+    EXPECT_EQ(measured[0].failure, "");
+    EXPECT_EQ(lines_of(directory / "log"), "prepare\nrun\nprepare\nrun\n");
+    one.prepare = {"sh", "-c", "echo no room >&2; exit 1"};
+    EXPECT_EQ(measure_together({one}, {})[0].failure, "prepare: exit code 1: no room");
+    one.prepare = {"/no/such/program"};
+    EXPECT_EQ(measure_together({one}, {})[0].failure, "prepare: cannot be run: No such file or directory");
+    one.prepare.clear();
+    one.conclude = {"false"};
+    EXPECT_EQ(measure_together({one}, {})[0].failure, "conclude: exit code 1 without a word");
+}
+
+TEST(Together, EachRunHasAFolderOfItsOwnIfItAsksForOne) {
+    const tests::TemporaryDirectory directory;
+    ProgramContender one = shell("test \"$(ls)\" = prepared && mkdir out && pwd >> " + (directory / "log"));
+    one.prepare = {"touch", "prepared"};
+    one.fresh_folder = true;
+    one.warm_ups = 2;
+    EXPECT_EQ(measure_together({one}, {})[0].failure, "");
+    const std::string folders = lines_of(directory / "log");
+    EXPECT_EQ(std::ranges::count(folders, '\n'), 3);
+    EXPECT_FALSE(std::filesystem::exists(folders.substr(0, folders.find('\n'))));
+}
+
+TEST(Together, ShortProcessesThatTimeThemselvesGoRoundAfterRound) {
+    const tests::TemporaryDirectory directory;
+    const auto benchmark = [&directory](const std::string& name) {
+        ProgramContender one = shell("echo " + name + " >> " + (directory / "log"));
+        one.times_itself = true;
+        one.most_rounds = 5;
+        return one;
+    };
+    int taken = 0;
+    ProgramContender counted = benchmark("a");
+    counted.take = [&taken](const ProcessEnd&) {
+        ++taken;
+        return std::string();
+    };
+    ProgramContender once = shell("echo once >> " + (directory / "log"));
+    once.times_itself = true;
+    const auto measured = measure_together({counted, benchmark("b"), once}, {});
+    EXPECT_EQ(measured[0].runs.size(), 5);
+    EXPECT_EQ(measured[1].runs.size(), 5);
+    EXPECT_EQ(measured[2].runs.size(), 1);
+    EXPECT_EQ(taken, 5);
+    std::string rounds = lines_of(directory / "log");
+    rounds.erase(rounds.find("once\n"), 5);
+    std::erase(rounds, '\n');
+    for (std::size_t round = 0; round < 5; ++round) {
+        const std::string pair = rounds.substr(2 * round, 2);
+        EXPECT_TRUE(pair == "ab" || pair == "ba") << rounds;
+    }
+}
+
+ProcessEnd taking(double wall, double cpu) {
+    ProcessEnd end;
+    end.seconds = {wall};
+    end.user_seconds = cpu;
+    return end;
+}
+
+TEST(Stopping, IsMindedByWhatDisagreesBeyondNoise) {
+    const std::vector<ProcessEnd> undisturbed{taking(1.0, 1.0), taking(1.4, 1.4), taking(1.1, 1.1)};
+    EXPECT_FALSE(may_disagree(undisturbed, {taking(0.95, 0.95), taking(1.2, 1.2), taking(1.0, 1.0)}));
+    EXPECT_TRUE(may_disagree(undisturbed, {taking(0.5, 0.5), taking(0.6, 0.6), taking(0.7, 0.7)}));
+    EXPECT_TRUE(may_disagree(undisturbed, {taking(1.6, 1.6), taking(1.7, 1.7), taking(2, 2)}));
+    // What sleeps for a sixth of its time saves that in slices, on a fast machine as on a slow one.
+    const std::vector<ProcessEnd> waiting{taking(1.2, 1.0), taking(1.8, 1.5), taking(1.2, 1.0)};
+    EXPECT_TRUE(may_disagree(waiting, {taking(1.2, 1.2), taking(1.5, 1.5), taking(1.1, 1.1)}));
+    EXPECT_FALSE(may_disagree(waiting, {taking(1.2, 1.0), taking(1.5, 1.25), taking(1.1, 0.9)}));
+}
+
+} // namespace
+} // namespace carom
