@@ -40,22 +40,17 @@ class Program:
 
     @property
     def is_unchanged(self) -> bool:
-        """Whether its files are what they were. Raises InputError if one cannot be read."""
-        return digest_of_hashes([sha256_of(file) for file in self.sources]) == self.recorded_sha256
+        """Whether its files are what they were, but for those that are written. Raises InputError if one
+        cannot be read.
+        """
+        known = dict(zip(self.files, self.hashes, strict=False))
+        hashes = [known[file] if file in self.written else sha256_of(file) for file in self.sources]
+        return digest_of_hashes(hashes) == self.sha256
 
     @property
     def sources(self) -> tuple[Path, ...]:
-        """Every file that it is made of, but for those that are written."""
-        return tuple(file for file in self.files if file not in self.written) or (self.path,)
-
-    @property
-    def recorded_sha256(self) -> str | None:
-        """The SHA-256 of its sources, as its records have it; unlike `sha256`, which is part of an id, it
-        knows nothing of what is written.
-        """
-        known = zip(self.files, self.hashes, strict=False)
-        sources = [sha256 for file, sha256 in known if file not in self.written]
-        return digest_of_hashes(sources) if sources else self.sha256
+        """Every file that it is made of."""
+        return self.files or (self.path,)
 
     @property
     def remedy(self) -> str:

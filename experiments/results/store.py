@@ -182,7 +182,7 @@ def unusable(record: Any, point: Point, block: int) -> str | None:  # noqa: ANN4
         return f"it is of the kind {record['kind']}"
     if record["check"]["verdict"] == "failed":
         return "its result failed the check"
-    if record["provenance"]["binary_sha256"] != point.program.recorded_sha256:
+    if record["provenance"]["binary_sha256"] != point.program.sha256:
         return "it was measured with another program"
     if point.measures_errors(block) and "trajectory" not in (record["errors"] or {}):
         return "it lacks the error measures"

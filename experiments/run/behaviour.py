@@ -34,18 +34,22 @@ class Behaviours:
             self._known[point.id] = _read(self._store.note(_note_of(point)))
         return self._known[point.id]
 
-    def learn(self, point: Point, record: Any, *, found_out: bool) -> None:  # noqa: ANN401 - read from a file
+    def learn(self, point: Point, record: Any, *, found_out: bool) -> str:  # noqa: ANN401 - read from a file
         """Take in a record of the point; `found_out` says that it was left to the program to find out whether
-        the point may take turns.
+        the point may take turns. Returns why it does not, if that is news.
         """
         process = record.get("process") if isinstance(record, dict) else None
         if not isinstance(process, dict) or (point.command is not None and point.command.benchmark):
-            return
+            return ""
         known = self.of(point)
-        known.seconds.append(float(process["wall_seconds"]))
-        if found_out and "undisturbed" in process:
-            known.turns = process["undisturbed"] is None
+        known.seconds.append(float(process["wall_seconds"]) / process.get("runs", 1))
+        reason = process.get("undisturbed") if found_out else None
+        if reason:
+            known.turns = False
+        elif found_out and record["turns"]:
+            known.turns = True
         self._store.keep_note(_note_of(point), {"turns": known.turns, "seconds": known.seconds})
+        return str(reason or "")
 
 
 def _read(note: object) -> Behaviour:

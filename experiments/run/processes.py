@@ -16,7 +16,6 @@ from experiments.run.behaviour import Behaviours
 from experiments.run.host_lock import run_alone
 from experiments.run.progress import warn
 from experiments.run.written import Written, touch_of
-from experiments.support.errors import InputError
 from experiments.support.files import read_json
 from experiments.support.process import Completed
 
@@ -83,14 +82,14 @@ class Processes:
                     f"{file}: is written by what is measured: each run finds what the last one left; "
                     "`prepare` of a series can restore it"
                 )
-            if any(int(one.tags["block"]) > 0 for one in asked):
-                told = "is written, as is seen only now; run the study again to measure earlier blocks alike"
-                raise InputError(f"{min(suspected)}: {told}")
             asked = provisional
         self._written.learn_created([one.point.program for one in asked])
         for one, there in zip(asked, left, strict=True):
-            found_out = len(asked) > 1 and self._turns(one) is None
-            self._behaviours.learn(one.point, read_json(there.record), found_out=found_out)
+            said = self._behaviours.learn(
+                one.point, read_json(there.record), found_out=self._turns(one) is None
+            )
+            if said:
+                warn(f"{one.point.experiment}, {one.point.series}: measured without a pause: {said}")
         return done, left
 
     def write_trajectory(self, point: Point, scene: Path, output: Path) -> Completed:
@@ -168,7 +167,9 @@ class Processes:
         if path is not None:
             described["scene"] = str(path)
         if point.program.written:
-            described["written"] = sorted(map(str, point.program.written))
+            hashes = zip(point.program.files, point.program.hashes, strict=False)
+            written = {str(file): sha256 for file, sha256 in hashes if file in point.program.written}
+            described["written"] = written
         if seconds is not None:
             described["expected_seconds"] = seconds
         if point.command is None:

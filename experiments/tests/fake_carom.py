@@ -157,8 +157,8 @@ def described(words: list[str]) -> list[Options]:
 
 def process(one: Options) -> int:
     """Run it once, with what goes before and after it, and leave a record or a failure."""
-    sources = [source for source in one.get("sources", []) if source not in one.get("written", [])]
-    before = [sha256(source) for source in sources]
+    sources, written = one.get("sources", []), one.get("written", {})
+    before = [written.get(source) or sha256(source) for source in sources]
     folder = one.get("folder")
     fresh = tempfile.mkdtemp() if one.get("fresh_folder") else None
     began = time.monotonic()
@@ -177,9 +177,8 @@ def process(one: Options) -> int:
         }  # fmt: skip
         write(one["record"], json.dumps(failure))
         return 1
-    changed = [
-        source for source, was in zip(sources[1:], before[1:], strict=True) if hash_or_none(source) != was
-    ]
+    pairs = zip(sources, before, strict=True)
+    changed = [source for source, was in pairs if source not in written and hash_or_none(source) != was]
     write(one["record"], json.dumps(process_record(one, tags, (sources, before, changed), seconds)))
     return 0
 
@@ -228,7 +227,7 @@ def process_record(
             "time_from": "outside",
             "counters": {},
         },
-        "turns": None,
+        "turns": None if undisturbed else {"contenders": 2, "seed": 1, "seconds": [seconds]},
         "check": {
             "verdict": "passed" if one.get("checked") else "unchecked",
             "scope": one.get("checked") or "nothing",
