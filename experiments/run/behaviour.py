@@ -7,6 +7,9 @@ from typing import Any
 from experiments.plan.point import Point
 from experiments.results.store import Store
 
+LEFT_ALONE = "nothing was left that it could take turns with"
+"""The one reason for a stretch of its own that the others are, and not the program itself."""
+
 
 @dataclass
 class Behaviour:
@@ -44,7 +47,9 @@ class Behaviours:
         known = self.of(point)
         known.seconds.append(float(process["wall_seconds"]) / process.get("runs", 1))
         reason = process.get("undisturbed") if found_out else None
-        if reason:
+        if reason == LEFT_ALONE:
+            reason = None
+        elif reason:
             known.turns = False
         elif found_out and record["turns"]:
             known.turns = True

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from experiments.run.behaviour import LEFT_ALONE
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.support.errors import InputError
@@ -100,6 +101,14 @@ def test_whether_it_may_take_turns_is_found_out_once(empty_workplace: Workplace)
     assert run(place.settings) == 0
     later = [(one["command"][1:], one.get("turns")) for one in described(place)]
     assert sorted(later) == [([], False), (["b"], True)], "a later session knows it as well"
+
+
+def test_who_was_only_left_alone_is_asked_again(empty_workplace: Workplace) -> None:
+    empty_workplace.behave(FAKE_UNDISTURBED=LEFT_ALONE)
+    two = series("a", 'command = ["true"]') + series("b", 'command = ["true", "b"]')
+    empty_workplace.question("asked", HEAD + two + BLOCKS)
+    assert run(empty_workplace.settings) == 0
+    assert [one.get("turns") for one in described(empty_workplace)] == [None] * 4
 
 
 def test_who_does_not_mind_takes_turns_from_then_on(empty_workplace: Workplace) -> None:
