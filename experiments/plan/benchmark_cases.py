@@ -46,8 +46,10 @@ def filter_of(name: str) -> str:
 
 
 def escaped(name: str) -> str:
-    """A regular expression for the plain text, of basic and of ECMAScript rules alike."""
-    return re.sub(r"([\\.+*?()|\[\]{}^$])", r"\\\1", name)
+    """A regular expression for the plain text, by extended and by ECMAScript rules alike: of brackets that
+    close, the former know no escape.
+    """
+    return re.sub(r"([\\.+*?()|\[{^$])", r"\\\1", name)
 
 
 def _is_case(program: Path, name: str, noise: int, key: str) -> bool:

@@ -139,7 +139,7 @@ def test_who_times_itself_joins_the_others_as_a_whole(empty_workplace: Workplace
     assert told["echo"]["turns"] is False
     assert "turns" not in told["benchBM_b"]
     assert "--benchmark_min_time=0.1" in told["benchBM_b"]["command"]
-    assert told["benchBM_a{x}"]["command"][1] == r"--benchmark_filter=^BM_a\{x\}(/|$)"
+    assert told["benchBM_a{x}"]["command"][1] == r"--benchmark_filter=^BM_a\{x}(/|$)"
 
 
 SORT = 'command = ["sort", "-o", "data.txt", "data.txt"]'
