@@ -1,8 +1,10 @@
 """The command line: `python -m analysis figures | report | claims | compare | movie ...`."""
 
 import argparse
+import io
 import json
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,6 +14,13 @@ from analysis.records.reading import InputError
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; return its exit code: 0 done, 1 bad input, and those of `compare`."""
+    # Where whoever started this ignores the ends of children, Python takes all of them for successes.
+    if signal.getsignal(signal.SIGCHLD) is signal.SIG_IGN:
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # What a locale has no letters for is told in another way.
+            stream.reconfigure(errors="backslashreplace")
     options = _parser().parse_args(arguments)
     try:
         code = int(options.run(options))

@@ -1,6 +1,7 @@
 """`python -m experiments`: plan, run and look after the study."""
 
 import argparse
+import io
 import os
 import signal
 import sys
@@ -25,6 +26,7 @@ from experiments.slurm.jobs import folders
 from experiments.slurm.status import show_cluster_status
 from experiments.slurm.submit import resume, submit
 from experiments.slurm.task import work
+from experiments.support.descendants import hear_of_ends
 from experiments.support.errors import InputError, Interrupted, cannot
 from experiments.support.files import require_room_for_folder
 
@@ -34,6 +36,11 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb; returns the exit code. Bad input is one line on standard error and 1."""
+    hear_of_ends()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            # What a locale has no letters for is told in another way.
+            stream.reconfigure(errors="backslashreplace")
     for number in _SIGNALS:
         # What is ignored stays ignored: `nohup` relies on it.
         if signal.getsignal(number) is not signal.SIG_IGN:

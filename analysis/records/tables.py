@@ -50,7 +50,7 @@ IDENTITY = ["compiler_family", "node", "machine", "revision"]
 CONTEXT = [
     "file", "kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene", "scene_sha256", *SCENE,
     *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment", "warm_ups", "in_turns",
-    "time_from", "command", *IDENTITY,
+    "time_from", "undisturbed", "command", *IDENTITY,
 ]  # fmt: skip
 
 
@@ -85,6 +85,7 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
         "warm_ups": record["warm_ups"],
         "in_turns": bool(record.get("turns")),
         "time_from": record.get("process", {}).get("time_from"),
+        "undisturbed": record.get("process", {}).get("undisturbed"),
         "command": shlex.join(record["process"]["command"]) if record["kind"] == "process" else None,
         "compiler_family": _compiler_family(origin["compiler"]),
         "node": slurm.get("SLURMD_NODENAME", origin["host"]),

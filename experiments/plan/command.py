@@ -1,31 +1,32 @@
 """Somebody else's program at one point: its words filled in, and the files that it is made of."""
 
 import os
-import shutil
 import string
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from experiments.plan.benchmark_cases import filter_of
+from experiments.plan.executable import UnfitError, found, program_of, require_executable
 from experiments.plan.program import Program
-from experiments.plan.scenes import sha256_of
 from experiments.plan.series import SECONDS_OF_UNIT, Series
-from experiments.support.digest import digest_of_hashes
+from experiments.support.digest import digest
 from experiments.support.errors import InputError, nearest
 
-SCENE, OUTPUT = "scene", "out"
-"""Placeholders of files that are known only when the program is run."""
+SCENE, OUTPUT, FOLDER = "scene", "out", "folder"
+"""Placeholders of files that are known only when the program is run, and of the question's folder."""
 
-_SCRIPT = b"#!"
-_LONGEST_FIRST_LINE = 4096
+_LITERAL = "\0"
+"""Behind a brace of the user's own: no word of a command can have it."""
+_LONGEST_NAME = 60
 
 
 @dataclass(frozen=True)
 class Command:
     """What is run and how its time is known; every field decides what is measured.
 
-    In `words` and `trajectory` only {scene} and {out} are left to be filled in. `instrument` is the SHA-256
-    of the program that takes the time: what another one measured is not compared.
+    In all words only {scene} and {out} are left to be filled in. `instrument` is the SHA-256 of the program
+    that takes the time: what another one measured is not compared.
     """
 
     words: tuple[str, ...]
@@ -35,58 +36,171 @@ class Command:
     pattern: str | None = None
     unit_seconds: float = 1.0
     benchmark: str | None = None
+    prepare: tuple[str, ...] = ()
+    conclude: tuple[str, ...] = ()
+    fresh_folder: bool = False
+    exit_codes: tuple[int, ...] = ()
+    turns: bool | None = None
+    refused: str = ""
+    """Why it is not run at all."""
+    checker: Program | None = None
+    """What writes the trajectory."""
+    another: str = ""
+    """What that is called where it is not the program that is timed."""
 
     @property
     def times_itself(self) -> bool:
         """Whether the time that counts is one that the program says: it must not stand still meanwhile."""
         return self.pattern is not None or self.benchmark is not None
 
+    @property
+    def writes_trajectory(self) -> bool:
+        """Whether what is timed writes its own trajectory."""
+        return any("{out}" in word for word in self.words)
+
+    @property
+    def content(self) -> dict[str, object]:
+        """What of it is part of an id: not where it is, and nothing that a later field does not say, so that
+        other ids are what they were before there was that field.
+        """
+        later = {"prepare": (), "conclude": (), "fresh_folder": False, "exit_codes": (), "turns": None}
+        told = {name: value for name, value in vars(self).items() if name not in _NO_CONTENT}
+        return {name: value for name, value in told.items() if name not in later or value != later[name]} | {
+            "folder": None
+        }
+
+
+_NO_CONTENT = ("refused", "checker", "another")
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where commands are run, what takes their time, and what is written there: each file's SHA-256 when it
+    was first seen, None for one that was not there.
+    """
+
+    folder: Path
+    instrument: str
+    first_seen: Mapping[str, str | None] = field(default_factory=dict)
+
 
 def command_of(
-    series: Series,
-    key: str,
-    folder: Path,
-    values: tuple[Mapping[str, object], Mapping[str, object]],
-    instrument: str,
+    series: Series, key: str, values: tuple[Mapping[str, object], Mapping[str, object]], place: Place
 ) -> tuple[Command, Program]:
     """The series' command with values filled in, those of the run and those of its check, and the program
     that it runs.
 
     Raises InputError, which begins with `key`, for a placeholder that is none of the values, and for a
-    program that is not there or cannot be run.
+    program that is not there or cannot be run; one of many is then a point that fails.
     """
-    known, checked = (
-        {name: "{scene}" if name == SCENE else _text(value) for name, value in one.items()} for one in values
+    if series.refused:
+        return _refused(series.name, series.refused, place)
+    of_run, of_check = (_known(one, place) for one in values)
+    words, prepare, conclude = (
+        _filled(getattr(series, name), f"{key}.{name}", of_run) for name in ("command", "prepare", "conclude")
     )
-    words = _filled(series.command, f"{key}.command", known)
-    if not series.is_one_of_many:
-        _require_executable(words[0], f"{key}.command", folder)
-    program = _program(words, folder)
-    trajectory = _filled(series.trajectory, f"{key}.trajectory", {**checked, OUTPUT: "{out}"})
-    if trajectory:
-        if SCENE not in checked:
-            raise InputError(f"{key}.trajectory: found without a scene, expected a table scene beside it")
-        if not series.is_one_of_many:
-            _require_executable(trajectory[0], f"{key}.trajectory", folder)
-        trajectory = (os.fspath(_found(trajectory[0], folder)), *trajectory[1:])
-    benchmark = series.benchmark
-    return Command(
-        words=(os.fspath(program.path), *words[1:]),
-        folder=folder,
-        instrument=instrument,
-        trajectory=trajectory,
-        pattern=series.time.stdout if series.time else None,
-        unit_seconds=SECONDS_OF_UNIT[series.time.unit] if series.time else 1.0,
-        benchmark=_filled((str(benchmark.name),), f"{key}.benchmark.name", known)[0] if benchmark else None,
+    if series.trajectory and SCENE not in values[1]:
+        raise InputError(f"{key}.trajectory: found without a scene, expected a table scene beside it")
+    trajectory = _filled(series.trajectory, f"{key}.trajectory", of_check)
+    name = None
+    if series.benchmark is not None:
+        [name] = placed(_filled((str(series.benchmark.name),), f"{key}.benchmark.name", of_run))
+        words = (*words, _literal(filter_of(name)))
+    command = Command(
+        words, place.folder, place.instrument, trajectory, series.time.stdout if series.time else None,
+        SECONDS_OF_UNIT[series.time.unit] if series.time else 1.0, name, prepare, conclude,
+        series.fresh_folder, series.exit_codes, series.turns,
+    )  # fmt: skip
+    if trajectory and command.writes_trajectory:
+        raise InputError(f"{key}.trajectory: found beside {{out}} in command, expected either")
+    return _resolved(command, series, key, place)
+
+
+def _resolved(command: Command, series: Series, key: str, place: Place) -> tuple[Command, Program]:
+    """The command with its first words found, and the program."""
+    resolved: dict[str, tuple[str, ...]] = {}
+    for name in ("words", "prepare", "conclude", "trajectory"):
+        words = getattr(command, name)
+        if not words:
+            continue
+        [first] = placed(words[:1])
+        try:
+            require_executable(first, place.folder)
+        except UnfitError as unfit:
+            if series.is_one_of_many:
+                return _refused(series.name, f"{first}: {unfit}", place)
+            told = "command" if name == "words" else name
+            raise InputError(f'{key}.{told}: found "{first}", which {unfit.told(first)}') from unfit
+        resolved[name] = (_literal(os.fspath(found(first, place.folder))), *words[1:])
+    folder = None if command.fresh_folder else place.folder
+    others = [placed(resolved[name]) for name in ("prepare", "conclude") if name in resolved]
+    try:
+        program = program_of(placed(resolved["words"]), others, place.folder, folder, place.first_seen)
+        trajectory = placed(resolved.get("trajectory", ()))
+        checker = program_of(trajectory, [], place.folder, folder, place.first_seen) if trajectory else None
+    except InputError as error:
+        if series.is_one_of_many:
+            return _refused(series.name, str(error), place)
+        raise
+    another = _another(placed(command.words), trajectory, place.folder) if checker else ""
+    return replace(
+        command,
+        words=resolved["words"],
+        prepare=resolved.get("prepare", ()),
+        conclude=resolved.get("conclude", ()),
+        trajectory=resolved.get("trajectory", ()),
+        checker=checker,
+        another=another,
     ), program
+
+
+def _refused(name: str, reason: str, place: Place) -> tuple[Command, Program]:
+    """What stands for a program that is not run: a point of its own, which fails."""
+    return (
+        Command((name,), place.folder, place.instrument, refused=reason),
+        Program(name, place.folder, digest(reason)),
+    )
+
+
+def _another(words: Sequence[str], trajectory: Sequence[str], folder: Path) -> str:
+    """What the command of a trajectory is called where it is not the timed program; else nothing."""
+    timed, other = (_lead(one, folder) for one in (words, trajectory))
+    if timed == other:
+        return ""
+    return " ".join((Path(other[0]).name, *other[1:]))[:_LONGEST_NAME]
+
+
+def _lead(words: Sequence[str], folder: Path) -> tuple[str, ...]:
+    """The words that say what is run: the program, and behind one that is not the user's own, which may be
+    an interpreter, what it is to run.
+    """
+    program = found(words[0], folder)
+    if program.is_relative_to(folder):
+        return (os.fspath(program),)
+    first = next((at for at, word in enumerate(words) if at and not word.startswith("-")), len(words) - 1)
+    return (os.fspath(program), *words[1 : first + 1])
 
 
 def placed(words: Sequence[str], scene: Path | None = None, output: Path | None = None) -> tuple[str, ...]:
     """The words with the files in their places."""
     files = {"{scene}": scene, "{out}": output}
     for name, path in files.items():
-        words = [word if path is None else word.replace(name, os.fspath(path)) for word in words]
-    return tuple(words)
+        words = [word if path is None else word.replace(name, _literal(os.fspath(path))) for word in words]
+    return tuple(word.replace(_LITERAL, "") for word in words)
+
+
+def _literal(text: str) -> str:
+    """The text, as one in which no placeholder is left to be filled in."""
+    for name in (SCENE, OUTPUT):
+        text = text.replace(f"{{{name}}}", f"{{{_LITERAL}{name}}}")
+    return text
+
+
+def _known(values: Mapping[str, object], place: Place) -> dict[str, str]:
+    """Placeholders with their values; those of files come later."""
+    known = {name: _text(value) for name, value in values.items() if name != SCENE}
+    files = {name: f"{{{name}}}" for name in (SCENE, OUTPUT) if SCENE in values}
+    return known | files | {FOLDER: os.fspath(place.folder)}
 
 
 def _text(value: object) -> str:
@@ -94,15 +208,19 @@ def _text(value: object) -> str:
 
 
 def _filled(words: Sequence[str], key: str, known: Mapping[str, str]) -> tuple[str, ...]:
+    """The words with the placeholders in the place of their values, but for those of files, of which only
+    these are left.
+    """
     filled = []
     for word in words:
         try:
             parts = list(string.Formatter().parse(word))
         except ValueError as error:
             raise InputError(f'{key}: found "{word}": {error}; {{{{ stands for a brace') from error
-        text = ""
+        texts = [""]  # between the files
+        files = [""]
         for literal, name, form, conversion in parts:
-            text += literal
+            texts[-1] += literal
             if name is None:
                 continue
             if name not in known or form or conversion:
@@ -110,49 +228,10 @@ def _filled(words: Sequence[str], key: str, known: Mapping[str, str]) -> tuple[s
                     f'{key}: found "{{{name}}}", expected one of {", ".join(f"{{{one}}}" for one in known)}'
                     f"{nearest(name, known)}"
                 )
-            text += known[name]
-        filled.append(text)
+            if name in (SCENE, OUTPUT):
+                files.append(known[name])
+                texts.append("")
+            else:
+                texts[-1] += known[name]
+        filled.append("".join(file + _literal(text) for file, text in zip(files, texts, strict=True)))
     return tuple(filled)
-
-
-def _found(word: str, folder: Path) -> Path:
-    """The file that a first word names: below the folder if it has a slash, else on PATH."""
-    return (folder / word if "/" in word else Path(shutil.which(word) or word)).absolute()
-
-
-def _require_executable(word: str, key: str, folder: Path) -> None:
-    found = _found(word, folder)
-    if not found.exists():
-        where = "a program" if "/" in word else "a program on PATH"
-        raise InputError(f'{key}: found "{word}", which is not there; expected {where}')
-    if found.is_dir():
-        raise InputError(f'{key}: found "{word}", which is a folder; expected a program')
-    if not os.access(found, os.X_OK):
-        raise InputError(f'{key}: found "{word}", which is not executable; `chmod +x` makes it so')
-
-
-def _program(words: Sequence[str], folder: Path) -> Program:
-    path = _found(words[0], folder)
-    others = [folder / word for word in words[1:] if word and len(word) < os.pathconf("/", "PC_PATH_MAX")]
-    files = (path, *_interpreter(path), *(file for file in others if _is_file(file)))
-    return Program(path.name, path, digest_of_hashes([sha256_of(file) for file in files]), files)
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
-
-
-def _interpreter(path: Path) -> tuple[Path, ...]:
-    """What runs a script: the program of its first line, of `env` the one that it finds."""
-    with path.open("rb") as file:
-        first = file.readline(_LONGEST_FIRST_LINE)
-    if not first.startswith(_SCRIPT):
-        return ()
-    words = first[len(_SCRIPT) :].decode(errors="replace").split()
-    if words and Path(words[0]).name == "env":
-        words = [word for word in words[1:] if not word.startswith("-") and "=" not in word]
-    found = shutil.which(words[0]) if words else None
-    return (Path(found),) if found else ()

@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from experiments.plan.blocks import orders
-from experiments.plan.command import SCENE, Command, command_of
+from experiments.plan.command import SCENE, Command, Place, command_of
 from experiments.plan.point import Point
 from experiments.plan.program import GENERATOR, Program, variants
 from experiments.plan.question import NamedScene, Question, Threads
@@ -28,6 +28,8 @@ class Surroundings:
     programs: Mapping[str, Program]
     scale: Scale
     seed: int = SEED
+    first_seen: Mapping[str, str | None] = field(default_factory=dict)
+    """The files that programs are known to write, with the SHA-256 that each had before."""
 
 
 @dataclass(frozen=True)
@@ -213,7 +215,8 @@ def _command(
         checked["x"] = checked["steps"]
     instrument = str(around.programs[GENERATOR].sha256)
     key = f"{question.file}: series[{number}]"
-    return command_of(series, key, question.file.parent.absolute(), (values, checked), instrument)
+    place = Place(question.file.parent.absolute(), instrument, around.first_seen)
+    return command_of(series, key, (values, checked), place)
 
 
 def _placeholders(scene: AnyScene, others: dict[str, Any]) -> dict[str, object]:

@@ -18,6 +18,11 @@ Tags = dict[str, str | int | float]
 PROCESS = "process"
 """The verb of points of which whole processes are timed."""
 
+SHORT_BENCHMARK = "--benchmark_min_time=0.1"
+"""A case of a Google Benchmark is many short processes, which alternate with those that it is compared with.
+Written without its unit, which versions before 1.8 do not know.
+"""
+
 
 @dataclass(frozen=True)
 class Measurement:
@@ -60,6 +65,11 @@ class Measurement:
     def is_checked(self) -> bool:
         """Whether its steps can be verified before it is timed."""
         return self.command is None or bool(self.command.trajectory)
+
+    @property
+    def refused(self) -> str:
+        """Why it cannot be run at all; empty if it can."""
+        return self.command.refused if self.command is not None else ""
 
     @property
     def axes(self) -> dict[str, str | int | None]:
@@ -137,15 +147,15 @@ class Point(Measurement):
 
     def process_words(self, scene: Path | None, output: Path) -> tuple[str, ...]:
         """The command of the process that is timed as a whole: the program's own words, or `carom run`. A
-        Google Benchmark writes what it found into `output`.
+        Google Benchmark writes what it found into `output`, and others their trajectory.
         """
         if self.command is None:
             assert scene is not None
             return tuple(self._words("run", scene))
-        words = placed(self.command.words, scene)
+        words = placed(self.command.words, scene, output)
         if self.command.benchmark is None:
             return words
-        return (*words, f"--benchmark_out={output}", "--benchmark_out_format=json")
+        return (*words, SHORT_BENCHMARK, f"--benchmark_out={output}", "--benchmark_out_format=json")
 
     def _words(self, verb: str, scene: Path) -> list[str]:
         words = [str(self.program.path), verb, str(scene)]
@@ -165,7 +175,7 @@ def _content(value: object) -> object:
         case Scene() | HardCase() | NoScene():
             return value.arguments
         case Command():
-            return asdict(value) | {"folder": None}
+            return value.content
         case Machine():
             return asdict(value)
     raise TypeError(f"{value!r} has no place in an id")

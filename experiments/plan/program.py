@@ -29,11 +29,23 @@ class Program:
     sha256: str | None
     files: tuple[Path, ...] = ()
     """What it is made of, where that is more than the one file."""
+    hashes: tuple[str, ...] = ()
+    """Of each of these files, as it was first seen."""
+    inputs: tuple[Path, ...] = ()
+    """Those of them that it only reads or writes: neither the program nor what interprets it."""
+    absent: tuple[Path, ...] = ()
+    """What it may be going to write: words that could be files, and are none."""
+    written: frozenset[Path] = frozenset()
+    """Files that it, or a program beside it, is known to write: what they hold now says nothing of it."""
 
     @property
     def is_unchanged(self) -> bool:
-        """Whether its files are what they were. Raises InputError if one cannot be read."""
-        return digest_of_hashes([sha256_of(file) for file in self.sources]) == self.sha256
+        """Whether its files are what they were, but for those that are written. Raises InputError if one
+        cannot be read.
+        """
+        known = dict(zip(self.files, self.hashes, strict=False))
+        hashes = [known[file] if file in self.written else sha256_of(file) for file in self.sources]
+        return digest_of_hashes(hashes) == self.sha256
 
     @property
     def sources(self) -> tuple[Path, ...]:

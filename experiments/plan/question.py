@@ -9,7 +9,7 @@ from typing import Any, Literal
 from experiments.plan.claims import CLAIMS, PUBLISHED_CLAIMS, require_claim
 from experiments.plan.scenes import AnyScene, HardCase, NoScene, Scene
 from experiments.plan.series import Series, read_series, require_both_ways, require_replicated
-from experiments.support.errors import InputError, nearest, quoted
+from experiments.support.errors import InputError, nearest, quoted, require_text
 from experiments.support.schema import read_toml
 
 FOLDER = Path(__file__).parents[1] / "questions"
@@ -22,6 +22,7 @@ _OF_A_SCENE = (
     "particles", "side", "radius", "steps", "min_velocity", "max_velocity", "area_fraction", "seed",
 )  # fmt: skip
 _WHOLE_NUMBERS = (*_OF_THE_RUN, "particles", "steps", "seed")
+_PLACEHOLDERS = ("scene", "out", "folder", "program")
 _OF_SERIES = ("find_chunk", "resolve_chunk")
 
 Threads = int | Literal["cores", "hardware_threads"]
@@ -117,6 +118,8 @@ def load_questions(folder: Path, names: Iterable[str] = ()) -> tuple[Question, .
     if not folder.is_dir():
         raise InputError(f"questions: found {folder}, expected a folder that is there")
     files = {path.stem: path for path in sorted(folder.glob("*.toml")) if path.name != CLAIMS}
+    for path in (folder.absolute(), *files.values()):
+        require_text("questions", path)
     if not files:
         raise InputError(f"{folder}: has no question in it; expected files *.toml")
     chosen = list(dict.fromkeys(names)) or list(files)
@@ -249,6 +252,9 @@ def _require_what_processes_can(question: Question) -> None:
             f"{file}: sweep.parameter: found {quoted(parameter)}, expected one of {', '.join(known)}"
             f"{nearest(parameter, known)}"
         )
+    if parameter in _PLACEHOLDERS:
+        told = "which is a placeholder of another meaning; expected another name"
+        raise InputError(f"{file}: sweep.parameter: found {quoted(parameter)}, {told}")
     if parameter in _OF_A_SCENE and any(isinstance(named.scene, NoScene) for named in question.scenes):
         raise InputError(f"{file}: sweep.parameter: found {parameter} without a scene, expected another name")
     if question.verb == "process":

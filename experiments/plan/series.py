@@ -1,19 +1,21 @@
 """The curves of a question: variants of the kernel, programs of anybody's, Google Benchmarks."""
 
+import glob
 import os
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
-from experiments.support import process
-from experiments.support.errors import InputError
+from experiments.plan.benchmark_cases import cases
+from experiments.plan.pattern import PatternError, groups_of
+from experiments.support.errors import InputError, quoted
 
 SECONDS_OF_UNIT = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 
-_LIST_SECONDS = 60.0
+WORDS = ("command", "trajectory", "prepare", "conclude")
+"""The keys of a series whose words have placeholders."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,15 @@ class Series:
     program: str = "gcc"
     command: tuple[str, ...] = ()
     trajectory: tuple[str, ...] = ()
+    prepare: tuple[str, ...] = ()
+    conclude: tuple[str, ...] = ()
+    """Commands that are run, untimed, before and after each run."""
+    fresh_folder: bool = False
+    """Each run has a new folder to itself."""
+    exit_codes: tuple[int, ...] = ()
+    """Those that are fine; without any it is 0."""
+    turns: bool | None = None
+    """Whether it is stopped while others run; without a word it is found out."""
     time: PrintedTime | None = None
     benchmark: Benchmark | None = None
     label: str | None = None
@@ -58,6 +69,8 @@ class Series:
     """The values that all others of the question are compared with; a block measures them several times."""
     is_one_of_many: bool = False
     """Found by a pattern: if it cannot be run, that is its own failure and not one of the question."""
+    refused: str = ""
+    """Why what a pattern found is not run."""
     values: tuple[float, ...] = ()
     quick_values: tuple[float, ...] = ()
 
@@ -124,9 +137,11 @@ def _require_kinds(path: Path, tables: Sequence[Mapping[str, Any]]) -> None:
     """Each series is of one kind, and has nothing that only another kind can have."""
     only_for = {
         "variant": ("program", "find_chunk", "resolve_chunk", "optional"),
-        "command": ("trajectory", "time", "commands"),
+        "command": (
+            "trajectory", "time", "commands", "prepare", "conclude", "fresh_folder", "exit_codes", "turns",
+        ),
         "benchmark": (),
-    }
+    }  # fmt: skip
     for number, table in enumerate(tables, start=1):
         key = f"{path}: series[{number}]"
         kinds = [kind for kind in only_for if kind in table]
@@ -142,16 +157,21 @@ def _require_kinds(path: Path, tables: Sequence[Mapping[str, Any]]) -> None:
 
 
 def _of_table(path: Path, key: str, table: dict[str, Any]) -> Iterator[Series]:
+    _require_no_zero_byte(f"{path}: {key}", table)
     pattern = table.pop("commands", None)
-    words = {name: tuple(table.pop(name, ())) for name in ("command", "trajectory")}
+    words = {name: tuple(table.pop(name, ())) for name in WORDS}
     time = PrintedTime(**table.pop("time")) if "time" in table else None
     benchmark = Benchmark(**table.pop("benchmark")) if "benchmark" in table else None
+    exit_codes = tuple(sorted(table.pop("exit_codes", [0])))
     series = Series(
-        **{"name": "", **table}, command=words["command"], trajectory=words["trajectory"], time=time,
-        benchmark=benchmark,
+        **{"name": "", **table, **words}, time=time, benchmark=benchmark,
+        exit_codes=() if exit_codes == (0,) else exit_codes,
     )  # fmt: skip
     if time is not None:
         _require_one_group(f"{path}: {key}.time.stdout", time.stdout)
+    if time is not None and series.turns:
+        told = "found true for a program that times itself, which would count its pauses; expected false"
+        raise InputError(f"{path}: {key}.turns: {told}")
     if pattern is not None:
         yield from _of_pattern(path, key, series, pattern)
     elif benchmark is not None:
@@ -160,30 +180,66 @@ def _of_table(path: Path, key: str, table: dict[str, Any]) -> Iterator[Series]:
         yield series
 
 
+def _require_no_zero_byte(key: str, value: object) -> None:
+    """No word of a command can have one."""
+    if isinstance(value, str) and "\0" in value:
+        raise InputError(f"{key}: found {quoted(value)}, expected a text without a zero byte")
+    inner = value.items() if isinstance(value, dict) else ()
+    for name, one in inner:
+        _require_no_zero_byte(f"{key}.{name}", one)
+    for one in value if isinstance(value, list) else ():
+        _require_no_zero_byte(key, one)
+
+
 def _require_one_group(key: str, pattern: str) -> None:
     try:
-        groups = re.compile(pattern).groups
-    except re.error as error:
-        raise InputError(f'{key}: found "{pattern}", expected a regular expression: {error}') from error
+        groups = groups_of(pattern)
+    except PatternError as error:
+        raise InputError(
+            f"{key}: found {quoted(pattern)}, expected a regular expression that is allowed: found {error}"
+        ) from error
     if groups != 1:
-        raise InputError(f'{key}: found "{pattern}" with {groups} groups, expected one around the number')
+        raise InputError(
+            f"{key}: found {quoted(pattern)} with {groups} groups, expected one around the number"
+        )
 
 
 def _of_pattern(path: Path, key: str, series: Series, pattern: str) -> Iterator[Series]:
-    """One for each file, named by what differs in the paths; {program} and {folder} stand for it."""
-    root = Path(pattern).is_absolute()
-    base = Path("/") if root else path.parent
-    files = sorted(file for file in base.glob(pattern.lstrip("/")) if file.is_file())
+    """One for each file, named by what differs in the paths; {program} and {folder} stand for it. What is no
+    file, but no folder either, has its place as well: somebody meant it to be one.
+    """
+    base = Path("/") if Path(pattern).is_absolute() else path.parent
+    # That of a Path leaves links to nothing out.
+    found = glob.glob(pattern.lstrip("/"), root_dir=base, recursive=True, include_hidden=True)  # noqa: PTH207
+    files = sorted(file for file in (base / one for one in found) if not file.is_dir())
     if not files:
         raise InputError(f'{path}: {key}.commands: found "{pattern}", which no file matches')
     names = _differing([file.relative_to(base).parts for file in files])
-    for file, name in zip(files, names, strict=True):
+    for file, name_of in zip(files, names, strict=True):
         there = {"program": os.fspath(file), "folder": os.fspath(file.parent)}
-        command, trajectory = (
-            tuple(_placed(word, there) for word in words) for words in (series.command, series.trajectory)
+        command, trajectory, prepare, conclude = (
+            tuple(_placed(word, there) for word in getattr(series, name)) for name in WORDS
         )
         prefix = f"{series.name} " if series.name else ""
-        yield replace(series, name=prefix + name, command=command, trajectory=trajectory, is_one_of_many=True)
+        yield replace(
+            series, command=command, trajectory=trajectory, prepare=prepare, conclude=conclude,
+            name=prefix + _shown(name_of), is_one_of_many=True, refused=_unfit(file),
+        )  # fmt: skip
+
+
+def _unfit(file: Path) -> str:
+    """Why a file that a pattern found is not run; empty if it is."""
+    if _shown(os.fspath(file)) != os.fspath(file):
+        return "its path is no text in UTF-8 on one line; another name can be measured"
+    if not file.exists():
+        return "is a link to nothing"
+    return "" if file.is_file() else "is no file"
+
+
+def _shown(name: str) -> str:
+    """The name with what is no text in it written out."""
+    shown = (one if one.isprintable() else one.encode("unicode_escape").decode("ascii") for one in name)
+    return "".join(shown)
 
 
 def _placed(word: str, values: Mapping[str, str]) -> str:
@@ -211,25 +267,11 @@ def _of_benchmark(path: Path, key: str, series: Series, benchmark: Benchmark) ->
     """The one that is named, or one for each that the program lists."""
     if (benchmark.name is None) == (benchmark.filter is None):
         raise InputError(f"{path}: {key}.benchmark: expected either name or filter")
-    names = [benchmark.name] if benchmark.name is not None else _cases(path, key, benchmark)
-    for name in names:
-        own = series.name or name.replace("{", "{{").replace("}", "}}")
-        words = (benchmark.program, f"--benchmark_filter=^{_escaped(name)}(/|$)")
-        yield replace(series, name=own, command=words, benchmark=replace(benchmark, name=name))
-
-
-def _escaped(name: str) -> str:
-    """Of a regular expression the plain text; placeholders stay."""
-    return re.sub(r"([\\.+*?()|\[\]^$])", r"\\\1", name)
-
-
-def _cases(path: Path, key: str, benchmark: Benchmark) -> list[str]:
-    program = path.parent / benchmark.program
-    words = [os.fspath(program), "--benchmark_list_tests=true", f"--benchmark_filter={benchmark.filter}"]
-    done = process.run(words, time_limit=_LIST_SECONDS)
-    if done.exit_code != 0:
-        raise InputError(f"{path}: {key}.benchmark: {done.reason}")
-    names = [line.strip() for line in done.output.splitlines() if line.strip()]
-    if not names:
-        raise InputError(f'{path}: {key}.benchmark.filter: found "{benchmark.filter}", which no case matches')
-    return names
+    if benchmark.filter is None:
+        yield replace(series, command=(benchmark.program,))
+        return
+    for name in cases(path.parent / benchmark.program, benchmark.filter, f"{path}: {key}.benchmark"):
+        # What is listed has no placeholders.
+        text = name.replace("{", "{{").replace("}", "}}")
+        own = replace(benchmark, name=text)
+        yield replace(series, name=series.name or _shown(name), command=(benchmark.program,), benchmark=own)

@@ -3,20 +3,51 @@
 import json
 import shutil
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from experiments.plan.command import Command, placed
 from experiments.plan.point import Point, Tags
 from experiments.plan.program import Program, build_of
 from experiments.plan.scenes import SceneFile
 from experiments.results.store import Store
+from experiments.run.behaviour import Behaviours
 from experiments.run.host_lock import run_alone
+from experiments.run.progress import warn
+from experiments.run.written import Written, touch_of
+from experiments.support.files import read_json
 from experiments.support.process import Completed
 
 MARGIN_SECONDS = 60.0
 """What measuring takes beside the processes, before it is given up."""
 
-Asked = tuple[Point, SceneFile | None, Tags]
+_RUNS = 8
+"""Of each at most: one to look at it, two in slices, two undisturbed and two with pauses where these disagree."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A point to be measured, the file of its scene, what its record is to remember, how what it does was
+    checked, and whether it may take turns with others at all.
+    """
+
+    point: Point
+    scene: SceneFile | None
+    tags: Tags
+    checked: str = ""
+    turns: bool = True
+
+
+@dataclass(frozen=True)
+class Left:
+    """What was measured: the point, its files that are known to be written among them, the file with its
+    record or failure, if there is one, and the one that it wrote itself, if it was to write one.
+    """
+
+    point: Point
+    record: Path
+    output: Path
 
 
 class Processes:
@@ -26,44 +57,160 @@ class Processes:
         self._store = store
         self._instrument = instrument
         self._time_limit = time_limit
+        self._behaviours = Behaviours(store)
+        self._written = Written(store)
 
-    def measure(self, points: Sequence[Asked], seed: int) -> tuple[Completed, list[Path]]:
-        """How it went, and where each record or failure is, if there is one."""
+    def measure(self, asked: Sequence[Asked], seed: int) -> tuple[Completed, list[Left]]:
+        """How it went, and what is left of each.
+
+        Where a file among the words changed, all are measured a second time: only then is it known whether a
+        program writes it. Raises InputError if somebody built a program anew meanwhile.
+        """
+        asked = [replace(one, point=self._known(one.point)) for one in asked]
+        done, left = self._run(asked, seed)
+        suspected = {
+            file: touch_of(file)
+            for one, there in zip(asked, left, strict=True)
+            for file in self._written.changed(one.point.program, read_json(there.record))
+        }
+        if suspected:
+            provisional = [_with_written(one, frozenset(suspected)) for one in asked]
+            done, left = self._run(provisional, seed)
+            self._written.learn([one.point.program for one in asked], suspected)
+            for file in sorted(suspected):
+                warn(
+                    f"{file}: is written by what is measured: each run finds what the last one left; "
+                    "`prepare` of a series can restore it"
+                )
+            asked = provisional
+        self._written.learn_created([one.point.program for one in asked])
+        for one, there in zip(asked, left, strict=True):
+            said = self._behaviours.learn(
+                one.point, read_json(there.record), found_out=self._turns(one) is None
+            )
+            if said:
+                warn(f"{one.point.experiment}, {one.point.series}: measured without a pause: {said}")
+        return done, left
+
+    def write_trajectory(self, point: Point, scene: Path, output: Path) -> Completed:
+        """Run the point's command for a trajectory, with all that it starts, once and untimed."""
+        command, record = point.command, self._folder() / "trajectory.json"
+        assert command is not None
+        words = placed(command.trajectory, scene, output)
+        described = {
+            **self._surroundings(command, scene, output),
+            "command": words,
+            "environment": dict(point.openmp),
+            "record": str(record),
+            "axes": {"threads": 1},
+        }
+        done = self._call([described], 1, self._time_limit * _commands(command))
+        match read_json(record):
+            case {"kind": "failure", "exit_code": int(exit_code), "reason": str(reason)}:
+                return Completed(words, exit_code or 1, "", reason)
+            case {"kind": "process"}:
+                return Completed(words, 0, "", "")
+        return Completed(words, done.exit_code or 1, "", done.error or "left no record")
+
+    def _known(self, point: Point) -> Point:
+        return replace(point, program=self._written.known(point.program)) if point.command else point
+
+    def _run(self, asked: Sequence[Asked], seed: int) -> tuple[Completed, list[Left]]:
+        folder = self._folder()
+        left = [
+            Left(one.point, folder / f"{number}.json", folder.absolute() / f"{number}.output")
+            for number, one in enumerate(asked)
+        ]
+        described = [self._described(one, there) for one, there in zip(asked, left, strict=True)]
+        limit = sum((_RUNS + one.point.warm_up) * _commands(one.point.command) for one in asked)
+        return self._call(described, seed, self._time_limit * limit), left
+
+    def _folder(self) -> Path:
         folder = self._store.temporary / "processes"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
-        records = [folder / f"{number}.json" for number in range(len(points))]
-        described = [self._described(*one, record) for one, record in zip(points, records, strict=True)]
-        described_in = folder / "processes.json"
-        described_in.write_text(json.dumps(described), encoding="utf-8")
-        command = (str(self._instrument.path), "processes", str(described_in), "--seed", str(seed))
-        # The instrument itself is bound nowhere: what it starts would inherit that.
-        return run_alone(command, (), self._time_limit * len(points) + MARGIN_SECONDS), records
+        return folder
 
-    def _described(self, point: Point, scene: SceneFile | None, tags: Tags, record: Path) -> dict[str, Any]:
-        output = record.with_suffix(".benchmark").absolute()
-        path = scene.path.absolute() if scene is not None else None
+    def _call(self, described: Sequence[dict[str, Any]], seed: int, seconds: float) -> Completed:
+        file = self._store.temporary / "processes" / "processes.json"
+        file.write_text(json.dumps(described), encoding="utf-8")
+        command = (str(self._instrument.path), "processes", str(file), "--seed", str(seed))
+        # The instrument itself is bound nowhere: what it starts would inherit that.
+        return run_alone(command, (), seconds + MARGIN_SECONDS)
+
+    def _turns(self, one: Asked) -> bool | None:
+        """Whether it takes turns, as it is said or was found out."""
+        command = one.point.command
+        if not one.turns or one.point.apart:
+            return False
+        if command is not None and command.turns is not None:
+            return command.turns
+        if command is not None and command.pattern is not None:
+            return False  # it would count the pauses
+        return self._behaviours.of(one.point).turns
+
+    def _described(self, one: Asked, left: Left) -> dict[str, Any]:
+        point, path = one.point, one.scene.path.absolute() if one.scene is not None else None
+        turns, seconds = self._turns(one), self._behaviours.of(point).expected_seconds
         described: dict[str, Any] = {
-            "command": point.process_words(path, output),
+            "command": point.process_words(path, left.output),
             "environment": dict(point.openmp),
             "most_seconds": self._time_limit,
-            "record": str(record),
-            "tags": [f"{key}={value}" for key, value in tags.items()],
+            "record": str(left.record),
+            "tags": [f"{key}={value}" for key, value in one.tags.items()],
             "sources": [str(file) for file in point.program.sources],
             "threads": point.threads,
             "axes": {key: value for key, value in point.axes.items() if value is not None},
             "warm_ups": point.warm_up,
+            "checked": one.checked,
         }
         if path is not None:
             described["scene"] = str(path)
-        if point.command is None and point.program.sha256 != self._instrument.sha256:
-            described["build"] = build_of(point.program)
-        if point.is_checked:
-            described["checked"] = "every-step" if point.command is None else "trajectory"
-        if point.command is not None:
-            described |= {"folder": str(point.command.folder), "unit_seconds": point.command.unit_seconds}
-            if point.command.pattern is not None:
-                described["pattern"] = point.command.pattern
-            if point.command.benchmark is not None:
-                described |= {"benchmark": point.command.benchmark, "output": str(output)}
+        if point.program.written:
+            hashes = zip(point.program.files, point.program.hashes, strict=False)
+            written = {str(file): sha256 for file, sha256 in hashes if file in point.program.written}
+            described["written"] = written
+        if seconds is not None:
+            described["expected_seconds"] = seconds
+        if point.command is None:
+            if point.program.sha256 != self._instrument.sha256:
+                described["build"] = build_of(point.program)
+        else:
+            described |= self._surroundings(point.command, path, left.output) | _time_of(point.command)
+        is_benchmark = point.command is not None and point.command.benchmark is not None
+        if is_benchmark:
+            described["output"] = str(left.output)
+        elif turns is not None:
+            described["turns"] = turns
         return described
+
+    def _surroundings(
+        self, command: Command, scene: Path | None = None, output: Path | None = None
+    ) -> dict[str, Any]:
+        """Where a command is run, with what before and after it, and how it may end."""
+        around: dict[str, Any] = {"folder": str(command.folder), "most_seconds": self._time_limit}
+        for name in ("prepare", "conclude"):
+            if words := getattr(command, name):
+                around[name] = placed(words, scene, output)
+        if command.fresh_folder:
+            around["fresh_folder"] = True
+        if command.exit_codes:
+            around["exit_codes"] = list(command.exit_codes)
+        return around
+
+
+def _time_of(command: Command) -> dict[str, Any]:
+    """Where the time of a command comes from."""
+    told = {"unit_seconds": command.unit_seconds, "pattern": command.pattern, "benchmark": command.benchmark}
+    return {key: value for key, value in told.items() if value is not None}
+
+
+def _commands(command: Command | None) -> int:
+    """How many commands a run consists of."""
+    return 1 if command is None else 1 + bool(command.prepare) + bool(command.conclude)
+
+
+def _with_written(one: Asked, more: frozenset[Path]) -> Asked:
+    program = one.point.program
+    written = program.written | (more & {*program.inputs})
+    return replace(one, point=replace(one.point, program=replace(program, written=written)))

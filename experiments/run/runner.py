@@ -4,7 +4,7 @@ import json
 import shutil
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from experiments.plan.plan import Experiment
@@ -16,9 +16,10 @@ from experiments.run.host_lock import run_alone
 from experiments.run.kept_records import KeptRecords
 from experiments.run.limits import measure_limits
 from experiments.run.outside import Outside
-from experiments.run.processes import Processes
+from experiments.run.processes import Asked, Left, Processes
 from experiments.run.promises import keep_promises
-from experiments.run.verify import Verifier, representative
+from experiments.run.verify import Verifier, representative, scope_of
+from experiments.run.written import Written, built_anew
 from experiments.support.errors import InputError
 from experiments.support.files import move, read_json
 from experiments.support.process import NOT_FOUND, Completed
@@ -74,8 +75,9 @@ class Runner:
         self._scenes = scenes
         self._generator = generator
         self._time_limit = time_limit
-        self._verifier = Verifier(store, generator, time_limit)
         self._processes = Processes(store, generator, time_limit)
+        self._verifier = Verifier(store, generator, self._processes, time_limit)
+        self._written = Written(store)
         self._records = KeptRecords(store, time_limit)
         self._outside = Outside(self._records)
 
@@ -106,6 +108,9 @@ class Runner:
     def _prepare(self, task: Task) -> SceneFile | Outcome | None:
         """The point's scene, if it has one, once what runs is verified; or why it cannot be measured."""
         point = task.point
+        if point.refused:
+            assert point.command is not None
+            return self._fail(task, Completed(point.command.words, NOT_FOUND, "", point.refused))
         if isinstance(point.scene, NoScene):
             return None
         if point.program.sha256 is None:
@@ -137,12 +142,32 @@ class Runner:
 
     def _measure_processes(self, ready: Sequence[Ready]) -> list[Outcome]:
         """Whole processes, side by side in slices of time."""
-        points = [(task.point, scene, task.tags(self._store.session)) for task, scene in ready]
-        done, records = self._processes.measure(points, ready[0][0].block + 1)
-        return [
-            self._keep(task, record, Completed(done.command, done.exit_code, "", done.error))
-            for (task, _), record in zip(ready, records, strict=True)
+        asked = [
+            Asked(
+                task.point,
+                scene,
+                task.tags(self._store.session),
+                scope_of(representative(task.experiment, task.point)),
+                task.experiment.question.turns,
+            )
+            for task, scene in ready
         ]
+        done, left = self._processes.measure(asked, ready[0][0].block + 1)
+        return [
+            self._keep_process(replace(task, point=there.point), scene, there, done)
+            for (task, scene), there in zip(ready, left, strict=True)
+        ]
+
+    def _keep_process(self, task: Task, scene: SceneFile | None, left: Left, done: Completed) -> Outcome:
+        """Take in the record of a process; of one that wrote a trajectory only if that is right."""
+        record, command = read_json(left.record), task.point.command
+        is_measured = is_record(record) and record["kind"] == PROCESS
+        if is_measured and command is not None and command.writes_trajectory and scene is not None:
+            wrong = self._verifier.check_own_output(task.point, scene, left.output)
+            left.output.unlink(missing_ok=True)
+            if wrong is not None:
+                return self._fail(task, wrong)
+        return self._keep(task, left.record, Completed(done.command, done.exit_code, "", done.error))
 
     def _measure_in_turns(self, ready: Sequence[Ready]) -> list[Outcome] | None:
         """All of them in one process; None if it broke off: each must show alone what is wrong with it.
@@ -204,8 +229,8 @@ class Runner:
         return self._fail(task, Completed(done.command, 1, "", said))
 
     def _fail(self, task: Task, done: Completed) -> Outcome:
-        if task.point.program.sha256 is not None:
-            _require_unchanged(task.point.program)
+        if task.point.program.sha256 is not None and not task.point.refused:
+            _require_unchanged(self._written.known(task.point.program))
         self._store.keep_failure(task.point, task.block, done, task.tags(self._store.session))
         return Outcome(None, done.reason, done.exit_code)
 
@@ -228,6 +253,4 @@ def _violation(record: object) -> str | None:
 
 def _require_unchanged(program: Program) -> None:
     if not program.is_unchanged:
-        raise InputError(
-            f"{program.path}: was built anew while the study ran; run the study again to go on with it"
-        )
+        raise built_anew(program.path)

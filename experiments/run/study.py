@@ -18,6 +18,7 @@ from experiments.run.costs import PROBE, Costs, Probe, kept_probes, probe, probe
 from experiments.run.progress import about
 from experiments.run.runner import Runner
 from experiments.run.schedule import Schedule
+from experiments.run.written import first_seen
 from experiments.support.errors import InputError
 from experiments.support.files import write_text
 
@@ -65,7 +66,15 @@ class Study:
         self.generator: Program = programs[GENERATOR]
         if self.generator.sha256 is None:
             raise InputError(self.generator.remedy)
-        around = Surroundings(self.site, machine or site.this_machine(), programs, self.scale, settings.seed)
+        self.store = Store(settings.results, new_session())
+        around = Surroundings(
+            self.site,
+            machine or site.this_machine(),
+            programs,
+            self.scale,
+            settings.seed,
+            first_seen(self.store),
+        )
         all_questions = load_questions(settings.questions, settings.study)
         questions = [
             one for one in all_questions if not settings.builds or one.programs <= {*settings.builds}
@@ -76,7 +85,6 @@ class Study:
         self.experiments: tuple[Experiment, ...] = tuple(
             plan(with_blocks(self.scale.question(one), settings.blocks), around) for one in questions
         )
-        self.store = Store(settings.results, new_session())
 
     def analysis_command(self) -> list[str]:
         """What says what is open, and writes the report."""

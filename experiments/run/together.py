@@ -2,6 +2,8 @@
 
 A machine that changes its speed from one second to the next disturbs those alike that take turns of some
 milliseconds, and not those that run one after the other. What turns would distort keeps a process of its own.
+Of whole processes those of most programs are sliced: all but one are stopped. Google Benchmarks are not, but
+each is many short processes, which alternate in random order.
 """
 
 import os
@@ -38,14 +40,13 @@ def _process(point: Point) -> tuple[object, ...]:
 
     Nothing is compared across a question's named scenes. And as many threads for all: a pool of threads that
     shrinks and grows between turns would be timed too. Whole processes keep their pools to themselves; what
-    is compared of them is at the same place of the sweep. Those that time themselves would count it as their
-    own while they stand still.
+    is compared of them is at the same place of the sweep. Who times itself is never stopped, since it would
+    count that as its own time, but alternates with the others as a whole.
     """
     if point.apart:
         return (point.id,)
     if point.verb == PROCESS:
-        alone = point.command is not None and point.command.times_itself
-        return point.scene_name, point.x, point.id if alone else None
+        return point.scene_name, point.x
     return point.scene_name, point.program.sha256, point.openmp, point.threads
 
 
@@ -91,6 +92,8 @@ def _bytes(point: Point) -> float:
     """
     scene = point.scene
     if point.command is not None:
+        if point.command.times_itself or point.command.turns is False:
+            return 0.0  # it is over before the next one begins
         return _memory() / _PROGRAMS_TOGETHER
     if not isinstance(scene, Scene):
         return 0.0

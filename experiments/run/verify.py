@@ -1,15 +1,16 @@
-"""The steps of a variant checked, each of them, before anything of it is timed."""
+"""The steps of a variant checked, each of them, before anything of it is timed; or after it what was."""
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
-from experiments.plan.command import placed
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.plan.program import CHECK_FAILED, Program, check_command, check_trajectory_command
 from experiments.plan.scenes import Scene, SceneFile
 from experiments.results.store import Store
 from experiments.run.host_lock import run_alone
+from experiments.run.processes import Processes
 from experiments.support.digest import digest
 from experiments.support.process import TIMED_OUT, Completed
 
@@ -35,14 +36,31 @@ def _checked_alike(point: Point) -> tuple[object, ...]:
     return point.program, point.variant, own, point.scene_name
 
 
+def scope_of(checked: Point) -> str:
+    """What a point's record says of how it was checked, by what was checked of it; empty if nothing was."""
+    command = checked.command
+    if command is None:
+        return "every-step"
+    if command.writes_trajectory:
+        return "its own output"
+    if not command.trajectory:
+        return ""
+    if command.another:
+        return f"trajectory of another command: {command.another}"
+    steps = f", steps 0 to {checked.scene.steps}" if isinstance(checked.scene, Scene) else ""
+    return f"trajectory of its own program{steps}"
+
+
 class Verifier:
     """Runs `carom check`, once for each program, variant, tolerance and scene; verdicts are kept."""
 
-    def __init__(self, store: Store, checker: Program, time_limit: float) -> None:
+    def __init__(self, store: Store, checker: Program, processes: Processes, time_limit: float) -> None:
         """The checker is the program that looks at what other programs write."""
         self._store = store
         self._checker = checker
+        self._processes = processes
         self._time_limit = time_limit
+        self._own_checked: set[str] = set()
 
     def check(self, point: Point, scene: SceneFile) -> Completed:
         """The verdict on the point's variant on that scene: exit code 0 if each of its steps passed."""
@@ -57,25 +75,39 @@ class Verifier:
         said = reason if done.exit_code != TIMED_OUT else done.error
         return Completed(done.command, done.exit_code, "", said)
 
+    def check_own_output(self, point: Point, scene: SceneFile, output: Path) -> Completed | None:
+        """The verdict on the trajectory that the timed run itself wrote, once in a session; None for what was
+        found right in it before.
+        """
+        if point.id in self._own_checked:
+            return None
+        done = self._look_at(output, scene, point)
+        if done.exit_code == 0:
+            self._own_checked.add(point.id)
+            return None
+        said = done.error if done.exit_code == TIMED_OUT else f"check of its own output: {done.reason}"
+        return Completed(done.command, done.exit_code, "", said)
+
     def _run(self, point: Point, scene: SceneFile) -> Completed:
         command = check_command(point.program, scene.path, str(point.variant), point.threads, point.tolerance)
         return run_alone(command, point.openmp, self._time_limit)
 
     def _check_trajectory(self, point: Point, scene: SceneFile) -> Completed:
         """Of another program: what it writes, once and untimed."""
-        assert point.command is not None
-        output = self._store.temporary / "trajectory"
+        output = self._store.temporary.absolute() / "trajectory"
         output.unlink(missing_ok=True)
-        words = placed(point.command.trajectory, scene.path.absolute(), output.absolute())
-        done = run_alone(words, point.openmp, self._time_limit, point.command.folder)
+        done = self._processes.write_trajectory(point, scene.path.absolute(), output)
         if done.exit_code != 0:
             return Completed(done.command, CRASHED, "", done.reason)
-        if not output.exists():
-            return Completed(done.command, CRASHED, "", f"left no trajectory in {output}")
-        command = check_trajectory_command(self._checker, scene.path, output, point.tolerance)
-        checked = run_alone(command, (), self._time_limit)
-        output.unlink()
+        checked = self._look_at(output, scene, point)
+        output.unlink(missing_ok=True)
         return checked
+
+    def _look_at(self, output: Path, scene: SceneFile, point: Point) -> Completed:
+        command = check_trajectory_command(self._checker, scene.path, output, point.tolerance)
+        if not output.is_file():
+            return Completed(command, CRASHED, "", f"left no trajectory in {output}")
+        return run_alone(command, (), self._time_limit)
 
 
 def _verdict(kept: object) -> Completed | None:
@@ -90,5 +122,8 @@ def note_of(point: Point, scene: SceneFile) -> str:
     """The name under which the verdict on a variant, a tolerance and a scene is kept."""
     content = f"{point.program.sha256} {point.variant} {point.tolerance} {scene.sha256}"
     if point.command is not None:
-        content += json.dumps([point.command.trajectory, point.command.instrument])
+        checker = point.command.checker
+        content += json.dumps(
+            [point.command.trajectory, point.command.instrument, checker.sha256 if checker else None]
+        )
     return f"checks/{digest(content)}.json"

@@ -2,7 +2,9 @@
 
 import difflib
 import json
+import os
 from collections.abc import Iterable
+from pathlib import Path
 
 
 class InputError(Exception):
@@ -20,6 +22,13 @@ class Interrupted(BaseException):
 def quoted(found: str) -> str:
     """What was found, between quotes and on one line, whatever characters it has."""
     return json.dumps(found, ensure_ascii=False)
+
+
+def require_text(what: str, path: Path) -> None:
+    """Raises InputError for a path that is no line of text in UTF-8, as records and reports hold it."""
+    if not os.fspath(path).isprintable():
+        found = os.fspath(path).encode("unicode_escape").decode("ascii")
+        raise InputError(f'{what}: found "{found}", expected a path that is a line of text in UTF-8')
 
 
 def nearest(found: str, names: Iterable[str]) -> str:

@@ -9,11 +9,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from experiments.support.errors import InputError
+from experiments.support.errors import InputError, require_text
 
 
 def require_room_for_folder(what: str, folder: Path) -> None:
-    """Raises InputError where something else stands in the place of a folder, or of one that it is in."""
+    """Raises InputError where something else stands in the place of a folder, or of one that it is in, and
+    for a path that is no text.
+    """
+    require_text(what, folder.absolute())
     there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
     if not there.is_dir():
         raise InputError(f"{what}: found {there}, which is no folder, expected one or a place for one")

@@ -7,27 +7,38 @@ import select
 import signal
 import subprocess
 import tempfile
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import IO
+from typing import IO, Any
+
+from experiments.support.descendants import adopt_orphans, children, end_all_but, hear_of_ends
+from experiments.support.pipes import READ_BYTES, Allowance, Kept, drain, line
 
 _PR_SET_PDEATHSIG = 1
 _PRCTL = ctypes.CDLL(None, use_errno=True).prctl
 
 TIMED_OUT = 124
+UNKNOWN_END = 125
 NOT_FOUND = 127
+
+_LONGEST_REASON = 500
+_LONGEST_PAUSE = 0.05
 
 
 @dataclass(frozen=True)
 class Completed:
-    """How a child ended; a negative exit code is the signal that killed it."""
+    """How a child ended; a negative exit code is the signal that killed it. Of output and error the end is
+    kept, without the first `dropped` bytes of both.
+    """
 
     command: tuple[str, ...]
     exit_code: int
     output: str
     error: str
+    dropped: int = 0
 
     @property
     def reason(self) -> str:
@@ -35,8 +46,9 @@ class Completed:
         if self.exit_code == TIMED_OUT:
             return self.error
         said = next((line.strip() for line in reversed(self.error.splitlines()) if line.strip()), "")
+        said = said[-_LONGEST_REASON:]
         if self.exit_code < 0:
-            said = f"killed by {signal.Signals(-self.exit_code).name}" + (f": {said}" if said else "")
+            said = f"killed by {_name_of_signal(-self.exit_code)}" + (f": {said}" if said else "")
         return said or f"exit code {self.exit_code} without a word"
 
 
@@ -47,25 +59,33 @@ def run(
     folder: Path | None = None,
 ) -> Completed:
     """Run a command to its end, in a folder or where this process is, without a shell. Whatever ends this
-    call early kills the child first.
+    call early kills the child first; what it started ends with it, also what left its group.
 
-    `communicate` waits in the kernel, so that nothing here takes the CPU from the process that is timed.
+    The time limit, in seconds, counts while this process runs: one that is stopped sees nothing of its child.
+    It wakes up twice a second, so that nothing here takes the CPU from the process that is timed.
     """
+    known = children()
     try:
         child = _start(command, environment, subprocess.DEVNULL, subprocess.PIPE, folder)
-    except OSError as error:
-        return Completed(tuple(command), NOT_FOUND, "", f"{command[0]}: cannot be run: {error.strerror}")
+    except (OSError, ValueError) as error:
+        said = error.strerror if isinstance(error, OSError) else error
+        return Completed(tuple(command), NOT_FOUND, "", f"{command[0]}: cannot be run: {said}")
+    output, errors = Kept(), Kept()
     with child:
+        pipes = {_descriptor(child.stdout): output, _descriptor(child.stderr): errors}
         try:
-            output, said = child.communicate(timeout=time_limit)
-        except subprocess.TimeoutExpired:
+            in_time = _follow(child, pipes, time_limit)
+            exit_code = _exit_code(child) if in_time else TIMED_OUT
+        finally:
             _kill(child)
-            said = f"took longer than {time_limit:g} s and was stopped"
-            return Completed(tuple(command), TIMED_OUT, "", said)
-        except BaseException:
-            _kill(child)
-            raise
-    return Completed(tuple(command), child.returncode, output, said)
+            end_all_but(known)
+    dropped = output.dropped + errors.dropped
+    if not in_time:
+        return Completed(tuple(command), TIMED_OUT, "", _took_longer(time_limit), dropped)
+    if exit_code is None:
+        told = "how it ended is not known: somebody else took leave of it"
+        return Completed(tuple(command), UNKNOWN_END, output.text, told, dropped)
+    return Completed(tuple(command), exit_code, output.text, errors.text, dropped)
 
 
 class Coprocess:
@@ -76,7 +96,7 @@ class Coprocess:
 
     def __init__(self, command: Sequence[str]) -> None:
         self._command = tuple(command)
-        self._child: subprocess.Popen[str] | None = None
+        self._child: subprocess.Popen[bytes] | None = None
         # A file: a pipe that nobody reads before the end could fill, and stop the child.
         self._errors = tempfile.TemporaryFile("w+", errors="replace")  # noqa: SIM115 - closed in __exit__
 
@@ -100,14 +120,14 @@ class Coprocess:
             self._child = _start(self._command, None, subprocess.PIPE, self._errors)
         child = self._child
         assert child.stdin is not None
-        assert child.stdout is not None
         with contextlib.suppress(BrokenPipeError):
-            print(question, file=child.stdin, flush=True)
-        if not select.select([child.stdout], [], [], time_limit)[0]:
+            child.stdin.write(f"{question}\n".encode())
+            child.stdin.flush()
+        answer = line(_descriptor(child.stdout), time_limit)
+        if answer is None:
             self._end()
-            said = f"took longer than {time_limit:g} s and was stopped"
-            return Completed(self._command, TIMED_OUT, "", said)
-        if answer := child.stdout.readline():
+            return Completed(self._command, TIMED_OUT, "", _took_longer(time_limit))
+        if answer:
             return Completed(self._command, 0, answer, self._said())
         exit_code = child.wait()
         self._end()
@@ -124,13 +144,39 @@ class Coprocess:
                 self._child = None
 
 
+def _follow(child: subprocess.Popen[bytes], pipes: dict[int, Kept], time_limit: float | None) -> bool:
+    """Read what the child prints until it ends; whether it did so within its time.
+
+    Its own end is what counts: who inherited its pipes may hold them open for as long as it likes.
+    """
+    allowance, open_pipes, pause = Allowance(time_limit), dict(pipes), 0.0005
+    while True:
+        if open_pipes:
+            for pipe in select.select(list(open_pipes), [], [], allowance.step)[0]:
+                if part := os.read(pipe, READ_BYTES):
+                    open_pipes[pipe].add(part)
+                else:
+                    del open_pipes[pipe]
+        else:
+            time.sleep(min(pause, allowance.step))
+            pause = min(2 * pause, _LONGEST_PAUSE)
+        if _has_ended(child):
+            for pipe, kept in open_pipes.items():
+                drain(pipe, kept)
+            return True
+        if allowance.is_used_up():
+            return False
+
+
 def _start(
     command: Sequence[str],
     environment: Mapping[str, str] | None,
     stdin: int,
     stderr: int | IO[str],
     folder: Path | None = None,
-) -> subprocess.Popen[str]:
+) -> subprocess.Popen[bytes]:
+    hear_of_ends()
+    adopt_orphans()
     return subprocess.Popen(
         command,
         cwd=folder,
@@ -138,8 +184,6 @@ def _start(
         stdin=stdin,
         stdout=subprocess.PIPE,
         stderr=stderr,
-        text=True,
-        errors="replace",
         start_new_session=True,  # Ctrl-C reaches this process alone, which then ends the child
         preexec_fn=_die_with_parent,  # safe: this process has no threads
     )
@@ -150,7 +194,43 @@ def _die_with_parent() -> None:
     _PRCTL(_PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
-def _kill(child: subprocess.Popen[str]) -> None:
+def _has_ended(child: subprocess.Popen[bytes]) -> bool:
+    """Whether it has, without taking leave of it: until then nobody else gets its number."""
+    try:
+        return os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is not None
+    except ChildProcessError:
+        return True
+
+
+def _exit_code(child: subprocess.Popen[bytes]) -> int | None:
+    """Of a child that has ended; None where somebody else took leave of it."""
+    try:
+        end = os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)
+    except ChildProcessError:
+        return None
+    assert end is not None
+    return end.si_status if end.si_code == os.CLD_EXITED else -end.si_status
+
+
+def _kill(child: subprocess.Popen[bytes]) -> None:
     with contextlib.suppress(ProcessLookupError):
         os.killpg(child.pid, signal.SIGKILL)
     child.wait()
+
+
+def _descriptor(stream: IO[Any] | None) -> int:
+    assert stream is not None
+    return stream.fileno()
+
+
+def _took_longer(time_limit: float | None) -> str:
+    assert time_limit is not None
+    return f"took longer than {time_limit:g} s and was stopped"
+
+
+def _name_of_signal(number: int) -> str:
+    """Its name; those of real time have none of their own."""
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"

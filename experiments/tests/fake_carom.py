@@ -4,13 +4,17 @@ The environment says what goes wrong: FAKE_SECONDS (each measurement takes that 
 FAKE_CHECK_SECONDS (each check), FAKE_CHECK_FAILS, FAKE_BENCH_CRASHES, FAKE_RESULT_WRONG, FAKE_NO_RECORD,
 FAKE_HANGS (the variant concerned), FAKE_SUSPENDED (the verb concerned), FAKE_LIMITS_FAIL,
 FAKE_PROMISES_FAIL. FAKE_LOG is a file that gets a line for every call, FAKE_SPANS one that gets a line for
-every call that computes: its verb, when it began and when it ended.
+every call that computes: its verb, when it began and when it ended. FAKE_UNDISTURBED is the reason why
+processes do not take turns, where nobody said whether.
 """
 
 import hashlib
 import json
 import os
+import shutil
+import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -37,6 +41,8 @@ def answer(words: list[str]) -> int:
         return 1
     if words[0] == "turns":
         return max(answer(said) for said in contenders(words))
+    if words[0] == "processes":
+        return max([process(one) for one in described(words)], default=0)
     if words[0] == "list":
         print("\n".join(VARIANTS))
         return 0
@@ -49,6 +55,10 @@ def answer_with(verb: str, options: Options, positional: list[str]) -> int:
         write(options["output"], "".join(f"{word}\n" for word in words))
     elif verb == "check":
         time.sleep(float(os.environ.get("FAKE_CHECK_SECONDS", "0")))
+        if "trajectory" in options:
+            wrong = "wrong" in Path(options["trajectory"]).read_text(encoding="utf-8")
+            print("step 1: disc 0 is elsewhere" if wrong else "", file=sys.stderr)
+            return 2 if wrong else 0
         if concerns("FAKE_CHECK_FAILS", options):
             print("step 3: discs 1 and 2 left colliding", file=sys.stderr)
             return 2
@@ -133,6 +143,9 @@ def note(words: list[str]) -> None:
             openmp = {key: value for key, value in os.environ.items() if key.startswith("OMP_")}
             for call in [words, *contenders(words)]:
                 file.write(json.dumps({"pid": os.getpid(), "words": call, "openmp": openmp}) + "\n")
+            for one in described(words):
+                call = ["process", *one["command"]]
+                file.write(json.dumps({"pid": os.getpid(), "words": call, "described": one}) + "\n")
 
 
 def contenders(words: list[str]) -> list[list[str]]:
@@ -140,6 +153,97 @@ def contenders(words: list[str]) -> list[list[str]]:
     if words[0] != "turns":
         return []
     return [["bench", *said] for said in json.loads(Path(words[1]).read_text(encoding="utf-8"))]
+
+
+def described(words: list[str]) -> list[Options]:
+    """The processes that are to be measured."""
+    return json.loads(Path(words[1]).read_text(encoding="utf-8")) if words[0] == "processes" else []
+
+
+def process(one: Options) -> int:
+    """Run it once, with what goes before and after it, and leave a record or a failure."""
+    sources, written = one.get("sources", []), one.get("written", {})
+    before = [written.get(source) or sha256(source) for source in sources]
+    folder = one.get("folder")
+    fresh = tempfile.mkdtemp() if one.get("fresh_folder") else None
+    began = time.monotonic()
+    code, reason = run_all(one, fresh or folder)
+    seconds = time.monotonic() - began
+    if fresh:
+        shutil.rmtree(fresh)
+    tags = {
+        key: number_or_text(value) for key, _, value in (tag.partition("=") for tag in one.get("tags", []))
+    }
+    if reason:
+        failure = {
+            "schema_version": 1, "kind": "failure", "tags": tags, "axes": one["axes"],
+            "command": one["command"], "exit_code": code or 1, "reason": reason,
+            "recorded_at": "2024-01-01T00:00:00Z",
+        }  # fmt: skip
+        write(one["record"], json.dumps(failure))
+        return 1
+    pairs = zip(sources, before, strict=True)
+    changed = [source for source, was in pairs if source not in written and hash_or_none(source) != was]
+    write(one["record"], json.dumps(process_record(one, tags, (sources, before, changed), seconds)))
+    return 0
+
+
+def run_all(one: Options, folder: str | None) -> tuple[int, str]:
+    """The exit code of what failed, and how; nothing of what did not."""
+    environment = {**os.environ, **one.get("environment", {})}
+    for name in ("prepare", "command", "conclude"):
+        words = one.get(name)
+        if not words:
+            continue
+        try:
+            done = subprocess.run(
+                words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True
+            )
+        except OSError as error:
+            return 127, f"cannot be run: {error.strerror}"
+        if done.returncode not in (one.get("exit_codes", [0]) if name == "command" else [0]):
+            return done.returncode, f"{name}: exit code {done.returncode}"
+    return 0, ""
+
+
+def process_record(
+    one: Options, tags: Options, files: tuple[list[str], ...], seconds: float
+) -> dict[str, Any]:
+    sources, before, changed = files
+    by_hand = hashlib.sha256("".join(before).encode()).hexdigest()
+    undisturbed = os.environ.get("FAKE_UNDISTURBED") if "turns" not in one else None
+    return any_record("process", {"tags": tags}) | {
+        "axes": one["axes"],
+        "scene": None,
+        "warm_ups": one.get("warm_ups", 0),
+        "repetitions": [{"steps_seconds": seconds, "cpu_seconds": seconds}],
+        "process_seconds": seconds,
+        "process": {
+            "command": one["command"],
+            "folder": one.get("folder", ""),
+            "sources": [{"path": source, "sha256": was} for source, was in zip(sources, before, strict=True)],
+            "changed": changed,
+            "undisturbed": undisturbed,
+            "exit_code": 0,
+            "wall_seconds": seconds,
+            "user_seconds": 0,
+            "system_seconds": 0,
+            "peak_memory_bytes": 1,
+            "time_from": "outside",
+            "counters": {},
+        },
+        "turns": None if undisturbed else {"contenders": 2, "seed": 1, "seconds": [seconds]},
+        "check": {
+            "verdict": "passed" if one.get("checked") else "unchecked",
+            "scope": one.get("checked") or "nothing",
+            "reason": None,
+        },
+        "provenance": provenance() | {"binary_sha256": before[0] if len(before) == 1 else by_hand},
+    }
+
+
+def hash_or_none(path: str) -> str | None:
+    return sha256(path) if Path(path).is_file() else None
 
 
 def write(path: str, text: str) -> None:

@@ -18,6 +18,10 @@ from analysis.tests.synthetic import Machine
 
 BLOCKS = 6
 MEANS = {"anna": 1.0, "bob": 1.001, "carl": 1.4}
+SCOPES = {
+    "anna": "trajectory of its own program, steps 0 to 20",
+    "carl": "trajectory of another command: right.py",
+}
 
 
 def tags(series: str, block: int) -> dict[str, Any]:
@@ -48,13 +52,14 @@ def record(series: str, block: int, seconds: float) -> dict[str, Any]:
             "user_seconds": seconds,
             "system_seconds": 0,
             "peak_memory_bytes": 1 << 20,
+            "undisturbed": "it sleeps" if series == "bob" else None,
             "time_from": "the program" if series == "carl" else "outside",
             "counters": {},
         },
         "turns": None,
         "check": {
-            "verdict": "passed" if series == "anna" else "unchecked",
-            "scope": "trajectory" if series == "anna" else "nothing",
+            "verdict": "passed" if series in SCOPES else "unchecked",
+            "scope": SCOPES.get(series, "nothing"),
             "reason": None,
         },
         "provenance": Machine().provenance("GNU 12", 2),
@@ -87,14 +92,19 @@ def test_the_table_is_in_order_with_brackets_checks_and_failures(results: Path) 
     [drawn] = draw(data, results / "figures", formats=("svg",))
     [table] = drawn.tables
     assert [[cell.text for cell in row] for row in table.rows] == [
-        ["1 to 2", "anna", "1.00", "a", ""],
+        ["1 to 2", "anna", "1.00", "a", "its own program, steps 0 to 20"],
         ["1 to 2", "bob", "1.00", "a", "not checked"],
-        ["3", "carl", "1.40", "b", "not checked"],
+        ["3", "carl", "1.40", "b", "another command: right.py"],
         ["–", "dora", "–", "", "failed: exit code 9: no room"],
     ]
     assert (
         "Times are of whole processes, from outside; those of carl are what the program says" in drawn.caption
     )
+    assert "Measured without a pause, in a stretch of its own instead of in turns: bob (it sleeps)." in (
+        drawn.caption
+    )
+    marks = [row[-1].mark for row in table.rows]
+    assert marks == ["", "open", "open", "fails"]
 
 
 def test_the_report_names_commands_and_claims_nothing(results: Path) -> None:

@@ -132,6 +132,7 @@ def test_a_benchmark_is_run_for_its_one_case(empty_workplace: Workplace) -> None
     [point] = points(empty_workplace, text)
     assert point.process_words(None, Path("report"))[1:] == (
         "--benchmark_filter=^BM_sort<int>/8(/|$)",
+        "--benchmark_min_time=0.1",
         "--benchmark_out=report",
         "--benchmark_out_format=json",
     )

@@ -123,7 +123,9 @@ def test_every_kind_is_measured_or_fails_with_its_reason(programs: Workplace) ->
     assert seconds["benchmark"] == pytest.approx(0.003)
     assert by_series["benchmark"]["process"]["counters"] == {"rate": 7}
     assert seconds["right"] == by_series["right"]["process"]["wall_seconds"]
-    assert by_series["right"]["turns"]["contenders"] == 2, "with the variant; the others time themselves"
+    scopes = {name: record["check"]["scope"] for name, record in by_series.items()}
+    assert scopes["right"] == "trajectory of its own program, steps 0 to 3"
+    assert scopes["variant"] == "every-step"
     assert by_series["variant"]["process"]["command"][1] == "run"
     assert by_series["right"]["scene"]["particles"] == 1
     [wrong, crashed] = sorted(programs.failures(), key=lambda one: str(one["tags"]["series"]), reverse=True)

@@ -1,0 +1,127 @@
+"""Files that can be run, and what a program is made of: itself, its interpreter, files among its words."""
+
+import os
+import re
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from experiments.plan.program import Program
+from experiments.plan.scenes import sha256_of
+from experiments.support.digest import digest_of_hashes
+from experiments.support.errors import quoted
+
+_SCRIPT = b"#!"
+_LONGEST_FIRST_LINE = 4096
+
+
+class UnfitError(Exception):
+    """Why a file cannot be run, as the rest of a sentence about it."""
+
+    def told(self, word: str) -> str:
+        """The reason, with what was expected where a word names nothing."""
+        if str(self) != "is not there":
+            return str(self)
+        return f"is not there; expected {'a program' if '/' in word else 'a program on PATH'}"
+
+
+def found(word: str, folder: Path) -> Path:
+    """The file that a first word names: below the folder if it has a slash, else on PATH."""
+    return (folder / word if "/" in word else Path(shutil.which(word) or word)).absolute()
+
+
+def require_executable(word: str, folder: Path) -> None:
+    """Raises UnfitError for a first word that names nothing that can be run, as far as can be seen."""
+    path = found(word, folder)
+    if not path.exists():
+        raise UnfitError("is a link to nothing" if path.is_symlink() else "is not there")
+    if path.is_dir():
+        raise UnfitError("is a folder; expected a program")
+    if not path.is_file():
+        raise UnfitError("is no file; expected a program")
+    if not os.access(path, os.X_OK):
+        raise UnfitError("is not executable; `chmod +x` makes it so")
+    asked = _interpreter(path)
+    # What `env` is to look for it says itself where it does not find it.
+    if asked and not _is_env(asked) and not (folder / asked[0]).is_file():
+        raise UnfitError(f"begins with #! and {quoted(asked[0])}, which is not there; expected a program")
+
+
+def program_of(
+    words: Sequence[str],
+    beside: Sequence[Sequence[str]],
+    folder: Path,
+    where: Path | None,
+    first_seen: Mapping[str, str | None],
+) -> Program:
+    """The program that these words run, and everything that decides what it does: commands `beside` it
+    included, each found in `folder`.
+
+    Words name files of the folder `where`; without one only those that begin with / do. Of a file that is
+    known to be written it is what it was when it was `first_seen`. Raises InputError for one that cannot be
+    read.
+    """
+    path = found(words[0], folder)
+    parts = [path, *_found_interpreter(path)]
+    inputs: list[Path] = []
+    absent: list[Path] = []
+    for command in (words, *beside):
+        if command is not words:
+            own = found(command[0], folder)
+            parts += [own, *_found_interpreter(own)]
+        for file in _named(command[1:], where):
+            # What was not there before it was run is no part of it.
+            is_part = first_seen.get(os.fspath(file)) if os.fspath(file) in first_seen else _is_file(file)
+            (inputs if is_part else absent).append(file)
+    files = (*parts, *inputs)
+    hashes = tuple(first_seen.get(os.fspath(file)) or sha256_of(file) for file in files)
+    return Program(
+        name=path.name,
+        path=path,
+        sha256=digest_of_hashes(hashes),
+        files=files,
+        hashes=hashes,
+        inputs=tuple(file for file in inputs if file not in parts),
+        absent=tuple(absent),
+        written=frozenset(file for file in inputs if os.fspath(file) in first_seen and file not in parts),
+    )
+
+
+def _named(words: Sequence[str], where: Path | None) -> list[Path]:
+    """The files that words may name, there or not."""
+    longest = os.pathconf("/", "PC_PATH_MAX")
+    named = [word for word in words if word and len(os.fsencode(word)) < longest and "{scene}" not in word]
+    return [(where or Path("/")) / word for word in named if where is not None or word.startswith("/")]
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def _interpreter(path: Path) -> list[str]:
+    """The words of a script's first line, as the kernel reads them; none of what is no script."""
+    try:
+        with path.open("rb") as file:
+            first = file.readline(_LONGEST_FIRST_LINE)
+    except OSError:
+        return []  # whoever asks for its SHA-256 is told
+    if not first.startswith(_SCRIPT):
+        return []
+    line = first[len(_SCRIPT) :].removesuffix(b"\n").decode(errors="replace")
+    return [word for word in re.split(r"[ \t]+", line) if word]
+
+
+def _is_env(words: Sequence[str]) -> bool:
+    return Path(words[0]).name == "env"
+
+
+def _found_interpreter(path: Path) -> tuple[Path, ...]:
+    """What runs a script: the program of its first line, of `env` the one that it finds."""
+    words = _interpreter(path)
+    if words and _is_env(words):
+        words = [word for word in words[1:] if not word.startswith("-") and "=" not in word]
+    at = shutil.which(words[0]) if words else None
+    return (Path(at),) if at else ()

@@ -1,0 +1,111 @@
+"""Files among a program's words that it writes: what they hold says nothing of whether it was built anew.
+
+The first run of a program that writes one of its files changes it, and so does somebody who builds that file
+anew. So the program is run a second time: who writes it touches it again. What is written is kept in a note,
+with the SHA-256 that it had before, so that ids stay what they were.
+"""
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from experiments.plan.program import Program
+from experiments.plan.scenes import sha256_of
+from experiments.results.store import Store
+from experiments.support.errors import InputError
+
+NOTE = "written.json"
+
+Touched = tuple[int, int, int, int] | None
+"""What tells that a file was written, if only what it held before: None if it is not there."""
+
+
+def first_seen(store: Store) -> dict[str, str | None]:
+    """Each file that is known to be written, with its SHA-256 before that, or None where it was not there."""
+    kept = store.note(NOTE)
+    items = kept.items() if isinstance(kept, dict) else ()
+    return {str(name): value for name, value in items if value is None or isinstance(value, str)}
+
+
+class Written:
+    """What is known of a results folder's programs, and is learned while they run."""
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+
+    def known(self, program: Program) -> Program:
+        """The program, with those of its files that are known to be written by now."""
+        seen = first_seen(self._store)
+        return replace(program, written=frozenset(file for file in program.inputs if os.fspath(file) in seen))
+
+    def changed(self, program: Program, record: object) -> frozenset[Path]:
+        """Those of its files that are not what they were: as the record of a run tells, or without one as
+        they are found. Raises InputError if the program itself was built anew.
+        """
+        hashes = dict(zip(program.files, program.hashes, strict=False))
+        if not hashes:
+            return frozenset()
+        match record:
+            case {"kind": "process", "process": {"sources": [*sources], "changed": [*during]}}:
+                found = {Path(one["path"]): one["sha256"] for one in sources}
+                changed = {Path(one) for one in during}
+            case _:
+                found, changed = {file: _sha256_if_any(file) for file in program.sources}, set()
+        changed |= {file for file, sha256 in found.items() if file in hashes and sha256 != hashes[file]}
+        changed -= program.written
+        if not changed <= {*program.inputs}:
+            raise built_anew(program.path)
+        return frozenset(changed)
+
+    def learn(self, programs: Iterable[Program], suspected: Mapping[Path, Touched]) -> None:
+        """Keep which of these files are written, as they were touched again by a second run. Raises
+        InputError for one that was not: somebody else had built it anew.
+        """
+        for file, touched in suspected.items():
+            if touch_of(file) == touched is not None:
+                raise built_anew(file)
+        hashes = {
+            file: sha256
+            for program in programs
+            for file, sha256 in zip(program.files, program.hashes, strict=False)
+        }
+        self._keep({os.fspath(file): hashes[file] for file in suspected})
+
+    def learn_created(self, programs: Iterable[Program]) -> None:
+        """Keep which files are there that were not: they are no part of what made them."""
+        made = {os.fspath(file) for program in programs for file in program.absent if _is_file(file)}
+        self._keep(dict.fromkeys(made))
+
+    def _keep(self, more: Mapping[str, str | None]) -> None:
+        kept = first_seen(self._store)
+        if not more.keys() <= kept.keys():
+            self._store.keep_note(NOTE, {**more, **kept})
+
+
+def built_anew(path: Path) -> InputError:
+    """What is said of a program, or a file of it, that is another one than before."""
+    return InputError(f"{path}: was built anew while the study ran; run the study again to go on with it")
+
+
+def touch_of(file: Path) -> Touched:
+    """What changes with each time that a file is written."""
+    try:
+        found = file.stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
+
+
+def _sha256_if_any(file: Path) -> str | None:
+    try:
+        return sha256_of(file)
+    except InputError:
+        return None
+
+
+def _is_file(file: Path) -> bool:
+    try:
+        return file.is_file()
+    except OSError:
+        return False

@@ -1,0 +1,31 @@
+"""Questions about programs of others, and what became of them."""
+
+from pathlib import Path
+from typing import Any
+
+from experiments.run.study import Study
+from experiments.tests.conftest import Workplace
+
+HEAD = 'title = "Programs"\nfigure = "comparison"\nthreads = 1\n'
+BLOCKS = "[blocks]\nminimum = 2\nwanted = 2\n"
+
+
+def script(place: Workplace, name: str, text: str) -> Path:
+    path = place.root / "questions" / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
+    path.chmod(0o755)
+    return path
+
+
+def series(name: str, *lines: str) -> str:
+    return "\n".join(["[[series]]", f'name = "{name}"', *lines, ""])
+
+
+def described(place: Workplace) -> list[dict[str, Any]]:
+    """What the program was told of each process, in the order of its calls."""
+    return [call["described"] for call in place.calls() if "described" in call]
+
+
+def ids(place: Workplace) -> list[str]:
+    return [point.id for experiment in Study(place.settings).experiments for point in experiment.points]
