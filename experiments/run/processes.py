@@ -23,7 +23,7 @@ MARGIN_SECONDS = 60.0
 """What measuring takes beside the processes, before it is given up."""
 
 _RUNS = 8
-"""Of each at most: one to look at it, two in slices, two undisturbed and two with pauses where these disagree."""
+"""Of each at most: one to look at it, two in slices, and where these disagree two more of either kind."""
 
 
 @dataclass(frozen=True)

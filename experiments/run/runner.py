@@ -25,8 +25,11 @@ from experiments.support.files import move, read_json
 from experiments.support.process import NOT_FOUND, Completed
 from experiments.support.schema import is_record
 
-SUSPENDED = "was suspended for some time while it was measured"
-"""What the program says where it, or the machine, stood still: nothing of that run counts."""
+SUSPENDED = "while it was measured; measure it again"
+"""What the program says at last where it, or the machine, stood still: nothing of that run counts."""
+
+_MOST_SUSPENSIONS = 3
+"""One after the other: then they are left to the next run."""
 
 
 @dataclass(frozen=True)
@@ -93,8 +96,16 @@ class Runner:
             for task, scene in zip(tasks, prepared, strict=True)
             if not isinstance(scene, Outcome)
         ]
-        measured = iter(self._measure_all(ready))
+        measured = iter(self._measure_undisturbed(ready))
         return [one if isinstance(one, Outcome) else next(measured) for one in prepared]
+
+    def _measure_undisturbed(self, ready: Sequence[Ready]) -> list[Outcome]:
+        """All of them, and all of them again if one was suspended: alone it would be no pair."""
+        for attempt in range(1, _MOST_SUSPENSIONS + 1):
+            outcomes = self._measure_all(ready)
+            if attempt == _MOST_SUSPENSIONS or not any(SUSPENDED in one.reason for one in outcomes):
+                break
+        return outcomes
 
     def _measure_all(self, ready: Sequence[Ready]) -> list[Outcome]:
         if ready and ready[0][0].point.verb == PROCESS:
