@@ -78,6 +78,16 @@ constexpr int most_rounds_of_a_benchmark = 20;
 using ListOfWords = std::vector<std::string>;
 using Texts = std::map<std::string, std::string>;
 
+KeptBy kept_by(const std::string& word) {
+    if (word.empty()) {
+        return KeptBy::whatever_works;
+    }
+    if (word != "cgroup" && word != "subreaper") {
+        throw InputError("kept_by: found " + in_quotes(word) + ", expected cgroup or subreaper");
+    }
+    return word == "cgroup" ? KeptBy::cgroup : KeptBy::subreaper;
+}
+
 ProgramContender contender(const Json& json) {
     ProgramContender one;
     one.command = {.words = value_of<ListOfWords>(json, "command"),
@@ -93,6 +103,7 @@ ProgramContender contender(const Json& json) {
     if (json.contains("turns")) {
         one.turns = value_of<bool>(json, "turns");
     }
+    one.kept_by = kept_by(text_of(json, "kept_by"));
     const bool is_benchmark = !text_of(json, "benchmark").empty();
     one.times_itself = is_benchmark || !one.command.pattern.empty();
     one.most_rounds = is_benchmark ? most_rounds_of_a_benchmark : 1;

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/processes/program_contender.hpp"
+#include "harness/side_by_side/program_contender.hpp"
 
 namespace carom {
 

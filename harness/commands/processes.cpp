@@ -12,10 +12,10 @@
 #include "harness/commands/described_process.hpp"
 #include "harness/commands/measurement_options.hpp"
 #include "harness/measure/stated_time.hpp"
-#include "harness/processes/contender_run.hpp"
-#include "harness/processes/together.hpp"
 #include "harness/records/process_json.hpp"
 #include "harness/records/record.hpp"
+#include "harness/side_by_side/contender_run.hpp"
+#include "harness/side_by_side/together.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/format.hpp"
 #include "harness/support/input_file.hpp"
@@ -230,11 +230,6 @@ void add_processes_command(CLI::App& program) {
                "Seconds that the longest runs before the next does; the others in proportion");
     add_number(*command, "--seed", options->how.seed, 0, std::numeric_limits<std::uint64_t>::max(),
                "Of the order of the slices");
-    add_choice<KeptBy>(*command, "--kept-by", options->how.kept_by,
-                       {{"whatever-works", KeptBy::whatever_works},
-                        {"cgroup", KeptBy::cgroup},
-                        {"subreaper", KeptBy::subreaper}},
-                       "What keeps together, stops and ends all that a program starts");
     command->callback([options] { processes(*options); });
 }
 

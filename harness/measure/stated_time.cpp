@@ -67,6 +67,45 @@ std::regex regex_of(const std::string& pattern) {
     return regex;
 }
 
+bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
+
+/// Does a number go on after `rest` has begun: a digit, or a point, a comma or an exponent with one behind
+/// it?
+bool goes_on(std::string_view rest) {
+    if (rest.empty() || is_digit(rest.front())) {
+        return !rest.empty();
+    }
+    const bool has_more =
+        rest.size() > 1 && std::string_view(".,eE").find(rest.front()) != std::string_view::npos;
+    const bool is_exponent = has_more && (rest.front() == 'e' || rest.front() == 'E');
+    const std::size_t at = is_exponent && rest.size() > 2 && (rest[1] == '-' || rest[1] == '+') ? 2 : 1;
+    return has_more && is_digit(rest[at]);
+}
+
+/// Has a number begun before `before` ends: with a digit, or with one before a point or a comma?
+bool has_begun(std::string_view before) {
+    if (before.empty()) {
+        return false;
+    }
+    const bool after_point = before.size() > 1 && (before.back() == '.' || before.back() == ',');
+    return is_digit(after_point ? before[before.size() - 2] : before.back());
+}
+
+/// What the group took, which must not be a part of a longer number, unless the pattern says what stands
+/// beside it.
+std::string number_in(const std::string& line, const std::smatch& match) {
+    const std::string_view whole(line);
+    const auto begin = static_cast<std::size_t>(match.position(1));
+    const std::size_t end = begin + static_cast<std::size_t>(match.length(1));
+    const bool cut_before = match.position(0) == match.position(1) && has_begun(whole.substr(0, begin));
+    const bool cut_after = match[0].second == match[1].second && goes_on(whole.substr(end));
+    if (match.length(1) > 0 && (cut_before || cut_after)) {
+        throw InputError("time: found " + in_quotes(match[1].str()) + " within a longer number in " +
+                         in_quotes(line) + ", expected a pattern that takes all of it");
+    }
+    return match[1];
+}
+
 } // namespace
 
 void require_pattern(const std::string& pattern) { regex_of(pattern); }
@@ -78,7 +117,7 @@ StatedTime time_in_output(const std::string& output, const std::string& pattern,
     for (std::string line; std::getline(lines, line);) {
         std::smatch match;
         if (line.size() <= longest_line && std::regex_search(line, match, regex)) {
-            found.push_back(match[1]);
+            found.push_back(number_in(line, match));
         }
     }
     if (found.size() != 1) {

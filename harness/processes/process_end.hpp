@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json_fwd.hpp>
 
 namespace carom {
 
@@ -36,7 +35,7 @@ struct ProcessEnd {
     Printed output;
     Printed error;
 
-    double wall_seconds() const;
+    double wall_seconds() const { return std::accumulate(seconds.begin(), seconds.end(), 0.0); }
     double cpu_seconds() const { return user_seconds + system_seconds; }
 };
 

@@ -90,7 +90,7 @@ std::unique_ptr<Tree> make_tree(KeptBy kept_by) {
             return std::make_unique<CgroupTree>(std::move(group));
         }
         if (kept_by == KeptBy::cgroup) {
-            throw InputError("--kept-by: found cgroup, expected subreaper: no group of cgroups v2 can be "
+            throw InputError("kept_by: found cgroup, expected subreaper: no group of cgroups v2 can be "
                              "made here; it takes root, or a folder that was delegated");
         }
     }

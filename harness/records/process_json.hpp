@@ -8,7 +8,7 @@
 
 #include "harness/measure/measurement.hpp"
 #include "harness/measure/stated_time.hpp"
-#include "harness/processes/program_contender.hpp"
+#include "harness/side_by_side/program_contender.hpp"
 #include "harness/records/sources.hpp"
 
 namespace carom {

@@ -28,16 +28,21 @@ class ProcessesKilled : public testing::TestWithParam<std::string> {
         const std::string script = "setsid sh -c 'echo $$ >> " + numbers + "; " + busy +
                                    "' & sleep 600 & echo $! >> " + numbers + "; echo $$ >> " + numbers +
                                    "; " + busy;
-        const Json one{{"command", {"/bin/sh", "-c", script}}, {"record", directory / "a"}, {"turns", true}};
-        const Json two{{"command", {"/bin/sh", "-c", busy}}, {"record", directory / "b"}, {"turns", true}};
+        const Json one{{"command", {"/bin/sh", "-c", script}},
+                       {"record", directory / "a"},
+                       {"turns", true},
+                       {"kept_by", GetParam()}};
+        const Json two{{"command", {"/bin/sh", "-c", busy}},
+                       {"record", directory / "b"},
+                       {"turns", true},
+                       {"kept_by", GetParam()}};
         const std::string file = directory.write("processes.json", Json::array({one, two}).dump());
         carom = fork();
         if (carom == 0) {
             const int nothing = open("/dev/null", O_RDWR);
             dup2(nothing, STDOUT_FILENO);
             dup2(nothing, STDERR_FILENO);
-            execl(CAROM_PROGRAM, "carom", "processes", file.c_str(), "--kept-by", GetParam().c_str(),
-                  nullptr);
+            execl(CAROM_PROGRAM, "carom", "processes", file.c_str(), nullptr);
             _exit(127);
         }
         std::vector<pid_t> found;
@@ -73,7 +78,7 @@ class ProcessesKilled : public testing::TestWithParam<std::string> {
     pid_t carom = 0;
 };
 
-INSTANTIATE_TEST_SUITE_P(, ProcessesKilled, testing::Values("whatever-works", "subreaper"),
+INSTANTIATE_TEST_SUITE_P(, ProcessesKilled, testing::Values("", "subreaper"),
                          [](const auto& one) { return one.param == "subreaper" ? "BySubreaper" : "AsItIs"; });
 
 TEST_P(ProcessesKilled, LeavesNothingRunning) {

@@ -155,6 +155,7 @@ TEST_F(ProcessesCommand, RefusesAProcessThatCannotBeBeforeAnyRuns) {
     EXPECT_TRUE(refused(with("threads", "two"), 1, {"threads: found", "two", "expected a whole number"}));
     EXPECT_TRUE(refused(with("most_seconds", -1), 1, {"most_seconds: found -1, expected a number above 0"}));
     EXPECT_TRUE(refused(with("turns", "no"), 1, {"turns: found", "no", "expected true or false"}));
+    EXPECT_TRUE(refused(with("kept_by", "me"), 1, {"kept_by: found 'me', expected cgroup or subreaper"}));
     EXPECT_TRUE(refused(with("exit_codes", {"1"}), 1, {"exit_codes: found", "a list of whole numbers"}));
     EXPECT_TRUE(refused(with("exit_codes", Json::array()), 1, {"exit_codes: found none"}));
     EXPECT_TRUE(refused(with("pattern", "(?i)took ([0-9]+)"), 1, {"time: found", "a regular expression"}));
@@ -167,7 +168,7 @@ TEST_F(ProcessesCommand, RefusesAProcessThatCannotBeBeforeAnyRuns) {
 TEST_F(ProcessesCommand, SaysWhatIsMeasuredWithoutAPauseAndWhy) {
     const auto result = processes({described("sleep 0.2", "one"), described("sleep 0.3", "two")});
     EXPECT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_NE(result.notes.find("measured without a pause, in a stretch of its own: it computes for only"),
+    EXPECT_NE(result.notes.find("measured without a pause, in a stretch of its own: it "),
               std::string::npos)
         << result.notes;
     EXPECT_GE(record("one")["process_seconds"], 0.2);

@@ -27,6 +27,24 @@ TEST(StatedTime, IsTheNumberInTheGroup) {
     EXPECT_DOUBLE_EQ(time_in_output("1e-3\n", "^(\\S+)$", 1).seconds, 0.001);
 }
 
+TEST(StatedTime, IsNeverAPartOfALongerNumber) {
+    const auto said = [](const std::string& output, const std::string& pattern) {
+        return refusal([&] { time_in_output(output, pattern, 1); });
+    };
+    EXPECT_EQ(
+        said("took 3,5 ms\n", "took ([0-9.]+)"),
+        "time: found '3' within a longer number in 'took 3,5 ms', expected a pattern that takes all of it");
+    for (const char* line : {"took 3.25 ms\n", "took 13.25 ms\n", "took 3,25 ms\n"}) {
+        EXPECT_NE(said(line, "([0-9]+) ms").find("within a longer number"), std::string::npos) << line;
+    }
+    EXPECT_NE(said("took 3e-5\n", "took ([0-9]+)").find("within a longer number"), std::string::npos);
+    EXPECT_NE(said("took 31\n", "took ([0-9])").find("within a longer number"), std::string::npos);
+    EXPECT_EQ(said("took 3. Done\n", "took ([0-9]+)"), "");
+    EXPECT_EQ(said("took 3, which is 4 s\n", "took ([0-9]+)"), "");
+    EXPECT_EQ(said("took 3.5 s\n", "took ([0-9]+)\\.[0-9] s"), "") << "the pattern says what follows";
+    EXPECT_EQ(said("2 runs: 3elapsed\n", ": ([0-9]+)"), "");
+}
+
 TEST(StatedTime, RefusesWhatTellsNone) {
     const auto said = [](const std::string& output, const std::string& pattern) {
         return refusal([&] { time_in_output(output, pattern, 1); });

@@ -12,7 +12,7 @@
 
 #include "harness/processes/descendants.hpp"
 #include "harness/processes/process.hpp"
-#include "harness/processes/slices.hpp"
+#include "harness/side_by_side/slices.hpp"
 #include "harness/support/stopwatch.hpp"
 #include "harness/tests/temporary_directory.hpp"
 

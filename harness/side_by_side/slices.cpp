@@ -1,4 +1,4 @@
-#include "harness/processes/slices.hpp"
+#include "harness/side_by_side/slices.hpp"
 
 #include <algorithm>
 #include <random>

@@ -7,6 +7,7 @@
 
 #include "harness/processes/process_command.hpp"
 #include "harness/processes/process_end.hpp"
+#include "harness/processes/tree.hpp"
 
 namespace carom {
 
@@ -17,10 +18,11 @@ struct ProgramContender {
     std::vector<std::string> conclude; ///< and of one that is run after each
     bool fresh_folder = false;         ///< each run has a new and empty folder, which is removed afterwards
     int warm_ups = 0;                  ///< runs before the first that counts
-    std::optional<bool> turns;         ///< whether it is sliced; found out if nobody says so
-    bool times_itself = false;         ///< it would count as its own time what it stands still
-    int most_rounds = 1;               ///< of one that times itself within short processes: how often it runs
-    double expected_seconds = 0;       ///< how long it takes undisturbed, or 0 where nobody knows
+    KeptBy kept_by = KeptBy::whatever_works;
+    std::optional<bool> turns;   ///< whether it is sliced; found out if nobody says so
+    bool times_itself = false;   ///< it would count as its own time what it stands still
+    int most_rounds = 1;         ///< of one that times itself within short processes: how often it runs
+    double expected_seconds = 0; ///< how long it takes undisturbed, or 0 where nobody knows
 
     /// Why a run failed; empty if it did not.
     std::function<std::string(const ProcessEnd&)> failure;

@@ -3,22 +3,21 @@
 #include <cstdint>
 #include <vector>
 
-#include "harness/processes/program_contender.hpp"
-#include "harness/processes/tree.hpp"
+#include "harness/side_by_side/program_contender.hpp"
 
 namespace carom {
 
 struct Together {
     double slice_seconds = 0.05;
     std::uint64_t seed = 1; ///< of the order of slices and of stretches
-    KeptBy kept_by = KeptBy::whatever_works;
 };
 
 /// Measures programs beside each other.
 ///
 /// What may be sliced takes turns (slices.hpp). Where nobody says whether a program may be, it runs once
 /// undisturbed first. It then has a stretch of its own, by itself, for each of these reasons:
-///  - it is idle for more than half of its time: what it waits for goes on while it stands still;
+///  - it is idle for more than half of its time, and not for want of a processor: what it waits for goes on
+///  while it stands still;
 ///  - it succeeds undisturbed and fails in slices: a wait that was interrupted, a partner that gave it up;
 ///  - three runs in slices, each beside one undisturbed, are all further from all of those than noise
 ///    explains: by a tenth of the time, or by a twentieth of the time for each second of CPU time, which

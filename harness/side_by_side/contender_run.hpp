@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/processes/process.hpp"
-#include "harness/processes/program_contender.hpp"
+#include "harness/side_by_side/program_contender.hpp"
 
 namespace carom {
 
@@ -14,7 +14,7 @@ class ContenderRun {
   public:
     /// Makes its folder, if it has one of its own, and runs what prepares it. Throws InputError where there
     /// is no room for either.
-    ContenderRun(const ProgramContender& contender, KeptBy kept_by);
+    explicit ContenderRun(const ProgramContender& contender);
 
     /// Ends what is left of it, and concludes it.
     ~ContenderRun();
@@ -33,7 +33,6 @@ class ContenderRun {
     std::string run_beside(const std::string& what, const std::vector<std::string>& words) const;
 
     const ProgramContender& contender_;
-    KeptBy kept_by_;
     std::string folder_;
     std::string failure_;
     bool is_concluded_ = false;

@@ -1,4 +1,4 @@
-#include "harness/processes/together.hpp"
+#include "harness/side_by_side/together.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <random>
 #include <utility>
 
-#include "harness/processes/contender_run.hpp"
-#include "harness/processes/slices.hpp"
-#include "harness/processes/stopping.hpp"
+#include "harness/side_by_side/contender_run.hpp"
+#include "harness/side_by_side/slices.hpp"
+#include "harness/side_by_side/stopping.hpp"
 
 namespace carom {
 namespace {
@@ -54,7 +54,7 @@ class Contest {
 
     /// A whole run without a pause. Nothing if it failed, which is then what became of the contender.
     std::optional<ProcessEnd> run(std::size_t k) {
-        ContenderRun one(contenders_[k], how_.kept_by);
+        ContenderRun one(contenders_[k]);
         if (one.can_run()) {
             one.process().advance(1e9);
         }
@@ -85,11 +85,13 @@ class Contest {
         if (!is_open(k) || !is_to_be_found_out(k)) {
             return;
         }
+        const double idle_before = idle_seconds_of_machine();
         const auto end = run(k);
         if (!end) {
             return;
         }
-        const std::string idle = why_idle(*end);
+        const double idle_processors = (idle_seconds_of_machine() - idle_before) / end->wall_seconds();
+        const std::string idle = why_idle(*end, idle_processors);
         if (idle.empty()) {
             undisturbed_[k].push_back(*end);
         } else {
@@ -170,7 +172,7 @@ class Contest {
         std::vector<Sliced> slices;
         std::vector<std::size_t> places;
         for (std::size_t at = 0; at < sliced.size(); ++at) {
-            ContenderRun& one = runs.emplace_back(contenders_[sliced[at]], how_.kept_by);
+            ContenderRun& one = runs.emplace_back(contenders_[sliced[at]]);
             if (one.can_run()) {
                 slices.push_back({.process = &one.process(), .expected_seconds = lengths[at]});
                 places.push_back(at);
@@ -230,7 +232,7 @@ class Contest {
 
     /// In slices once more, with pauses as if another one of its kind took turns with it.
     std::optional<ProcessEnd> run_with_pauses(std::size_t k) {
-        ContenderRun one(contenders_[k], how_.kept_by);
+        ContenderRun one(contenders_[k]);
         while (one.can_run() && !one.process().has_ended()) {
             one.process().advance(how_.slice_seconds);
             pause(one.process().has_ended() ? 0 : how_.slice_seconds);

@@ -1,4 +1,4 @@
-#include "harness/processes/contender_run.hpp"
+#include "harness/side_by_side/contender_run.hpp"
 
 #include <algorithm>
 #include <array>
@@ -57,14 +57,13 @@ std::string why_failed(const ProcessCommand& command, const ProcessEnd& end, con
     return "";
 }
 
-ContenderRun::ContenderRun(const ProgramContender& contender, KeptBy kept_by)
-    : contender_(contender), kept_by_(kept_by) {
+ContenderRun::ContenderRun(const ProgramContender& contender) : contender_(contender) {
     folder_ = contender.fresh_folder ? new_folder() : contender.command.folder;
     failure_ = run_beside("prepare", contender.prepare);
     if (failure_.empty()) {
         ProcessCommand command = contender.command;
         command.folder = folder_;
-        process_ = std::make_unique<Process>(command, kept_by);
+        process_ = std::make_unique<Process>(command, contender.kept_by);
     }
 }
 
@@ -101,7 +100,7 @@ std::string ContenderRun::run_beside(const std::string& what, const std::vector<
                                  .environment = contender_.command.environment,
                                  .most_seconds = contender_.command.most_seconds,
                                  .pattern = ""};
-    const std::string why = why_failed(command, run_undisturbed(command, kept_by_), {0});
+    const std::string why = why_failed(command, run_undisturbed(command, contender_.kept_by), {0});
     return why.empty() ? "" : what + ": " + why;
 }
 

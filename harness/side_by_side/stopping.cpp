@@ -1,9 +1,13 @@
-#include "harness/processes/stopping.hpp"
+#include "harness/side_by_side/stopping.hpp"
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <functional>
+#include <string>
 #include <thread>
+
+#include <unistd.h>
 
 #include "harness/support/format.hpp"
 
@@ -11,6 +15,7 @@ namespace carom {
 namespace {
 
 constexpr double least_busy = 0.5;
+constexpr double least_idle = 0.5;
 constexpr double shortest_to_tell = 0.002;
 
 /// Another speed of the machine changes the time by any factor, though rarely three times in a row.
@@ -35,9 +40,21 @@ bool apart(const std::vector<ProcessEnd>& ones, const std::vector<ProcessEnd>& o
 
 } // namespace
 
-std::string why_idle(const ProcessEnd& undisturbed) {
+double idle_seconds_of_machine() {
+    std::ifstream file("/proc/stat");
+    std::string name;
+    double user = 0;
+    double nice = 0;
+    double system = 0;
+    double idle = 0;
+    double waiting_for_disks = 0;
+    file >> name >> user >> nice >> system >> idle >> waiting_for_disks;
+    return file ? (idle + waiting_for_disks) / static_cast<double>(sysconf(_SC_CLK_TCK)) : 0;
+}
+
+std::string why_idle(const ProcessEnd& undisturbed, double idle_processors) {
     const double busy = undisturbed.cpu_seconds() / undisturbed.wall_seconds();
-    if (undisturbed.wall_seconds() < shortest_to_tell || busy >= least_busy) {
+    if (undisturbed.wall_seconds() < shortest_to_tell || busy >= least_busy || idle_processors < least_idle) {
         return "";
     }
     return format(
