@@ -23,6 +23,7 @@ from analysis.figures import (
     machines,
     orders,
     pairs,
+    pauses,
     phases,
     promises,
     scaling,
@@ -172,6 +173,7 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
     "ladder": ladder.waterfall,
     "limits": limits.phases_against_limits,
     KIND: ways.ways,
+    pauses.KIND: pauses.pauses,
 }
 """How an experiment without a figure of its own is drawn, given its name and title, by its tag `figure`."""
 

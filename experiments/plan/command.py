@@ -41,6 +41,7 @@ class Command:
     fresh_folder: bool = False
     exit_codes: tuple[int, ...] = ()
     turns: bool | None = None
+    kept_by: str | None = None
     refused: str = ""
     """Why it is not run at all."""
     checker: Program | None = None
@@ -63,7 +64,14 @@ class Command:
         """What of it is part of an id: not where it is, and nothing that a later field does not say, so that
         other ids are what they were before there was that field.
         """
-        later = {"prepare": (), "conclude": (), "fresh_folder": False, "exit_codes": (), "turns": None}
+        later = {
+            "prepare": (),
+            "conclude": (),
+            "fresh_folder": False,
+            "exit_codes": (),
+            "turns": None,
+            "kept_by": None,
+        }
         told = {name: value for name, value in vars(self).items() if name not in _NO_CONTENT}
         return {name: value for name, value in told.items() if name not in later or value != later[name]} | {
             "folder": None
@@ -109,7 +117,7 @@ def command_of(
     command = Command(
         words, place.folder, place.instrument, trajectory, series.time.stdout if series.time else None,
         SECONDS_OF_UNIT[series.time.unit] if series.time else 1.0, name, prepare, conclude,
-        series.fresh_folder, series.exit_codes, series.turns,
+        series.fresh_folder, series.exit_codes, series.turns, series.kept_by,
     )  # fmt: skip
     if trajectory and command.writes_trajectory:
         raise InputError(f"{key}.trajectory: found beside {{out}} in command, expected either")

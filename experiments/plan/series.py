@@ -52,6 +52,7 @@ class Series:
     conclude: tuple[str, ...] = ()
     """Commands that are run, untimed, before and after each run."""
     fresh_folder: bool = False
+    kept_by: str | None = None
     """Each run has a new folder to itself."""
     exit_codes: tuple[int, ...] = ()
     """Those that are fine; without any it is 0."""
@@ -139,6 +140,7 @@ def _require_kinds(path: Path, tables: Sequence[Mapping[str, Any]]) -> None:
         "variant": ("program", "find_chunk", "resolve_chunk", "optional"),
         "command": (
             "trajectory", "time", "commands", "prepare", "conclude", "fresh_folder", "exit_codes", "turns",
+            "kept_by",
         ),
         "benchmark": (),
     }  # fmt: skip

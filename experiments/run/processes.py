@@ -192,6 +192,8 @@ class Processes:
         for name in ("prepare", "conclude"):
             if words := getattr(command, name):
                 around[name] = placed(words, scene, output)
+        if command.kept_by:
+            around["kept_by"] = command.kept_by
         if command.fresh_folder:
             around["fresh_folder"] = True
         if command.exit_codes:
