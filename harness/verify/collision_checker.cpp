@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "harness/verify/contact_checker.hpp"
 #include "harness/verify/path_checker.hpp"
 
 namespace carom {
@@ -31,6 +32,9 @@ std::unique_ptr<CollisionChecker> collision_checker(const Scene& scene, const Po
                                                     const Tuning& tuning) {
     if (policies.impact == Impact::event_driven) {
         return std::make_unique<ExactSteps>(scene, tuning.substeps);
+    }
+    if (policies.impact == Impact::at_contact) {
+        return std::make_unique<ContactChecker>(scene, policies, tuning);
     }
     return nullptr;
 }

@@ -28,7 +28,7 @@ class CollisionChecker {
 
 /// The one for a variant's run from a scene's start, or null if its collisions happen at the steps' ends:
 /// then states tell all (checker.hpp). For Impact::event_driven it is a PathChecker, whose steps are those of
-/// `tuning` in time.
+/// `tuning` in time; for Impact::at_contact a ContactChecker.
 std::unique_ptr<CollisionChecker> collision_checker(const Scene& scene, const Policies& policies,
                                                     const Tuning& tuning);
 

@@ -113,8 +113,9 @@ std::optional<std::string> PathChecker<Real>::wrong_pair(const Collision<Real>& 
     if (!(gap <= allowed)) {
         return who() + format(" collide while they are %.3g apart", static_cast<double>(gap)) + at_time(time);
     }
-    if (gap < -allowed && time != later) {
-        return who() + format(" collide when they are %.3g too near", static_cast<double>(-gap)) +
+    const Real nearer = std::min(2 * radius_, distance_then) - distance;
+    if (!(nearer <= allowed)) {
+        return who() + format(" collide when they are %.3g too near", static_cast<double>(nearer)) +
                at_time(time);
     }
     // Within the gap allowed of the nearest that a grazing pair comes, it may be seen to part a little.
@@ -194,11 +195,8 @@ std::optional<std::string> PathChecker<Real>::wrong_wall(const Collision<Real>& 
     const Real speed = std::abs(in_x ? before.vx : before.vy);
     const Real allowed =
         rounding_.place(flown, collision.time) + rounding_.gap(speed, collision.time, radius_);
-    const bool at_once = collision.time == flown.time;
-    if (!(depth >= -allowed) || (depth > allowed && !at_once)) {
-        return who() +
-               format(" is turned by a wall %.3g %s it", static_cast<double>(std::abs(depth)),
-                      depth < 0 ? "before" : "behind") +
+    if (!(depth >= -allowed)) { // behind it no farther than it was: beyond_wall
+        return who() + format(" is turned %.3g before a wall", static_cast<double>(-depth)) +
                at_time(collision.time);
     }
     return std::nullopt;
