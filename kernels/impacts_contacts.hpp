@@ -145,10 +145,10 @@ int* take_earliest(const State<policies>& state, Strip<RealOf<policies.precision
 }
 
 /// Makes the collisions of a strip whose turn in time has come.
-template <Policies policies>
+template <Policies policies, class SomeProbe>
 Changes collide_earliest(State<policies>& state, int index, int sweep,
                          const WayBack<RealOf<policies.precision>>& back,
-                         const ApproachToleranceOf<policies>& approaching) {
+                         const ApproachToleranceOf<policies>& approaching, SomeProbe& probe) {
     Changes changes;
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     auto* const changed_in = state.changed_in.data();
@@ -162,7 +162,9 @@ Changes collide_earliest(State<policies>& state, int index, int sweep,
             strip.pending[static_cast<std::size_t>(strip.pending_count++)] = *k;
             continue;
         }
-        changes += collide_at(pair.time, state, pair.discs, back, approaching);
+        const Changes made = collide_at(pair.time, state, pair.discs, back, approaching);
+        tell(made, pair.time, sweep, state, pair.discs, probe);
+        changes += made;
         for (const int disc : {first, second}) {
             changed_in[disc] = sweep;
             marker.mark(blocks_of_disc[disc]);
@@ -251,7 +253,7 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
             [&](int index) {
                 const auto [strip, half] = turns[static_cast<std::size_t>(index)];
                 const Changes changes = half == 0 ? look_back(state, strip, sweep, back)
-                                                  : collide_earliest(state, strip, sweep, back, approaching);
+                                                  : collide_earliest(state, strip, sweep, back, approaching, probe);
                 wavefront.ends(strip, 2 * sweep + half);
                 return Tally(changes);
             },

@@ -160,9 +160,10 @@ template <Policies policies> void ask_again(State<policies>& state, int i) {
 
 /// Makes the collision that disc i, which was asked, has chosen, if the other disc has chosen the same one.
 /// If both were asked, it is made when the first of them comes up.
-template <Policies policies>
-Changes collide_if_both_choose(State<policies>& state, int i, const WayBack<RealOf<policies.precision>>& back,
-                               const ApproachToleranceOf<policies>& approaching) {
+template <Policies policies, class SomeProbe>
+Changes collide_if_both_choose(State<policies>& state, int i, int sweep,
+                               const WayBack<RealOf<policies.precision>>& back,
+                               const ApproachToleranceOf<policies>& approaching, SomeProbe& probe) {
     const auto [time, other, entry] = state.next[static_cast<std::size_t>(i)];
     if (other < 0) {
         return {};
@@ -173,6 +174,7 @@ Changes collide_if_both_choose(State<policies>& state, int i, const WayBack<Real
         return {};
     }
     const Changes changes = collide_at(time, state, {i, other}, back, approaching);
+    tell(changes, time, sweep, state, {i, other}, probe);
     state.near[static_cast<std::size_t>(i)][static_cast<std::size_t>(entry)].last = time;
     state.near[partner][static_cast<std::size_t>(its_choice.entry)].last = time;
     ask_again(state, i);
@@ -242,7 +244,7 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
         }
         work += for_each_asked(
             state, threads, tuning, probe, [](int, int) {},
-            [&](int i) { return collide_if_both_choose(state, i, back, approaching); });
+            [&](int i) { return collide_if_both_choose(state, i, sweep, back, approaching, probe); });
         return work;
     });
 }

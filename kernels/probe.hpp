@@ -2,6 +2,8 @@
 
 namespace carom {
 
+template <class Real> struct Collision;
+
 /// The phases of a time step, in the order in which they run.
 enum class Phase { move, bin, find, resolve };
 
@@ -25,6 +27,9 @@ class Probe {
     virtual void iteration(int thread, int index) = 0;
     virtual void loop_end(int thread) = 0;
     virtual void barrier_end(int thread) = 0;
+
+    /// A profile has no use for single collisions: see LoggingProbe.
+    void collided(const Collision<double>& /*collision*/) {}
 };
 
 /// The probe of a timed run: is told nothing and costs nothing.
@@ -39,6 +44,7 @@ class NoProbe {
     void wait_end(int /*thread*/) {}
     void iteration(int /*thread*/, int /*index*/) {}
     void loop_end(int /*thread*/) {}
+    void collided(const Collision<double>& /*collision*/) {}
 };
 
 } // namespace carom

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "collide.hpp"
+#include "collision_log.hpp"
 #include "contacts.hpp"
 #include "four_at_once.hpp"
 #include "policies.hpp"
@@ -190,6 +191,19 @@ Changes collide_at(RealOf<policies.precision> time, State<policies>& state, Over
     }
     return {.pairs = collide_back(time, state.discs[static_cast<std::size_t>(discs.first)],
                                   state.discs[static_cast<std::size_t>(discs.second)], approaching)};
+}
+
+/// Tells a collision, if it was made.
+template <Policies policies, class SomeProbe>
+void tell(const Changes& made, RealOf<policies.precision> time, int sweep, const State<policies>& state,
+          OverlappingDiscs discs, SomeProbe& probe) {
+    if (made.any()) {
+        const auto first = static_cast<std::size_t>(discs.first);
+        const auto second = static_cast<std::size_t>(discs.second);
+        probe.collided({static_cast<double>(time), sweep, state.number(discs.first),
+                        state.number(discs.second), disc_cast<double>(state.discs[first]),
+                        disc_cast<double>(state.discs[second])});
+    }
 }
 
 } // namespace carom

@@ -6,15 +6,18 @@ namespace carom {
 
 template class EventDriven<double>;
 template class EventDriven<long double>;
+template class EventDriven<double, CollisionLog<double>&>;
+template class EventDriven<long double, CollisionLog<long double>&>;
 
 namespace {
 
 constexpr Policies policies{.impact = Impact::event_driven};
 constexpr Name name = name_of(policies);
 
-class EventDrivenSimulation final : public Simulation {
+template <class Log> class EventDrivenSimulation final : public Simulation {
   public:
-    EventDrivenSimulation(const Scene& scene, int substeps) : exact_(scene), substeps_(substeps) {}
+    EventDrivenSimulation(const Scene& scene, int substeps, Log log = Log())
+        : exact_(scene, log), substeps_(substeps) {}
 
     Tally step() override {
         const std::int64_t pairs = exact_.pair_collisions();
@@ -29,20 +32,28 @@ class EventDrivenSimulation final : public Simulation {
     std::vector<Disc> discs() const override { return exact_.discs(); }
 
   private:
-    EventDriven<double> exact_;
+    EventDriven<double, Log> exact_;
     double substeps_;
     std::int64_t steps_ = 0;
 };
 
 std::unique_ptr<Simulation> simulate(const Scene& scene, const Tuning& tuning) {
-    return std::make_unique<EventDrivenSimulation>(scene, tuning.substeps);
+    return std::make_unique<EventDrivenSimulation<NoCollisionLog>>(scene, tuning.substeps);
+}
+
+std::unique_ptr<Simulation> simulate_logged(const Scene& scene, const Tuning& tuning,
+                                            CollisionLog<double>& log) {
+    return std::make_unique<EventDrivenSimulation<CollisionLog<double>&>>(scene, tuning.substeps, log);
 }
 
 } // namespace
 
 const Variant& event_driven() {
-    static constexpr Variant variant{
-        .name = name.view(), .policies = policies, .simulate = simulate, .simulate_observed = nullptr};
+    static constexpr Variant variant{.name = name.view(),
+                                     .policies = policies,
+                                     .simulate = simulate,
+                                     .simulate_observed = nullptr,
+                                     .simulate_logged = simulate_logged};
     return variant;
 }
 

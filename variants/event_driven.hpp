@@ -9,6 +9,8 @@ namespace carom {
 /// compiled in haste, would bring slow ones.
 extern template class EventDriven<double>;
 extern template class EventDriven<long double>;
+extern template class EventDriven<double, CollisionLog<double>&>;
+extern template class EventDriven<long double, CollisionLog<long double>&>;
 
 /// The event-driven simulation (kernels/exact/event_driven.hpp) as one more variant, beside the table: every
 /// collision at its time, in order, exact to rounding. Of the policies only `impact` and `precision` mean

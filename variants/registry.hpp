@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kernels/collision_log.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
@@ -36,6 +37,10 @@ struct Variant {
     /// The same, telling `probe` what it does. `probe` must outlive the simulation. Null for the event-driven
     /// simulation, which has no phases.
     std::unique_ptr<Simulation> (*simulate_observed)(const Scene&, const Tuning&, Probe& probe);
+
+    /// The same, telling `log` every collision and ending in the same bits. `log` must outlive the simulation.
+    /// Null where collisions happen at the step's end: of those the states tell all.
+    std::unique_ptr<Simulation> (*simulate_logged)(const Scene&, const Tuning&, CollisionLog<double>& log);
 };
 
 /// Every variant of the table, in its order.

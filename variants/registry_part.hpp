@@ -19,9 +19,10 @@ namespace carom {
 
 namespace part_detail {
 
+/// `SomeProbe` is a probe, or a reference to one.
 template <Policies policies, class SomeProbe> class SimulationOf final : public Simulation {
   public:
-    SimulationOf(const Scene& scene, const Tuning& tuning, SomeProbe& probe)
+    SimulationOf(const Scene& scene, const Tuning& tuning, SomeProbe probe)
         : state_(scene, tuning.threads), tuning_(tuning), probe_(probe) {}
 
     Tally step() override { return carom::step(state_, tuning_, probe_); }
@@ -31,17 +32,31 @@ template <Policies policies, class SomeProbe> class SimulationOf final : public 
   private:
     State<policies> state_;
     Tuning tuning_;
-    SomeProbe& probe_;
+    SomeProbe probe_;
 };
 
 template <Policies policies> std::unique_ptr<Simulation> simulate(const Scene& scene, const Tuning& tuning) {
-    static NoProbe probe;
-    return std::make_unique<SimulationOf<policies, NoProbe>>(scene, tuning, probe);
+    return std::make_unique<SimulationOf<policies, NoProbe>>(scene, tuning, NoProbe());
 }
 
 template <Policies policies>
 std::unique_ptr<Simulation> simulate_observed(const Scene& scene, const Tuning& tuning, Probe& probe) {
-    return std::make_unique<SimulationOf<policies, Probe>>(scene, tuning, probe);
+    return std::make_unique<SimulationOf<policies, Probe&>>(scene, tuning, probe);
+}
+
+template <Policies policies>
+std::unique_ptr<Simulation> simulate_logged(const Scene& scene, const Tuning& tuning,
+                                            CollisionLog<double>& log) {
+    return std::make_unique<SimulationOf<policies, LoggingProbe>>(scene, tuning, LoggingProbe(log));
+}
+
+/// How the variants are simulated whose collisions are told, and null of the others.
+template <Policies policies> constexpr auto logged() -> decltype(Variant::simulate_logged) {
+    if constexpr (policies.impact == Impact::at_contact) {
+        return simulate_logged<policies>;
+    } else {
+        return nullptr;
+    }
 }
 
 template <std::size_t row> constexpr Name name_of_row = name_of(table[row]);
@@ -50,7 +65,8 @@ template <std::size_t row>
 constexpr Variant variant_of_row{.name = name_of_row<row>.view(),
                                  .policies = table[row],
                                  .simulate = simulate<table[row]>,
-                                 .simulate_observed = simulate_observed<table[row]>};
+                                 .simulate_observed = simulate_observed<table[row]>,
+                                 .simulate_logged = logged<table[row]>()};
 
 template <std::size_t part, std::size_t... k> constexpr auto rows_of_part(std::index_sequence<k...>) {
     return std::array{variant_of_row<part + k * parts>...};

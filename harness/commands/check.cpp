@@ -49,8 +49,7 @@ Verdict check_file(const CheckOptions& options, const Scene& scene, const Varian
 
 Verdict check_variant(const std::string& name, const Tuning& tuning, const Scene& scene,
                       const Variant& variant) {
-    const auto simulation = variant.simulate(scene, tuning);
-    Run run = run_scene(scene, *simulation, tuning, {CheckScope::every_step, variant.policies});
+    Run run = checked_run(scene, variant, tuning);
     return {name + ", variant " + std::string(variant.name), std::move(run.discs), std::move(run.violation)};
 }
 

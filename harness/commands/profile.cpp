@@ -36,16 +36,21 @@ struct ProfileOptions {
     int simulated_steps = 5;
 };
 
-/// Runs the scene without a probe. Throws CheckError if it fails its check.
-Run bare_run(const Measurement& measurement, CheckScope scope, Stopwatch stopwatch = {}) {
-    const auto simulation = measurement.variant.simulate(measurement.scene, measurement.tuning);
-    Run run = run_scene(measurement.scene, *simulation, measurement.tuning,
-                        {scope, measurement.variant.policies}, nullptr, std::move(stopwatch));
+/// A run that passed its check, or CheckError.
+Run passed(Run run, const Measurement& measurement) {
     if (run.violation) {
         throw CheckError(measurement.scene_name + ", variant " + std::string(measurement.variant.name) +
                          ", " + *run.violation);
     }
     return run;
+}
+
+/// Runs the scene without a probe. Throws CheckError if it fails its check.
+Run bare_run(const Measurement& measurement, CheckScope scope, Stopwatch stopwatch = {}) {
+    const auto simulation = measurement.variant.simulate(measurement.scene, measurement.tuning);
+    return passed(run_scene(measurement.scene, *simulation, measurement.tuning,
+                            {scope, measurement.variant.policies}, nullptr, std::move(stopwatch)),
+                  measurement);
 }
 
 /// The profiled run; the same to the last bit as the bare one, or CheckError.
@@ -97,7 +102,7 @@ void profile(const ProfileOptions& options) {
         bare_run(measurement, CheckScope::nothing);
     }
     if (options.measurement.scope == CheckScope::every_step) {
-        bare_run(measurement, CheckScope::every_step);
+        passed(checked_run(measurement.scene, variant, measurement.tuning), measurement);
     }
     const Run bare = bare_run(measurement, CheckScope::last_step);
     Profiler profiler(variant.policies, measurement.tuning,

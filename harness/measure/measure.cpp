@@ -68,7 +68,7 @@ void RunInParts::step(int substep) {
     run_.work += tally;
     if (checked || !tally.settled) {
         stopwatch_.stop();
-        const auto violation = tally.settled ? checker_.step(before_, simulation_.discs())
+        const auto violation = tally.settled ? violation_after(simulation_.discs())
                                              : unsettled(checker_, simulation_.discs(), tuning_.sweep_limit,
                                                          check_.policies.impact);
         if (violation) {
@@ -76,6 +76,11 @@ void RunInParts::step(int substep) {
         }
         stopwatch_.start();
     }
+}
+
+std::optional<std::string> RunInParts::violation_after(const std::vector<Disc>& after) const {
+    return check_.collisions != nullptr ? check_.collisions->step(before_, after)
+                                        : checker_.step(before_, after);
 }
 
 Run RunInParts::finish() {
@@ -90,6 +95,16 @@ Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, 
     RunInParts run(scene, simulation, tuning, check, on_step, std::move(stopwatch));
     run.advance(scene.steps);
     return run.finish();
+}
+
+Run checked_run(const Scene& scene, const Variant& variant, const Tuning& tuning, const OnStep& on_step,
+                Stopwatch stopwatch) {
+    const auto collisions = collision_checker(scene, variant.policies, tuning);
+    const auto simulation = collisions ? variant.simulate_logged(scene, tuning, collisions->log())
+                                       : variant.simulate(scene, tuning);
+    return run_scene(scene, *simulation, tuning,
+                     {CheckScope::every_step, variant.policies, collisions.get()}, on_step,
+                     std::move(stopwatch));
 }
 
 std::string state_hash(const std::vector<Disc>& discs) {

@@ -8,6 +8,7 @@
 
 #include "harness/support/stopwatch.hpp"
 #include "harness/verify/checker.hpp"
+#include "harness/verify/collision_checker.hpp"
 #include "harness/verify/rounding.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/scene.hpp"
@@ -19,13 +20,16 @@ namespace carom {
 /// Which steps of a run the checker looks at.
 enum class CheckScope { nothing, last_step, every_step };
 
-/// What the checker looks at, and the policies whose precision and time of impact it expects.
+/// What the checker looks at, and the policies whose precision and time of impact it expects. `collisions`,
+/// if it is not null, is who is told every collision of the run: then it checks the steps.
 struct Check {
     CheckScope scope;
     Policies policies;
+    CollisionChecker* collisions = nullptr;
 
-    Check(CheckScope some_scope, const Policies& some_policies = {}) // NOLINT(*-explicit-*)
-        : scope(some_scope), policies(some_policies) {}
+    Check(CheckScope some_scope, const Policies& some_policies = {}, // NOLINT(*-explicit-*)
+          CollisionChecker* some_collisions = nullptr)
+        : scope(some_scope), policies(some_policies), collisions(some_collisions) {}
 };
 
 /// A run of all S steps of a scene.
@@ -57,6 +61,7 @@ class RunInParts {
 
   private:
     void step(int substep);
+    std::optional<std::string> violation_after(const std::vector<Disc>& after) const;
 
     const Scene& scene_;
     Simulation& simulation_;
@@ -73,6 +78,11 @@ class RunInParts {
 /// The whole run at once.
 Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, const Check& check,
               const OnStep& on_step = nullptr, Stopwatch stopwatch = {});
+
+/// A whole run of a variant of which every step is checked: by its collisions, where the variant tells them
+/// (`simulate_logged`), else by the states at its ends.
+Run checked_run(const Scene& scene, const Variant& variant, const Tuning& tuning,
+                const OnStep& on_step = nullptr, Stopwatch stopwatch = {});
 
 /// FNV-1a (Fowler, Noll, Vo) over the bits of all positions and velocities, as 16 hexadecimal digits.
 std::string state_hash(const std::vector<Disc>& discs);

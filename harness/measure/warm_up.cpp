@@ -8,16 +8,16 @@ namespace {
 
 constexpr int fewest_steps = 2;
 
-Run untimed(const Measurement& measurement, CheckScope scope, const Scene& scene) {
+Run untimed(const Measurement& measurement, const Scene& scene) {
     const auto simulation = measurement.variant.simulate(scene, measurement.tuning);
-    return run_scene(scene, *simulation, measurement.tuning, Check(scope, measurement.variant.policies));
+    return run_scene(scene, *simulation, measurement.tuning, CheckScope::nothing);
 }
 
 } // namespace
 
 double warm_up(Measurement& measurement) {
     if (measurement.scope == CheckScope::every_step) {
-        Run run = untimed(measurement, CheckScope::every_step, measurement.scene);
+        Run run = checked_run(measurement.scene, measurement.variant, measurement.tuning);
         measurement.violation = run.violation;
         if (run.violation) {
             measurement.repetitions.push_back(std::move(run));
@@ -30,7 +30,7 @@ double warm_up(Measurement& measurement) {
     }
     double seconds = 0;
     for (int k = 0; k < std::max(measurement.warm_ups, 1); ++k) {
-        seconds = untimed(measurement, CheckScope::nothing, scene).steps_seconds;
+        seconds = untimed(measurement, scene).steps_seconds;
     }
     return seconds / scene.steps;
 }

@@ -40,6 +40,11 @@ class Checker {
     /// The first pair or wall left colliding, or nothing.
     std::optional<std::string> colliding(const std::vector<Disc>& discs) const;
 
+    /// Is an overlapping pair, or a disc in a wall, left colliding?
+    std::optional<std::string> pair_colliding(const std::vector<Disc>& discs,
+                                              const OverlappingPair& pair) const;
+    std::optional<std::string> wall_colliding(const std::vector<Disc>& discs, int i) const;
+
     /// How many pairs and walls are left colliding.
     long count_colliding(const std::vector<Disc>& discs) const;
 
@@ -48,9 +53,6 @@ class Checker {
                                      const std::vector<Disc>& after) const;
     std::optional<std::string> left_colliding(const std::vector<Disc>& free, const std::vector<Disc>& after,
                                               const std::vector<OverlappingPair>& pairs) const;
-    std::optional<std::string> pair_colliding(const std::vector<Disc>& discs,
-                                              const OverlappingPair& pair) const;
-    std::optional<std::string> wall_colliding(const std::vector<Disc>& discs, int i) const;
 
     Walls walls_;
     double dt_;

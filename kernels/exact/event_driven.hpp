@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/collide.hpp"
+#include "kernels/collision_log.hpp"
 #include "kernels/exact/event_cells.hpp"
 #include "kernels/exact/event_queue.hpp"
 #include "kernels/exact/first_collision.hpp"
@@ -36,10 +37,12 @@ struct EventLimits {
 ///
 /// Pairs that overlap, at the start or by rounding, collide at once if they approach and are ignored while
 /// they part; so do walls. Centres that coincide have no normal and do not collide (first_collision.hpp).
-template <class Real> class EventDriven {
+///
+/// `Log` is told every collision; CollisionLog<Real>& is one that can.
+template <class Real, class Log = NoCollisionLog> class EventDriven {
   public:
-    explicit EventDriven(const Scene& scene)
-        : walls_{static_cast<Real>(scene.radius),
+    explicit EventDriven(const Scene& scene, Log log = Log())
+        : log_(log), walls_{static_cast<Real>(scene.radius),
                  static_cast<Real>(scene.side) - static_cast<Real>(scene.radius)},
           reach_squared_(4 * walls_[0] * walls_[0]), cells_(scene),
           queue_(static_cast<int>(scene.discs.size())) {
@@ -174,13 +177,17 @@ template <class Real> class EventDriven {
             if (other.age == one.partner_age) {
                 other.move_to(now_);
                 collide(one, other);
+                log_.collided(Collision<Real>{now_, 0, i, partner, disc_of(one), disc_of(other)});
                 look_ahead(partner);
             }
         } else {
             bounce(one);
+            log_.collided(Collision<Real>{now_, 0, i, i, disc_of(one), disc_of(one)});
         }
         look_ahead(i);
     }
+
+    static BasicDisc<Real> disc_of(const Flight<Real>& one) { return {one.x, one.y, one.vx, one.vy}; }
 
     void collide(Flight<Real>& one, Flight<Real>& other) {
         const Real dx = other.x - one.x;
@@ -265,6 +272,7 @@ template <class Real> class EventDriven {
         queue_.set(i, std::min(one.collision_time, crossing_time));
     }
 
+    [[no_unique_address]] Log log_;
     std::array<Real, 2> walls_; ///< how far a centre comes, down and up
     Real reach_squared_;        ///< (2r)^2
     Real now_ = 0;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <numbers>
+#include <string>
 
 #include "kernels/scene.hpp"
 #include "kernels/tests/scenes.hpp"
@@ -121,6 +123,12 @@ class AwkwardScene {
     Scene scene_;
     double speed_ = 0;
 };
+
+/// How many scenes a run of the tests takes: CAROM_FUZZ_SCENES, or 1000.
+inline std::uint64_t fuzz_scenes() {
+    const char* wanted = std::getenv("CAROM_FUZZ_SCENES");
+    return wanted == nullptr ? 1000 : std::stoull(wanted);
+}
 
 /// The awkward scene of that number, the same on every platform.
 inline Scene awkward_scene(std::uint64_t seed) { return AwkwardScene(seed).make(); }

@@ -32,27 +32,26 @@ Checker checker_of(const Scene& scene) {
     return {scene.side, scene.radius, 1, Tolerance::relative, Rounding(), Impact::event_driven};
 }
 
-carom::Run checked_run(const Scene& scene, const Tuning& tuning = {}) {
-    const auto simulation = event_driven().simulate(scene, tuning);
-    return run_scene(scene, *simulation, tuning, {CheckScope::every_step, event_driven().policies});
+carom::Run checked(const Scene& scene, const Tuning& tuning = {}) {
+    return checked_run(scene, event_driven(), tuning);
 }
 
 TEST(EventDrivenChecked, PassesFromDiluteToDenseAndWhereManyTouch) {
     for (const double area_fraction : {0.02, 0.1, 0.4, 0.65, 0.75}) {
         for (std::uint64_t seed = 1; seed < 6; ++seed) {
-            EXPECT_EQ(checked_run(apart(area_fraction, seed)).violation, std::nullopt)
+            EXPECT_EQ(checked(apart(area_fraction, seed)).violation, std::nullopt)
                 << area_fraction << " " << seed;
         }
     }
-    EXPECT_EQ(checked_run(tests::cradle()).violation, std::nullopt);
-    EXPECT_EQ(checked_run(tests::corner()).violation, std::nullopt);
-    EXPECT_EQ(checked_run(tests::scaled(apart(0.4, 7), 0x1p-20, 0x1p-30)).violation, std::nullopt);
+    EXPECT_EQ(checked(tests::cradle()).violation, std::nullopt);
+    EXPECT_EQ(checked(tests::corner()).violation, std::nullopt);
+    EXPECT_EQ(checked(tests::scaled(apart(0.4, 7), 0x1p-20, 0x1p-30)).violation, std::nullopt);
 }
 
 TEST(EventDrivenChecked, EndsInTheSameBitsHoweverOftenItIsLookedAt) {
     const Scene scene = apart(0.5, 8);
-    const auto once = checked_run(scene);
-    const auto often = checked_run(scene, {.threads = 2, .substeps = 4});
+    const auto once = checked(scene);
+    const auto often = checked(scene, {.threads = 2, .substeps = 4});
     EXPECT_EQ(once.discs, often.discs);
     EXPECT_EQ(once.work, often.work);
     EXPECT_GT(once.work.pair_resolves, 100);
@@ -124,7 +123,7 @@ TEST(EventDrivenErrors, AreTheRoundingOfDoubleAndNoZeroByConstruction) {
 
 TEST(EventDrivenRun, SaysThatADiscIsWedged) {
     const Scene wedged{.side = 3, .radius = 1, .steps = 3, .discs = {{1, 1.5, 1, 0}, {2, 1.5, -1, 0}}};
-    const auto run = checked_run(wedged);
+    const auto run = checked(wedged);
     EXPECT_EQ(run.violation, "step 1: the collisions of one instant do not come to an end: a disc is wedged");
 }
 

@@ -13,9 +13,7 @@ namespace {
 class CheckedVariant : public testing::TestWithParam<Variant> {
   protected:
     static std::string violation(const Scene& scene, const Tuning& tuning) {
-        const auto simulation = GetParam().simulate(scene, tuning);
-        return run_scene(scene, *simulation, tuning, {CheckScope::every_step, GetParam().policies})
-            .violation.value_or("");
+        return checked_run(scene, GetParam(), tuning).violation.value_or("");
     }
 };
 

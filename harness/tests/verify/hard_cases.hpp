@@ -20,8 +20,7 @@ inline Scene scene_of(std::string_view name) { return find_hard_case(name)->scen
 /// Runs all steps of a scene; the checker looks at every one of them, and has to pass it.
 inline Run checked_run(const Variant& variant, const Scene& scene, const Tuning& tuning = {},
                        const OnStep& on_step = nullptr) {
-    const auto simulation = variant.simulate(scene, tuning);
-    Run run = run_scene(scene, *simulation, tuning, {CheckScope::every_step, variant.policies}, on_step);
+    Run run = carom::checked_run(scene, variant, tuning, on_step);
     EXPECT_EQ(run.violation.value_or(""), "");
     return run;
 }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "harness/support/text.hpp"
 #include "harness/tests/scenes/random_scenes.hpp"
 #include "harness/verify/checker.hpp"
+#include "harness/verify/collision_checker.hpp"
 #include "harness/verify/rounding.hpp"
 #include "kernels/exact/all_pairs.hpp"
 #include "kernels/tests/simulate.hpp"
@@ -33,12 +33,6 @@ constexpr int shards = 8;
 /// at first, and only where nothing is wedged tried again with more patience.
 constexpr int few_sweeps = 12;
 const std::string endless = "the resolve does not end although nothing is wedged between walls";
-
-/// How many scenes a run of the tests takes: CAROM_FUZZ_SCENES, or 1000.
-std::uint64_t scene_count() {
-    const char* wanted = std::getenv("CAROM_FUZZ_SCENES");
-    return wanted == nullptr ? 1000 : parse_number<std::uint64_t>(wanted).value();
-}
 
 Scene with_discs(const Scene& scene, std::vector<Disc> discs) {
     return {.side = scene.side, .radius = scene.radius, .steps = 1, .discs = std::move(discs)};
@@ -154,7 +148,9 @@ std::optional<std::string> first_wrong(const Scene& scene, const Variant& varian
     const Rounding rounding = rounding_of(variant.policies);
     const bool at_contact = variant.policies.impact == Impact::at_contact;
     const Checker checker(scene.side, scene.radius, dt, tuning.tolerance, rounding, variant.policies.impact);
-    const auto simulation = variant.simulate(scene, tuning);
+    const auto collisions = collision_checker(scene, variant.policies, tuning);
+    const auto simulation = collisions ? variant.simulate_logged(scene, tuning, collisions->log())
+                                       : variant.simulate(scene, tuning);
     for (int step = 1; step <= scene.steps * tuning.substeps; ++step) {
         const std::vector<Disc> before = simulation->discs();
         Moved moved(scene, before, dt);
@@ -171,6 +167,9 @@ std::optional<std::string> first_wrong(const Scene& scene, const Variant& varian
             return wedged ? std::nullopt : std::optional(where + endless);
         }
         if (const auto violation = checker.step(before, after)) {
+            return where + *violation;
+        }
+        if (const auto violation = collisions ? collisions->step(before, after) : std::nullopt) {
             return where + *violation;
         }
         if (!rounding.is_double()) {
@@ -213,7 +212,7 @@ Tuning awkward_tuning(std::uint64_t seed) {
 class PhysicsFuzz : public testing::TestWithParam<int> {};
 
 TEST_P(PhysicsFuzz, EveryVariantIsRightOnRandomScenes) {
-    for (auto seed = static_cast<std::uint64_t>(GetParam()); seed < scene_count(); seed += shards) {
+    for (auto seed = static_cast<std::uint64_t>(GetParam()); seed < tests::fuzz_scenes(); seed += shards) {
         const Scene scene = tests::awkward_scene(seed);
         const Tuning tuning = awkward_tuning(seed);
         for (const Variant& variant : variants()) {

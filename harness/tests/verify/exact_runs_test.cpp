@@ -1,0 +1,76 @@
+#include <cstdint>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "harness/scenes/generate.hpp"
+#include "harness/scenes/hard_cases.hpp"
+#include "harness/tests/scenes/random_scenes.hpp"
+#include "harness/tests/verify/exact_runs.hpp"
+#include "kernels/tests/simulate.hpp"
+
+// The event-driven simulation, in both precisions, proven right collision by collision: on every hard case,
+// and on random scenes of every kind, also those whose discs overlap or lie outside at the start.
+
+namespace carom {
+namespace {
+
+using tests::ExactRun;
+
+template <class Real> ExactRun<Real> proven(const Scene& scene, const std::string& name) {
+    ExactRun<Real> run(scene);
+    EXPECT_EQ(run.wrong(scene, 3), "") << name;
+    EXPECT_EQ(run.checker.pair_collisions(), run.simulation.pair_collisions()) << name;
+    EXPECT_EQ(run.checker.wall_collisions(), run.simulation.wall_collisions()) << name;
+    return run;
+}
+
+TEST(ExactRuns, AreProvenOnEveryHardCase) {
+    for (const auto& [name, description, make] : hard_cases()) {
+        if (name != "drift") { // in exact_runs_slow_test.cpp
+            proven<double>(make(), std::string(name));
+            proven<long double>(make(), std::string(name) + ", in long double");
+        }
+    }
+}
+
+/// Some are wedged between walls, and others cross their box so often that they are followed for some time
+/// alone.
+TEST(ExactRuns, AreProvenOnRandomScenes) {
+    const EventLimits limits{.at_once = 1000, .in_all = 5000};
+    int ended = 0;
+    const auto is_proven = [&](const std::string& wrong, std::uint64_t seed) {
+        ended += wrong.empty();
+        EXPECT_TRUE(wrong.empty() || wrong == ExactRun<double>::given_up) << "scene " << seed << ": " << wrong;
+    };
+    const std::uint64_t scenes = tests::fuzz_scenes();
+    for (std::uint64_t seed = 0; seed < scenes; ++seed) {
+        const Scene scene = tests::awkward_scene(seed);
+        ExactRun<double> run(scene);
+        is_proven(run.wrong(scene, 3, limits), seed);
+        ExactRun<long double> extended(scene);
+        is_proven(extended.wrong(scene, 1, limits), seed);
+    }
+    EXPECT_GT(ended, static_cast<int>(scenes)) << "of twice as many";
+}
+
+TEST(ExactRuns, EndInTheSameBitsWhetherTheyAreToldOrNot) {
+    const Scene scene = generate({.count = 300,
+                                  .side = 40,
+                                  .radius = 1,
+                                  .steps = 20,
+                                  .least_velocity = 0.1,
+                                  .largest_velocity = 1,
+                                  .seed = 21,
+                                  .placement = Placement::lattice,
+                                  .isotropic = true});
+    ExactRun<double> told(scene);
+    ASSERT_EQ(told.wrong(scene, 20), "");
+    EventDriven<double> untold(scene);
+    ASSERT_TRUE(untold.advance(20));
+    EXPECT_TRUE(tests::same_bits(told.simulation.discs(), untold.discs()));
+    EXPECT_GT(told.checker.pair_collisions(), 1000);
+}
+
+} // namespace
+} // namespace carom

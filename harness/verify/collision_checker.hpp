@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kernels/collision_log.hpp"
+#include "kernels/policies.hpp"
+#include "kernels/scene.hpp"
+
+namespace carom {
+
+/// Checks a run, step by step, by every collision that it tells: by these a step is proven, and not by its
+/// state at the end alone.
+class CollisionChecker {
+  public:
+    virtual ~CollisionChecker() = default;
+
+    /// What the simulation is to tell its collisions to.
+    virtual CollisionLog<double>& log() = 0;
+
+    /// The first violation of the next step, named with its discs and numbers, or nothing. `before` and
+    /// `after` are the states at its ends.
+    virtual std::optional<std::string> step(const std::vector<Disc>& before,
+                                            const std::vector<Disc>& after) = 0;
+};
+
+/// The one for a variant's run from a scene's start, or null if its collisions happen at the steps' ends:
+/// then states tell all (checker.hpp). For Impact::event_driven it is a PathChecker, whose steps are those of
+/// `tuning` in time; for Impact::at_contact a ContactChecker.
+std::unique_ptr<CollisionChecker> collision_checker(const Scene& scene, const Policies& policies,
+                                                    const Tuning& tuning);
+
+} // namespace carom

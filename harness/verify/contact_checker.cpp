@@ -1,0 +1,338 @@
+#include "harness/verify/contact_checker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "harness/support/format.hpp"
+#include "harness/verify/at_contact.hpp"
+#include "harness/verify/conservation.hpp"
+
+namespace carom {
+namespace {
+
+/// As far as a disc of the usual speed, the root of the mean square at the start, flies in a step two may be
+/// apart; an eighth of their size at most.
+double near_radius(const Scene& scene, double dt) {
+    double sum = 0;
+    for (const Disc& disc : scene.discs) {
+        sum += disc.vx * disc.vx + disc.vy * disc.vy;
+    }
+    const double speed = std::sqrt(sum / static_cast<double>(std::max(scene.discs.size(), std::size_t{1})));
+    return std::min(scene.radius + speed * dt / 2, widest_look * scene.radius);
+}
+
+ContactRules rules_of(const Scene& scene, const Policies& policies, const Tuning& tuning) {
+    const Rounding rounding = rounding_of(policies);
+    const double dt = rounding(1.0 / tuning.substeps);
+    return {.walls = {.side = rounding(scene.side), .radius = rounding(scene.radius), .rounding = rounding},
+            .dt = dt,
+            .way_back = dt,
+            .near = near_radius(scene, dt),
+            .tolerance = tuning.tolerance};
+}
+
+std::string velocities(const Disc& one, const Disc& two) {
+    return format("(%.17g, %.17g) and (%.17g, %.17g)", one.vx, one.vy, two.vx, two.vy);
+}
+
+std::string when(const Collision<double>& collision) {
+    return format(" (%.17g before the end, sweep %d)", collision.time, collision.sweep);
+}
+
+} // namespace
+
+ContactChecker::ContactChecker(const Scene& scene, const Policies& policies, const Tuning& tuning)
+    : at_end_(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, rounding_of(policies)),
+      rules_(rules_of(scene, policies, tuning)) {}
+
+void ContactChecker::collided(const Collision<double>& collision) {
+    const std::lock_guard lock(telling_);
+    collisions_.push_back(collision);
+}
+
+std::optional<std::string> ContactChecker::step(const std::vector<Disc>& before,
+                                                const std::vector<Disc>& after) {
+    if (before.size() != after.size()) {
+        return format("%zu discs became %zu", before.size(), after.size());
+    }
+    steps_ = std::min(steps_ + 1, 2);
+    rules_.way_back = rules_.dt * steps_;
+    discs_ = flown(before, rules_.dt, rules_.walls);
+    find_near(discs_);
+    std::ranges::sort(collisions_, [](const auto& one, const auto& two) {
+        return std::pair(one.sweep, one.first) < std::pair(two.sweep, two.first);
+    });
+    Found violation = collide_sweeps();
+    collisions_.clear();
+    violation = violation ? violation : left_pending();
+    return violation ? violation : wrong_after(after);
+}
+
+void ContactChecker::find_near(const std::vector<Disc>& free) {
+    constexpr double never = std::numeric_limits<double>::infinity();
+    const double roundings = 32 * rules_.epsilon();
+    const auto radius_wider_by = [&](double share) { return rules_.near * (1 + share); };
+    near_.clear();
+    for (const OverlappingPair& pair : overlapping_pairs(free, radius_wider_by(roundings))) {
+        const double distance = std::hypot(disc(pair.second).x - disc(pair.first).x,
+                                           disc(pair.second).y - disc(pair.first).y);
+        near_.push_back({pair.first, pair.second, distance < 2 * radius_wider_by(-roundings), never});
+    }
+    for (int i = 0; i < static_cast<int>(free.size()); ++i) {
+        const double to_wall = std::min(std::min(disc(i).x, disc(i).y),
+                                        rules_.walls.side - std::max(disc(i).x, disc(i).y));
+        const double slack = roundings * (rules_.near + rules_.walls.side);
+        if (to_wall <= rules_.near + slack) {
+            near_.push_back({i, i, to_wall < rules_.near - slack, never});
+        }
+    }
+    first_of_disc_.assign(free.size() + 1, 0);
+    for (const Near& near : near_) {
+        ++first_of_disc_[static_cast<std::size_t>(near.first)];
+        first_of_disc_[static_cast<std::size_t>(near.second)] += near.first != near.second ? 1 : 0;
+    }
+    std::size_t end = 0;
+    for (std::size_t& first : first_of_disc_) {
+        end += first;
+        first = end;
+    }
+    near_of_disc_.resize(end);
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+        near_of_disc_[--first_of_disc_[static_cast<std::size_t>(near_[k].first)]] = k;
+        if (near_[k].first != near_[k].second) {
+            near_of_disc_[--first_of_disc_[static_cast<std::size_t>(near_[k].second)]] = k;
+        }
+    }
+}
+
+ContactChecker::Near* ContactChecker::near_of(int first, int second) {
+    const auto i = static_cast<std::size_t>(first);
+    for (std::size_t entry = first_of_disc_[i]; entry < first_of_disc_[i + 1]; ++entry) {
+        Near& near = near_[near_of_disc_[entry]];
+        if ((near.first == first && near.second == second) ||
+            (near.first == second && near.second == first)) {
+            return &near;
+        }
+    }
+    return nullptr;
+}
+
+/// All collisions of a sweep are looked at before the first of them is made: what they were chosen by.
+std::optional<std::string> ContactChecker::collide_sweeps() {
+    sweeps_ = 0;
+    std::vector<int> collided_in(discs_.size(), -1);
+    const auto takes_part = [&](int i, int sweep) {
+        return std::exchange(collided_in[static_cast<std::size_t>(i)], sweep) == sweep;
+    };
+    for (auto begin = collisions_.begin(); begin != collisions_.end();) {
+        const int sweep = begin->sweep;
+        const auto end = std::find_if(begin, collisions_.end(),
+                                      [sweep](const auto& collision) { return collision.sweep != sweep; });
+        for (auto collision = begin; collision != end; ++collision) {
+            if (auto violation = violation_of(*collision)) {
+                return violation;
+            }
+            if (takes_part(collision->first, sweep) ||
+                (!collision->at_wall() && takes_part(collision->second, sweep))) {
+                return format("disc %d or %d collides twice", collision->first, collision->second) +
+                       when(*collision);
+            }
+        }
+        for (; begin != end; ++begin) {
+            discs_[static_cast<std::size_t>(begin->first)] = begin->first_after;
+            discs_[static_cast<std::size_t>(begin->second)] = begin->second_after;
+            near_of(begin->first, begin->second)->last = begin->time;
+        }
+        sweeps_ = sweep + 1;
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> ContactChecker::violation_of(const Collision<double>& collision) {
+    const int count = static_cast<int>(discs_.size());
+    if (collision.first < 0 || collision.first >= count || collision.second < 0 || collision.second >= count) {
+        return format("a collision of discs %d and %d is told, of %d", collision.first, collision.second,
+                      count);
+    }
+    const Near* near = near_of(collision.first, collision.second);
+    if (near == nullptr) {
+        return format("discs %d and %d collide, and were not near each other, or a wall", collision.first,
+                      collision.second) +
+               when(collision);
+    }
+    if (!(collision.time >= 0 && collision.time < near->last)) {
+        return format("discs %d and %d collide %.17g before the end, after %.17g", collision.first,
+                      collision.second, collision.time, near->last);
+    }
+    Found violation = collision.at_wall() ? wrong_wall(collision) : wrong_pair(collision);
+    violation = violation ? violation : earlier(collision.first, collision);
+    return violation || collision.at_wall() ? violation : earlier(collision.second, collision);
+}
+
+std::optional<std::string> ContactChecker::wrong_pair(const Collision<double>& collision) const {
+    const PairBackwards pair(rules_, disc(collision.first), disc(collision.second));
+    const Disc d = pair.at(collision.time);
+    const double distance = std::hypot(d.x, d.y);
+    const auto who = [&] { return format("discs %d and %d", collision.first, collision.second); };
+    if (!(std::abs(distance * distance - pair.reach() * pair.reach()) <= 2 * pair.uncertain())) {
+        return who() + format(" collide while they are %.17g apart, not %.17g", distance, pair.reach()) +
+               when(collision);
+    }
+    if (!(collision.time <= pair.way_back() * (1 + 32 * rules_.epsilon()))) {
+        return who() + " collide before the way back" + when(collision);
+    }
+    // A grazing pair may be seen to part a little: by the root of what its distance is uncertain.
+    if (!(d.x * d.vx + d.y * d.vy <= 2 * pair.speed() * std::sqrt(pair.uncertain()))) {
+        return who() + " collide while they part" + when(collision);
+    }
+    return wrong_exchange(collision, d, std::sqrt(rules_.epsilon() * pair.uncertain()) / distance);
+}
+
+/// `d` is the line of centres, and `uncertain` its direction.
+std::optional<std::string> ContactChecker::wrong_exchange(const Collision<double>& collision, const Disc& d,
+                                                          double uncertain) const {
+    const Disc& one = disc(collision.first);
+    const Disc& two = disc(collision.second);
+    const Disc& one_after = collision.first_after;
+    const Disc& two_after = collision.second_after;
+    const auto wrong = [&](const char* what) {
+        return format("discs %d and %d, of velocities %s, %s: they get %s", collision.first, collision.second,
+                      velocities(one, two).c_str(), what, velocities(one_after, two_after).c_str()) +
+               when(collision);
+    };
+    const double epsilon = rules_.epsilon();
+    const double speeds = std::hypot(one.vx, one.vy) + std::hypot(two.vx, two.vy);
+    const double roundings = 16 * epsilon * speeds;
+    if (!(std::hypot(one_after.vx + two_after.vx - one.vx - two.vx,
+                     one_after.vy + two_after.vy - one.vy - two.vy) <= roundings)) {
+        return wrong("do not keep their momentum");
+    }
+    const auto squares = [](const Disc& first, const Disc& second) {
+        return first.vx * first.vx + first.vy * first.vy + second.vx * second.vx + second.vy * second.vy;
+    };
+    if (!(std::abs(squares(one_after, two_after) - squares(one, two)) <= roundings * speeds)) {
+        return wrong("do not keep their energy");
+    }
+    const double squared = d.x * d.x + d.y * d.y;
+    const double share = (d.vx * d.x + d.vy * d.y) / squared;
+    if (!(std::hypot(one.vx + share * d.x - one_after.vx, one.vy + share * d.y - one_after.vy) <=
+          roundings + 8 * speeds * uncertain)) {
+        return wrong("do not exchange what they have along the line of centres");
+    }
+    const auto astray = [&](const Disc& before, const Disc& after) {
+        const double x = before.x + (after.vx - before.vx) * collision.time;
+        const double y = before.y + (after.vy - before.vy) * collision.time;
+        const double extent = std::abs(x) + std::abs(y) + std::abs(before.x) + std::abs(before.y);
+        return !(std::hypot(after.x - x, after.y - y) <= 16 * epsilon * (extent + speeds * collision.time));
+    };
+    if (astray(one, one_after) || astray(two, two_after)) {
+        return wrong("are not where they have flown since");
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> ContactChecker::wrong_wall(const Collision<double>& collision) const {
+    const Disc& before = disc(collision.first);
+    const Disc& after = collision.first_after;
+    const double low = rules_.walls.radius;
+    const double high = rules_.walls.side - rules_.walls.radius;
+    int turned = 0;
+    const auto is_right = [&](double position, double velocity, double new_position, double new_velocity) {
+        const bool now = time_in_wall(rules_, position, velocity) == collision.time;
+        turned += now;
+        const double allowed = 16 * rules_.epsilon() * (std::abs(position) + rules_.walls.side);
+        return now ? new_velocity == -velocity &&
+                         std::abs(2 * (velocity < 0 ? low : high) - position - new_position) <= allowed
+                   : new_velocity == velocity && new_position == position;
+    };
+    const bool right = is_right(before.x, before.vx, after.x, after.vx) &
+                       is_right(before.y, before.vy, after.y, after.vy);
+    if (right && turned > 0) {
+        return std::nullopt;
+    }
+    return format("disc %d at (%.17g, %.17g), velocity (%.17g, %.17g), is at (%.17g, %.17g), velocity (%.17g, "
+                  "%.17g), after a wall that it met",
+                  collision.first, before.x, before.y, before.vx, before.vy, after.x, after.y, after.vx,
+                  after.vy) +
+           when(collision);
+}
+
+/// A collision of a disc that was to be made before this one.
+std::optional<std::string> ContactChecker::earlier(int i, const Collision<double>& collision) const {
+    const auto of_disc = static_cast<std::size_t>(i);
+    for (std::size_t entry = first_of_disc_[of_disc]; entry < first_of_disc_[of_disc + 1]; ++entry) {
+        const Near& near = near_[near_of_disc_[entry]];
+        const auto pending = surely_pending(near);
+        if (pending && pending->time - pending->uncertain > collision.time * (1 + 32 * rules_.epsilon())) {
+            return format("discs %d and %d collide before discs %d and %d, which met earlier, %.17g before the "
+                          "end",
+                          collision.first, collision.second, near.first, near.second, pending->time) +
+                   when(collision);
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<PastCollision> ContactChecker::surely_pending(const Near& near) const {
+    if (!near.surely) {
+        return std::nullopt;
+    }
+    const auto met = near.first == near.second
+                         ? surely_in_wall(disc(near.first))
+                         : PairBackwards(rules_, disc(near.first), disc(near.second)).surely_met();
+    return met && met->time < near.last - met->uncertain ? met : std::nullopt;
+}
+
+std::optional<PastCollision> ContactChecker::surely_in_wall(const Disc& disc) const {
+    const double in_x = time_in_wall(rules_, disc.x, disc.vx);
+    const double in_y = time_in_wall(rules_, disc.y, disc.vy);
+    const double time = std::max(in_x, in_y);
+    return time >= 0 ? std::optional(PastCollision{time, 0}) : std::nullopt;
+}
+
+std::optional<std::string> ContactChecker::left_pending() const {
+    if (sweeps_ == most_impact_sweeps) {
+        return std::nullopt;
+    }
+    for (const Near& near : near_) {
+        if (const auto pending = surely_pending(near)) {
+            return format("discs %d and %d met %.17g before the end, and do not collide although %d sweeps were "
+                          "left",
+                          near.first, near.second, pending->time, most_impact_sweeps - sweeps_);
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> ContactChecker::wrong_after(const std::vector<Disc>& after) const {
+    for (std::size_t i = 0; i < after.size(); ++i) {
+        if (!std::isfinite(after[i].x + after[i].y + after[i].vx + after[i].vy)) {
+            return format("disc %zu has a state that is not finite: (%g, %g), velocity (%g, %g)", i,
+                          after[i].x, after[i].y, after[i].vx, after[i].vy);
+        }
+        if (after[i].x != discs_[i].x || after[i].y != discs_[i].y) {
+            return format("disc %zu is at (%.17g, %.17g) instead of at (%.17g, %.17g)", i, after[i].x,
+                          after[i].y, discs_[i].x, discs_[i].y);
+        }
+    }
+    const double reach = 2 * rules_.walls.radius;
+    for (const Near& near : near_) {
+        const Disc& one = after[static_cast<std::size_t>(near.first)];
+        const Disc& two = after[static_cast<std::size_t>(near.second)];
+        Found violation;
+        if (near.surely && near.first == near.second) {
+            violation = at_end_.wall_colliding(after, near.first);
+        } else if (near.surely && std::hypot(two.x - one.x, two.y - one.y) < reach * (1 - 8 * rules_.epsilon())) {
+            violation = at_end_.pair_colliding(after, {near.first, near.second});
+        }
+        if (violation) {
+            return violation;
+        }
+    }
+    return conservation_violation(
+        discs_, after, overlapping_pairs(after, rules_.walls.radius, rules_.walls.rounding), rules_.walls);
+}
+
+} // namespace carom

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/verify/path.hpp"
+#include "harness/verify/path_search.hpp"
+#include "kernels/collision_log.hpp"
+#include "kernels/scene.hpp"
+
+namespace carom {
+
+/// Follows an event-driven simulation from collision to collision, as it tells them, and finds whatever is
+/// wrong: what passes is proven right, to rounding, and not sampled. Nothing of it is shared with the
+/// simulation.
+///  - Times rise, or stay. Discs fly straight on from one of their collisions to the next: to rounding the
+///    place of each is on the path that the one before has set out.
+///  - Two discs collide where their paths are 2r apart, approaching, and exchange the components of their
+///    velocities along the line of centres: these alone, which keeps their momentum and energy.
+///  - A wall turns the component with which a disc flies into it, where the disc touches it, to the last bit.
+///  - Nowhere in between do two discs come nearer than 2r (path_search.hpp), or a disc beyond a wall.
+///  - A state has every disc where its path is, and its velocity to the last bit.
+///
+/// Discs may overlap each other or walls at the start: those that approach collide at once, those that part
+/// are let go. Centres nearer than rounding can tell have no normal, and may do either.
+///
+/// What rounding allows stands in path.hpp.
+template <class Real> class PathChecker final : public CollisionLog<Real> {
+  public:
+    explicit PathChecker(const Scene& scene);
+
+    void collided(const Collision<Real>& collision) override;
+
+    /// The first that was wrong up to that time, or of the state that the simulation then is in; or nothing.
+    std::optional<std::string> violation_at(Real time, const std::vector<BasicDisc<Real>>& discs);
+
+    /// Of discs and of walls, so far.
+    std::int64_t pair_collisions() const { return pair_collisions_; }
+    std::int64_t wall_collisions() const { return wall_collisions_; }
+
+  private:
+    using Found = std::optional<std::string>;
+
+    Path<Real>& path(int disc) { return paths_[static_cast<std::size_t>(disc)]; }
+    Found violation_of(const Collision<Real>& collision);
+    Found off_path(int disc, const BasicDisc<Real>& place, Real time);
+    Found wrong_pair(const Collision<Real>& collision);
+    Found wrong_exchange(const Collision<Real>& collision, const BasicDisc<Real>& one,
+                         const BasicDisc<Real>& two, Real place);
+    Found wrong_wall(const Collision<Real>& collision);
+    Found beyond_wall(int disc, Real time);
+    Real beyond(Real position, Real velocity) const;
+    void end_path(int disc, Real time, const BasicDisc<Real>& after);
+    Found search(Real time);
+
+    Real side_;
+    Real radius_;
+    PathRounding<Real> rounding_;
+    PathSearch<Real> search_;
+    std::vector<Path<Real>> paths_;
+    std::vector<Piece<Real>> pieces_; ///< since the last search
+    Real searched_ = 0;               ///< up to when
+    Real now_ = 0;
+    Found violation_;
+    std::int64_t pair_collisions_ = 0;
+    std::int64_t wall_collisions_ = 0;
+};
+
+} // namespace carom
