@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 #include <unistd.h>
 
@@ -110,29 +111,46 @@ ProgramContender contender(const Json& json) {
     return one;
 }
 
-void require_usable(const DescribedProcess& one) {
-    const ProcessCommand& command = one.contender.command;
-    if (command.words.empty() || command.words.front().empty()) {
-        throw InputError("command: found no word, expected a program and its arguments");
+/// The system takes a word to end at a zero byte.
+void require_words(const char* key, const ListOfWords& words) {
+    if (!words.empty() && words.front().empty()) {
+        throw InputError(std::string(key) + ": found no word, expected a program and its arguments");
     }
-    if (!(command.most_seconds > 0)) {
-        throw InputError("most_seconds: found " + number_text(command.most_seconds) +
-                         ", expected a number above 0");
-    }
-    if (!(one.contender.expected_seconds >= 0)) {
-        throw InputError("expected_seconds: found " + number_text(one.contender.expected_seconds) +
-                         ", expected a number of at least 0");
-    }
-    for (const ListOfWords* const words : {&one.contender.prepare, &one.contender.conclude}) {
-        if (!words->empty() && words->front().empty()) {
-            throw InputError("prepare, conclude: found no word, expected a program and its arguments");
+    for (const std::string& word : words) {
+        if (word.find('\0') != std::string::npos) {
+            throw InputError(std::string(key) + ": found " + in_quotes(word) +
+                             " with a zero byte, expected words without");
         }
     }
+}
+
+void require_at_least(const char* key, double found, double least) {
+    if (!(found >= least)) {
+        throw InputError(std::string(key) + ": found " + number_text(found) +
+                         ", expected a number of at least " + number_text(least));
+    }
+}
+
+void require_usable(const DescribedProcess& one) {
+    const ProgramContender& contender = one.contender;
+    if (contender.command.words.empty()) {
+        throw InputError("command: found no word, expected a program and its arguments");
+    }
+    require_words("command", contender.command.words);
+    require_words("prepare", contender.prepare);
+    require_words("conclude", contender.conclude);
+    if (!(contender.command.most_seconds > 0)) {
+        throw InputError("most_seconds: found " + number_text(contender.command.most_seconds) +
+                         ", expected a number above 0");
+    }
+    require_at_least("expected_seconds", contender.expected_seconds, 0);
+    require_at_least("warm_ups", contender.warm_ups, 0);
+    require_at_least("threads", one.threads, 1);
     if (one.exit_codes.empty()) {
         throw InputError("exit_codes: found none, expected those that are fine");
     }
-    if (!command.pattern.empty()) {
-        require_pattern(command.pattern);
+    if (!contender.command.pattern.empty()) {
+        require_pattern(contender.command.pattern);
     }
     tags_json(one.tags);
     require_writable(one.record);
@@ -169,7 +187,12 @@ std::vector<DescribedProcess> read_processes(const std::string& path) {
     std::vector<DescribedProcess> processes;
     for (const Json& one : json) {
         try {
-            processes.push_back(described(one));
+            DescribedProcess next = described(one);
+            if (std::ranges::find(processes, next.record, &DescribedProcess::record) != processes.end()) {
+                throw InputError("record: found " + in_quotes(next.record) +
+                                 " for two processes, expected a file for each");
+            }
+            processes.push_back(std::move(next));
         } catch (const InputError& error) {
             throw InputError(path + ", process " + std::to_string(processes.size() + 1) + ": " +
                              error.what());

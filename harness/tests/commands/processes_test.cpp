@@ -155,6 +155,12 @@ TEST_F(ProcessesCommand, RefusesAProcessThatCannotBeBeforeAnyRuns) {
     EXPECT_TRUE(refused(with("threads", "two"), 1, {"threads: found", "two", "expected a whole number"}));
     EXPECT_TRUE(refused(with("most_seconds", -1), 1, {"most_seconds: found -1, expected a number above 0"}));
     EXPECT_TRUE(refused(with("turns", "no"), 1, {"turns: found", "no", "expected true or false"}));
+    EXPECT_TRUE(
+        refused(with("record", directory / "first"), 1, {"process 2: record: found", "for two processes"}));
+    EXPECT_TRUE(
+        refused(with("command", {"ls", std::string("a\0b", 3)}), 1, {"command: found 'a?b' with a zero"}));
+    EXPECT_TRUE(refused(with("warm_ups", -1), 1, {"warm_ups: found -1, expected a number of at least 0"}));
+    EXPECT_TRUE(refused(with("threads", 0), 1, {"threads: found 0, expected a number of at least 1"}));
     EXPECT_TRUE(refused(with("kept_by", "me"), 1, {"kept_by: found 'me', expected cgroup or subreaper"}));
     EXPECT_TRUE(refused(with("exit_codes", {"1"}), 1, {"exit_codes: found", "a list of whole numbers"}));
     EXPECT_TRUE(refused(with("exit_codes", Json::array()), 1, {"exit_codes: found none"}));
@@ -168,8 +174,7 @@ TEST_F(ProcessesCommand, RefusesAProcessThatCannotBeBeforeAnyRuns) {
 TEST_F(ProcessesCommand, SaysWhatIsMeasuredWithoutAPauseAndWhy) {
     const auto result = processes({described("sleep 0.2", "one"), described("sleep 0.3", "two")});
     EXPECT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_NE(result.notes.find("measured without a pause, in a stretch of its own: it "),
-              std::string::npos)
+    EXPECT_NE(result.notes.find("measured without a pause, in a stretch of its own: it "), std::string::npos)
         << result.notes;
     EXPECT_GE(record("one")["process_seconds"], 0.2);
     EXPECT_GE(record("two")["process_seconds"], 0.3);
