@@ -1,0 +1,62 @@
+"""Programs in slices against the same ones without a pause."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from analysis.cli import main
+from analysis.figures.pauses import KIND, WITHOUT, ratios
+from analysis.records.reading import load
+from analysis.tests.figures.test_league import record
+
+BLOCKS = 6
+SECONDS = {
+    "spinning": {"cgroup": 1.04, "subreaper": 0.98, WITHOUT: 1.0},
+    "sleeping": {"cgroup": 2.0, WITHOUT: 2.0},
+}
+
+
+@pytest.fixture
+def results(tmp_path: Path) -> Path:
+    """Each program in each way, the sleeping one never stopped; each block slower by a factor."""
+    noise = np.random.default_rng(3)
+    for block in range(BLOCKS):
+        of_block = float(noise.uniform(0.8, 1.2))
+        for number, (series, ways) in enumerate(SECONDS.items()):
+            for label, seconds in ways.items():
+                made = record(series, block, seconds * of_block * float(noise.normal(1, 0.001)))
+                made["tags"] |= {
+                    "experiment": "pauses", "figure": KIND, "label": label, "series_number": number + 1,
+                }  # fmt: skip
+                if series == "spinning" and label != WITHOUT:
+                    made["turns"] = {"contenders": 2, "seed": 1, "seconds": [seconds]}
+                path = tmp_path / "records" / "pauses" / f"{series}-{label}-b{block}.json"
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(json.dumps(made), encoding="utf-8")
+    return tmp_path
+
+
+def test_ratios_are_those_of_the_programs_whatever_the_blocks_suffer(results: Path) -> None:
+    found = ratios(load(results).times).set_index(["series", "label"])
+    assert set(found.index) == {
+        ("spinning", "cgroup"), ("spinning", "subreaper"), ("sleeping", "cgroup"),
+    }  # fmt: skip
+    for (series, label), row in found.iterrows():
+        truth = np.log(SECONDS[series][label] / SECONDS[series][WITHOUT])
+        assert row["ratio"].low < truth < row["ratio"].high
+        assert row["ratio"].high - row["ratio"].low < 0.02
+        assert row["blocks"] == BLOCKS
+        assert row["sliced"] == (series == "spinning")
+
+
+def test_the_figure_is_drawn_and_says_who_was_not_stopped(
+    results: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["report", "--results", str(results)]) == 0
+    page = (results / "report.html").read_text(encoding="utf-8")
+    assert "stopped by a control group" in page
+    assert "(not stopped)" in page
+    assert "not measured" in page
+    assert "skipped" not in capsys.readouterr().err
