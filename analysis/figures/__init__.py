@@ -12,6 +12,7 @@ from pathlib import Path
 import pandas as pd
 
 from analysis.derived.accuracy import MEASURES
+from analysis.derived.pauses import KIND as PAUSES
 from analysis.derived.ways import KIND, bias_sentence
 from analysis.figures import (
     comparisons,
@@ -23,7 +24,6 @@ from analysis.figures import (
     machines,
     orders,
     pairs,
-    pauses,
     phases,
     promises,
     scaling,
@@ -173,7 +173,7 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
     "ladder": ladder.waterfall,
     "limits": limits.phases_against_limits,
     KIND: ways.ways,
-    pauses.KIND: pauses.pauses,
+    PAUSES: ways.pauses,
 }
 """How an experiment without a figure of its own is drawn, given its name and title, by its tag `figure`."""
 

@@ -1,4 +1,4 @@
-#include "harness/commands/described_process.hpp"
+#include "harness/command_line/described_process.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from analysis.cli import main
-from analysis.figures.pauses import KIND, WITHOUT, ratios
+from analysis.derived.pauses import KIND, WITHOUT, ratios
 from analysis.records.reading import load
 from analysis.tests.figures.test_league import record
 

@@ -1,0 +1,39 @@
+"""Programs that are stopped now and then, against the same programs without a pause."""
+
+import pandas as pd
+
+from analysis.statistics.intervals import FEWEST, centre
+from analysis.statistics.pairs import log_ratios, process_medians
+
+KIND = "pauses"
+"""The kind of the experiments whose series each have these labels."""
+
+WITHOUT = "without a pause"
+STOPPED_BY = {"cgroup": "stopped by a control group", "subreaper": "stopped by signals"}
+"""What the other ways are called, by label."""
+
+
+def ratios(times: pd.DataFrame) -> pd.DataFrame:
+    """Return a row a program (`series`) and way (`label`): its log ratio in slices to that without a pause
+    (`ratio`, an Interval), the number of `blocks`, the median `seconds` without a pause, and whether it took
+    turns (`sliced`).
+    """
+    processes = process_medians(times)
+    rows = []
+    for series, group in processes.sort_values("series_number").groupby("series", sort=False):
+        reference = group[group["label"] == WITHOUT]
+        for label in STOPPED_BY:
+            candidate = group[group["label"] == label]
+            pairs = log_ratios(reference, candidate)
+            if len(pairs) >= FEWEST:
+                rows.append(
+                    {
+                        "series": series,
+                        "label": label,
+                        "ratio": centre(pairs["log_ratio"], 0.95),
+                        "blocks": len(pairs),
+                        "seconds": float(reference["steps_seconds"].median()),
+                        "sliced": bool(candidate["in_turns"].mean() > 0.5),
+                    }
+                )
+    return pd.DataFrame(rows, columns=["series", "label", "ratio", "blocks", "seconds", "sliced"])
