@@ -31,6 +31,7 @@ struct Verdict {
     std::string what; ///< the scene and the variant, or the file that was checked
     std::vector<Disc> discs;
     std::optional<std::string> violation;
+    const char* scope; ///< what was looked at, as --json has it
 };
 
 /// Checks what somebody's program wrote, by the rules of the variant's precision and impact.
@@ -44,13 +45,14 @@ Verdict check_file(const CheckOptions& options, const Scene& scene, const Varian
     const Checker checker(scene.side, scene.radius, 1, tuning.tolerance, rounding, variant.policies.impact);
     TrajectoryFile file(options.trajectory, scene.discs.size());
     CheckedTrajectory checked = check_trajectory(scene, file, checker, rounding);
-    return {options.trajectory, std::move(checked.discs), std::move(checked.violation)};
+    return {options.trajectory, std::move(checked.discs), std::move(checked.violation), "states"};
 }
 
 Verdict check_variant(const std::string& name, const Tuning& tuning, const Scene& scene,
                       const Variant& variant) {
     Run run = checked_run(scene, variant, tuning);
-    return {name + ", variant " + std::string(variant.name), std::move(run.discs), std::move(run.violation)};
+    return {name + ", variant " + std::string(variant.name), std::move(run.discs), std::move(run.violation),
+            variant.simulate_logged != nullptr ? "every-collision" : "every-step"};
 }
 
 void print_json(const CheckOptions& options, const Scene& scene, const Variant& variant,
@@ -60,6 +62,7 @@ void print_json(const CheckOptions& options, const Scene& scene, const Variant& 
     const nlohmann::ordered_json json{
         {"verdict", passed ? "passed" : "failed"},
         {"reason", or_null(verdict.violation)},
+        {"scope", verdict.scope},
         {"scene", shown_name(options.simulation.scene)},
         {"trajectory", text_or_null(options.trajectory)},
         {"variant", variant.name},
@@ -105,13 +108,17 @@ void check(CheckOptions options) {
 void add_check_command(CLI::App& program) {
     auto options = std::make_shared<CheckOptions>();
     CLI::App* command = program.add_subcommand(
-        "check", "Run and verify every step with an independent checker; exit 2 at the first violation");
+        "check",
+        "Run and verify every step with an independent checker, of event_driven and at_contact every "
+        "collision; exit 2 at the first violation");
     add_simulation_options(*command, options->simulation);
     command->add_option(
         "--trajectory", options->trajectory,
         "Check the steps in this file instead, lines `step i x y vx vy` that any program may have "
-        "written (gzip too); --variant says in which precision and with which impact");
-    command->add_flag("--json", options->json, "Print the verdict as one JSON object, also of what fails");
+        "written (gzip too); --variant says in which precision and with which impact. Of its collisions "
+        "it sees what they leave");
+    command->add_flag("--json", options->json, "Print the verdict as one JSON object, also of what fails, with the scope: every-collision, "
+                      "every-step or states");
     command->callback([options] { check(*options); });
 }
 

@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
+#include "harness/verify/path_checker.hpp"
 #include "variants/event_driven.hpp"
 
 namespace carom {
@@ -20,6 +22,7 @@ struct ReferenceOptions {
     std::string output;
     double time = 0;
     bool extended = false;
+    bool check = false;
     bool json = false;
 };
 
@@ -40,8 +43,8 @@ template <class Real> Real speeds_squared(const std::vector<BasicDisc<Real>>& di
 }
 
 /// Pressure on the walls: momentum taken up per time and length of wall.
-template <class Real>
-nlohmann::ordered_json counts_json(const EventDriven<Real>& reference, const Scene& scene, Real start) {
+template <class Real, class Log>
+nlohmann::ordered_json counts_json(const EventDriven<Real, Log>& reference, const Scene& scene, Real start) {
     const Real end = speeds_squared(reference.discs());
     const auto time = static_cast<double>(reference.time());
     const auto impulse = static_cast<double>(reference.wall_impulse());
@@ -61,16 +64,37 @@ nlohmann::ordered_json counts_json(const EventDriven<Real>& reference, const Sce
     return json;
 }
 
-template <class Real> void simulate(const ReferenceOptions& options, const Scene& scene) {
-    EventDriven<Real> reference(scene);
+/// Goes on to the end and writes what was asked for. `violation` is asked for the first that was wrong then.
+template <class Real, class Log, class Violation>
+void finish(EventDriven<Real, Log> reference, const ReferenceOptions& options, const Scene& scene,
+            const Violation& violation) {
     const Real start = speeds_squared(reference.discs());
-    if (!reference.advance(static_cast<Real>(options.time))) {
+    const bool ended = reference.advance(static_cast<Real>(options.time));
+    if (const std::optional<std::string> wrong = violation(reference)) {
+        throw CheckError(shown_name(options.scene) + ", " + *wrong);
+    }
+    if (!ended) {
         throw CheckError(shown_name(options.scene) + ": the collisions at time " +
                          number_text(static_cast<double>(reference.time())) +
                          " do not come to an end: a disc is wedged");
     }
-    write_text(options.output, options.json ? counts_json(reference, scene, start).dump(2) + "\n"
-                                            : disc_lines(reference.discs()));
+    if (!options.json) {
+        write_text(options.output, disc_lines(reference.discs()));
+        return;
+    }
+    auto json = counts_json(reference, scene, start);
+    json["check"] = options.check ? nlohmann::ordered_json("passed") : nullptr;
+    write_text(options.output, json.dump(2) + "\n");
+}
+
+template <class Real> void simulate(const ReferenceOptions& options, const Scene& scene) {
+    if (!options.check) {
+        finish(EventDriven<Real>(scene), options, scene, [](const auto&) { return std::nullopt; });
+        return;
+    }
+    PathChecker<Real> checker(scene);
+    finish(EventDriven<Real, CollisionLog<Real>&>(scene, checker), options, scene,
+           [&](const auto& reference) { return checker.violation_at(reference.time(), reference.discs()); });
 }
 
 void reference(const ReferenceOptions& options) {
@@ -94,6 +118,8 @@ void add_reference_command(CLI::App& program) {
         ->required()
         ->default_str("");
     command->add_flag("--extended", options->extended, "Compute in long double instead of double");
+    command->add_flag("--check", options->check,
+                      "Follow every collision with an independent checker; exit 2 at the first violation");
     command->add_option("--output", options->output, "File to write instead of standard output");
     command->add_flag("--json", options->json, "Print collision counts, wall impulse and pressure instead");
     command->callback([options] { reference(*options); });

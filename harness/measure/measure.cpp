@@ -68,9 +68,7 @@ void RunInParts::step(int substep) {
     run_.work += tally;
     if (checked || !tally.settled) {
         stopwatch_.stop();
-        const auto violation = tally.settled ? violation_after(simulation_.discs())
-                                             : unsettled(checker_, simulation_.discs(), tuning_.sweep_limit,
-                                                         check_.policies.impact);
+        const auto violation = tally.settled ? violation_after(simulation_.discs()) : std::optional(violation_unsettled());
         if (violation) {
             run_.violation = at_step(done_, substep, tuning_.substeps, *violation);
         }
@@ -81,6 +79,13 @@ void RunInParts::step(int substep) {
 std::optional<std::string> RunInParts::violation_after(const std::vector<Disc>& after) const {
     return check_.collisions != nullptr ? check_.collisions->step(before_, after)
                                         : checker_.step(before_, after);
+}
+
+/// What is wrong with a step that did not end, if it is not that alone.
+std::string RunInParts::violation_unsettled() const {
+    const auto told = check_.collisions != nullptr ? check_.collisions->violation_so_far() : std::nullopt;
+    return told ? *told
+                : unsettled(checker_, simulation_.discs(), tuning_.sweep_limit, check_.policies.impact);
 }
 
 Run RunInParts::finish() {

@@ -62,6 +62,7 @@ class RunInParts {
   private:
     void step(int substep);
     std::optional<std::string> violation_after(const std::vector<Disc>& after) const;
+    std::string violation_unsettled() const;
 
     const Scene& scene_;
     Simulation& simulation_;

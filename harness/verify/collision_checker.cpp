@@ -14,6 +14,8 @@ class ExactSteps final : public CollisionChecker {
 
     CollisionLog<double>& log() override { return paths_; }
 
+    std::optional<std::string> violation_so_far() const override { return paths_.violation(); }
+
     std::optional<std::string> step(const std::vector<Disc>& /*before*/,
                                     const std::vector<Disc>& after) override {
         ++steps_;

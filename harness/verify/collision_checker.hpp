@@ -20,6 +20,9 @@ class CollisionChecker {
     /// What the simulation is to tell its collisions to.
     virtual CollisionLog<double>& log() = 0;
 
+    /// The first violation of what has been told of a step that did not end, or nothing.
+    virtual std::optional<std::string> violation_so_far() const = 0;
+
     /// The first violation of the next step, named with its discs and numbers, or nothing. `before` and
     /// `after` are the states at its ends.
     virtual std::optional<std::string> step(const std::vector<Disc>& before,

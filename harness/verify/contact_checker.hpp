@@ -37,6 +37,7 @@ class ContactChecker final : public CollisionChecker, public CollisionLog<double
 
     CollisionLog<double>& log() override { return *this; }
     void collided(const Collision<double>& collision) override;
+    std::optional<std::string> violation_so_far() const override { return std::nullopt; }
     std::optional<std::string> step(const std::vector<Disc>& before, const std::vector<Disc>& after) override;
 
   private:

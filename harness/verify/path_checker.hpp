@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ template <class Real> class PathChecker final : public CollisionLog<Real> {
 
     /// The first that was wrong up to that time, or of the state that the simulation then is in; or nothing.
     std::optional<std::string> violation_at(Real time, const std::vector<BasicDisc<Real>>& discs);
+
+    /// The first that was wrong so far.
+    const std::optional<std::string>& violation() const { return violation_; }
 
     /// Of discs and of walls, so far.
     std::int64_t pair_collisions() const { return pair_collisions_; }

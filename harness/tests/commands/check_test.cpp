@@ -74,6 +74,18 @@ TEST_F(CheckCommand, GivesItsVerdictAsJson) {
     EXPECT_EQ(json["state_hash"], state_hash(tests::simulate<Policies{}>(busy).discs));
 }
 
+TEST_F(CheckCommand, SaysWhatItLookedAt) {
+    const std::string scene = directory.write("scene.in", scene_text(tests::cradle()));
+    const auto scope_of = [&](const char* variant) {
+        const ProgramResult result = run_carom({"check", scene, "1", "--variant", variant, "--json"});
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return nlohmann::json::parse(result.output)["scope"];
+    };
+    EXPECT_EQ(scope_of("event_driven"), "every-collision");
+    EXPECT_EQ(scope_of("at_contact-float"), "every-collision");
+    EXPECT_EQ(scope_of("row"), "every-step");
+}
+
 TEST_F(CheckCommand, GivesTheVerdictOfAFailureAsJsonAndInALine) {
     const std::string jammed = directory.write("jammed.in", "2\n4\n1\n9\n0 1 2 0 0\n1 2 2 1 0\n");
     const ProgramResult failed = run_carom({"check", jammed, "1", "--sweep-limit", "30", "--json"});

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "harness/scenes/scene_file.hpp"
 #include "harness/tests/program.hpp"
@@ -36,6 +37,24 @@ TEST(ReferenceCommand, ReadsTheSceneFromStandardInput) {
     const std::string scene = directory.write("scene.in", scene_text(tests::corner()));
     EXPECT_EQ(run_carom({"reference", "-", "--time", "1"}, {}, "", scene).output,
               run_carom({"reference", scene, "--time", "1"}).output);
+}
+
+TEST(ReferenceCommand, PrintsTheSameWhenItsCollisionsAreChecked) {
+    const tests::TemporaryDirectory directory;
+    const std::string scene = directory.write("scene.in", scene_text(tests::random_scene(150, 50, 1, 6, 2, 7)));
+    for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--extended"}}) {
+        std::vector<std::string> arguments{"reference", scene, "--time", "3"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const std::string printed = run_carom(arguments).output;
+        arguments.emplace_back("--check");
+        const auto checked = run_carom(arguments);
+        EXPECT_EQ(checked.exit_code, 0) << checked.error;
+        EXPECT_EQ(checked.output, printed);
+    }
+    const auto json =
+        nlohmann::json::parse(run_carom({"reference", scene, "--time", "3", "--check", "--json"}).output);
+    EXPECT_EQ(json["check"], "passed");
+    EXPECT_GT(json["pair_collisions"], 10);
 }
 
 } // namespace

@@ -1,0 +1,111 @@
+// One mutant: CMake compiles this file for each of them, with the changed copy of the headers first in the
+// search path, `carom` defined as a namespace of its own, and the names of the mutant and of its variant.
+
+#include <string_view>
+#include <utility>
+
+#include "harness/tests/verify/mutants/mutant.hpp"
+
+#include "kernels/exact/event_driven.hpp"
+#include "kernels/step.hpp"
+#include "variants/name.hpp"
+#include "variants/table.hpp"
+
+namespace carom {
+namespace {
+
+constexpr std::string_view variant = CAROM_MUTANT_VARIANT;
+
+constexpr Policies policies_of_variant() {
+    for (const Policies& policies : table) {
+        if (name_of(policies).view() == variant) {
+            return policies;
+        }
+    }
+    return {.impact = Impact::event_driven};
+}
+constexpr Policies policies = policies_of_variant();
+static_assert((policies.impact == Impact::event_driven) == (variant == "event_driven"), "no such variant");
+
+template <class Real> mutants::Disc plain(const BasicDisc<Real>& disc) {
+    return {static_cast<double>(disc.x), static_cast<double>(disc.y), static_cast<double>(disc.vx),
+            static_cast<double>(disc.vy)};
+}
+
+Scene scene_of(const mutants::Scene& plain) {
+    Scene scene{.side = plain.side, .radius = plain.radius, .steps = 0, .discs = {}};
+    for (const auto& [x, y, vx, vy] : plain.discs) {
+        scene.discs.push_back({x, y, vx, vy});
+    }
+    return scene;
+}
+
+std::vector<mutants::Disc> plain(const std::vector<Disc>& discs) {
+    std::vector<mutants::Disc> all;
+    for (const Disc& disc : discs) {
+        all.push_back(plain(disc));
+    }
+    return all;
+}
+
+class Told : public CollisionLog<double> {
+  public:
+    explicit Told(mutants::Tell tell) : tell_(std::move(tell)) {}
+
+    void collided(const Collision<double>& collision) override {
+        tell_({collision.time, collision.sweep, collision.first, collision.second,
+               plain(collision.first_after), plain(collision.second_after)});
+    }
+
+  private:
+    mutants::Tell tell_;
+};
+
+template <Policies policies> class Stepped final : public mutants::Simulation {
+  public:
+    Stepped(const Scene& scene, const mutants::Tuning& tuning, mutants::Tell tell)
+        : told_(std::move(tell)), probe_(told_), state_(scene, tuning.threads),
+          tuning_{.threads = tuning.threads, .substeps = tuning.substeps, .sweep_limit = tuning.sweep_limit} {}
+
+    bool step() override { return carom::step(state_, tuning_, probe_).settled; }
+    std::vector<mutants::Disc> discs() const override { return plain(discs_by_number(state_)); }
+
+  private:
+    Told told_;
+    LoggingProbe probe_;
+    State<policies> state_;
+    Tuning tuning_;
+};
+
+template <class Real> class Exact final : public mutants::Simulation {
+  public:
+    Exact(const Scene& scene, const mutants::Tuning& tuning, mutants::Tell tell)
+        : told_(std::move(tell)), simulation_(scene, told_), substeps_(tuning.substeps) {}
+
+    bool step() override {
+        ++steps_;
+        return simulation_.advance(steps_ / substeps_, {.at_once = 100'000, .in_all = 10'000'000});
+    }
+    std::vector<mutants::Disc> discs() const override { return plain(simulation_.discs()); }
+
+  private:
+    Told told_;
+    EventDriven<Real, CollisionLog<Real>&> simulation_;
+    double substeps_;
+    int steps_ = 0;
+};
+
+template <Policies policies>
+std::unique_ptr<mutants::Simulation> simulate(const mutants::Scene& scene, const mutants::Tuning& tuning,
+                                              mutants::Tell tell) {
+    if constexpr (policies.impact == Impact::event_driven) {
+        return std::make_unique<Exact<double>>(scene_of(scene), tuning, std::move(tell));
+    } else {
+        return std::make_unique<Stepped<policies>>(scene_of(scene), tuning, std::move(tell));
+    }
+}
+
+[[maybe_unused]] const bool is_known = mutants::all().emplace(CAROM_MUTANT_NAME, simulate<policies>).second;
+
+} // namespace
+} // namespace carom
