@@ -6,12 +6,12 @@
 
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
+#include "harness/proof/path_checker.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
-#include "harness/verify/path_checker.hpp"
 #include "variants/event_driven.hpp"
 
 namespace carom {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "kernels/collide.hpp"
-#include "kernels/collision_log.hpp"
 #include "kernels/exact/event_cells.hpp"
 #include "kernels/exact/event_queue.hpp"
 #include "kernels/exact/first_collision.hpp"
 #include "kernels/exact/flight.hpp"
+#include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {
@@ -43,7 +43,7 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
   public:
     explicit EventDriven(const Scene& scene, Log log = Log())
         : log_(log), walls_{static_cast<Real>(scene.radius),
-                 static_cast<Real>(scene.side) - static_cast<Real>(scene.radius)},
+                            static_cast<Real>(scene.side) - static_cast<Real>(scene.radius)},
           reach_squared_(4 * walls_[0] * walls_[0]), cells_(scene),
           queue_(static_cast<int>(scene.discs.size())) {
         flights_.reserve(scene.discs.size());

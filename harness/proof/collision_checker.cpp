@@ -1,9 +1,9 @@
-#include "harness/verify/collision_checker.hpp"
+#include "harness/proof/collision_checker.hpp"
 
 #include <cstdint>
 
-#include "harness/verify/contact_checker.hpp"
-#include "harness/verify/path_checker.hpp"
+#include "harness/proof/contact_checker.hpp"
+#include "harness/proof/path_checker.hpp"
 
 namespace carom {
 namespace {

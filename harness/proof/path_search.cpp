@@ -1,4 +1,4 @@
-#include "harness/verify/path_search.hpp"
+#include "harness/proof/path_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,8 +36,9 @@ std::optional<std::string> PathSearch<Real>::too_near(std::vector<Piece<Real>> p
     auto next = pieces.begin();
     for (std::int64_t slab = 0; slab < slabs; ++slab) {
         const auto edge = [&](std::int64_t number) {
-            return number == slabs ? end
-                                   : begin + (end - begin) * static_cast<Real>(number) / static_cast<Real>(slabs);
+            return number == slabs
+                       ? end
+                       : begin + (end - begin) * static_cast<Real>(number) / static_cast<Real>(slabs);
         };
         const Real from = edge(slab);
         const Real to = edge(slab + 1);

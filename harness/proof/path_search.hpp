@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/verify/path.hpp"
+#include "harness/proof/path.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "harness/proof/collision_checker.hpp"
+#include "harness/proof/contact_motion.hpp"
 #include "harness/verify/checker.hpp"
-#include "harness/verify/collision_checker.hpp"
-#include "harness/verify/contact_motion.hpp"
 #include "harness/verify/overlapping_pairs.hpp"
-#include "kernels/collision_log.hpp"
 #include "kernels/policies.hpp"
+#include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {
