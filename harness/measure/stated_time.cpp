@@ -99,7 +99,8 @@ std::string number_in(const std::string& line, const std::smatch& match) {
     const std::size_t end = begin + static_cast<std::size_t>(match.length(1));
     const bool cut_before = match.position(0) == match.position(1) && has_begun(whole.substr(0, begin));
     const bool cut_after = match[0].second == match[1].second && goes_on(whole.substr(end));
-    if (match.length(1) > 0 && (cut_before || cut_after)) {
+    const bool is_number = parse_number<double>(match[1].str()).has_value();
+    if (is_number && (cut_before || cut_after)) {
         throw InputError("time: found " + in_quotes(match[1].str()) + " within a longer number in " +
                          in_quotes(line) + ", expected a pattern that takes all of it");
     }

@@ -54,7 +54,8 @@ MISTAKES = {
     "unknown figure": (
         CHUNKS.replace('"schedule"', '"shedule"'),
         'figure: found "shedule", expected one of scaling, trend, comparison, schedule, machine, phases, '
-        'control, speed_against_error, hard_cases, ladder, limits, promises, ways; did you mean "schedule"?',
+        "control, speed_against_error, hard_cases, ladder, limits, promises, ways, pauses; "
+        'did you mean "schedule"?',
     ),
     "unknown claim": (
         PAIR.replace("four_boxes", "for_boxes"),
