@@ -38,8 +38,8 @@ struct Variant {
     /// simulation, which has no phases.
     std::unique_ptr<Simulation> (*simulate_observed)(const Scene&, const Tuning&, Probe& probe);
 
-    /// The same, telling `log` every collision and ending in the same bits. `log` must outlive the simulation.
-    /// Null where collisions happen at the step's end: of those the states tell all.
+    /// The same, telling `log` every collision and ending in the same bits. `log` must outlive the
+    /// simulation. Null where collisions happen at the step's end: of those the states tell all.
     std::unique_ptr<Simulation> (*simulate_logged)(const Scene&, const Tuning&, CollisionLog<double>& log);
 };
 

@@ -76,13 +76,13 @@ void ContactChecker::find_near(const std::vector<Disc>& free) {
     const auto radius_wider_by = [&](double share) { return rules_.near * (1 + share); };
     near_.clear();
     for (const OverlappingPair& pair : overlapping_pairs(free, radius_wider_by(roundings))) {
-        const double distance = std::hypot(disc(pair.second).x - disc(pair.first).x,
-                                           disc(pair.second).y - disc(pair.first).y);
+        const double distance =
+            std::hypot(disc(pair.second).x - disc(pair.first).x, disc(pair.second).y - disc(pair.first).y);
         near_.push_back({pair.first, pair.second, distance < 2 * radius_wider_by(-roundings), never});
     }
     for (int i = 0; i < static_cast<int>(free.size()); ++i) {
-        const double to_wall = std::min(std::min(disc(i).x, disc(i).y),
-                                        rules_.walls.side - std::max(disc(i).x, disc(i).y));
+        const double to_wall =
+            std::min(std::min(disc(i).x, disc(i).y), rules_.walls.side - std::max(disc(i).x, disc(i).y));
         const double slack = roundings * (rules_.near + rules_.walls.side);
         if (to_wall <= rules_.near + slack) {
             near_.push_back({i, i, to_wall < rules_.near - slack, never});
@@ -152,7 +152,8 @@ std::optional<std::string> ContactChecker::collide_sweeps() {
 
 std::optional<std::string> ContactChecker::violation_of(const Collision<double>& collision) {
     const int count = static_cast<int>(discs_.size());
-    if (collision.first < 0 || collision.first >= count || collision.second < 0 || collision.second >= count) {
+    if (collision.first < 0 || collision.first >= count || collision.second < 0 ||
+        collision.second >= count) {
         return format("a collision of discs %d and %d is told, of %d", collision.first, collision.second,
                       count);
     }
@@ -247,15 +248,16 @@ std::optional<std::string> ContactChecker::wrong_wall(const Collision<double>& c
                          std::abs(2 * (velocity < 0 ? low : high) - position - new_position) <= allowed
                    : new_velocity == velocity && new_position == position;
     };
-    const bool right = is_right(before.x, before.vx, after.x, after.vx) &
-                       is_right(before.y, before.vy, after.y, after.vy);
+    const bool right =
+        is_right(before.x, before.vx, after.x, after.vx) & is_right(before.y, before.vy, after.y, after.vy);
     if (right && turned > 0) {
         return std::nullopt;
     }
-    return format("disc %d at (%.17g, %.17g), velocity (%.17g, %.17g), is at (%.17g, %.17g), velocity (%.17g, "
-                  "%.17g), after a wall that it met",
-                  collision.first, before.x, before.y, before.vx, before.vy, after.x, after.y, after.vx,
-                  after.vy) +
+    return format(
+               "disc %d at (%.17g, %.17g), velocity (%.17g, %.17g), is at (%.17g, %.17g), velocity (%.17g, "
+               "%.17g), after a wall that it met",
+               collision.first, before.x, before.y, before.vx, before.vy, after.x, after.y, after.vx,
+               after.vy) +
            when(collision);
 }
 
@@ -266,9 +268,10 @@ std::optional<std::string> ContactChecker::earlier(int i, const Collision<double
         const Near& near = near_[near_of_disc_[entry]];
         const auto pending = surely_pending(near);
         if (pending && pending->time - pending->uncertain > collision.time * (1 + 32 * rules_.epsilon())) {
-            return format("discs %d and %d collide before discs %d and %d, which met earlier, %.17g before the "
-                          "end",
-                          collision.first, collision.second, near.first, near.second, pending->time) +
+            return format(
+                       "discs %d and %d collide before discs %d and %d, which met earlier, %.17g before the "
+                       "end",
+                       collision.first, collision.second, near.first, near.second, pending->time) +
                    when(collision);
         }
     }
@@ -298,9 +301,10 @@ std::optional<std::string> ContactChecker::left_pending() const {
     }
     for (const Near& near : near_) {
         if (const auto pending = surely_pending(near)) {
-            return format("discs %d and %d met %.17g before the end, and do not collide although %d sweeps were "
-                          "left",
-                          near.first, near.second, pending->time, most_impact_sweeps - sweeps_);
+            return format(
+                "discs %d and %d met %.17g before the end, and do not collide although %d sweeps were "
+                "left",
+                near.first, near.second, pending->time, most_impact_sweeps - sweeps_);
         }
     }
     return std::nullopt;
@@ -324,7 +328,8 @@ std::optional<std::string> ContactChecker::wrong_after(const std::vector<Disc>& 
         Found violation;
         if (near.surely && near.first == near.second) {
             violation = at_end_.wall_colliding(after, near.first);
-        } else if (near.surely && std::hypot(two.x - one.x, two.y - one.y) < reach * (1 - 8 * rules_.epsilon())) {
+        } else if (near.surely &&
+                   std::hypot(two.x - one.x, two.y - one.y) < reach * (1 - 8 * rules_.epsilon())) {
             violation = at_end_.pair_colliding(after, {near.first, near.second});
         }
         if (violation) {

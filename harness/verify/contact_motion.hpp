@@ -14,8 +14,9 @@ namespace carom {
 struct ContactRules {
     Walls walls;
     double dt;
-    double way_back; ///< how far back discs that move into each other are followed: this step and the one before
-    double near;     ///< discs within twice this at the end of their free flight are looked at
+    double
+        way_back; ///< how far back discs that move into each other are followed: this step and the one before
+    double near;  ///< discs within twice this at the end of their free flight are looked at
     Tolerance tolerance;
 
     double epsilon() const { return walls.rounding.epsilon(); }

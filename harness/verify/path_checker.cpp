@@ -122,8 +122,7 @@ std::optional<std::string> PathChecker<Real>::wrong_pair(const Collision<Real>& 
     const Real approach = (two.vx - one.vx) * (two.x - one.x) + (two.vy - one.vy) * (two.y - one.y);
     const Real parting = speed * (std::sqrt(2 * (distance + radius_) * allowed) + allowed);
     if (!(approach <= parting)) {
-        return who() +
-               format(" collide while they part at %.3g", static_cast<double>(approach / distance)) +
+        return who() + format(" collide while they part at %.3g", static_cast<double>(approach / distance)) +
                at_time(time);
     }
     return wrong_exchange(collision, one, two, place);
@@ -137,12 +136,13 @@ std::optional<std::string> PathChecker<Real>::wrong_exchange(const Collision<Rea
     const BasicDisc<Real>& one_after = collision.first_after;
     const BasicDisc<Real>& two_after = collision.second_after;
     const auto wrong = [&](const char* what) {
-        return format("discs %d and %d, of velocities (%.17g, %.17g) and (%.17g, %.17g), %s: they get (%.17g, "
-                      "%.17g) and (%.17g, %.17g)",
-                      collision.first, collision.second, static_cast<double>(one.vx),
-                      static_cast<double>(one.vy), static_cast<double>(two.vx), static_cast<double>(two.vy),
-                      what, static_cast<double>(one_after.vx), static_cast<double>(one_after.vy),
-                      static_cast<double>(two_after.vx), static_cast<double>(two_after.vy)) +
+        return format(
+                   "discs %d and %d, of velocities (%.17g, %.17g) and (%.17g, %.17g), %s: they get (%.17g, "
+                   "%.17g) and (%.17g, %.17g)",
+                   collision.first, collision.second, static_cast<double>(one.vx),
+                   static_cast<double>(one.vy), static_cast<double>(two.vx), static_cast<double>(two.vy),
+                   what, static_cast<double>(one_after.vx), static_cast<double>(one_after.vy),
+                   static_cast<double>(two_after.vx), static_cast<double>(two_after.vy)) +
                at_time(collision.time);
     };
     const Real speeds = std::hypot(one.vx, one.vy) + std::hypot(two.vx, two.vy);
@@ -182,8 +182,8 @@ std::optional<std::string> PathChecker<Real>::wrong_wall(const Collision<Real>& 
     const bool in_x = after.vx == -before.vx && after.vy == before.vy && before.vx != 0;
     const bool in_y = after.vy == -before.vy && after.vx == before.vx && before.vy != 0;
     const auto who = [&] {
-        return format("disc %d, of velocity (%.17g, %.17g),", collision.first,
-                      static_cast<double>(before.vx), static_cast<double>(before.vy));
+        return format("disc %d, of velocity (%.17g, %.17g),", collision.first, static_cast<double>(before.vx),
+                      static_cast<double>(before.vy));
     };
     if (!in_x && !in_y) {
         return who() +
@@ -203,8 +203,7 @@ std::optional<std::string> PathChecker<Real>::wrong_wall(const Collision<Real>& 
 }
 
 /// Has a disc flown farther beyond a wall than it was when its path began?
-template <class Real>
-std::optional<std::string> PathChecker<Real>::beyond_wall(int disc, Real time) {
+template <class Real> std::optional<std::string> PathChecker<Real>::beyond_wall(int disc, Real time) {
     const Path<Real>& flown = path(disc);
     const BasicDisc<Real> now = flown.at(time);
     const Real place = rounding_.place(flown, time);
@@ -212,8 +211,7 @@ std::optional<std::string> PathChecker<Real>::beyond_wall(int disc, Real time) {
         return beyond(after, velocity) - std::max(beyond(before, velocity), Real{0}) -
                (place + rounding_.gap(std::abs(velocity), time, radius_));
     };
-    const Real depth =
-        std::max(deeper(flown.start.x, now.x, now.vx), deeper(flown.start.y, now.y, now.vy));
+    const Real depth = std::max(deeper(flown.start.x, now.x, now.vx), deeper(flown.start.y, now.y, now.vy));
     if (depth <= 0) {
         return std::nullopt;
     }
@@ -221,8 +219,7 @@ std::optional<std::string> PathChecker<Real>::beyond_wall(int disc, Real time) {
            at_time(time);
 }
 
-template <class Real>
-void PathChecker<Real>::end_path(int disc, Real time, const BasicDisc<Real>& after) {
+template <class Real> void PathChecker<Real>::end_path(int disc, Real time, const BasicDisc<Real>& after) {
     const Real begin = std::max(path(disc).time, searched_);
     if (begin < time) {
         pieces_.push_back({static_cast<std::size_t>(disc), path(disc), begin, time});

@@ -43,7 +43,7 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
   public:
     explicit EventDriven(const Scene& scene, Log log = Log())
         : log_(log), walls_{static_cast<Real>(scene.radius),
-                 static_cast<Real>(scene.side) - static_cast<Real>(scene.radius)},
+                            static_cast<Real>(scene.side) - static_cast<Real>(scene.radius)},
           reach_squared_(4 * walls_[0] * walls_[0]), cells_(scene),
           queue_(static_cast<int>(scene.discs.size())) {
         flights_.reserve(scene.discs.size());

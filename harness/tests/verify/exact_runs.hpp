@@ -24,7 +24,8 @@ template <class Real> struct ExactRun {
     /// is, but it takes more events than that.
     std::string wrong(const Scene& scene, int looks, const EventLimits& limits = {}) {
         for (int look = 1; look <= looks; ++look) {
-            const Real time = static_cast<Real>(scene.steps) * static_cast<Real>(look) / static_cast<Real>(looks);
+            const Real time =
+                static_cast<Real>(scene.steps) * static_cast<Real>(look) / static_cast<Real>(looks);
             if (!simulation.advance(time, limits)) {
                 return checker.violation_at(simulation.time(), simulation.discs()).value_or(given_up);
             }

@@ -41,7 +41,8 @@ TEST(ExactRuns, AreProvenOnRandomScenes) {
     int ended = 0;
     const auto is_proven = [&](const std::string& wrong, std::uint64_t seed) {
         ended += wrong.empty();
-        EXPECT_TRUE(wrong.empty() || wrong == ExactRun<double>::given_up) << "scene " << seed << ": " << wrong;
+        EXPECT_TRUE(wrong.empty() || wrong == ExactRun<double>::given_up)
+            << "scene " << seed << ": " << wrong;
     };
     const std::uint64_t scenes = tests::fuzz_scenes();
     for (std::uint64_t seed = 0; seed < scenes; ++seed) {
