@@ -252,8 +252,9 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
             threads, static_cast<int>(turns.size()), tuning.resolve_chunk, probe,
             [&](int index) {
                 const auto [strip, half] = turns[static_cast<std::size_t>(index)];
-                const Changes changes = half == 0 ? look_back(state, strip, sweep, back)
-                                                  : collide_earliest(state, strip, sweep, back, approaching, probe);
+                const Changes changes = half == 0
+                                            ? look_back(state, strip, sweep, back)
+                                            : collide_earliest(state, strip, sweep, back, approaching, probe);
                 wavefront.ends(strip, 2 * sweep + half);
                 return Tally(changes);
             },

@@ -183,9 +183,10 @@ Changes bounce_at(RealOf<policies.precision> time, State<policies>& state, int i
 
 /// Makes the collision that two discs, or a disc and a wall, had at that time; returns what it changed.
 template <Policies policies>
-Changes collide_at(RealOf<policies.precision> time, State<policies>& state, OverlappingDiscs discs,
-                   const WayBack<RealOf<policies.precision>>& back,
-                   const ApproachToleranceOf<policies>& approaching) {
+[[gnu::always_inline]] inline Changes collide_at(RealOf<policies.precision> time, State<policies>& state,
+                                                 OverlappingDiscs discs,
+                                                 const WayBack<RealOf<policies.precision>>& back,
+                                                 const ApproachToleranceOf<policies>& approaching) {
     if (discs.at_wall()) {
         return bounce_at(time, state, discs.first, back);
     }

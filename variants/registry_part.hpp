@@ -13,7 +13,7 @@
 #include "variants/registry.hpp"
 #include "variants/table.hpp"
 
-// Included by the files of the parts alone.
+// Included by the files of the parts, and by logged.cpp.
 
 namespace carom {
 
@@ -44,11 +44,10 @@ std::unique_ptr<Simulation> simulate_observed(const Scene& scene, const Tuning& 
     return std::make_unique<SimulationOf<policies, Probe&>>(scene, tuning, probe);
 }
 
+/// In logged.cpp: see event_driven_simulation.hpp.
 template <Policies policies>
 std::unique_ptr<Simulation> simulate_logged(const Scene& scene, const Tuning& tuning,
-                                            CollisionLog<double>& log) {
-    return std::make_unique<SimulationOf<policies, LoggingProbe>>(scene, tuning, LoggingProbe(log));
-}
+                                            CollisionLog<double>& log);
 
 /// How the variants are simulated whose collisions are told, and null of the others.
 template <Policies policies> constexpr auto logged() -> decltype(Variant::simulate_logged) {

@@ -117,8 +117,10 @@ void add_check_command(CLI::App& program) {
         "Check the steps in this file instead, lines `step i x y vx vy` that any program may have "
         "written (gzip too); --variant says in which precision and with which impact. Of its collisions "
         "it sees what they leave");
-    command->add_flag("--json", options->json, "Print the verdict as one JSON object, also of what fails, with the scope: every-collision, "
-                      "every-step or states");
+    command->add_flag(
+        "--json", options->json,
+        "Print the verdict as one JSON object, also of what fails, with the scope: every-collision, "
+        "every-step or states");
     command->callback([options] { check(*options); });
 }
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "harness/command_line/described_process.hpp"
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
-#include "harness/command_line/described_process.hpp"
 #include "harness/commands/measurement_options.hpp"
 #include "harness/measure/stated_time.hpp"
 #include "harness/records/process_json.hpp"

@@ -68,7 +68,8 @@ void RunInParts::step(int substep) {
     run_.work += tally;
     if (checked || !tally.settled) {
         stopwatch_.stop();
-        const auto violation = tally.settled ? violation_after(simulation_.discs()) : std::optional(violation_unsettled());
+        const auto violation =
+            tally.settled ? violation_after(simulation_.discs()) : std::optional(violation_unsettled());
         if (violation) {
             run_.violation = at_step(done_, substep, tuning_.substeps, *violation);
         }
@@ -107,9 +108,8 @@ Run checked_run(const Scene& scene, const Variant& variant, const Tuning& tuning
     const auto collisions = collision_checker(scene, variant.policies, tuning);
     const auto simulation = collisions ? variant.simulate_logged(scene, tuning, collisions->log())
                                        : variant.simulate(scene, tuning);
-    return run_scene(scene, *simulation, tuning,
-                     {CheckScope::every_step, variant.policies, collisions.get()}, on_step,
-                     std::move(stopwatch));
+    return run_scene(scene, *simulation, tuning, {CheckScope::every_step, variant.policies, collisions.get()},
+                     on_step, std::move(stopwatch));
 }
 
 std::string state_hash(const std::vector<Disc>& discs) {

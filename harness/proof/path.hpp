@@ -28,8 +28,7 @@ template <class Real> struct Path {
 /// times, by half an epsilon of numbers that are at most |x| + |v t|: 3/2 epsilon of it. A disc is moved at
 /// each cell that it flies into, of which it meets no more than sqrt(N + 1) + 1 along each axis, nor more
 /// than one each 2r; and where a collision was foreseen that another one prevented, for which 64 moves are
-/// left room: more than 12 have not been seen between two collisions. The checker's own place is one such
-/// move.
+/// left room. The checker's own place is one such move.
 ///
 /// A gap: the time of a collision is rounded to half an epsilon of itself, and is the root of a t^2 + 2 b t +
 /// c = 0 with c = |d|^2 - (2r)^2, in which |d|^2 is rounded by an epsilon of itself or two. However near to

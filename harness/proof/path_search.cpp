@@ -58,7 +58,7 @@ std::optional<std::string> PathSearch<Real>::too_near(std::vector<Piece<Real>> p
     return std::nullopt;
 }
 
-/// So many that a disc meets about one other, and flies about one cell far, in each.
+/// So many that a disc meets some others, and flies about one cell far, in each.
 template <class Real> std::int64_t PathSearch<Real>::slabs_of(const std::vector<Piece<Real>>& pieces) const {
     double cells = 0;
     for (const Piece<Real>& piece : pieces) {
@@ -66,7 +66,7 @@ template <class Real> std::int64_t PathSearch<Real>::slabs_of(const std::vector<
         cells += static_cast<double>(std::min(speed * (piece.end - piece.begin), 2 * side_) / cell_side_);
     }
     const double discs = static_cast<double>(std::max(discs_, std::size_t{1}));
-    const double per_disc = std::max(cells, static_cast<double>(pieces.size())) / discs;
+    const double per_disc = std::max(cells, static_cast<double>(pieces.size()) / 4) / discs;
     return static_cast<std::int64_t>(std::clamp(std::ceil(per_disc), 1.0, most_slabs));
 }
 

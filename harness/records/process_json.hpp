@@ -8,8 +8,8 @@
 
 #include "harness/measure/measurement.hpp"
 #include "harness/measure/stated_time.hpp"
-#include "harness/side_by_side/program_contender.hpp"
 #include "harness/records/sources.hpp"
+#include "harness/side_by_side/program_contender.hpp"
 
 namespace carom {
 

@@ -41,7 +41,8 @@ TEST(ReferenceCommand, ReadsTheSceneFromStandardInput) {
 
 TEST(ReferenceCommand, PrintsTheSameWhenItsCollisionsAreChecked) {
     const tests::TemporaryDirectory directory;
-    const std::string scene = directory.write("scene.in", scene_text(tests::random_scene(150, 50, 1, 6, 2, 7)));
+    const std::string scene =
+        directory.write("scene.in", scene_text(tests::random_scene(150, 50, 1, 6, 2, 7)));
     for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--extended"}}) {
         std::vector<std::string> arguments{"reference", scene, "--time", "3"};
         arguments.insert(arguments.end(), more.begin(), more.end());

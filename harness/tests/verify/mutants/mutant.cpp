@@ -1,10 +1,10 @@
 // One mutant: CMake compiles this file for each of them, with the changed copy of the headers first in the
 // search path, `carom` defined as a namespace of its own, and the names of the mutant and of its variant.
 
+#include "harness/tests/verify/mutants/mutant.hpp"
+
 #include <string_view>
 #include <utility>
-
-#include "harness/tests/verify/mutants/mutant.hpp"
 
 #include "kernels/exact/event_driven.hpp"
 #include "kernels/step.hpp"
@@ -65,7 +65,8 @@ template <Policies policies> class Stepped final : public mutants::Simulation {
   public:
     Stepped(const Scene& scene, const mutants::Tuning& tuning, mutants::Tell tell)
         : told_(std::move(tell)), probe_(told_), state_(scene, tuning.threads),
-          tuning_{.threads = tuning.threads, .substeps = tuning.substeps, .sweep_limit = tuning.sweep_limit} {}
+          tuning_{.threads = tuning.threads, .substeps = tuning.substeps, .sweep_limit = tuning.sweep_limit} {
+    }
 
     bool step() override { return carom::step(state_, tuning_, probe_).settled; }
     std::vector<mutants::Disc> discs() const override { return plain(discs_by_number(state_)); }

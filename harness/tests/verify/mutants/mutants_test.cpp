@@ -90,8 +90,7 @@ class Mutated final : public Simulation {
         for (const Disc& disc : scene.discs) {
             plain.discs.push_back({disc.x, disc.y, disc.vx, disc.vy});
         }
-        simulation_ =
-            chosen(plain, {tuning.threads, tuning.substeps, tuning.sweep_limit}, std::move(tell));
+        simulation_ = chosen(plain, {tuning.threads, tuning.substeps, tuning.sweep_limit}, std::move(tell));
     }
 
     Tally step() override { return {.settled = simulation_->step()}; }

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "kernels/probe.hpp"
+#include "variants/event_driven.hpp"
+
+namespace carom {
+
+/// The event-driven simulation as one that takes steps: a step only says when to look.
+template <class Log> class EventDrivenSimulation final : public Simulation {
+  public:
+    EventDrivenSimulation(const Scene& scene, int substeps, Log log = Log())
+        : exact_(scene, log), substeps_(substeps) {}
+
+    Tally step() override {
+        const std::int64_t pairs = exact_.pair_collisions();
+        const std::int64_t walls = exact_.wall_collisions();
+        ++steps_;
+        const bool settled = exact_.advance(static_cast<double>(steps_) / substeps_);
+        return {.pair_resolves = exact_.pair_collisions() - pairs,
+                .wall_resolves = exact_.wall_collisions() - walls,
+                .settled = settled};
+    }
+
+    std::vector<Disc> discs() const override { return exact_.discs(); }
+
+  private:
+    EventDriven<double, Log> exact_;
+    double substeps_;
+    std::int64_t steps_ = 0;
+};
+
+/// Of the variant. In a file of its own, as all that tells its collisions: a compiler that sees a function
+/// used twice may no longer inline it into what is measured.
+std::unique_ptr<Simulation> simulate_event_driven_logged(const Scene& scene, const Tuning& tuning,
+                                                         CollisionLog<double>& log);
+
+} // namespace carom
