@@ -6,10 +6,10 @@
 #include <cstddef>
 
 #include "collide.hpp"
-#include "collision_log.hpp"
 #include "contacts.hpp"
 #include "four_at_once.hpp"
 #include "policies.hpp"
+#include "probe.hpp"
 #include "scene.hpp"
 #include "state.hpp"
 #include "tally.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "kernels/collision_log.hpp"
+#include "kernels/probe.hpp"
 #include "variants/event_driven.hpp"
 
 namespace carom {

@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "kernels/collision_log.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/scene.hpp"

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/collisions/path_checker.hpp"
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/scenes/scene_file.hpp"
@@ -11,7 +12,6 @@
 #include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
-#include "harness/verify/path_checker.hpp"
 #include "variants/event_driven.hpp"
 
 namespace carom {

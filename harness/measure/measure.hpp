@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "harness/collisions/collision_checker.hpp"
 #include "harness/support/stopwatch.hpp"
 #include "harness/verify/checker.hpp"
-#include "harness/verify/collision_checker.hpp"
 #include "harness/verify/rounding.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/scene.hpp"

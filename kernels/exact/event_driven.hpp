@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "kernels/collide.hpp"
-#include "kernels/collision_log.hpp"
 #include "kernels/exact/event_cells.hpp"
 #include "kernels/exact/event_queue.hpp"
 #include "kernels/exact/first_collision.hpp"
 #include "kernels/exact/flight.hpp"
+#include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {

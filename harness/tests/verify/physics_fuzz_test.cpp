@@ -8,11 +8,11 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/collisions/collision_checker.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/text.hpp"
 #include "harness/tests/scenes/random_scenes.hpp"
 #include "harness/verify/checker.hpp"
-#include "harness/verify/collision_checker.hpp"
 #include "harness/verify/rounding.hpp"
 #include "kernels/exact/all_pairs.hpp"
 #include "kernels/tests/simulate.hpp"

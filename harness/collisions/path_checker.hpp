@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "harness/verify/path.hpp"
-#include "harness/verify/path_search.hpp"
-#include "kernels/collision_log.hpp"
+#include "harness/collisions/path.hpp"
+#include "harness/collisions/path_search.hpp"
+#include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {

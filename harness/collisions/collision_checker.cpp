@@ -1,9 +1,9 @@
-#include "harness/verify/collision_checker.hpp"
+#include "harness/collisions/collision_checker.hpp"
 
 #include <cstdint>
 
-#include "harness/verify/contact_checker.hpp"
-#include "harness/verify/path_checker.hpp"
+#include "harness/collisions/contact_checker.hpp"
+#include "harness/collisions/path_checker.hpp"
 
 namespace carom {
 namespace {

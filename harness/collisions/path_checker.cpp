@@ -1,4 +1,4 @@
-#include "harness/verify/path_checker.hpp"
+#include "harness/collisions/path_checker.hpp"
 
 #include <algorithm>
 #include <cmath>

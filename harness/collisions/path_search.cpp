@@ -1,4 +1,4 @@
-#include "harness/verify/path_search.hpp"
+#include "harness/collisions/path_search.hpp"
 
 #include <algorithm>
 #include <cmath>

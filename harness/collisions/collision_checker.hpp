@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "kernels/collision_log.hpp"
 #include "kernels/policies.hpp"
+#include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {
