@@ -4,6 +4,9 @@
 
 namespace carom {
 
+/// The phases of a time step, in the order in which they run.
+enum class Phase { move, bin, find, resolve };
+
 /// A collision as a simulation has just made it.
 template <class Real> struct Collision {
     Real time; ///< since the start (Impact::event_driven), or before the end of the step (Impact::at_contact)
@@ -29,9 +32,6 @@ class NoCollisionLog {
   public:
     template <class Real> void collided(const Collision<Real>& /*collision*/) {}
 };
-
-/// The phases of a time step, in the order in which they run.
-enum class Phase { move, bin, find, resolve };
 
 /// Is told what the step does, as it does it. The kernel itself never reads a clock: who profiles does, in
 /// here.

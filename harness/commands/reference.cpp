@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/collisions/path_checker.hpp"
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
-#include "harness/proof/path_checker.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/input_file.hpp"

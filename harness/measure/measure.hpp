@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/proof/collision_checker.hpp"
+#include "harness/collisions/collision_checker.hpp"
 #include "harness/support/stopwatch.hpp"
 #include "harness/verify/checker.hpp"
 #include "harness/verify/rounding.hpp"

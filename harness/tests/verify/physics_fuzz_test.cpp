@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/proof/collision_checker.hpp"
+#include "harness/collisions/collision_checker.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/text.hpp"
 #include "harness/tests/scenes/random_scenes.hpp"

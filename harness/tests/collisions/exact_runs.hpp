@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/proof/path_checker.hpp"
+#include "harness/collisions/path_checker.hpp"
 #include "kernels/scene.hpp"
 #include "variants/event_driven.hpp"
 

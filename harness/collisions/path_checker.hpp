@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/proof/path.hpp"
-#include "harness/proof/path_search.hpp"
+#include "harness/collisions/path.hpp"
+#include "harness/collisions/path_search.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
 

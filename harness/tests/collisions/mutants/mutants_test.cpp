@@ -13,7 +13,7 @@
 #include "harness/scenes/generate.hpp"
 #include "harness/scenes/hard_cases.hpp"
 #include "harness/support/input_file.hpp"
-#include "harness/tests/verify/mutants/mutant.hpp"
+#include "harness/tests/collisions/mutants/mutant.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "variants/registry.hpp"
 

@@ -1,7 +1,7 @@
 // One mutant: CMake compiles this file for each of them, with the changed copy of the headers first in the
 // search path, `carom` defined as a namespace of its own, and the names of the mutant and of its variant.
 
-#include "harness/tests/verify/mutants/mutant.hpp"
+#include "harness/tests/collisions/mutants/mutant.hpp"
 
 #include <string_view>
 #include <utility>

@@ -5,8 +5,8 @@
 
 #include "harness/scenes/generate.hpp"
 #include "harness/scenes/hard_cases.hpp"
+#include "harness/tests/collisions/exact_runs.hpp"
 #include "harness/tests/scenes/random_scenes.hpp"
-#include "harness/tests/verify/exact_runs.hpp"
 #include "kernels/tests/simulate.hpp"
 
 // The event-driven simulation, in both precisions, proven right collision by collision: on every hard case,

@@ -1,9 +1,9 @@
-#include "harness/proof/collision_checker.hpp"
+#include "harness/collisions/collision_checker.hpp"
 
 #include <cstdint>
 
-#include "harness/proof/contact_checker.hpp"
-#include "harness/proof/path_checker.hpp"
+#include "harness/collisions/contact_checker.hpp"
+#include "harness/collisions/path_checker.hpp"
 
 namespace carom {
 namespace {

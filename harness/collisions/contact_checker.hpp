@@ -1,15 +1,14 @@
 #pragma once
 
-#include <cstddef>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "harness/proof/collision_checker.hpp"
-#include "harness/proof/contact_motion.hpp"
+#include "harness/collisions/collision_checker.hpp"
+#include "harness/collisions/contact_motion.hpp"
+#include "harness/collisions/near_discs.hpp"
 #include "harness/verify/checker.hpp"
-#include "harness/verify/overlapping_pairs.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
@@ -43,23 +42,13 @@ class ContactChecker final : public CollisionChecker, public CollisionLog<double
   private:
     using Found = std::optional<std::string>;
 
-    /// Two discs near each other, or a disc near a wall, as both.
-    struct Near {
-        int first;
-        int second;
-        bool surely; ///< whatever the rounding
-        double last; ///< how long before the step's end they last collided; infinity if they did not
-    };
-
-    void find_near(const std::vector<Disc>& free);
-    Near* near_of(int first, int second);
     Found collide_sweeps();
     Found violation_of(const Collision<double>& collision);
     Found wrong_pair(const Collision<double>& collision) const;
     Found wrong_exchange(const Collision<double>& collision, const Disc& d, double uncertain) const;
     Found wrong_wall(const Collision<double>& collision) const;
     Found earlier(int disc, const Collision<double>& collision) const;
-    std::optional<PastCollision> surely_pending(const Near& near) const;
+    std::optional<PastCollision> surely_pending(const DiscsNearby& near) const;
     std::optional<PastCollision> surely_in_wall(const Disc& disc) const;
     Found left_pending() const;
     Found wrong_after(const std::vector<Disc>& after) const;
@@ -72,10 +61,8 @@ class ContactChecker final : public CollisionChecker, public CollisionLog<double
     std::mutex telling_;
     std::vector<Collision<double>> collisions_; ///< of this step
     std::vector<Disc> discs_;                   ///< at its end, as far as collisions have been made
-    std::vector<Near> near_;
-    std::vector<std::size_t> first_of_disc_; ///< of each disc its first entry in `near_of_disc_`; one more
-    std::vector<std::size_t> near_of_disc_;  ///< places in `near_`
-    int sweeps_ = 0;                         ///< in which something collided
+    NearDiscs near_;                            ///< at the end of the free flight
+    int sweeps_ = 0;                            ///< in which something collided
 };
 
 } // namespace carom

@@ -1,4 +1,4 @@
-#include "harness/proof/path_checker.hpp"
+#include "harness/collisions/path_checker.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "harness/measure/measure.hpp"
 #include "harness/scenes/generate.hpp"
 #include "harness/scenes/hard_cases.hpp"
-#include "harness/tests/verify/exact_runs.hpp"
+#include "harness/tests/collisions/exact_runs.hpp"
 
 namespace carom {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/proof/path.hpp"
+#include "harness/collisions/path.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {

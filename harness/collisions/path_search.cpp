@@ -1,4 +1,4 @@
-#include "harness/proof/path_search.hpp"
+#include "harness/collisions/path_search.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "harness/proof/contact_checker.hpp"
+#include "harness/collisions/contact_checker.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,7 @@ std::optional<std::string> ContactChecker::step(const std::vector<Disc>& before,
     steps_ = std::min(steps_ + 1, 2);
     rules_.way_back = rules_.dt * steps_;
     discs_ = flown(before, rules_.dt, rules_.walls);
-    find_near(discs_);
+    near_.find(discs_, rules_);
     std::ranges::sort(collisions_, [](const auto& one, const auto& two) {
         return std::pair(one.sweep, one.first) < std::pair(two.sweep, two.first);
     });
@@ -68,55 +68,6 @@ std::optional<std::string> ContactChecker::step(const std::vector<Disc>& before,
     collisions_.clear();
     violation = violation ? violation : left_pending();
     return violation ? violation : wrong_after(after);
-}
-
-void ContactChecker::find_near(const std::vector<Disc>& free) {
-    constexpr double never = std::numeric_limits<double>::infinity();
-    const double roundings = 32 * rules_.epsilon();
-    const auto radius_wider_by = [&](double share) { return rules_.near * (1 + share); };
-    near_.clear();
-    for (const OverlappingPair& pair : overlapping_pairs(free, radius_wider_by(roundings))) {
-        const double distance =
-            std::hypot(disc(pair.second).x - disc(pair.first).x, disc(pair.second).y - disc(pair.first).y);
-        near_.push_back({pair.first, pair.second, distance < 2 * radius_wider_by(-roundings), never});
-    }
-    for (int i = 0; i < static_cast<int>(free.size()); ++i) {
-        const double to_wall =
-            std::min(std::min(disc(i).x, disc(i).y), rules_.walls.side - std::max(disc(i).x, disc(i).y));
-        const double slack = roundings * (rules_.near + rules_.walls.side);
-        if (to_wall <= rules_.near + slack) {
-            near_.push_back({i, i, to_wall < rules_.near - slack, never});
-        }
-    }
-    first_of_disc_.assign(free.size() + 1, 0);
-    for (const Near& near : near_) {
-        ++first_of_disc_[static_cast<std::size_t>(near.first)];
-        first_of_disc_[static_cast<std::size_t>(near.second)] += near.first != near.second ? 1 : 0;
-    }
-    std::size_t end = 0;
-    for (std::size_t& first : first_of_disc_) {
-        end += first;
-        first = end;
-    }
-    near_of_disc_.resize(end);
-    for (std::size_t k = 0; k < near_.size(); ++k) {
-        near_of_disc_[--first_of_disc_[static_cast<std::size_t>(near_[k].first)]] = k;
-        if (near_[k].first != near_[k].second) {
-            near_of_disc_[--first_of_disc_[static_cast<std::size_t>(near_[k].second)]] = k;
-        }
-    }
-}
-
-ContactChecker::Near* ContactChecker::near_of(int first, int second) {
-    const auto i = static_cast<std::size_t>(first);
-    for (std::size_t entry = first_of_disc_[i]; entry < first_of_disc_[i + 1]; ++entry) {
-        Near& near = near_[near_of_disc_[entry]];
-        if ((near.first == first && near.second == second) ||
-            (near.first == second && near.second == first)) {
-            return &near;
-        }
-    }
-    return nullptr;
 }
 
 /// All collisions of a sweep are looked at before the first of them is made: what they were chosen by.
@@ -143,7 +94,7 @@ std::optional<std::string> ContactChecker::collide_sweeps() {
         for (; begin != end; ++begin) {
             discs_[static_cast<std::size_t>(begin->first)] = begin->first_after;
             discs_[static_cast<std::size_t>(begin->second)] = begin->second_after;
-            near_of(begin->first, begin->second)->last = begin->time;
+            near_.find_pair(begin->first, begin->second)->last = begin->time;
         }
         sweeps_ = sweep + 1;
     }
@@ -157,7 +108,7 @@ std::optional<std::string> ContactChecker::violation_of(const Collision<double>&
         return format("a collision of discs %d and %d is told, of %d", collision.first, collision.second,
                       count);
     }
-    const Near* near = near_of(collision.first, collision.second);
+    const DiscsNearby* near = near_.find_pair(collision.first, collision.second);
     if (near == nullptr) {
         return format("discs %d and %d collide, and were not near each other, or a wall", collision.first,
                       collision.second) +
@@ -263,9 +214,8 @@ std::optional<std::string> ContactChecker::wrong_wall(const Collision<double>& c
 
 /// A collision of a disc that was to be made before this one.
 std::optional<std::string> ContactChecker::earlier(int i, const Collision<double>& collision) const {
-    const auto of_disc = static_cast<std::size_t>(i);
-    for (std::size_t entry = first_of_disc_[of_disc]; entry < first_of_disc_[of_disc + 1]; ++entry) {
-        const Near& near = near_[near_of_disc_[entry]];
+    for (const std::size_t place : near_.places_of(i)) {
+        const DiscsNearby& near = near_.all()[place];
         const auto pending = surely_pending(near);
         if (pending && pending->time - pending->uncertain > collision.time * (1 + 32 * rules_.epsilon())) {
             return format(
@@ -278,7 +228,7 @@ std::optional<std::string> ContactChecker::earlier(int i, const Collision<double
     return std::nullopt;
 }
 
-std::optional<PastCollision> ContactChecker::surely_pending(const Near& near) const {
+std::optional<PastCollision> ContactChecker::surely_pending(const DiscsNearby& near) const {
     if (!near.surely) {
         return std::nullopt;
     }
@@ -299,7 +249,7 @@ std::optional<std::string> ContactChecker::left_pending() const {
     if (sweeps_ == most_impact_sweeps) {
         return std::nullopt;
     }
-    for (const Near& near : near_) {
+    for (const DiscsNearby& near : near_.all()) {
         if (const auto pending = surely_pending(near)) {
             return format(
                 "discs %d and %d met %.17g before the end, and do not collide although %d sweeps were "
@@ -322,7 +272,7 @@ std::optional<std::string> ContactChecker::wrong_after(const std::vector<Disc>& 
         }
     }
     const double reach = 2 * rules_.walls.radius;
-    for (const Near& near : near_) {
+    for (const DiscsNearby& near : near_.all()) {
         const Disc& one = after[static_cast<std::size_t>(near.first)];
         const Disc& two = after[static_cast<std::size_t>(near.second)];
         Found violation;
