@@ -50,7 +50,8 @@ std::vector<Collision<double>> told_of_pair() {
 /// What the checker says of a list, and of a state at the end that follows from it.
 std::string said_of(const std::vector<Collision<double>>& told, double time = 9) {
     PathChecker<double> checker(pair);
-    std::vector<Path<double>> paths{{pair.discs[0], 0}, {pair.discs[1], 0}};
+    // One more: a collision with a disc that is not there may be told.
+    std::vector<Path<double>> paths{{pair.discs[0], 0}, {pair.discs[1], 0}, {}};
     for (const Collision<double>& one : told) {
         checker.collided(one);
         paths[static_cast<std::size_t>(one.first)] = {one.first_after, one.time};
