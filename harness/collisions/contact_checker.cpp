@@ -199,9 +199,9 @@ std::optional<std::string> ContactChecker::wrong_wall(const Collision<double>& c
                          std::abs(2 * (velocity < 0 ? low : high) - position - new_position) <= allowed
                    : new_velocity == velocity && new_position == position;
     };
-    const bool right =
-        is_right(before.x, before.vx, after.x, after.vx) & is_right(before.y, before.vy, after.y, after.vy);
-    if (right && turned > 0) {
+    const bool right_in_x = is_right(before.x, before.vx, after.x, after.vx);
+    const bool right_in_y = is_right(before.y, before.vy, after.y, after.vy);
+    if (right_in_x && right_in_y && turned > 0) {
         return std::nullopt;
     }
     return format(

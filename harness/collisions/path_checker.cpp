@@ -85,7 +85,7 @@ template <class Real>
 std::optional<std::string> PathChecker<Real>::off_path(int disc, const BasicDisc<Real>& place, Real time) {
     const BasicDisc<Real> there = path(disc).at(time);
     const Real allowed = rounding_.place(path(disc), time);
-    if (is_finite(place) && std::hypot(place.x - there.x, place.y - there.y) <= allowed) {
+    if (is_finite(place) && std::max(std::abs(place.x - there.x), std::abs(place.y - there.y)) <= allowed) {
         return std::nullopt;
     }
     return format("disc %d is at %s, and its path leads to %s,", disc, text(place).c_str(),
@@ -206,6 +206,9 @@ std::optional<std::string> PathChecker<Real>::wrong_wall(const Collision<Real>& 
 template <class Real> std::optional<std::string> PathChecker<Real>::beyond_wall(int disc, Real time) {
     const Path<Real>& flown = path(disc);
     const BasicDisc<Real> now = flown.at(time);
+    if (std::min(now.x, now.y) >= radius_ && std::max(now.x, now.y) <= side_ - radius_) {
+        return std::nullopt;
+    }
     const Real place = rounding_.place(flown, time);
     const auto deeper = [&](Real before, Real after, Real velocity) {
         return beyond(after, velocity) - std::max(beyond(before, velocity), Real{0}) -

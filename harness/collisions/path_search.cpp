@@ -30,8 +30,10 @@ PathSearch<Real>::PathSearch(const Scene& scene, const PathRounding<Real>& round
 
 template <class Real>
 std::optional<std::string> PathSearch<Real>::too_near(std::vector<Piece<Real>> pieces, Real begin, Real end) {
-    std::ranges::sort(pieces, {}, &Piece<Real>::begin);
     const std::int64_t slabs = slabs_of(pieces);
+    if (slabs > 1) {
+        std::ranges::sort(pieces, {}, &Piece<Real>::begin);
+    }
     std::vector<const Piece<Real>*> active;
     auto next = pieces.begin();
     for (std::int64_t slab = 0; slab < slabs; ++slab) {
@@ -72,10 +74,11 @@ template <class Real> std::int64_t PathSearch<Real>::slabs_of(const std::vector<
 
 template <class Real>
 void PathSearch<Real>::cut(const Piece<Real>& piece, Real begin, Real end, int halvings) {
-    const CellRange cells = cells_of(piece, begin, end);
+    const Bounds bounds = bounds_of(piece, begin, end);
+    const CellRange cells = cells_of(bounds);
     const Real middle = begin + (end - begin) / 2;
     if (cells.cells() <= few_cells || halvings == most_halvings || !(begin < middle && middle < end)) {
-        segments_.push_back({&piece, begin, end, cells});
+        segments_.push_back({&piece, begin, end, bounds, cells});
         return;
     }
     cut(piece, begin, middle, halvings + 1);
@@ -83,14 +86,19 @@ void PathSearch<Real>::cut(const Piece<Real>& piece, Real begin, Real end, int h
 }
 
 template <class Real>
-typename PathSearch<Real>::CellRange PathSearch<Real>::cells_of(const Piece<Real>& piece, Real begin,
-                                                                Real end) const {
+typename PathSearch<Real>::Bounds PathSearch<Real>::bounds_of(const Piece<Real>& piece, Real begin,
+                                                              Real end) {
     const BasicDisc<Real> from = piece.path.at(begin);
     const BasicDisc<Real> to = piece.path.at(end);
-    return {.first_row = along(std::min(from.y, to.y) - radius_),
-            .last_row = along(std::max(from.y, to.y) + radius_),
-            .first_column = along(std::min(from.x, to.x) - radius_),
-            .last_column = along(std::max(from.x, to.x) + radius_)};
+    return {std::min(from.x, to.x), std::max(from.x, to.x), std::min(from.y, to.y), std::max(from.y, to.y)};
+}
+
+template <class Real>
+typename PathSearch<Real>::CellRange PathSearch<Real>::cells_of(const Bounds& bounds) const {
+    return {.first_row = along(bounds.low_y - radius_),
+            .last_row = along(bounds.high_y + radius_),
+            .first_column = along(bounds.low_x - radius_),
+            .last_column = along(bounds.high_x + radius_)};
 }
 
 /// The row or column of a position along its axis. Those at the edges reach out to infinity.
@@ -148,7 +156,8 @@ std::optional<std::string> PathSearch<Real>::too_near_in_cell(int row, int colum
         const Segment& one = segment(k);
         for (int m = cell_begin_[cell]; m < k; ++m) {
             const Segment& two = segment(m);
-            if (one.piece->disc != two.piece->disc && one.begin <= two.end && two.begin <= one.end &&
+            if (one.bounds.within(2 * radius_, two.bounds) && one.piece->disc != two.piece->disc &&
+                one.begin <= two.end && two.begin <= one.end &&
                 std::max(one.cells.first_row, two.cells.first_row) == row &&
                 std::max(one.cells.first_column, two.cells.first_column) == column) {
                 if (auto violation = violation_of(one, two)) {

@@ -44,17 +44,32 @@ template <class Real> class PathSearch {
         int cells() const { return (last_row - first_row + 1) * (last_column - first_column + 1); }
     };
 
+    /// The box around a stretch of a disc's centre's path.
+    struct Bounds {
+        Real low_x;
+        Real high_x;
+        Real low_y;
+        Real high_y;
+
+        bool within(Real reach, const Bounds& other) const {
+            return low_x - other.high_x < reach && other.low_x - high_x < reach &&
+                   low_y - other.high_y < reach && other.low_y - high_y < reach;
+        }
+    };
+
     /// So short a piece that it lies in few cells.
     struct Segment {
         const Piece<Real>* piece;
         Real begin;
         Real end;
+        Bounds bounds;
         CellRange cells;
     };
 
     std::int64_t slabs_of(const std::vector<Piece<Real>>& pieces) const;
     void cut(const Piece<Real>& piece, Real begin, Real end, int halvings);
-    CellRange cells_of(const Piece<Real>& piece, Real begin, Real end) const;
+    static Bounds bounds_of(const Piece<Real>& piece, Real begin, Real end);
+    CellRange cells_of(const Bounds& bounds) const;
     int along(Real position) const;
     void sort_into_cells();
     std::optional<std::string> too_near_in_slab() const;
