@@ -13,6 +13,7 @@
 #include <poll.h>
 #include <sys/stat.h>
 #include <sys/types.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "harness/support/stopwatch.hpp"
@@ -95,6 +96,16 @@ void remove_abandoned(const std::string& folder) {
     }
 }
 
+/// Whether a process may enter: who may make a group need not be allowed to move anybody into it.
+bool can_be_entered(int entrance) {
+    const pid_t child = fork();
+    if (child == 0) {
+        _exit(write(entrance, "0", 1) == 1 ? 0 : 1);
+    }
+    int status = 0;
+    return child > 0 && (waitpid(child, &status, 0) != child || status == 0);
+}
+
 bool is_frozen(int events) {
     std::array<char, 256> buffer{};
     const auto count = pread(events, buffer.data(), buffer.size() - 1, 0);
@@ -123,7 +134,7 @@ std::unique_ptr<Cgroup> Cgroup::make() {
         const int events = open((path + "/cgroup.events").c_str(), O_RDONLY | O_CLOEXEC);
         const bool complete = access((path + "/cgroup.freeze").c_str(), W_OK) == 0 &&
                               access((path + "/cgroup.kill").c_str(), W_OK) == 0;
-        if (entrance >= 0 && events >= 0 && complete) {
+        if (entrance >= 0 && events >= 0 && complete && can_be_entered(entrance)) {
             return std::unique_ptr<Cgroup>(new Cgroup(std::move(path), entrance, events));
         }
         close(entrance);
