@@ -84,10 +84,17 @@ TEST(PathChecker, CatchesWhatIsPlanted) {
              one.first_after = {one.first_after.x, one.first_after.y, 0.5, 0.5};
              one.second_after = {one.second_after.x, one.second_after.y, 0.5, -0.5};
          }));
-    says("a collision of discs 0 and 2 is told, of 2", changed(0, [](auto& one) { one.second = 2; }));
     says("by a wall", changed(1, [](auto& one) { one.first_after.vy = 0.1; }));
     says("come 2 too near each other, without a collision", {});
     says("beyond a wall, which did not turn it", {right[0]});
+}
+
+TEST(PathChecker, CatchesACollisionOfADiscThatIsNotThere) {
+    PathChecker<double> checker(pair);
+    auto told = told_of_pair()[0];
+    told.second = 2;
+    checker.collided(told);
+    EXPECT_EQ(checker.violation(), "a collision of discs 0 and 2 is told, of 2");
 }
 
 TEST(PathChecker, CatchesACollisionBeforeTheDiscsMeetOrAfter) {
