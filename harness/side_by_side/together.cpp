@@ -199,7 +199,7 @@ class Contest {
         std::vector<ProcessEnd> in_slices{run_in_turns.end};
         while (may_disagree(undisturbed_[k], in_slices) && in_slices.size() < runs_to_be_sure) {
             const auto alone = run(k);
-            const auto paused = alone ? run_with_pauses(k) : std::nullopt;
+            const auto paused = alone ? run_with_pauses(k, mean_slice(run_in_turns.end)) : std::nullopt;
             if (!paused) {
                 return;
             }
@@ -230,11 +230,15 @@ class Contest {
         keep(k, run_in_turns.end);
     }
 
-    /// In slices once more, with pauses as if another one of its kind took turns with it.
-    std::optional<ProcessEnd> run_with_pauses(std::size_t k) {
+    static double mean_slice(const ProcessEnd& end) {
+        return end.wall_seconds() / static_cast<double>(end.seconds.size());
+    }
+
+    /// In slices as long as those that it had, with pauses as if others took turns with it.
+    std::optional<ProcessEnd> run_with_pauses(std::size_t k, double slice_seconds) {
         ContenderRun one(contenders_[k]);
         while (one.can_run() && !one.process().has_ended()) {
-            one.process().advance(how_.slice_seconds);
+            one.process().advance(slice_seconds);
             pause(one.process().has_ended() ? 0 : how_.slice_seconds);
         }
         const std::string failure = one.conclude();
