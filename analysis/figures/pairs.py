@@ -7,7 +7,6 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from analysis.derived.noise_prior import prior
 from analysis.figures.captions import PROCESSES, SCENES, opening, time_axis
 from analysis.figures.hover import Told, tell
 from analysis.figures.labels import label_ends
@@ -23,7 +22,6 @@ from analysis.figures.style import (
     new_figure,
     plain_ticks,
 )
-from analysis.statistics.intervals import RANKS_FROM
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.wording import blocks, change, exact, number
@@ -55,7 +53,7 @@ def pair_drawing(data: Data, sides: Sides, work: bool = False) -> Drawing | None
     extra = work or not published.empty
     figure, axes = new_figure(2.4, columns=2 + extra, widths=[1.2, *([1.0] * extra), 1.1])
     _by_block(axes[0], {sides.names[0]: candidate, sides.names[1]: reference}, time_axis(times))
-    row = judge_one(log_ratios(reference, candidate)["log_ratio"], prior=prior(data.study, sides.experiment))
+    row = judge_one(log_ratios(reference, candidate)["log_ratio"])
     theirs = _published_panel(axes[1], published, sides) if not published.empty else None
     if work:
         _work(axes[1], data, sides)
@@ -179,10 +177,9 @@ def _work(axes: Axes, data: Data, sides: Sides) -> None:
 
 
 def _sentences(row: dict[str, float], theirs: dict[str, float] | None, sides: Sides) -> str:
-    method = "signed ranks" if row["blocks"] >= RANKS_FROM else "Student's t"
     published = f" Published: {change(theirs)} ({theirs['verdict']})." if theirs else ""
     return (
         f" The time of {sides.names[0]} is {change(row)} against {sides.names[1]}, from {blocks(row)} "
-        f"({method} on paired log ratios): {row['verdict']} with a margin of {100 * MARGIN:g} % (shaded; "
+        f"(paired log ratios): {row['verdict']} with a margin of {100 * MARGIN:g} % (shaded; "
         f"the bar is the 95 % interval, which decides).{published}"
     )

@@ -11,7 +11,6 @@ from analysis import claims
 from analysis.claims import missing
 from analysis.claims.entry import CLAIMS_FILE, questions_folder
 from analysis.derived.ladder import headlines
-from analysis.derived.noise_prior import prior
 from analysis.figures import FIGURES, Drawn, experiments
 from analysis.figures.studies import draw_study
 from analysis.figures.style import FORMATS
@@ -21,7 +20,6 @@ from analysis.records.studies import Study, split
 from analysis.report import graphs, provenance
 from analysis.report.parts import contents, parts
 from analysis.report.provenance import CONTROL
-from analysis.statistics.intervals import RANKS_FROM
 from analysis.statistics.levels import in_order, levels, shifting
 from analysis.statistics.looks import ERROR
 from analysis.statistics.noise import needed_said, process_noise, warning
@@ -52,7 +50,6 @@ def content(
         "style": Markup(STYLE.read_text(encoding="utf-8")),
         "margin": share(MARGIN),
         "error": share(ERROR),
-        "ranks_from": RANKS_FROM,
         "records": len(records.runs),
         "latest": records.runs["recorded_at"].max() if len(records.runs) else None,
         "studies": found,
@@ -154,7 +151,7 @@ def _speeds(processes: pd.DataFrame) -> str:
 
 
 def _control_verdict(study: Study, processes: pd.DataFrame, sides: Sequence[pd.DataFrame]) -> str:
-    row = judge_one(log_ratios(*sides)["log_ratio"], prior=prior(study, CONTROL))
+    row = judge_one(log_ratios(*sides)["log_ratio"])
     sessions, beside = study.times["session"].nunique(), processes["session"].nunique()
     over = "the whole run" if beside == sessions else f"{beside} of {count(sessions, 'session')}"
     said = f"one variant, measured under two labels over {over}, differs by {change(row)} ({blocks(row)})"

@@ -4,6 +4,7 @@ import math
 
 from scipy import stats
 
+from analysis.statistics.dependence import widening_of_independent
 from analysis.statistics.looks import ERROR, LOOKS, next_look, share
 
 MOST_BLOCKS = 1000
@@ -14,7 +15,7 @@ def blocks_to_decide(p: float, blocks: int, family: int = 1) -> float:
     """Return at which look, beyond so many blocks, a verdict is expected; infinite if it is not in sight.
 
     `p` is that of the verdict best supported, over all looks and not cut at 1 (`verdicts.judge_one`). The
-    statistic that it stands for grows with the square root of the blocks; it has to reach what the look asks,
+    statistic that it stands for grows as the error of the centre falls; it has to reach what the look asks,
     corrected for `family` claims that are open.
     """
     if blocks < LOOKS[0]:
@@ -22,10 +23,15 @@ def blocks_to_decide(p: float, blocks: int, family: int = 1) -> float:
     alone = p * share(blocks)
     if not 0 < alone < 1:
         return math.inf if alone else next_look(blocks)
-    per_block = stats.t.isf(alone / 2, blocks - 1) / math.sqrt(blocks)
+    per_block = stats.t.isf(alone / 2, blocks - 1) * _error(blocks)
     look = next_look(blocks)
     while look <= MOST_BLOCKS:
-        if per_block * math.sqrt(look) >= stats.t.isf(ERROR * share(look) / family / 2, look - 1):
+        if per_block >= stats.t.isf(ERROR * share(look) / family / 2, look - 1) * _error(look):
             return look
         look = next_look(look)
     return math.inf
+
+
+def _error(blocks: int) -> float:
+    """Return the error of a centre in standard deviations of a block, as the interval takes it."""
+    return widening_of_independent(blocks) / math.sqrt(blocks)

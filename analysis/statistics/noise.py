@@ -1,6 +1,5 @@
 """How noisy the machine was, what that allows to decide, and what to do about it."""
 
-from bisect import bisect_left
 from collections.abc import Collection
 
 import numpy as np
@@ -8,9 +7,10 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
-from analysis.statistics import looks
-from analysis.statistics.intervals import FEWEST, RANKS_FROM
-from analysis.statistics.looks import ERROR
+from analysis.statistics.dependence import widening_of_independent
+from analysis.statistics.intervals import FEWEST
+from analysis.statistics.looks import ERROR, next_look
+from analysis.statistics.looks import share as share_of_error
 from analysis.statistics.pairs import PAIR, process_medians
 from analysis.statistics.verdicts import MARGIN
 from analysis.support.wording import count, listed, share
@@ -31,10 +31,9 @@ def process_noise(times: pd.DataFrame) -> pd.DataFrame:
 
     `noise` is the typical standard deviation of ln(time) from process to process, as a fraction: 0.01 is 1
     %. `bursts` counts the processes that took far longer than that explains. `needed` blocks would let two
-    equal configurations be found equivalent 95 times in 100 (infinite for more than `MOST_BLOCKS`): with
-    bursts, at least as many as the signed ranks start from, which a burst cannot move far. `small` tells the
-    experiments that are about small differences, not trends. Those with a single block or configuration have
-    no estimate and are left out.
+    equal configurations be found equivalent 95 times in 100 (infinite for more than `MOST_BLOCKS`). `small`
+    tells the experiments that are about small differences, not trends. Those with a single block or
+    configuration have no estimate and are left out.
     """
     rows = []
     processes = process_medians(times)
@@ -51,7 +50,7 @@ def process_noise(times: pd.DataFrame) -> pd.DataFrame:
         logs = np.log(table.to_numpy())
         noise = typical_deviation(logs)
         bursts = count_bursts(logs, noise)
-        needed = max(blocks_needed(noise), RANKS_FROM if bursts else 0)
+        needed = blocks_needed(noise)
         rows.append(
             {
                 "experiment": experiment,
@@ -95,12 +94,15 @@ def count_bursts(logs: Floats, noise: float) -> int:
 
 
 def blocks_needed(noise: float, margin: float = MARGIN, rate: float = 0.95) -> float:
-    """Return the blocks with which two equal configurations come out equivalent at the given rate; infinite
-    if `MOST_BLOCKS` are too few, of which an estimate would say nothing. `noise` is per process.
+    """Return the planned look at which two equal configurations come out equivalent at the given rate;
+    infinite if `MOST_BLOCKS` are too few, of which an estimate would say nothing. `noise` is per process.
     """
-    counts = range(FEWEST, MOST_BLOCKS + 1)
-    index = bisect_left(counts, rate, key=lambda blocks: equivalence_rate(noise, blocks, margin))
-    return counts[index] if index < len(counts) else np.inf
+    look = FEWEST
+    while look <= MOST_BLOCKS:
+        if equivalence_rate(noise, look, margin) >= rate:
+            return look
+        look = next_look(look)
+    return np.inf
 
 
 def needed_said(needed: float) -> str:
@@ -109,15 +111,17 @@ def needed_said(needed: float) -> str:
 
 
 def equivalence_rate(noise: float, blocks: int, margin: float = MARGIN) -> float:
-    """Return how often the t interval finds two equal configurations equivalent.
+    """Return how often the interval of a look finds two equal configurations equivalent, of normal noise that
+    does not depend on itself.
 
-    The mean of the log ratios is normal and their deviation, independent of it, a scaled chi; the rate is the
-    chance that the interval of the look lies within the margin, averaged over quantiles of the deviation.
+    The centre of the log ratios is normal and their deviation, independent of it, a scaled chi; the rate is
+    the chance that the interval of the look lies within the margin, averaged over quantiles of the deviation.
     """
     true_error = noise * np.sqrt(2 / blocks)
     quantiles = stats.chi2.ppf((np.arange(200) + 0.5) / 200, blocks - 1)
     half_width = (
-        stats.t.ppf(1 - ERROR * looks.share(blocks) / 2, blocks - 1)
+        stats.t.ppf(1 - ERROR * share_of_error(blocks) / 2, blocks - 1)
+        * widening_of_independent(blocks)
         * true_error
         * np.sqrt(quantiles / (blocks - 1))
     )

@@ -2,21 +2,24 @@
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
 
 PAIR = ["node", "block", "session"]
 """What two records of a pair have in common: nothing else was measured together."""
 
 
 def process_medians(times: pd.DataFrame, value: str = "steps_seconds") -> pd.DataFrame:
-    """Return one row a process (a record): its columns of context and the median of its repetitions as
-    `value`.
+    """Return one row a process (a record): its columns of context, the median of its repetitions as `value`,
+    and all of them in their order beside it.
 
     A process is one sample of whatever changes from start to start (placement in memory, the machine's mood);
     its repetitions are not independent of each other.
     """
-    medians = times.groupby("file", sort=False)[value].median()
+    runs = times.groupby("file", sort=False)[value].agg(tuple)
     first = times.drop_duplicates("file").set_index("file")
-    return first.assign(**{value: medians}).reset_index()
+    return first.assign(**{value: runs.map(np.median), _runs_of(value): runs}).reset_index()
 
 
 def join_replicates(times: pd.DataFrame) -> pd.DataFrame:
@@ -29,7 +32,11 @@ def join_replicates(times: pd.DataFrame) -> pd.DataFrame:
     if not processes.duplicated(keys).any():
         return times
     logs = np.log(processes["steps_seconds"]).groupby([processes[key] for key in keys]).transform("mean")
-    return processes.assign(steps_seconds=np.exp(logs)).drop_duplicates(keys)
+    return (
+        processes.assign(steps_seconds=np.exp(logs))
+        .drop_duplicates(keys)
+        .drop(columns=_runs_of("steps_seconds"), errors="ignore")
+    )
 
 
 def log_ratios(
@@ -38,13 +45,15 @@ def log_ratios(
     match: tuple[str, ...] = (),
     value: str = "steps_seconds",
 ) -> pd.DataFrame:
-    """Return a row a pair: the columns of `match`, those of `PAIR` and `log_ratio` = ln(candidate /
-    reference).
+    """Return a row a pair, in the order of time: the columns of `match`, those of `PAIR` and `log_ratio` =
+    ln(candidate / reference).
 
-    Takes a row a process on either side; of the replicates that a block has of one configuration it takes the
-    mean logarithm, since the median of several lies below a single time wherever noise is skewed. Drift from
-    block to block cancels in the ratio, which is why blocks and not samples are the unit of every interval. A
-    process without a partner of its own session has no ratio: the machine may have been another since.
+    Takes a row a process on either side. Where the two took turns through several whole runs, each run of the
+    one stands beside the same run of the other, and the median over the runs is the block's: a burst of noise
+    spoils one run. Of the replicates that a block has of one configuration it takes the mean logarithm, since
+    the median of several lies below a single time wherever noise is skewed. Drift from block to block cancels
+    in the ratio, which is why blocks and not samples are the unit of every interval. A process without a
+    partner of its own session has no ratio: the machine may have been another since.
     """
     keys = [*match, *PAIR]
     joined = _per_block(reference, keys, value).merge(
@@ -53,8 +62,11 @@ def log_ratios(
         right_index=True,
         suffixes=("_reference", "_candidate"),
     )
-    ratios = joined["log_candidate"] - joined["log_reference"]
-    return ratios.rename("log_ratio").reset_index()
+    ratios = [
+        _block_ratio(*logs) for logs in zip(joined["logs_reference"], joined["logs_candidate"], strict=True)
+    ]
+    found = joined[["at_reference"]].assign(log_ratio=np.array(ratios, dtype=float)).reset_index()
+    return found.sort_values(["at_reference", *PAIR], kind="stable").drop(columns="at_reference")
 
 
 def without_partner(runs: pd.DataFrame) -> pd.DataFrame:
@@ -74,5 +86,28 @@ def without_partner(runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def _per_block(processes: pd.DataFrame, keys: list[str], value: str) -> pd.DataFrame:
-    logs = processes.assign(log=np.log(processes[value]))
-    return logs.groupby(keys).agg({"log": "mean"})
+    """Return what each block has: `logs` of its runs, and the time `at` which it was recorded."""
+    runs = processes.get(_runs_of(value), processes[value])
+    logs = [np.log(np.atleast_1d(np.asarray(one, dtype=float))) for one in runs]
+    at = processes.get("recorded_at", processes["block"])
+    table = processes[keys].assign(logs=logs, at=at)
+    return table.groupby(keys).agg({"logs": _of_replicates, "at": "min"})
+
+
+def _of_replicates(logs: pd.Series) -> Floats:
+    """Return the mean of the replicates' logs, by run if they have as many runs, else of their medians."""
+    if len({len(one) for one in logs}) > 1:
+        logs = logs.map(lambda one: np.array([np.median(one)]))
+    mean: Floats = np.mean(np.stack(list(logs)), axis=0)
+    return mean
+
+
+def _block_ratio(reference: Floats, candidate: Floats) -> float:
+    if len(reference) == len(candidate):
+        return float(np.median(candidate - reference))
+    return float(np.log(np.median(np.exp(candidate)) / np.median(np.exp(reference))))
+
+
+def _runs_of(value: str) -> str:
+    """Return the name of the column that holds the value of each of a process's runs."""
+    return f"{value}_of_runs"

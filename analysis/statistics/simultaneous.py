@@ -1,68 +1,103 @@
-"""The differences between all points of a curve, with intervals that hold together."""
+"""What the differences between the points of a curve say of its shape."""
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property
+from itertools import permutations
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
-from analysis.statistics.intervals import Interval
+from analysis.statistics.intervals import Centre, Interval, measure
 from analysis.statistics.looks import ERROR, share
 
 Floats = NDArray[np.float64]
 
+SHAPES = ("falls then rises", "rises only", "falls only", "flat")
+"""Of these at most one is true of a curve."""
+
 
 @dataclass(frozen=True)
-class Differences:
-    """The `means` of a curve's points over `blocks`, and the `error` of a mean, with `freedom` degrees."""
+class Curves:
+    """The logarithms of a curve's points, blocks x points, in the order of time, of a planned look.
 
-    means: Floats
-    blocks: int
-    error: float
-    freedom: int
-
-    def interval(self, one: int, other: int) -> Interval:
-        """Return point `one` less point `other`; the intervals of all pairs, and of all looks, hold together
-        in 95 % of studies.
-        """
-        difference = float(self.means[one] - self.means[other])
-        if one == other:
-            return Interval(0.0, 0.0, 0.0)
-        if not self.freedom:
-            return Interval(difference, -np.inf, np.inf)
-        level = 1 - ERROR * share(self.blocks)
-        half = _studentized_range(level, len(self.means), self.freedom) * self.error
-        return Interval(difference, difference - half, difference + half)
-
-    def p_value(self, slack: float) -> float:
-        """Return the p-value of a statement about differences that could be off by `slack` and still be
-        true, over all looks.
-        """
-        if not self.freedom or slack <= 0:
-            return 1.0
-        if self.error == 0:
-            return 0.0
-        p = stats.studentized_range.sf(slack / self.error, len(self.means), self.freedom)
-        return float(p) / share(self.blocks)
-
-
-def differences(curves: Floats) -> Differences:
-    """Return the differences between the columns of a table of blocks x points.
-
-    What a block suffers cancels, and the noise is pooled over the points: it is the residual of the two-way
-    layout, with (blocks - 1) (points - 1) degrees of freedom. The intervals are Tukey's, of the studentized
-    range, so that points may be picked by looking, as the least one is (Hsu, "Multiple Comparisons", 1996,
-    chapter 5).
+    A difference of two points has the noise of those two points alone: an end may be several times as noisy
+    as the rest, and what a block suffers cancels.
     """
-    blocks, points = curves.shape
-    means = curves.mean(axis=0)
-    freedom = (blocks - 1) * (points - 1)
-    residuals = curves - means - curves.mean(axis=1, keepdims=True) + curves.mean()
-    error = float(np.sqrt((residuals**2).sum() / freedom / blocks)) if freedom else np.nan
-    return Differences(means, blocks, error, freedom)
 
+    logs: Floats
 
-@lru_cache
-def _studentized_range(level: float, points: int, freedom: int) -> float:
-    return float(stats.studentized_range.ppf(level, points, freedom))
+    @property
+    def points(self) -> int:
+        """How many points the curve has."""
+        return self.logs.shape[1]
+
+    @cached_property
+    def means(self) -> Floats:
+        """The mean of each point over the blocks."""
+        means: Floats = self.logs.mean(axis=0)
+        return means
+
+    @property
+    def lowest(self) -> int:
+        """The point of the least mean."""
+        return int(self.means.argmin())
+
+    def interval_above_lowest(self, point: int) -> Interval:
+        """Return how far a point lies above the lowest, which was found by looking: the intervals of an end
+        against all others hold together, those of both ends, and of all looks, in 95 % of studies
+        (Bonferroni).
+        """
+        if point == self.lowest:
+            return Interval(0.0, 0.0, 0.0)
+        level = 1 - ERROR * share(len(self.logs)) / max(1, 2 * (self.points - 1))
+        return self._difference(point, self.lowest).interval(level)
+
+    def shape(self, bound: float) -> tuple[str, float]:
+        """Return which of `SHAPES` is best supported, by differences of more than `bound`, and its p-value
+        over all looks and shapes.
+
+        *falls then rises*: some point inside lies below both ends; *rises only*: the last point lies above
+        the first, and the first above none; *falls only*: the other way round; *flat*: no two points differ.
+        What needs several differences at once has the greatest of their p-values (intersection-union: Berger,
+        Technometrics 24, 1982), what needs any one of the points inside the least times their number.
+        """
+        p = {
+            "falls then rises": self._inside(bound),
+            "rises only": self._only_away_from(0, self.points - 1, bound),
+            "falls only": self._only_away_from(self.points - 1, 0, bound),
+            "flat": max(
+                (self._p(one, other, bound, "less") for one, other in permutations(range(self.points), 2)),
+                default=1.0,
+            ),
+        }
+        best = min(SHAPES, key=lambda shape: p[shape])
+        return best, len(SHAPES) * p[best] / share(len(self.logs))
+
+    def _inside(self, bound: float) -> float:
+        last = self.points - 1
+        found = [
+            max(self._p(0, point, bound, "greater"), self._p(last, point, bound, "greater"))
+            for point in range(1, last)
+        ]
+        return len(found) * min(found, default=1.0)
+
+    def _only_away_from(self, start: int, end: int, bound: float) -> float:
+        never = [self._p(start, point, bound, "less") for point in range(self.points) if point != start]
+        return max(self._p(end, start, bound, "greater"), *never)
+
+    def _p(self, one: int, other: int, bound: float, alternative: Literal["less", "greater"]) -> float:
+        return self._difference(one, other).p_value(bound, alternative)
+
+    def _difference(self, one: int, other: int) -> Centre:
+        first, second = sorted((one, other))
+        found = self._differences[first, second]
+        return found if one == first else Centre(-found.estimate, found.error, found.freedom)
+
+    @cached_property
+    def _differences(self) -> dict[tuple[int, int], Centre]:
+        return {
+            (one, other): measure(self.logs[:, one] - self.logs[:, other])
+            for one in range(self.points)
+            for other in range(one + 1, self.points)
+        }

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from analysis.statistics.breaks import break_point
-from analysis.statistics.intervals import FEWEST, Interval, centre, p_value
-from analysis.statistics.looks import ERROR
+from analysis.statistics.intervals import FEWEST, Interval, centre, measure
+from analysis.statistics.looks import ERROR, last_look, seen
 from analysis.statistics.pairs import PAIR, log_ratios
-from analysis.statistics.simultaneous import Differences, differences
+from analysis.statistics.simultaneous import Curves
 from analysis.statistics.verdicts import MARGIN, judge_one, two_sided, verdict_row
 
 Floats = NDArray[np.float64]
@@ -73,10 +73,11 @@ def growth(processes: pd.DataFrame, margin: float = MARGIN) -> Growth:
     """
     first, last = float(processes["x"].min()), float(processes["x"].max())
     change = judge_one(_ratio(processes, first, last), margin)
-    exponents = _block_exponents(processes)
+    exponents = seen(_block_exponents(processes))
+    found = measure(exponents)
     p = {
-        "grows": two_sided(p_value(exponents, 0, "greater"), len(exponents)),
-        "falls": two_sided(p_value(exponents, 0, "less"), len(exponents)),
+        "grows": two_sided(found.p_value(0, "greater"), len(exponents)),
+        "falls": two_sided(found.p_value(0, "less"), len(exponents)),
         "flat": 0.0,
     }
     said = {"slower": "grows", "faster": "falls", "equivalent": "flat"}.get(change["verdict"], "inconclusive")
@@ -97,9 +98,10 @@ def linearity(processes: pd.DataFrame, within: tuple[float, float] = LINEAR_WITH
     x = curves.columns.to_numpy(dtype=float)
     if len(x) < 4 or len(curves) == 0:
         return Linearity(Interval(np.nan, -np.inf, np.inf), len(curves), "inconclusive", 1.0)
-    exponents = _offset_exponents(x / x.max(), curves.to_numpy())
-    inside = max(p_value(exponents, within[0], "greater"), p_value(exponents, within[1], "less"))
-    outside = min(p_value(exponents, within[0], "less"), p_value(exponents, within[1], "greater"))
+    exponents = seen(_offset_exponents(x / x.max(), curves.to_numpy()))
+    found = measure(exponents)
+    inside = max(found.p_value(within[0], "greater"), found.p_value(within[1], "less"))
+    outside = min(found.p_value(within[0], "less"), found.p_value(within[1], "greater"))
     p = two_sided(min(inside, outside), len(exponents))
     verdict = "inconclusive" if p > ERROR else "linear" if inside < outside else "not linear"
     return Linearity(centre(exponents), len(exponents), verdict, p)
@@ -108,36 +110,23 @@ def linearity(processes: pd.DataFrame, within: tuple[float, float] = LINEAR_WITH
 def minimum(processes: pd.DataFrame, margin: float = MARGIN) -> Minimum:
     """Tell whether the time falls to some x and rises from there.
 
-    All points are compared with each other, by simultaneous 95 % intervals (see `simultaneous`), so that the
-    lowest point may be where it was found. `falls then rises`: at some x inside the range the time is less
-    than at both ends by more than the margin; `rises only`: it is more at the last x than at the first, and
-    nowhere less than there; `falls only`: the other way round; `flat`: no two points differ; each by more
-    than the margin. At most one of these is true, and one that is not is said in at most 5 % of studies. What
-    is not established is `inconclusive`, and anything from fewer than `FEWEST` whole blocks `too few blocks`.
+    `falls then rises`: at some x inside the range the time is less than at both ends by more than the margin;
+    `rises only`: it is more at the last x than at the first, and nowhere less than there; `falls only`: the
+    other way round; `flat`: no two points differ; each by more than the margin (see `simultaneous`). At most
+    one of these is true, and one that is not is said in at most 5 % of studies. What is not established is
+    `inconclusive`, and anything from fewer than `FEWEST` whole blocks `too few blocks`.
     """
     table = processes.pivot_table(index=PAIR, columns="x", values="steps_seconds", aggfunc="median")
     whole, x = table.dropna(), table.columns.to_numpy(dtype=float)
-    curves = whole if len(whole) else table.median().to_frame().T
-    found = differences(np.log(curves.to_numpy(dtype=float)))
-    lowest = int(found.means.argmin())
-    verdict, p = _shape(found, np.log1p(margin)) if len(whole) >= FEWEST else (TOO_FEW_BLOCKS, 1.0)
-    fall, rise = (verdict_row(found.interval(end, lowest), len(whole), p, verdict) for end in (0, len(x) - 1))
-    return Minimum(break_point(x, whole.to_numpy()), float(x[lowest]), fall, rise, verdict, p)
-
-
-def _shape(found: Differences, bound: float) -> tuple[str, float]:
-    """Return the verdict of `minimum` and its p-value: that of the least of the slacks which it rests on."""
-    logs = found.means
-    first, last, inside = logs[0], logs[-1], logs[1:-1]
-    slack = {
-        "falls then rises": min(first, last) - inside.min(initial=np.inf) - bound,
-        "rises only": min(last - first - bound, bound - (first - logs[1:].min(initial=np.inf))),
-        "falls only": min(first - last - bound, bound - (last - logs[:-1].min(initial=np.inf))),
-        "flat": bound - (logs.max() - logs.min()),
-    }
-    best = max(slack, key=lambda verdict: slack[verdict])
-    p = found.p_value(float(slack[best]))
-    return best if p <= ERROR else "inconclusive", p
+    whole = whole.iloc[: last_look(len(whole))]
+    rows = whole if len(whole) else table.median().to_frame().T
+    curves = Curves(np.log(rows.to_numpy(dtype=float)))
+    verdict, p = curves.shape(np.log1p(margin)) if len(whole) >= FEWEST else (TOO_FEW_BLOCKS, 1.0)
+    if len(whole) >= FEWEST and p > ERROR:
+        verdict = "inconclusive"
+    ends = (curves.interval_above_lowest(end) for end in (0, len(x) - 1))
+    fall, rise = (verdict_row(end, len(whole), p, verdict) for end in ends)
+    return Minimum(break_point(x, whole.to_numpy()), float(x[curves.lowest]), fall, rise, verdict, p)
 
 
 def _ratio(processes: pd.DataFrame, reference: float, candidate: float) -> Floats:
@@ -146,19 +135,20 @@ def _ratio(processes: pd.DataFrame, reference: float, candidate: float) -> Float
     return ratios
 
 
-def _block_exponents(processes: pd.DataFrame) -> list[float]:
+def _block_exponents(processes: pd.DataFrame) -> Floats:
     """Return the log-log slope of every block that has all x, at least two; none if an x is not positive.
 
     The slope of a part of the range is another one wherever the curve is not straight.
     """
     every = processes["x"].nunique()
     if (processes["x"] <= 0).any() or every < 2:
-        return []
-    return [
+        return np.empty(0)
+    slopes = [
         float(stats.linregress(np.log(block["x"]), np.log(block["steps_seconds"])).slope)
         for _, block in processes.groupby(PAIR)
         if block["x"].nunique() == every
     ]
+    return np.array(slopes)
 
 
 def _offset_exponents(x: Floats, curves: Floats) -> Floats:

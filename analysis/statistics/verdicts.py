@@ -7,17 +7,14 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from analysis.statistics.intervals import FEWEST, Interval, centre, p_value
-from analysis.statistics.looks import ERROR, share
-from analysis.statistics.moderation import NOTHING_KNOWN, Prior
+from analysis.statistics.intervals import FEWEST, Interval, measure
+from analysis.statistics.looks import ERROR, seen, share
 
 MARGIN = 0.02
 COLUMNS = ["ratio", "low", "high", "blocks", "p", "verdict", "alone"]
 
 
-def judge(
-    pairs: pd.DataFrame, by: list[str], margin: float = MARGIN, prior: Prior = NOTHING_KNOWN
-) -> pd.DataFrame:
+def judge(pairs: pd.DataFrame, by: list[str], margin: float = MARGIN) -> pd.DataFrame:
     """Return one row a group of `by` with its ratio, interval and verdict, Holm-corrected over the whole
     table.
 
@@ -35,7 +32,7 @@ def judge(
     """
     rows: list[dict[str, Any]] = []
     for key, group in pairs.groupby(by, sort=True):
-        rows.append({**dict(zip(by, key, strict=True)), **judge_one(group["log_ratio"], margin, prior)})
+        rows.append({**dict(zip(by, key, strict=True)), **judge_one(group["log_ratio"], margin)})
     table = pd.DataFrame(rows, columns=[*by, *COLUMNS])
     return corrected(table)
 
@@ -49,21 +46,22 @@ def corrected(table: pd.DataFrame) -> pd.DataFrame:
     return table.assign(p=p, verdict=verdicts)
 
 
-def judge_one(
-    log_ratios: ArrayLike, margin: float = MARGIN, prior: Prior = NOTHING_KNOWN, *, once: bool = False
-) -> dict[str, Any]:
+def judge_one(log_ratios: ArrayLike, margin: float = MARGIN, *, once: bool = False) -> dict[str, Any]:
     """Return the row of one comparison standing alone: the columns that `judge` adds, and `denials`.
 
-    `once`: how many values there are was settled before the first of them, so that they are looked at once,
-    and the whole of the error is this look's.
+    The log ratios are in the order of time; those up to the last planned look count. `once`: how many values
+    there are was settled before the first of them, and each has a seed of its own: they are looked at once,
+    the whole of the error is this look's, and none depends on the one before.
     """
     values = np.asarray(log_ratios, dtype=float)
+    values = values if once else seen(values)
     bound, blocks = np.log1p(margin), len(values)
     part = 1.0 if once else share(blocks)
-    faster, slower = p_value(values, -bound, "less", prior), p_value(values, bound, "greater", prior)
-    not_faster, not_slower = p_value(values, -bound, "greater", prior), p_value(values, bound, "less", prior)
+    found = measure(values, independent=once)
+    faster, slower = found.p_value(-bound, "less"), found.p_value(bound, "greater")
+    not_faster, not_slower = found.p_value(-bound, "greater"), found.p_value(bound, "less")
     verdict, p = decide(faster, slower, max(not_faster, not_slower), blocks, part)
-    row = verdict_row(centre(values, 1 - ERROR * part, prior), blocks, p, verdict)
+    row = verdict_row(found.interval(1 - ERROR * part), blocks, p, verdict)
     return {**row, **denials(faster, slower, not_faster, not_slower, blocks, part)}
 
 

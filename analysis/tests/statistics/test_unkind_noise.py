@@ -1,0 +1,168 @@
+"""How often a verdict errs where noise is unkind, in the worst comparison of a study, beside the rules that
+were used before. Seeds are fixed.
+"""
+
+import numpy as np
+import pytest
+
+from analysis.statistics.dependence import autocorrelation, widening, widening_of_independent
+from analysis.statistics.intervals import centre
+from analysis.statistics.looks import ERROR, LOOKS, last_look, seen
+from analysis.statistics.simultaneous import Curves
+from analysis.statistics.verdicts import judge_one
+from analysis.tests.statistics.unkind_noise import (
+    FORMER_LOOKS,
+    FORMER_SHARE,
+    Floats,
+    dependent,
+    former,
+    missed,
+    moderated,
+    one_sided_bursts,
+    student,
+    two_speeds,
+)
+
+STUDIES = 500
+LAST = LOOKS[-1]
+CHANCE = 0.017
+"""1.7 standard errors of 5 % of so many studies."""
+
+
+def missed_now(studies: Floats, truth: float = 0.0) -> float:
+    """Return in which part of the studies the interval of any look misses the truth."""
+    count = 0
+    for values in studies:
+        found = (centre(values[:look]) for look in LOOKS)
+        count += any(not one.low <= truth <= one.high for one in found)
+    return count / len(studies)
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.2, 0.4, 0.6])
+def test_blocks_that_depend_on_each_other(correlation: float) -> None:
+    values = dependent(np.random.default_rng(1), correlation, STUDIES, LAST)
+    assert missed_now(values) <= ERROR + CHANCE
+    assert missed(former, values) > {0.0: 0.0, 0.2: 0.06, 0.4: 0.17, 0.6: 0.36}[correlation]
+
+
+def test_a_machine_that_stays_in_one_of_two_speeds_for_a_moment() -> None:
+    """Of a stay of five blocks the first looks may see one speed alone: nothing in the values can tell. That is
+    why a study spreads the blocks of a comparison over its time.
+    """
+    brief, long = (two_speeds(np.random.default_rng(2), dwell, STUDIES, LAST) for dwell in (2.5, 5))
+    assert missed_now(brief) <= ERROR + CHANCE
+    assert missed(former, brief) > 0.08
+    assert missed_now(long) < 0.18
+    assert missed(former, long) > 0.38
+
+
+@pytest.mark.parametrize(("times", "before"), [(2, 0.06), (3, 0.12)])
+def test_one_comparison_noisier_than_all_others(times: float, before: float) -> None:
+    generator = np.random.default_rng(3)
+    worst = times * generator.standard_normal((STUDIES, LAST))
+    others = generator.standard_normal((29, 200))
+    assert missed_now(worst) <= 0.03
+    looks = (4, 6, 9)
+    assert missed(lambda row, error: moderated(row, error, others[:, : len(row)]), worst, 0, looks) > before
+
+
+def test_one_estimand_for_any_number_of_blocks() -> None:
+    bursts = one_sided_bursts(np.random.default_rng(4), 200, LAST)
+    now = {look: np.median([centre(row[:look]).estimate for row in bursts]) for look in LOOKS}
+    assert max(now.values()) - min(now.values()) < 0.006
+    before = {look: np.mean([former(row[:look], FORMER_SHARE)[0] for row in bursts]) for look in (9, 14)}
+    assert before[9] - before[14] > 0.025, "the mean became the pseudo-median"
+
+
+def test_bursts_on_one_side_are_not_missed_and_leave_something_to_decide() -> None:
+    bursts = one_sided_bursts(np.random.default_rng(5), STUDIES, LAST)
+    long = one_sided_bursts(np.random.default_rng(6), 1, 4000)[0]
+    truth = float(np.median((long + np.roll(long, 1)) / 2))
+    assert missed_now(bursts, truth) <= ERROR
+    assert missed(student, bursts, np.log(1.5) / 10) > 0.25, "of the mean, before the first burst is seen"
+    widths = [centre(row).high - centre(row).low for row in bursts]
+    of_the_mean = [np.subtract(*student(row, FORMER_SHARE)[:0:-1]) for row in bursts]
+    assert np.median(widths) < 0.5 * np.median(of_the_mean)
+
+
+@pytest.mark.parametrize("skewed", ["lognormal", "exponential"])
+def test_skewed_noise(skewed: str) -> None:
+    generator = np.random.default_rng(7)
+    draw = generator.lognormal if skewed == "lognormal" else generator.exponential
+    values, long = draw(size=(STUDIES, LAST)), draw(size=200_000)
+    truth = float(np.median((long + np.roll(long, 1)) / 2))
+    assert missed_now(values, truth) <= ERROR
+    assert missed(student, values, float(long.mean())) > 0.08
+
+
+def test_a_report_at_every_block_adds_no_look() -> None:
+    """Looked at after every block, by a rule that gives each look the share of the planned one before it."""
+    values = np.random.default_rng(8).standard_normal((STUDIES, LAST))
+
+    def at_every_block(row: Floats) -> bool:
+        found = (student(row[:count], FORMER_SHARE) for count in range(FORMER_LOOKS[0], LAST + 1))
+        return any(not low <= 0 <= high for _, low, high in found)
+
+    assert np.mean([at_every_block(row) for row in values]) > 0.045
+    now = [[centre(row[:count]) for count in range(1, LAST + 1)] for row in values[:100]]
+    assert all(
+        one == centre(row[: last_look(count)])
+        for row, found in zip(values, now, strict=False)
+        for count, one in enumerate(found, 1)
+    )
+    assert missed_now(values) <= 0.03
+
+
+def test_a_resumed_study_decides_as_one_that_was_not_stopped() -> None:
+    values = 0.03 + 0.01 * np.random.default_rng(9).standard_normal(30)
+    assert judge_one(values) == judge_one(values[:21])
+    assert list(seen(values)) == list(values[:21])
+
+
+@pytest.mark.parametrize(("times", "before"), [(3, 0.04), (5, 0.08)])
+def test_an_end_of_a_curve_noisier_than_its_other_points(times: float, before: float) -> None:
+    """A flat curve of eight points, whose last one is noisier: no rise, no fall, at any look."""
+    generator = np.random.default_rng(10)
+    curves = generator.normal(0, 0.02, (STUDIES, LOOKS[2], 8)) * np.r_[np.ones(7), times]
+    now = sum(_shape_said(curve) for curve in curves)
+    pooled = sum(_pooled_shape_said(curve) for curve in curves)
+    assert now <= ERROR * STUDIES
+    assert pooled > before * STUDIES
+
+
+def _shape_said(curve: Floats) -> bool:
+    found = [Curves(curve[:look]).shape(np.log(1.02)) for look in LOOKS[:3]]
+    return any(p <= ERROR and shape != "flat" for shape, p in found)
+
+
+def _pooled_shape_said(curve: Floats) -> bool:
+    """Tell whether the ends differ by more than the margin, by the former rule: one variance for all points."""
+    from scipy import stats
+
+    for look in FORMER_LOOKS[:4]:
+        part = curve[:look]
+        freedom = (look - 1) * (part.shape[1] - 1)
+        means = part.mean(axis=0)
+        rest = part - means - part.mean(axis=1, keepdims=True) + part.mean()
+        error = np.sqrt((rest**2).sum() / freedom / look)
+        quantile = stats.studentized_range.ppf(1 - FORMER_SHARE, part.shape[1], freedom)
+        if abs(means[-1] - means[0]) - np.log(1.02) > quantile * error:
+            return True
+    return False
+
+
+def test_the_autocorrelation_is_found_and_a_burst_does_not_hide_it() -> None:
+    values = dependent(np.random.default_rng(11), 0.5, 400, LAST)
+    assert np.mean([autocorrelation(row) for row in values]) == pytest.approx(0.5, abs=0.03)
+    burst = values.copy()
+    burst[:, 20] += 50
+    assert np.mean([widening(row, 0, 1) for row in burst]) > 0.85 * np.mean(
+        [widening(row, 0, 1) for row in values]
+    )
+
+
+def test_independent_blocks_are_widened_less_the_more_there_are() -> None:
+    factors = [widening_of_independent(look) for look in LOOKS]
+    assert factors == sorted(factors, reverse=True)
+    assert 1.2 < factors[-1] < 1.35
+    assert widening(np.ones(10), 1.0, 0.0) == 1
