@@ -7,7 +7,6 @@ from typing import Any
 import pandas as pd
 from matplotlib.axes import Axes
 
-from analysis.derived.noise_prior import prior
 from analysis.figures.captions import opening, time_axis
 from analysis.figures.curves import dots
 from analysis.figures.hover import Told, tell
@@ -15,7 +14,6 @@ from analysis.figures.league import league
 from analysis.figures.pairs import Sides, bounded, pair_drawing
 from analysis.figures.style import BAND, BLUE, FAINT, INK, Data, Drawing, new_figure
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.moderation import NOTHING_KNOWN, Prior
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge
 from analysis.support.wording import change, exact
@@ -29,9 +27,8 @@ def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
     if times.empty:
         return None
     against = reference(times)
-    noise = prior(data.study, experiment)
-    table = differences(times, against, noise)
-    ranked = league(data.study, experiment, noise)
+    table = differences(times, against)
+    ranked = league(data.study, experiment)
     tables = [] if ranked is None else [ranked]
     table["name"] = [f"{_label(row, table)} against {against}" for row in table.to_dict("records")]
     names = sorted(times["series"].unique(), key=lambda name: name == against)
@@ -57,7 +54,7 @@ def reference(times: pd.DataFrame) -> str:
     return str(candidates[0] if len(candidates) == 1 else min(times["series"]))
 
 
-def differences(times: pd.DataFrame, against: str, noise: Prior = NOTHING_KNOWN) -> pd.DataFrame:
+def differences(times: pd.DataFrame, against: str) -> pd.DataFrame:
     """Return a row of `verdicts.judge` for every other series and x, compared within blocks with the series
     `against` at the same x, Holm-corrected over all of them.
     """
@@ -68,7 +65,7 @@ def differences(times: pd.DataFrame, against: str, noise: Prior = NOTHING_KNOWN)
     ]
     columns = ["series", "x", "log_ratio"]
     table = pd.concat(pairs) if pairs else pd.DataFrame(columns=columns)
-    return judge(table, ["series", "x"], prior=noise)
+    return judge(table, ["series", "x"])
 
 
 def differences_sentence(table: pd.DataFrame, against: str) -> str:

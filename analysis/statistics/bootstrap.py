@@ -5,12 +5,12 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
-from analysis.statistics.intervals import FEWEST
-
 Floats = NDArray[np.float64]
 
 REPLICATES = 2000
 SEED = 20240229
+FEWEST = 4
+"""Processes of which fewer tell no interval of their median."""
 
 
 def summarise(

@@ -40,9 +40,11 @@ def widening(values: Floats, centre: float, deviation: float) -> float:
     return _factor(autocorrelation(cut) + DOUBT / np.sqrt(len(cut)), len(cut))
 
 
-def widening_of_independent(count: int) -> float:
-    """Return the factor that so many values get which show no autocorrelation at all."""
-    return _factor(DOUBT / np.sqrt(count), count)
+def widening_of_independent(count: int, chance: float = 0.0) -> float:
+    """Return the factor that so many independent values get; by `chance` their autocorrelation seems to be so
+    many standard errors above 0.
+    """
+    return _factor((DOUBT + chance) / np.sqrt(count), count)
 
 
 def autocorrelation(values: Floats) -> float:

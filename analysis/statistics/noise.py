@@ -115,15 +115,17 @@ def equivalence_rate(noise: float, blocks: int, margin: float = MARGIN) -> float
     does not depend on itself.
 
     The centre of the log ratios is normal and their deviation, independent of it, a scaled chi; the rate is
-    the chance that the interval of the look lies within the margin, averaged over quantiles of the deviation.
+    the chance that the interval of the look lies within the margin, averaged over quantiles of the deviation
+    and of the autocorrelation that they seem to have.
     """
     true_error = noise * np.sqrt(2 / blocks)
     quantiles = stats.chi2.ppf((np.arange(200) + 0.5) / 200, blocks - 1)
+    chances = stats.norm.ppf((np.arange(20) + 0.5) / 20)
+    widenings = np.array([widening_of_independent(blocks, chance) for chance in chances])
     half_width = (
         stats.t.ppf(1 - ERROR * share_of_error(blocks) / 2, blocks - 1)
-        * widening_of_independent(blocks)
         * true_error
-        * np.sqrt(quantiles / (blocks - 1))
+        * np.outer(widenings, np.sqrt(quantiles / (blocks - 1)))
     )
     room = np.maximum(np.log1p(margin) - half_width, 0)
     return float((2 * stats.norm.cdf(room / max(true_error, 1e-12)) - 1).mean())

@@ -1,12 +1,11 @@
-"""Comparisons that are looked at until they are decided, and what other comparisons tell of their noise."""
+"""Comparisons that are looked at until they are decided."""
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from analysis.statistics.intervals import centre
-from analysis.statistics.looks import ERROR, LOOKS, next_look, share
-from analysis.statistics.moderation import MOST_FREEDOM, NOTHING_KNOWN, Prior, fit
+from analysis.statistics.looks import ERROR, LOOKS, last_look, next_look, share
 from analysis.statistics.verdicts import MARGIN, judge_one
 
 Floats = NDArray[np.float64]
@@ -41,18 +40,17 @@ def two_speeds(generator: np.random.Generator) -> Floats:
 NOISES = (normal, unlike, bursts, two_speeds)
 
 
-def decide(logs: Floats, *, moderated: bool) -> list[tuple[str, int]]:
+def decide(logs: Floats) -> list[tuple[str, int]]:
     """Return each comparison's verdict and the blocks it took: all go on until theirs is settled."""
-    used = np.full(len(logs), LOOKS[-1])
-    verdicts = ["inconclusive"] * len(logs)
+    return [_decide_one(row) for row in logs]
+
+
+def _decide_one(row: Floats) -> tuple[str, int]:
     for look in LOOKS:
-        seen = [row[: min(look, blocks)] for row, blocks in zip(logs, used, strict=True)]
-        known = fit([one.var(ddof=1) for one in seen], [len(one) - 1 for one in seen])
-        for number, row in enumerate(logs):
-            if verdicts[number] == "inconclusive":
-                found = judge_one(row[:look], prior=known if moderated else NOTHING_KNOWN)
-                verdicts[number], used[number] = found["verdict"], look
-    return list(zip(verdicts, map(int, used), strict=True))
+        verdict = str(judge_one(row[:look])["verdict"])
+        if verdict != "inconclusive":
+            break
+    return verdict, look
 
 
 @pytest.mark.parametrize("noise", NOISES)
@@ -61,7 +59,7 @@ def test_looking_until_it_is_decided_errs_in_at_most_one_in_twenty(noise: object
     generator = np.random.default_rng(5)
     truth = "equivalent" if effect < MARGIN else "slower"
     assert callable(noise)
-    found = [one for _ in range(4) for one in decide(noise(generator) + np.log1p(effect), moderated=True)]
+    found = [one for _ in range(4) for one in decide(noise(generator) + np.log1p(effect))]
     wrong = sum(verdict not in (truth, "inconclusive") for verdict, _ in found)
     assert wrong <= 0.05 * len(found)
     if effect == 0.05:  # one and a half margins beyond the border
@@ -76,7 +74,7 @@ def former_rule(logs: Floats) -> list[str]:
     for row in logs:
         bound, verdict = np.log1p(MARGIN), "inconclusive"
         for look in LOOKS:
-            found = centre(row[:look], 0.90)
+            found = centre(row[:look], 0.90, independent=True)
             within = found.low > -bound and found.high < bound
             verdicts = {"slower": found.low > bound, "faster": found.high < -bound, "equivalent": within}
             verdict = next((one for one, holds in verdicts.items() if holds), "inconclusive")
@@ -94,7 +92,7 @@ def test_the_former_rule_errs_more_often_on_the_same_data(noise: object) -> None
         generator = np.random.default_rng(5)
         for _ in range(8):
             logs = noise(generator) + np.log1p(effect)
-            now = [verdict for verdict, _ in decide(logs, moderated=True)]
+            now = [verdict for verdict, _ in decide(logs)]
             for rule, said in (("former", former_rule(logs)), ("now", now)):
                 wrong[rule] += sum(verdict not in (truth, "inconclusive") for verdict in said)
     assert wrong["former"] > 0.05 * 2 * 8 * COMPARISONS
@@ -125,7 +123,7 @@ def test_what_is_denied_near_its_border_is_wrong_in_at_most_one_of_twenty(
 
 def test_a_claim_is_denied_where_equivalent_and_slower_are_not_told_apart() -> None:
     logs = np.random.default_rng(9).normal(np.log1p(MARGIN), 0.02, (200, LAST))
-    verdicts = [verdict for verdict, _ in decide(logs, moderated=False)]
+    verdicts = [verdict for verdict, _ in decide(logs)]
     assert verdicts.count("inconclusive") >= 180
     assert settled(logs).count("does not hold") >= 195
 
@@ -140,7 +138,7 @@ def test_intervals_that_forget_the_looks_err_more_often_than_they_say() -> None:
         return float(np.mean([any(not one.low < 0 < one.high for one in found) for found in looks]))
 
     assert misses(None) <= ERROR
-    assert misses(0.95) > 2 * ERROR
+    assert misses(0.95) > 5 * misses(None)
 
 
 def test_what_is_looked_at_once_has_the_whole_of_the_error() -> None:
@@ -150,7 +148,7 @@ def test_what_is_looked_at_once_has_the_whole_of_the_error() -> None:
     assert 0.03 <= misses <= 0.065
     among_looks = judge_one(logs[0])
     assert once[0]["low"] > among_looks["low"]
-    assert once[0]["not_faster"] == pytest.approx(among_looks["not_faster"] * share(60))
+    assert once[0]["not_faster"] < among_looks["not_faster"] * share(48), "none depends on another"
 
 
 def test_the_shares_of_all_looks_are_a_whole() -> None:
@@ -159,23 +157,5 @@ def test_the_shares_of_all_looks_are_a_whole() -> None:
         looks.append(next_look(looks[-1]))
     assert tuple(looks[: len(LOOKS)]) == LOOKS
     assert sum(map(share, looks)) == pytest.approx(1, abs=1e-6)
-    assert share(5) == share(4)
-
-
-def test_a_prior_is_that_of_its_comparisons() -> None:
-    generator = np.random.default_rng(7)
-    variances = 0.03**2 * 8 / generator.chisquare(8, 400)
-    found = fit(variances * generator.chisquare(3, 400) / 3, np.full(400, 3))
-    assert found.freedom == pytest.approx(8, rel=0.5)
-    assert found.variance == pytest.approx(0.03**2, rel=0.2)
-    alike = fit(0.03**2 * generator.chisquare(3, 400) / 3, np.full(400, 3))
-    assert alike.freedom == pytest.approx(MOST_FREEDOM, rel=0.5)
-    assert fit(variances[:7], np.full(7, 3)) == NOTHING_KNOWN
-
-
-def test_four_blocks_say_more_where_a_hundred_others_are_alike() -> None:
-    ratios = 0.08 + np.array([0.01, -0.02, 0.03, -0.01])
-    alone, helped = judge_one(ratios), judge_one(ratios, prior=Prior(15, 0.02**2))
-    assert (alone["verdict"], helped["verdict"]) == ("inconclusive", "slower")
-    far = judge_one(0.08 + 10 * (ratios - 0.08), prior=Prior(2, 0.02**2))
-    assert far["verdict"] == "inconclusive", "its own noise still counts"
+    assert share(7) == share(6)
+    assert [last_look(count) for count in (0, 5, 6, 8, 9, 71, 72)] == [0, 5, 6, 6, 9, 48, 72]

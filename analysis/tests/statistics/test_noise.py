@@ -2,7 +2,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.statistics.intervals import RANKS_FROM
+from analysis.statistics.looks import LOOKS
 from analysis.statistics.noise import blocks_needed, needed_said, process_noise, warning
 from analysis.statistics.verdicts import judge_one
 from analysis.tests.synthetic_noise import Noise, times_table
@@ -24,7 +24,7 @@ def test_the_noise_is_found_under_drift_and_bursts(deviation: float, drift: floa
 def test_the_blocks_needed_grow_with_the_noise() -> None:
     needed = [blocks_needed(deviation) for deviation in (0.001, 0.005, 0.01, 0.02)]
     assert needed == sorted(needed)
-    assert needed[0] == 4
+    assert needed[0] == LOOKS[0]
 
 
 @pytest.mark.parametrize("deviation", [0.004, 0.01, 0.015])
@@ -40,10 +40,6 @@ def test_no_number_of_blocks_is_said_where_more_than_can_be_told_are_needed() ->
     assert needed_said(blocks_needed(0.3)) == "more than 1000"
     row = noise_of(Noise(process=0.3, repetition=0, burst_rate=0), blocks=8)
     assert "which needs more than 1000 blocks" in str(warning(pd.DataFrame([row])))
-
-
-def test_bursts_ask_for_the_blocks_that_ranks_need() -> None:
-    assert noise_of(Noise(process=0.002, repetition=0, burst_rate=0.05, burst_size=2))["needed"] == RANKS_FROM
 
 
 def test_a_label_on_one_side_and_a_configuration_that_soon_failed_leave_the_estimate() -> None:

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from analysis.statistics.bootstrap import FEWEST as FEWEST_PROCESSES
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.looks import ERROR
@@ -76,9 +77,9 @@ def test_a_bootstrap_interval_stands_about_the_median_of_enough_processes(
     table = processes(list(rows)).assign(series="one")
     row = summarise(table.assign(session=table["block"].map(dict(enumerate(sessions)))), ["series"]).iloc[0]
     assert row["median"] == pytest.approx(np.median([np.median(values) for values in rows]))
-    assert np.isnan(row["low"]) == np.isnan(row["high"]) == (len(rows) < FEWEST)
-    assert len(rows) < FEWEST or row["low"] <= row["median"] * (1 + 1e-12)
-    assert len(rows) < FEWEST or row["high"] >= row["median"] * (1 - 1e-12)
+    assert np.isnan(row["low"]) == np.isnan(row["high"]) == (len(rows) < FEWEST_PROCESSES)
+    assert len(rows) < FEWEST_PROCESSES or row["low"] <= row["median"] * (1 + 1e-12)
+    assert len(rows) < FEWEST_PROCESSES or row["high"] >= row["median"] * (1 - 1e-12)
     assert (row["sessions"], row["processes"], row["samples"]) == (len(set(sessions)), len(rows), len(table))
 
 

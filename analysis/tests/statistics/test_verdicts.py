@@ -31,28 +31,28 @@ def verdicts(effect: float, blocks: int, noise: Noise, repetitions: int = 5) -> 
     return Counter(judge_one(study["log_ratio"])["verdict"] for _, study in pairs.groupby("x"))
 
 
-@pytest.mark.parametrize(("blocks", "repetitions"), [(21, 3), (32, 1)])
+@pytest.mark.parametrize(("blocks", "repetitions"), [(32, 3), (48, 1)])
 def test_control_is_equivalent_in_95_of_100_studies(blocks: int, repetitions: int) -> None:
     assert verdicts(0.0, blocks, VM, repetitions)["equivalent"] >= 95
 
 
-@pytest.mark.parametrize("blocks", [9, 14])
-def test_five_percent_is_found(blocks: int) -> None:
-    assert verdicts(0.05, blocks, VM)["slower"] >= 95
-    assert verdicts(-0.05, blocks, VM)["faster"] >= 95
+@pytest.mark.parametrize(("blocks", "found"), [(14, 70), (21, 95)])
+def test_five_percent_is_found(blocks: int, found: int) -> None:
+    assert verdicts(0.05, blocks, VM)["slower"] >= found
+    assert verdicts(-0.05, blocks, VM)["faster"] >= found
 
 
-@pytest.mark.parametrize("blocks", [5, 7, 12])
+@pytest.mark.parametrize("blocks", [6, 9, 14])
 def test_one_percent_is_never_called_a_difference(blocks: int) -> None:
     counts = verdicts(0.01, blocks, VM)
     assert counts["slower"] + counts["faster"] <= 1
 
 
 def test_one_percent_is_called_equivalent_with_enough_blocks() -> None:
-    assert verdicts(0.01, blocks=40, noise=VM)["equivalent"] >= 90
+    assert verdicts(0.01, blocks=72, noise=VM)["equivalent"] >= 95
 
 
-@pytest.mark.parametrize("blocks", [5, 12])
+@pytest.mark.parametrize("blocks", [6, 14])
 def test_noise_leads_to_undecided_and_not_to_wrong(blocks: int) -> None:
     equal, far = verdicts(0.0, blocks, NOISY), verdicts(0.05, blocks, NOISY)
     assert equal["slower"] + equal["faster"] <= 5
@@ -66,7 +66,7 @@ def decided(logs: Floats) -> Counter[str]:
 
 
 @pytest.mark.parametrize("border", [-1, 1])
-@pytest.mark.parametrize("blocks", [4, 7, 12])
+@pytest.mark.parametrize("blocks", [6, 9, 14])
 def test_on_the_margin_itself_at_most_one_verdict_in_twenty(blocks: int, border: int) -> None:
     generator = np.random.default_rng(blocks)
     counts = decided(border * np.log1p(MARGIN) + generator.normal(0, 0.01, (1000, blocks)))
@@ -74,7 +74,7 @@ def test_on_the_margin_itself_at_most_one_verdict_in_twenty(blocks: int, border:
 
 
 @pytest.mark.parametrize("switches", [0.1, 0.5])
-@pytest.mark.parametrize("blocks", [2, 4, 7, 12])
+@pytest.mark.parametrize("blocks", [2, 6, 9, 14])
 def test_two_speeds_tell_equal_variants_apart_in_at_most_one_study_in_twenty(
     blocks: int, switches: float
 ) -> None:
@@ -85,13 +85,13 @@ def test_two_speeds_tell_equal_variants_apart_in_at_most_one_study_in_twenty(
     assert counts["faster"] + counts["slower"] <= 39
 
 
-@pytest.mark.parametrize("blocks", [1, 2, 3])
-def test_fewer_than_four_blocks_decide_nothing(blocks: int) -> None:
+@pytest.mark.parametrize("blocks", [1, 3, 5])
+def test_fewer_than_six_blocks_decide_nothing(blocks: int) -> None:
     row = judge_one(np.linspace(0.5, 0.51, blocks))
     assert (row["verdict"], row["p"]) == ("inconclusive", 1)
 
 
-@given(st.lists(st.floats(-0.2, 0.2), min_size=4, max_size=20))
+@given(st.lists(st.floats(-0.2, 0.2), min_size=6, max_size=20))
 @settings(max_examples=100, deadline=None)
 def test_the_interval_that_is_shown_decides(values: list[float]) -> None:
     row, border = judge_one(values), 1 + MARGIN
@@ -116,9 +116,9 @@ def test_holm_as_worked_by_hand() -> None:
 
 
 def test_the_table_is_corrected_over_its_rows() -> None:
-    ratios = np.log(1.02) + np.array([0.014, 0.016, 0.018, 0.012, 0.015])
+    ratios = np.log(1.02) + np.array([0.014, 0.016, 0.018, 0.012, 0.015, 0.016])
     alone = judge_one(ratios)
-    rows = pd.concat(pd.DataFrame({"row": row, "log_ratio": ratios}) for row in range(100))
+    rows = pd.concat(pd.DataFrame({"row": row, "log_ratio": ratios}) for row in range(1000))
     assert alone["verdict"] == "slower"
     assert set(judge(rows, ["row"])["verdict"]) == {"inconclusive"}
 
@@ -127,10 +127,10 @@ def test_not_faster_needs_evidence() -> None:
     def not_faster(values: list[float]) -> float:
         return float(judge_one(values)["not_faster"])
 
-    assert not_faster([0.0, 0.001, -0.001, 0.002, 0.001]) < 0.05
-    assert not_faster([0.0, 0.001, -0.001]) == 1, "three blocks"
-    assert not_faster([0.0, 0.2, -0.2, 0.1, -0.1]) > 0.05
-    assert not_faster([-0.05, -0.051, -0.049, -0.05, -0.052]) > 0.05
+    assert not_faster([0.0, 0.001, -0.001, 0.002, 0.001, 0.0]) < 0.05
+    assert not_faster([0.0, 0.001, -0.001, 0.0, 0.001]) == 1, "five blocks"
+    assert not_faster([0.0, 0.2, -0.2, 0.1, -0.1, 0.1]) > 0.05
+    assert not_faster([-0.05, -0.051, -0.049, -0.05, -0.052, -0.05]) > 0.05
 
 
 def test_a_process_without_partner_and_a_block_over_two_sessions() -> None:

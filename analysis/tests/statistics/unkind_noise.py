@@ -1,6 +1,9 @@
-"""Noise that is unkind to an interval, as studies x blocks of log ratios, and the rules that were used before."""
+"""Noise that is unkind to an interval, as studies x blocks of log ratios, and the rules that were used
+before.
+"""
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +42,7 @@ def one_sided_bursts(generator: np.random.Generator, studies: int, blocks: int) 
 def student(values: Floats, error: float) -> tuple[float, float, float]:
     """Return the mean with Student's t interval: what was used for fewer than 14 blocks."""
     mean = float(values.mean())
-    half = float(stats.t.ppf(1 - error / 2, len(values) - 1) * values.std(ddof=1) / np.sqrt(len(values)))
+    half = _quantile(error, len(values) - 1) * float(values.std(ddof=1)) / np.sqrt(len(values))
     return mean, mean - half, mean + half
 
 
@@ -47,11 +50,28 @@ def signed_ranks(values: Floats, error: float) -> tuple[float, float, float]:
     """Return the pseudo-median with the interval of exact signed ranks: what was used from 14 blocks on."""
     first, second = np.triu_indices(len(values))
     averages = np.sort((values[first] + values[second]) / 2)
-    chance = np.ones(1)
-    for rank in range(1, len(values) + 1):
-        chance = np.convolve(chance, np.r_[0.5, np.zeros(rank - 1), 0.5])
-    rank = int((np.cumsum(chance) <= error / 2).sum())
+    rank = _rank(len(values), error)
     return float(np.median(averages)), float(averages[rank - 1]), float(averages[-rank])
+
+
+@lru_cache
+def _rank(count: int, error: float) -> int:
+    """Return which of the averages, from either end, ends the interval."""
+    chance = np.ones(1)
+    for rank in range(1, count + 1):
+        chance = np.convolve(chance, np.r_[0.5, np.zeros(rank - 1), 0.5])
+    return int((np.cumsum(chance) <= error / 2).sum())
+
+
+@lru_cache
+def _quantile(error: float, freedom: int) -> float:
+    return float(stats.t.ppf(1 - error / 2, freedom))
+
+
+@lru_cache
+def studentized_range(error: float, points: int, freedom: int) -> float:
+    """Return the quantile of the range of so many points over its standard error (Tukey)."""
+    return float(stats.studentized_range.ppf(1 - error, points, freedom))
 
 
 def former(values: Floats, error: float) -> tuple[float, float, float]:
@@ -66,7 +86,7 @@ def moderated(values: Floats, error: float, others: Floats) -> tuple[float, floa
     own, freedom = float(values.var(ddof=1)), len(values) - 1
     known = float(np.median(others.var(axis=1, ddof=1)))
     variance = (20 * known + freedom * own) / (20 + freedom)
-    half = float(stats.t.ppf(1 - error / 2, 20 + freedom) * np.sqrt(variance / len(values)))
+    half = _quantile(error, 20 + freedom) * float(np.sqrt(variance / len(values)))
     mean = float(values.mean())
     return mean, mean - half, mean + half
 
