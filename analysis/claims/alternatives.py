@@ -8,7 +8,6 @@ import pandas as pd
 
 from analysis.claims.outcome import FAILS, TOO_FEW, Outcome, judged
 from analysis.statistics.looks import ERROR
-from analysis.statistics.moderation import NOTHING_KNOWN, Prior
 from analysis.statistics.verdicts import MARGIN, judge, judge_one
 from analysis.support.wording import share
 
@@ -43,14 +42,14 @@ class Alternatives:
         return replace(found, why=why, against=against)
 
 
-def alternatives(pairs: pd.DataFrame, prior: Prior = NOTHING_KNOWN) -> Alternatives:
+def alternatives(pairs: pd.DataFrame) -> Alternatives:
     """Judge the alternatives; `pairs` has `name` and `log_ratio` = ln(alternative / choice).
 
     That nothing is faster needs evidence against every alternative (an intersection of tests, each at 5 %);
     that something is faster is Holm-corrected over the alternatives.
     """
-    alone = {name: judge_one(group["log_ratio"], prior=prior) for name, group in pairs.groupby("name")}
-    table = judge(pairs, ["name"], prior=prior)
+    alone = {name: judge_one(group["log_ratio"]) for name, group in pairs.groupby("name")}
+    table = judge(pairs, ["name"])
     behind, ahead = ([p(alone[name]) for name in table["name"]] for p in (_behind, _ahead))
     return Alternatives(table.assign(behind=behind, ahead=ahead))
 

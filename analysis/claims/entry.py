@@ -7,11 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from analysis.derived.noise_prior import prior
 from analysis.records.published import Published
 from analysis.records.reading import InputError
 from analysis.records.studies import SCALES, Study
-from analysis.statistics.moderation import Prior
 
 CLAIMS_FILE = Path(__file__).parent / "claims.toml"
 
@@ -68,10 +66,6 @@ class Evidence:
     study: Study
     studies: Sequence[Study]
     published: Published
-
-    def prior(self, experiment: str) -> Prior:
-        """Return what the study tells of the noise of an experiment's ratios."""
-        return prior(self.study, experiment)
 
 
 def load(results: Path | None = None) -> list[Claim]:

@@ -49,8 +49,7 @@ def _one_pair(
     name, shared = times["x_name"].iloc[0], sorted(set(chosen["x"]) & set(against["x"]))
     if not shared:
         return no_records(experiment, f"{candidate} and {reference} at the same {name}")
-    prior = evidence.prior(experiment)
-    rows = {x: judge_one(_ratios(against, chosen, x), prior=prior) for x in shared}
+    rows = {x: judge_one(_ratios(against, chosen, x)) for x in shared}
     theirs = published_curves.ratio(evidence.published, experiment, candidate, reference)
     published = "–" if pd.isna(theirs) else percent(theirs - 1)
     what = f"time of {candidate} against {reference}"

@@ -10,7 +10,6 @@ from analysis.claims.curves import published_processes
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, Compared, Outcome, judged, no_records, told
-from analysis.statistics.moderation import NOTHING_KNOWN, Prior
 from analysis.statistics.pairs import log_ratios
 from analysis.statistics.scalability import doubt
 from analysis.statistics.verdicts import MARGIN, judge_one
@@ -30,10 +29,10 @@ class Stretch:
     expected: str
     needs: str
 
-    def judge(self, processes: pd.DataFrame, prior: Prior = NOTHING_KNOWN) -> dict[str, Any]:
+    def judge(self, processes: pd.DataFrame) -> dict[str, Any]:
         """Return the row of `judge_one` for the time at its end against that at its start."""
         ends = (processes[processes["x"] == end] for end in (self.start, self.end))
-        return judge_one(log_ratios(*ends)["log_ratio"], self.margin, prior)
+        return judge_one(log_ratios(*ends)["log_ratio"], self.margin)
 
     def same_binding(self, processes: pd.DataFrame) -> bool:
         """Tell whether both ends were measured with threads bound alike."""
@@ -53,8 +52,7 @@ def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_m
     cores = study.cores or study.hardware_threads
     stretches = _stretches(sorted(processes["x"].unique()), cores, study.hardware_threads, flat_margin)
     there = [stretch for stretch in stretches if stretch.start < stretch.end]
-    prior = evidence.prior(experiment)
-    tested = [_judged(stretch, processes, cores, prior) for stretch in there]
+    tested = [_judged(stretch, processes, cores) for stretch in there]
     absent = [Outcome(OPEN, why=f"needs {one.needs}") for one in stretches if one not in there]
     figures = _compared(evidence, experiment, stretches, processes, published_machine)
     return both([*tested, *absent, Outcome(HOLDS, figures=figures)])
@@ -73,8 +71,8 @@ def _stretches(x: list[float], cores: int, hardware: int, flat_margin: float) ->
     ]  # fmt: skip
 
 
-def _judged(stretch: Stretch, processes: pd.DataFrame, cores: int, prior: Prior) -> Outcome:
-    row, span = stretch.judge(processes, prior), f"{stretch.start:g} to {stretch.end:g} threads"
+def _judged(stretch: Stretch, processes: pd.DataFrame, cores: int) -> Outcome:
+    row, span = stretch.judge(processes), f"{stretch.start:g} to {stretch.end:g} threads"
     unlikely = doubt(1 / row["ratio"], min(stretch.end, cores) / min(stretch.start, cores))
     measured = f"{span}: {change(row)} of time, {blocks(row)}{unlikely and f' ({unlikely})'}"
     if not stretch.same_binding(processes):

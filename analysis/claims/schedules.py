@@ -47,9 +47,8 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     )
     if pairs.empty:
         return no_records(experiment, "any block with both sides")
-    prior = evidence.prior(experiment)
-    average = judge_one(_average(pairs), prior=prior)
-    found = alternatives(pairs, prior)
+    average = judge_one(_average(pairs))
+    found = alternatives(pairs)
     best, seconds = found.best, number(float(np.median(chosen["steps_seconds"])))
     measured = (
         f"{schedule} {chunk}: {seconds} s on {count(int(chosen['threads'].iloc[0]), 'thread')}; "

@@ -9,8 +9,7 @@ import pandas as pd
 
 from analysis import claims
 from analysis.claims.missing import DECIDED
-from analysis.derived.noise_prior import prior
-from analysis.figures.comparisons import differences, reference
+from analysis.derived.comparisons import differences, reference
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
@@ -100,7 +99,7 @@ def _comparisons(
         if experiment in claimed or times["figure"].iloc[0] not in COMPARED:
             continue
         against = reference(times)
-        table = differences(times, against, prior(study, str(experiment)))
+        table = differences(times, against)
         undecided = int((table["verdict"] == "inconclusive").sum())
         for row in table.to_dict("records"):
             name = f"{experiment}: {row['series']} against {against}"

@@ -2,9 +2,9 @@
 
 import pandas as pd
 
+from analysis.derived.comparisons import stated
 from analysis.figures.style import Cell, Table
 from analysis.records.studies import Study
-from analysis.statistics.moderation import Prior
 from analysis.statistics.ranking import ranking
 from analysis.support.wording import number
 
@@ -15,7 +15,7 @@ ANOTHER = "another command"
 _TRAJECTORY = "trajectory of "
 
 
-def league(study: Study, experiment: str, noise: Prior) -> Table | None:
+def league(study: Study, experiment: str) -> Table | None:
     """Return the table of an experiment of whole processes at one place of its sweep, None for any other."""
     times, failures = (table[table["experiment"] == experiment] for table in (study.times, study.failures))
     if times.empty or (times["kind"] != "process").any() or times["x"].nunique() > 1:
@@ -29,7 +29,7 @@ def league(study: Study, experiment: str, noise: Prior) -> Table | None:
             Cell(row.bracket),
             Cell(checked[row.series], _mark(checked[row.series])),
         )
-        for row in ranking(times, noise).itertuples()
+        for row in ranking(times, stated(times).margin).itertuples()
     ]
     failed = failures[~failures["series"].isin(checked.index)].groupby("series")["reason"].first()
     rows += [

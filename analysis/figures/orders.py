@@ -2,10 +2,10 @@
 
 import pandas as pd
 
+from analysis.derived.comparisons import differences, reference
 from analysis.derived.ladder import per_disc_step
-from analysis.derived.noise_prior import prior
 from analysis.figures.captions import opening
-from analysis.figures.comparisons import differences, differences_sentence, reference
+from analysis.figures.comparisons import differences_sentence
 from analysis.figures.curves import curve, dots, faint_dots
 from analysis.figures.labels import label_ends
 from analysis.figures.style import (
@@ -21,7 +21,6 @@ from analysis.figures.style import (
     plain_ticks,
 )
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.moderation import Prior
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge
 from analysis.support.wording import change, exact
@@ -42,7 +41,7 @@ def row(data: Data) -> Drawing | None:
         curve(left, part, COLOURS.get(str(series), INK))
     left.set(xscale="log", xlabel="discs", ylabel="time per disc and step, ns")
     from_zero(left)
-    table = _row_ratio(times, prior(data.study, "row"))
+    table = _row_ratio(times)
     percent = table.assign(**{end: 100 * (table[end] - 1) for end in ("ratio", "low", "high")})
     right.axhspan(-100 * MARGIN, 100 * MARGIN, color=BAND, zorder=0, linewidth=0)
     right.axhline(0, color=FAINT, linewidth=0.7)
@@ -67,10 +66,10 @@ def row(data: Data) -> Drawing | None:
     return Drawing(figure, caption, table.assign(name=names))
 
 
-def _row_ratio(times: pd.DataFrame, noise: Prior) -> pd.DataFrame:
+def _row_ratio(times: pd.DataFrame) -> pd.DataFrame:
     processes = process_medians(times)
     checkered, alternate = (processes[processes["order"] == order] for order in ("checkered", "row"))
-    return judge(log_ratios(checkered, alternate, match=("x",)), ["x"], prior=noise)
+    return judge(log_ratios(checkered, alternate, match=("x",)), ["x"])
 
 
 def sequential_orders(data: Data) -> Drawing | None:
@@ -98,7 +97,7 @@ def sequential_orders(data: Data) -> Drawing | None:
         )
     axes.set_xlabel("time of the steps, s")
     against = reference(times)
-    table = differences(times, against, prior(data.study, "sequential_orders"))
+    table = differences(times, against)
     said = differences_sentence(table, against)
     caption = opening(times, "The sequential resolve orders") + said
     return Drawing(

@@ -10,6 +10,7 @@ Named = list[tuple[str, dict[str, Any]]]
 TAGS = [
     "experiment", "series", "x_name", "x", "block", "position", "session", "scale", "site", "point",
     "label", "scene_name", "series_number", "figure", "title", "points_planned", "blocks_planned",
+    "margin", "error", "reference",
 ]  # fmt: skip
 AXES = [
     "variant", "neighbourhood", "order", "self_contained", "direction", "find_schedule",

@@ -91,6 +91,9 @@ class Point(Measurement):
     experiment: str
     figure: str
     claim: str | None
+    margin: float
+    error: float
+    reference: str | None
     series: str
     series_number: int
     scene_name: str | None
