@@ -97,8 +97,7 @@ def _with_replicates(points: Sequence[Point], question: Question) -> Iterator[Po
         yield point
         if point.x in question.series[point.series_number - 1].replicated:
             for number in range(2, replicates + 1):
-                label = " ".join(part for part in (point.label, f"replicate {number}") if part)
-                yield replace(point, label=label)
+                yield replace(point, replicate=number)
 
 
 def _left_out(series: Series, scene: NamedScene, around: Surroundings) -> bool:
@@ -177,6 +176,7 @@ def _point(
         series=series.name,
         series_number=number,
         label=series.label,
+        replicate=1,
         scene_name=named.name,
         x_name=question.sweep.x_name,
         x=x,

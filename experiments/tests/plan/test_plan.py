@@ -22,6 +22,7 @@ from experiments.tests.conftest import CHUNKS, ERRORS, PAIR, Workplace, generate
 
 CONTENT: dict[str, st.SearchStrategy[Any]] = {
     "label": st.sampled_from([None, "A", "A-again"]),
+    "replicate": st.integers(1, 4),
     "site": st.sampled_from(["local", "cluster"]),
     "machine": st.builds(Machine, st.sampled_from(["a", "b"]), st.integers(1, 4), st.integers(1, 4)),
     "verb": st.sampled_from(["bench", "profile"]),
@@ -141,8 +142,11 @@ def test_what_all_others_are_compared_with_is_measured_several_times(workplace: 
     question = load_question(workplace.question("alone", text))
     points = plan(question, surroundings(workplace)).points
     replicates = [point for point in points if point.x == 2]
-    assert [point.label for point in replicates] == [None, "replicate 2", "replicate 3", "replicate 4"]
+    assert [point.tags["replicate"] for point in replicates] == [1, 2, 3, 4]
+    assert {point.tags.get("label") for point in replicates} == {None}
     assert len({point.id for point in points}) == len(points) == 17 + 3
+    said = [replace(replicates[0], label=f"replicate {number}").id for number in (2, 3, 4)]
+    assert [point.id for point in replicates[1:]] == said, "what was measured before still fits"
     assert {point.id for point in alone} <= {point.id for point in points}
     few = plan(question, surroundings(workplace, "quick")).points
     assert [point.x for point in few] == [1, 2]
