@@ -190,7 +190,7 @@ def _compare(options: argparse.Namespace) -> int:
         change=[change(row) for row in table.to_dict("records")],
         processes=table["blocks"],
     )
-    columns = ["experiment", "series", "x", "label", "scene_name", "change", "processes", "verdict"]
+    columns = [*comparison.SHOWN, "change", "processes", "verdict"]
     print(shown[columns].to_string(index=False))
     counts = table["verdict"].value_counts()
     said = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())

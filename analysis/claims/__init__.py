@@ -44,7 +44,7 @@ TESTS: dict[str, Callable[..., Outcome]] = {
 
 COLUMNS = [
     "id", "claim", "effect", "claimed_threads", "experiments", "tested_threads", "said", "verdict",
-    "measured", "why", "figures", "missing", "p", "blocks", "behind", "not_asked", "needed",
+    "measured", "why", "figures", "missing", "p", "blocks", "needed",
 ]  # fmt: skip
 
 

@@ -6,8 +6,6 @@ from enum import StrEnum
 from math import isfinite
 from typing import Any
 
-import pandas as pd
-
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.looks import ERROR
 from analysis.statistics.verdicts import MARGIN
@@ -55,10 +53,8 @@ class Outcome:
     """`measured` is the effect with its 95 % interval, empty if there is none; `why` is the reason in
     words. `missing` tells a claim without records from one that they do not decide. `p` is the p-value of the
     verdict, or of the one best supported; None where nothing could be tested. `blocks` is how many it rests
-    on, 0 where more of them would not help. `behind` are the alternatives, by series and x, of which nothing
-    but being faster is asked any more, each with the p-value of its not being so; `not_asked` are the points
-    on which the claim does not rest. `against` is, of a claim that is open, the p-value of its not holding,
-    infinite if nothing speaks against it, None if `p` is of whatever speaks for the nearest verdict.
+    on, 0 where more of them would not help. `against` is, of a claim that is open, the p-value of its not
+    holding, infinite if nothing speaks against it, None if `p` is of whatever speaks for the nearest verdict.
     """
 
     verdict: Verdict
@@ -69,13 +65,6 @@ class Outcome:
     p: float | None = None
     against: float | None = None
     blocks: int = 0
-    behind: tuple[tuple[str, float, float], ...] = ()
-    not_asked: tuple[tuple[str, float], ...] = ()
-
-
-def points_of(rows: pd.DataFrame) -> tuple[tuple[str, float], ...]:
-    """Return the points of the rows of a table, by series and x."""
-    return tuple((str(series), float(x)) for series, x in rows[["series", "x"]].drop_duplicates().to_numpy())
 
 
 def no_records(experiment: str, missing: str = "") -> Outcome:

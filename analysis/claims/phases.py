@@ -1,13 +1,12 @@
 """The claim about where the time of a step goes."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import Compared, Outcome, judged, no_records, points_of
+from analysis.claims.outcome import Compared, Outcome, judged, no_records
 from analysis.statistics.pairs import PAIR
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import count, number, share
@@ -38,10 +37,7 @@ def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str)
         f"{number(row['high'])}], {count(row['blocks'], 'block')}"
     )
     figures = (Compared("share of a step that resolving takes", "–", said),)
-    return replace(
-        judged(row, "slower", measured, figures),
-        not_asked=points_of(phases[~phases["variant"].isin(VARIANTS)]),
-    )
+    return judged(row, "slower", measured, figures)
 
 
 def _judged(

@@ -5,14 +5,13 @@ the two equivalent or the other one faster, the claim does not hold.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import pandas as pd
 
 from analysis.claims import published_curves
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records, points_of, told
+from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records, told
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, exact, percent
@@ -31,8 +30,7 @@ def pair(
     value `at` of its parameter and nowhere else.
     """
     sides = (axis, candidate, reference)
-    parts = [_one_pair(evidence, name, sides, expected, at) for name in experiments]
-    return replace(both(parts), not_asked=parts[0].not_asked if len(parts) == 1 else ())
+    return both([_one_pair(evidence, name, sides, expected, at) for name in experiments])
 
 
 def _one_pair(
@@ -62,8 +60,7 @@ def _one_pair(
     where, row = ("", rows[shared[-1]]) if at is None else (f" at {name} = {exact(at)}", rows[at])
     said = told(row, expected)
     measured = f"{candidate} against {reference}{where}: {change(row)} of time, {blocks(row)} ({said})"
-    not_asked = () if at is None else points_of(times[times["x"] != at])
-    return replace(judged(row, expected, measured, figures), not_asked=not_asked)
+    return judged(row, expected, measured, figures)
 
 
 def _ratios(against: pd.DataFrame, chosen: pd.DataFrame, x: float) -> pd.Series:

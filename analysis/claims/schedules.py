@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analysis.claims.alternatives import Alternatives, alternatives
+from analysis.claims.alternatives import alternatives
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, Compared, Outcome, judged, no_records, told
+from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records, told
 from analysis.records.published import Published
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
@@ -42,7 +42,7 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     if processes["threads"].max() < 2:
         return Outcome(OPEN, why=ONE_THREAD)
     pairs = pd.concat(
-        log_ratios(chosen, group).assign(name=f"{series} {x:g}", series=series, x=x)
+        log_ratios(chosen, group).assign(name=f"{series} {x:g}")
         for (series, x), group in others.groupby(["series", "x"])
     )
     if pairs.empty:
@@ -59,18 +59,7 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
         Compared("best other against the choice", _best_other(evidence, experiment, schedule, chunk),
                  f"{best['name']}: {change(best)}"),
     )  # fmt: skip
-    matters = _matters(average)
-    joined = replace(both([found.outcome(measured), matters]), figures=figures)
-    # The average needs every one of them, as long as it may settle the claim.
-    return replace(joined, behind=_behind(found, pairs)) if matters.verdict == HOLDS else joined
-
-
-def _behind(found: Alternatives, pairs: pd.DataFrame) -> tuple[tuple[str, float, float], ...]:
-    points = pairs.drop_duplicates("name").set_index("name")
-    return tuple(
-        (str(points.loc[row.name_, "series"]), float(points.loc[row.name_, "x"]), float(row.behind))
-        for row in found.table.rename(columns={"name": "name_"}).itertuples()
-    )
+    return replace(both([found.outcome(measured), _matters(average)]), figures=figures)
 
 
 def _average(pairs: pd.DataFrame) -> pd.Series:

@@ -13,10 +13,10 @@ from analysis.statistics.unpaired import judge_unpaired
 from analysis.statistics.verdicts import COLUMNS, corrected
 
 POINT = [
-    "scale", "experiment", "series", "x", "label", "scene_name", "scene_sha256", "threads", "find_chunk",
-    "resolve_chunk", "substeps", "tolerance",
+    "scale", "experiment", "series", "x", "label", "replicate", "scene_name", "scene_sha256", "threads",
+    "find_chunk", "resolve_chunk", "substeps", "tolerance",
 ]  # fmt: skip
-SHOWN = ["experiment", "series", "x", "label", "scene_name"]
+SHOWN = ["experiment", "series", "x", "label", "replicate", "scene_name"]
 SLOWER, UNDECIDED = 3, 4
 
 Point = tuple[Any, ...]

@@ -9,13 +9,12 @@ import pandas as pd
 
 from analysis import claims
 from analysis.claims.missing import DECIDED
-from analysis.figures.comparisons import differences, reference
+from analysis.derived.comparisons import differences, reference
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
 from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
-from analysis.statistics.intervals import FEWEST
-from analysis.statistics.looks import ERROR, next_look
+from analysis.statistics.looks import next_look
 from analysis.support.wording import change
 
 COMPARED = ("comparison", "control")
@@ -28,9 +27,9 @@ off: the square of the 3.5 standard errors that a look at one of a dozen claims 
 
 
 def open_questions(results: Path) -> dict[str, Any]:
-    """Return `open`: experiment -> the `blocks` it has, the `next` number at which to look again, those that
-    are `needed` to settle the first thing that is open in it, and which points, by series and x, need no more
-    of them (`stopped`); `settled`: the experiments in which nothing is; `said`: name -> what was decided.
+    """Return `open`: experiment -> the `blocks` it has, the `next` number at which to look again, and those
+    that are `needed` to settle the first thing that is open in it; `settled`: the experiments in which
+    nothing is; `said`: name -> what was decided.
 
     Of the first study in the folder. What is not in sight, as measured, is given the benefit of a standard
     error (`OPTIMISM`), up to `MOST_BLOCKS`; beyond, it is neither open nor settled.
@@ -42,7 +41,6 @@ def open_questions(results: Path) -> dict[str, Any]:
     table = claims.evaluate(studies[0], studies, published.load(), claims.load(results))
     decided = table[table["verdict"].isin(DECIDED)]
     found["said"] = {row.id: f"{row.said}: {row.measured}" for row in decided.itertuples()}
-    stopped = _stopped(table)
     claimed = {experiment for claim in claims.load(results) for experiment in claim.experiments}
     items = [*_claims(table), *_comparisons(studies[0], claimed, found["said"])]
     experiments = dict.fromkeys(experiment for experiment, _, _ in items)
@@ -55,7 +53,6 @@ def open_questions(results: Path) -> dict[str, Any]:
                 "blocks": blocks,
                 "next": next_look(blocks),
                 "needed": int(needed),
-                "stopped": stopped.get(experiment, []),
             }
         elif all(math.isnan(needed) for _, needed in own):
             found["settled"].append(experiment)
@@ -64,23 +61,6 @@ def open_questions(results: Path) -> dict[str, Any]:
 
 def _worth(blocks: int, needed: float) -> float:
     return OPTIMISM * blocks if math.isinf(needed) and OPTIMISM * blocks <= MOST_BLOCKS else needed
-
-
-def _stopped(table: pd.DataFrame) -> dict[str, list[tuple[str, float]]]:
-    """Return the points of which no more is asked, by experiment: those on which its claim does not rest,
-    once they have an interval, and alternatives that are behind beyond doubt, so far that the claim would
-    still stand, corrected for all that are open, if it rested on the weakest of them.
-    """
-    still_open = table[table["needed"].notna()]
-    enough = ERROR / max(1, len(still_open))
-    return {
-        row.experiments[0]: [
-            *(row.not_asked if row.blocks >= FEWEST else ()),
-            *((series, x) for series, x, p in row.behind if p <= enough),
-        ]
-        for row in still_open.itertuples()
-        if row.behind or row.not_asked
-    }
 
 
 def _claims(table: pd.DataFrame) -> Iterator[tuple[str, int, float]]:

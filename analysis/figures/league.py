@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from analysis.derived.comparisons import stated
 from analysis.figures.style import Cell, Table
 from analysis.records.studies import Study
 from analysis.statistics.ranking import ranking
@@ -28,7 +29,7 @@ def league(study: Study, experiment: str) -> Table | None:
             Cell(row.bracket),
             Cell(checked[row.series], _mark(checked[row.series])),
         )
-        for row in ranking(times).itertuples()
+        for row in ranking(times, stated(times).margin).itertuples()
     ]
     failed = failures[~failures["series"].isin(checked.index)].groupby("series")["reason"].first()
     rows += [

@@ -2,9 +2,10 @@
 
 import pandas as pd
 
+from analysis.derived.comparisons import differences, reference
 from analysis.derived.ladder import per_disc_step
 from analysis.figures.captions import opening
-from analysis.figures.comparisons import differences, differences_sentence, reference
+from analysis.figures.comparisons import differences_sentence
 from analysis.figures.curves import curve, dots, faint_dots
 from analysis.figures.labels import label_ends
 from analysis.figures.style import (

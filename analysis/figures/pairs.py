@@ -1,12 +1,14 @@
 """Two variants against each other: every block of the measurement, the published runs, and the ratio."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from analysis.derived.comparisons import USUAL, Stated
 from analysis.figures.captions import PROCESSES, SCENES, opening, time_axis
 from analysis.figures.hover import Told, tell
 from analysis.figures.labels import label_ends
@@ -38,9 +40,12 @@ class Sides:
     names: tuple[str, str]
 
 
-def pair_drawing(data: Data, sides: Sides, work: bool = False) -> Drawing | None:
-    """Draw the times of both sides block by block, the published ones, and the ratio with its verdict; with
-    `work` also the attempts at resolving a pair that each takes.
+def pair_drawing(
+    data: Data, sides: Sides, work: bool = False, by: Stated = USUAL, row: dict[str, Any] | None = None
+) -> Drawing | None:
+    """Draw the times of both sides block by block, the published ones, and the ratio with its verdict, of
+    `row` if it is known, by what the question states; with `work` also the attempts at resolving a pair that
+    each takes.
     """
     times = data.study.times_of(sides.experiment)
     processes = process_medians(times)
@@ -53,14 +58,15 @@ def pair_drawing(data: Data, sides: Sides, work: bool = False) -> Drawing | None
     extra = work or not published.empty
     figure, axes = new_figure(2.4, columns=2 + extra, widths=[1.2, *([1.0] * extra), 1.1])
     _by_block(axes[0], {sides.names[0]: candidate, sides.names[1]: reference}, time_axis(times))
-    row = judge_one(log_ratios(reference, candidate)["log_ratio"])
+    if row is None:
+        row = judge_one(log_ratios(reference, candidate)["log_ratio"], by.margin, by.error)
     theirs = _published_panel(axes[1], published, sides) if not published.empty else None
     if work:
         _work(axes[1], data, sides)
-    ratio_panel(axes[-1], row, theirs, sides.names)
+    ratio_panel(axes[-1], row, theirs, sides.names, by.margin)
     dots = SCENES if times["x"].nunique() > 1 else PROCESSES
     verdicts = pd.DataFrame([{**row, "name": f"{sides.names[0]} against {sides.names[1]}"}])
-    return Drawing(figure, opening(times, sides.subject, dots) + _sentences(row, theirs, sides), verdicts)
+    return Drawing(figure, opening(times, sides.subject, dots) + _sentences(row, theirs, sides, by), verdicts)
 
 
 def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:
@@ -113,10 +119,14 @@ def _runs(axes: Axes, x: pd.Series, seconds: pd.Series, name: str, colour: str) 
 
 
 def ratio_panel(
-    axes: Axes, ours: dict[str, float], theirs: dict[str, float] | None, names: tuple[str, str]
+    axes: Axes,
+    ours: dict[str, float],
+    theirs: dict[str, float] | None,
+    names: tuple[str, str],
+    margin: float = MARGIN,
 ) -> None:
-    """Draw the ratio as a dot with its 95 % interval, on which the verdict rests."""
-    axes.axvspan(-100 * MARGIN, 100 * MARGIN, color=BAND, zorder=0, linewidth=0)
+    """Draw the ratio as a dot with the interval on which the verdict rests."""
+    axes.axvspan(-100 * margin, 100 * margin, color=BAND, zorder=0, linewidth=0)
     axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
     entries = [("measured", ours, INK)] + ([("published", theirs, lighten(INK))] if theirs else [])
     for height, (name, row, colour) in zip((1.0, 0.0), entries, strict=False):
@@ -139,13 +149,13 @@ def ratio_panel(
     axes.set_xlabel(f"time of {names[0]}\nagainst {names[1]}, %")
     axes.xaxis.set_major_locator(MaxNLocator(5))
     axes.spines["left"].set_visible(False)
-    bounded(axes)
+    bounded(axes, margin)
 
 
-def bounded(axes: Axes) -> None:
+def bounded(axes: Axes, margin: float = MARGIN) -> None:
     """Keep the margin in view, and an unbounded interval from stretching the axis."""
     low, high = axes.get_xlim()
-    axes.set_xlim(max(min(low, -250 * MARGIN), -100), min(max(high, 250 * MARGIN), 300))
+    axes.set_xlim(max(min(low, -250 * margin), -100), min(max(high, 250 * margin), 300))
 
 
 def _work(axes: Axes, data: Data, sides: Sides) -> None:
@@ -176,10 +186,10 @@ def _work(axes: Axes, data: Data, sides: Sides) -> None:
     axes.spines["left"].set_visible(False)
 
 
-def _sentences(row: dict[str, float], theirs: dict[str, float] | None, sides: Sides) -> str:
+def _sentences(row: dict[str, float], theirs: dict[str, float] | None, sides: Sides, by: Stated) -> str:
     published = f" Published: {change(theirs)} ({theirs['verdict']})." if theirs else ""
     return (
         f" The time of {sides.names[0]} is {change(row)} against {sides.names[1]}, from {blocks(row)} "
-        f"(paired log ratios): {row['verdict']} with a margin of {100 * MARGIN:g} % (shaded; "
-        f"the bar is the 95 % interval, which decides).{published}"
+        f"(paired log ratios): {row['verdict']} with a margin of {100 * by.margin:g} % (shaded; "
+        f"the bar is the {100 * (1 - by.error):g} % interval, which decides).{published}"
     )

@@ -1,5 +1,6 @@
 """From validated records to flat tables; every table carries the same columns of context (see `context`)."""
 
+import re
 import shlex
 from typing import Any
 
@@ -10,6 +11,7 @@ Named = list[tuple[str, dict[str, Any]]]
 TAGS = [
     "experiment", "series", "x_name", "x", "block", "position", "session", "scale", "site", "point",
     "label", "scene_name", "series_number", "figure", "title", "points_planned", "blocks_planned",
+    "margin", "error", "reference", "replicate",
 ]  # fmt: skip
 AXES = [
     "variant", "neighbourhood", "order", "self_contained", "direction", "find_schedule",
@@ -46,6 +48,7 @@ OUTSIDE = [
 ]  # fmt: skip
 NO_SCENE: dict[str, Any] = {"name": "", "sha256": "", **dict.fromkeys(SCENE)}
 """Of a program that is about something else than discs."""
+_OLD_REPLICATE = re.compile(r"(?:(.*) )?replicate (\d+)")
 IDENTITY = ["compiler_family", "node", "machine", "revision"]
 CONTEXT = [
     "file", "kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene", "scene_sha256", *SCENE,
@@ -69,6 +72,7 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
         "kind": record["kind"],
         "recorded_at": record["recorded_at"],
         **{column: tags.get(column) for column in TAGS},
+        **_replicate(tags),
         "series": str(tags["series"]),
         "session": str(tags.get("session", "")),
         "scale": str(tags.get("scale", "unstated")),
@@ -92,6 +96,15 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
         "machine": machine_of(origin),
         "revision": f"{origin['commit'][:10]}{changes}" if origin["commit"] else "no commit known",
     }
+
+
+def _replicate(tags: dict[str, Any]) -> dict[str, Any]:
+    """Return the label and the number of the replicate, which was a word of the label before it was a tag."""
+    label = tags.get("label")
+    old = _OLD_REPLICATE.fullmatch(str(label)) if tags.get("figure") == "schedule" else None
+    if "replicate" in tags or old is None:
+        return {"label": label, "replicate": tags.get("replicate", 1)}
+    return {"label": old[1] or None, "replicate": int(old[2])}
 
 
 def machine_of(origin: dict[str, Any]) -> str:

@@ -39,7 +39,7 @@ def process_noise(times: pd.DataFrame) -> pd.DataFrame:
     processes = process_medians(times)
     processes = processes.assign(**{key: processes[key].fillna("") for key in ("label", "scene_name")})
     for experiment, group in processes.groupby("experiment"):
-        keys = ["series", "x", "label", "scene_name"]
+        keys = ["series", "x", "label", "replicate", "scene_name"]
         table = group.pivot_table(index=PAIR, columns=keys, values="steps_seconds", aggfunc="median")
         # What has no partner tells nothing of the noise, and a configuration that soon failed would leave no
         # block whole.

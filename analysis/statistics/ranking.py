@@ -7,12 +7,12 @@ from string import ascii_lowercase
 import pandas as pd
 
 from analysis.statistics.pairs import log_ratios, process_medians
-from analysis.statistics.verdicts import judge
+from analysis.statistics.verdicts import MARGIN, judge
 
 APART = ("faster", "slower")
 
 
-def ranking(times: pd.DataFrame) -> pd.DataFrame:
+def ranking(times: pd.DataFrame, margin: float = MARGIN) -> pd.DataFrame:
     """Return a row a series, the fastest first: `series`, `seconds` (median over processes), `bracket`, and
     `place`, the least and the greatest that it may have.
 
@@ -23,7 +23,7 @@ def ranking(times: pd.DataFrame) -> pd.DataFrame:
     processes = process_medians(times)
     seconds = processes.groupby("series")["steps_seconds"].median().sort_values(kind="stable")
     names = [str(name) for name in seconds.index]
-    apart = _apart(processes, names)
+    apart = _apart(processes, names, margin)
     letters = brackets(names, apart)
     rows = []
     for name in names:
@@ -34,7 +34,7 @@ def ranking(times: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["series", "seconds", "bracket", "place"])
 
 
-def _apart(processes: pd.DataFrame, names: Sequence[str]) -> set[tuple[str, str]]:
+def _apart(processes: pd.DataFrame, names: Sequence[str], margin: float) -> set[tuple[str, str]]:
     """Return the pairs of which the first is faster than the second beyond doubt."""
     parts = {name: processes[processes["series"] == name] for name in names}
     pairs = [
@@ -43,7 +43,7 @@ def _apart(processes: pd.DataFrame, names: Sequence[str]) -> set[tuple[str, str]
     ]
     if not pairs:
         return set()
-    verdicts = judge(pd.concat(pairs), ["one", "two"])
+    verdicts = judge(pd.concat(pairs), ["one", "two"], margin)
     decided = verdicts[verdicts["verdict"].isin(APART)]
     return {
         (row.one, row.two) if row.verdict == "slower" else (row.two, row.one) for row in decided.itertuples()

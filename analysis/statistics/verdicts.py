@@ -14,7 +14,7 @@ MARGIN = 0.02
 COLUMNS = ["ratio", "low", "high", "blocks", "p", "verdict", "alone"]
 
 
-def judge(pairs: pd.DataFrame, by: list[str], margin: float = MARGIN) -> pd.DataFrame:
+def judge(pairs: pd.DataFrame, by: list[str], margin: float = MARGIN, error: float = ERROR) -> pd.DataFrame:
     """Return one row a group of `by` with its ratio, interval and verdict, Holm-corrected over the whole
     table.
 
@@ -27,26 +27,28 @@ def judge(pairs: pd.DataFrame, by: list[str], margin: float = MARGIN) -> pd.Data
     Pharmacokinet. Biopharm. 15, 1987, whose 90 % interval errs in 5 % on either side; Westlake, Biometrics
     32, 1976, whose 95 % interval is used here). `p` is the smallest error at which the interval decides; it
     is corrected over the looks (see `looks`), as the interval is, and over the rows (Holm, Scand. J. Stat. 6,
-    1979). What is not established, and anything from fewer than `FEWEST` blocks, is *inconclusive*. `prior`
-    is what other comparisons tell of the noise (see `moderation`).
+    1979). What is not established, and anything from fewer than `FEWEST` blocks, is *inconclusive*. The
+    pairs of a group are in the order of time. With another `error` than 5 % the intervals are of its level.
     """
     rows: list[dict[str, Any]] = []
     for key, group in pairs.groupby(by, sort=True):
-        rows.append({**dict(zip(by, key, strict=True)), **judge_one(group["log_ratio"], margin)})
+        rows.append({**dict(zip(by, key, strict=True)), **judge_one(group["log_ratio"], margin, error)})
     table = pd.DataFrame(rows, columns=[*by, *COLUMNS])
-    return corrected(table)
+    return corrected(table, error)
 
 
-def corrected(table: pd.DataFrame) -> pd.DataFrame:
+def corrected(table: pd.DataFrame, error: float = ERROR) -> pd.DataFrame:
     """Return the table with its p-values Holm-corrected and its verdicts withdrawn where they no longer
     stand.
     """
     p = holm(table["p"])
-    verdicts = np.where(np.array(p) <= ERROR, table["verdict"], "inconclusive")
+    verdicts = np.where(np.array(p) <= error, table["verdict"], "inconclusive")
     return table.assign(p=p, verdict=verdicts)
 
 
-def judge_one(log_ratios: ArrayLike, margin: float = MARGIN, *, once: bool = False) -> dict[str, Any]:
+def judge_one(
+    log_ratios: ArrayLike, margin: float = MARGIN, error: float = ERROR, *, once: bool = False
+) -> dict[str, Any]:
     """Return the row of one comparison standing alone: the columns that `judge` adds, and `denials`.
 
     The log ratios are in the order of time; those up to the last planned look count. `once`: how many values
@@ -60,8 +62,8 @@ def judge_one(log_ratios: ArrayLike, margin: float = MARGIN, *, once: bool = Fal
     found = measure(values, independent=once)
     faster, slower = found.p_value(-bound, "less"), found.p_value(bound, "greater")
     not_faster, not_slower = found.p_value(-bound, "greater"), found.p_value(bound, "less")
-    verdict, p = decide(faster, slower, max(not_faster, not_slower), blocks, part)
-    row = verdict_row(found.interval(1 - ERROR * part), blocks, p, verdict)
+    verdict, p = decide(faster, slower, max(not_faster, not_slower), blocks, part, error)
+    row = verdict_row(found.interval(1 - error * part), blocks, p, verdict)
     return {**row, **denials(faster, slower, not_faster, not_slower, blocks, part)}
 
 
@@ -90,17 +92,22 @@ def denials(
 
 
 def decide(
-    faster: float, slower: float, equivalent: float, blocks: int, part: float | None = None
+    faster: float,
+    slower: float,
+    equivalent: float,
+    blocks: int,
+    part: float | None = None,
+    error: float = ERROR,
 ) -> tuple[str, float]:
     """Return the verdict and its p-value, given the one-sided p-value against each of the three being untrue.
 
-    They are doubled: at most `ERROR` then is where the two-sided interval lies wholly within what the verdict
+    They are doubled: at most `error` then is where the two-sided interval lies wholly within what the verdict
     says.
     """
     support = {"faster": faster, "slower": slower, "equivalent": equivalent}
     best = min(support, key=lambda verdict: support[verdict])
     p = two_sided(support[best], blocks, part)
-    return best if p <= ERROR else "inconclusive", p
+    return best if p <= error else "inconclusive", p
 
 
 def two_sided(p: float, blocks: int, part: float | None = None) -> float:

@@ -54,6 +54,7 @@ def times_table(
             "series": names,
             "x": 0.0,
             "label": None,
+            "replicate": 1,
             "scene_name": None,
             "node": "node",
             "session": "session",

@@ -97,8 +97,7 @@ def _with_replicates(points: Sequence[Point], question: Question) -> Iterator[Po
         yield point
         if point.x in question.series[point.series_number - 1].replicated:
             for number in range(2, replicates + 1):
-                label = " ".join(part for part in (point.label, f"replicate {number}") if part)
-                yield replace(point, label=label)
+                yield replace(point, replicate=number)
 
 
 def _left_out(series: Series, scene: NamedScene, around: Surroundings) -> bool:
@@ -171,9 +170,13 @@ def _point(
         experiment=question.name,
         figure=question.figure,
         claim=question.claim,
+        margin=question.margin,
+        error=question.error,
+        reference=question.reference,
         series=series.name,
         series_number=number,
         label=series.label,
+        replicate=1,
         scene_name=named.name,
         x_name=question.sweep.x_name,
         x=x,

@@ -28,10 +28,12 @@ Written without its unit, which versions before 1.8 do not know.
 class Measurement:
     """Everything that decides what is measured: every field is part of the id.
 
-    The label is one of them: the control measures the same under two labels.
+    The label is one of them: the control measures the same under two labels. So is the number of the
+    `replicate`, where a block measures the same several times.
     """
 
     label: str | None
+    replicate: int
     site: str
     machine: Machine
     verb: str
@@ -58,6 +60,9 @@ class Measurement:
         for later in ("command", "apart"):  # so that other ids are what they were before there was this field
             if not content[later]:
                 del content[later]
+        # Before there was that field its number stood in the label: what was measured then still fits.
+        if (replicate := content.pop("replicate")) > 1:
+            content["label"] = " ".join(part for part in (self.label, f"replicate {replicate}") if part)
         # The letter keeps the id a text: the program takes a tag that reads as a number for one.
         return "p" + digest(json.dumps(content, sort_keys=True, default=_content))
 
@@ -91,6 +96,9 @@ class Point(Measurement):
     experiment: str
     figure: str
     claim: str | None
+    margin: float
+    error: float
+    reference: str | None
     series: str
     series_number: int
     scene_name: str | None
@@ -105,7 +113,13 @@ class Point(Measurement):
         shown = {
             field.name: getattr(self, field.name) for field in fields(self) if field.name not in measured
         }
-        told = {"label": self.label, "site": self.site, "program": self.program.name, "point": self.id}
+        told = {
+            "label": self.label,
+            "replicate": self.replicate,
+            "site": self.site,
+            "program": self.program.name,
+            "point": self.id,
+        }
         return {key: value for key, value in (shown | told).items() if value is not None}
 
     @property

@@ -71,6 +71,12 @@ class Question:
     series: tuple[Series, ...]
     sweep: Sweep = Sweep()
     claim: str | None = None
+    margin: float = 0.02
+    """The least difference that matters."""
+    error: float = 0.05
+    """The share of studies in which any verdict of its table may be wrong."""
+    reference: str | None = None
+    """The series that the others are compared with, if the file says which."""
     verb: Literal["bench", "profile", "process"] = "bench"
     threads: Threads = "hardware_threads"
     bound: bool = True
@@ -203,13 +209,15 @@ def _require_names(question: Question) -> None:
                 f'{question.file}: series[{number}].name: found "{name}" twice, expected each once'
             )
     known = list(dict.fromkeys(series.name for series in question.series))
+    told = {"reference": question.reference} if question.reference is not None else {}
     for number, scene in enumerate(question.scenes, start=1):
-        for place, name in enumerate(scene.series, start=1):
-            if name not in known:
-                raise InputError(
-                    f"{question.file}: scenes[{number}].series[{place}]: found {quoted(name)}, expected "
-                    f"one of {', '.join(known)}{nearest(name, known)}"
-                )
+        told |= {
+            f"scenes[{number}].series[{place}]": name for place, name in enumerate(scene.series, start=1)
+        }
+    for key, name in told.items():
+        if name not in known:
+            expected = f"one of {', '.join(known)}{nearest(name, known)}"
+            raise InputError(f"{question.file}: {key}: found {quoted(name)}, expected {expected}")
 
 
 def _require_possible_scenes(question: Question) -> None:

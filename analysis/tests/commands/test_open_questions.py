@@ -41,19 +41,9 @@ def test_a_claim_that_is_open_says_how_many_blocks_it_needs(tmp_path: Path) -> N
     assert answer["settled"] == []
 
 
-def test_points_on_which_the_claim_does_not_rest_get_no_more_than_an_interval_takes(tmp_path: Path) -> None:
-    at_large = {("checkered", 1e5), ("row", 1e5)}
-    records = study(["row"], blocks=4, noise=NOISY, threads=20)
-    points = {(record["tags"]["series"], record["tags"]["x"]) for record in records}
-    write(tmp_path / "four", records)
-    assert set(open_questions(tmp_path / "four")["open"]["row"]["stopped"]) == points - at_large
-    assert at_large < points
-    assert found(tmp_path / "two", ["row"], 2, NOISY)["open"]["row"]["stopped"] == []
-
-
 def test_too_few_blocks_need_the_first_look(tmp_path: Path) -> None:
     answer = found(tmp_path, ["neighbourhood", "control"], 2, QUIET)
-    expected = {"blocks": 2, "next": 4, "needed": 4, "stopped": []}
+    expected = {"blocks": 2, "next": 4, "needed": 4}
     assert answer["open"] == {"neighbourhood": expected, "control": expected}
 
 
@@ -104,16 +94,3 @@ def test_the_forecast_is_what_a_larger_sample_alike_takes() -> None:
     assert judge_one((ratios * 20)[:earlier])["verdict"] == "inconclusive"
     assert blocks_to_decide(row["p"], len(ratios), family=17) > needed
     assert blocks_to_decide(100.0, 6) > MOST_BLOCKS, "on the border nothing is in sight"
-
-
-def test_of_many_alternatives_those_behind_stop_and_contenders_go_on(tmp_path: Path) -> None:
-    records = study(["schedule_find"], blocks=9, noise=Noise(process=0.01), threads=8)
-    for record in records:
-        tags = record["tags"]
-        pace = {("dynamic", 10): 1, ("guided", 4): 2}.get((tags["series"], tags["x"]))
-        for repetition in record["repetitions"] if pace else []:
-            repetition["steps_seconds"] = 0.7 * (1 + 0.03 * (pace * tags["block"] % 3))
-    write(tmp_path, records)
-    one = open_questions(tmp_path)["open"]["schedule_find"]
-    assert ("static", 10.0) in one["stopped"]
-    assert ("dynamic", 10.0) not in one["stopped"]

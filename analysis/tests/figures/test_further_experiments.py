@@ -8,9 +8,9 @@ import pytest
 
 from analysis import report
 from analysis.cli import main
+from analysis.derived.comparisons import differences, reference
 from analysis.derived.pauses import KIND as PAUSES
 from analysis.figures import KINDS, Drawn
-from analysis.figures.comparisons import differences, reference
 from analysis.figures.studies import draw_all
 from analysis.records.reading import load
 from analysis.tests.report.test_report import Page, text_of

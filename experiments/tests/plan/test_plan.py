@@ -22,6 +22,7 @@ from experiments.tests.conftest import CHUNKS, ERRORS, PAIR, Workplace, generate
 
 CONTENT: dict[str, st.SearchStrategy[Any]] = {
     "label": st.sampled_from([None, "A", "A-again"]),
+    "replicate": st.integers(1, 4),
     "site": st.sampled_from(["local", "cluster"]),
     "machine": st.builds(Machine, st.sampled_from(["a", "b"]), st.integers(1, 4), st.integers(1, 4)),
     "verb": st.sampled_from(["bench", "profile"]),
@@ -70,6 +71,9 @@ SHOWN: dict[str, st.SearchStrategy[Any]] = {
     "experiment": st.sampled_from(["threads", "particles"]),
     "figure": st.sampled_from(["scaling", "trend"]),
     "claim": st.sampled_from([None, "threads"]),
+    "margin": st.sampled_from([0.02, 0.05]),
+    "error": st.sampled_from([0.05, 0.01]),
+    "reference": st.sampled_from([None, "four"]),
     "series": st.sampled_from(["four", "nine"]),
     "series_number": st.integers(1, 3),
     "scene_name": st.sampled_from([None, "dilute", "dense"]),
@@ -138,8 +142,11 @@ def test_what_all_others_are_compared_with_is_measured_several_times(workplace: 
     question = load_question(workplace.question("alone", text))
     points = plan(question, surroundings(workplace)).points
     replicates = [point for point in points if point.x == 2]
-    assert [point.label for point in replicates] == [None, "replicate 2", "replicate 3", "replicate 4"]
+    assert [point.tags["replicate"] for point in replicates] == [1, 2, 3, 4]
+    assert {point.tags.get("label") for point in replicates} == {None}
     assert len({point.id for point in points}) == len(points) == 17 + 3
+    said = [replace(replicates[0], label=f"replicate {number}").id for number in (2, 3, 4)]
+    assert [point.id for point in replicates[1:]] == said, "what was measured before still fits"
     assert {point.id for point in alone} <= {point.id for point in points}
     few = plan(question, surroundings(workplace, "quick")).points
     assert [point.x for point in few] == [1, 2]
@@ -246,6 +253,36 @@ def test_a_scene_may_be_for_some_series_alone(workplace: Workplace) -> None:
         ("dilute", "nine"),
         ("cradle", "nine"),
     }
+
+
+def test_what_is_judged_travels_as_tags_and_changes_no_id(workplace: Workplace) -> None:
+    said = 'margin = 0.05\nerror = 0.01\nreference = "nine"\n'
+    usual, own = (
+        plan(load_question(workplace.question("pair", text)), surroundings(workplace)).points
+        for text in (PAIR, said + PAIR)
+    )
+    told = [[point.tags.get(key) for key in ("margin", "error", "reference")] for point in (usual[0], own[0])]
+    assert told == [[0.02, 0.05, None], [0.05, 0.01, "nine"]]
+    assert [point.id for point in usual] == [point.id for point in own]
+
+
+JUDGED = {
+    "margin = 0": "margin: found 0, expected a number above 0 and below 1",
+    "margin = 1": "margin: found 1, expected a number above 0 and below 1",
+    "error = 0.0": "error: found 0.0, expected a number above 0, at most 0.5",
+    "error = 0.6": "error: found 0.6, expected a number above 0, at most 0.5",
+    "error = 'small'": 'error: found "small", expected a number above 0, at most 0.5',
+    "reference = 'nin'": 'reference: found "nin", expected one of four, nine; did you mean "nine"?',
+}
+
+
+@pytest.mark.parametrize(("line", "message"), JUDGED.items())
+def test_what_cannot_be_judged_by_is_one_line(workplace: Workplace, line: str, message: str) -> None:
+    path = workplace.question("pair", f"{line}\n{PAIR}")
+    with pytest.raises(InputError) as error:
+        load_question(path)
+    assert str(error.value).startswith(f"{path}: {message}")
+    assert "\n" not in str(error.value)
 
 
 MISTAKES = {
