@@ -27,6 +27,8 @@ class Found:
 
     seconds: dict[Key, float] = field(default_factory=dict)
     """Whole-process wall time of each finished process."""
+    runs: dict[Key, tuple[float, ...]] = field(default_factory=dict)
+    """The seconds of each of its timed runs, in their order: what of the process was in the clock."""
     sessions: dict[Key, str] = field(default_factory=dict)
     """Which session measured it."""
     failures: dict[Key, str] = field(default_factory=dict)
@@ -82,6 +84,7 @@ class Store:
                 found.stale.append(path)
             else:
                 found.seconds[key] = float(record["process_seconds"])
+                found.runs[key] = timed_runs(record)
                 found.sessions[key] = str(record["tags"].get("session", ""))
         for path in sorted((self.root / "failures" / experiment.name).glob("*.json")):
             failure, key = read_json(path), _key(path)
@@ -196,13 +199,20 @@ def unusable(record: Any, point: Point, block: int) -> str | None:  # noqa: ANN4
     return None
 
 
-def seconds_by_point(found: Iterable[Found]) -> dict[str, list[float]]:
-    """Whole-process wall times by point id, over all experiments: equal ids are the same measurement."""
-    seconds: dict[str, list[float]] = {}
+def timed_runs(record: Any) -> tuple[float, ...]:  # noqa: ANN401 - read from a file
+    """The seconds of each timed run in a record; none of a profile, which times phases instead."""
+    return tuple(float(one["steps_seconds"]) for one in record["repetitions"])
+
+
+def measured_by_point(found: Iterable[Found]) -> dict[str, list[tuple[float, tuple[float, ...]]]]:
+    """Wall time of each whole process and its timed runs, by point id over all experiments: equal ids are the
+    same measurement.
+    """
+    measured: dict[str, list[tuple[float, tuple[float, ...]]]] = {}
     for one in found:
-        for (point, _), value in one.seconds.items():
-            seconds.setdefault(point, []).append(value)
-    return seconds
+        for key, value in one.seconds.items():
+            measured.setdefault(key[0], []).append((value, one.runs.get(key, ())))
+    return measured
 
 
 def _key(path: Path) -> Key | None:

@@ -1,7 +1,7 @@
 """How long a point takes: from its own records, else from a probe of its variant and its scene's size."""
 
 import statistics
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -49,7 +49,12 @@ _UNKNOWN_PROGRAM = 1.0
 """Seconds of somebody else's program until it has run once: a guess."""
 
 SECONDS_PER_PROCESS = 0.03
-"""What a process takes beside its own account of its time: its start, its end, the look at its record."""
+"""What a process takes beside its own account of its time, until that was seen: its start, its end, the look
+at its record.
+"""
+
+Measured = tuple[float, Sequence[float]]
+"""Seconds of a whole process, and of each of its timed runs."""
 
 
 @dataclass(frozen=True)
@@ -73,20 +78,38 @@ def kept_probes(kept: object) -> dict[str, Probe]:
 class Costs:
     """Estimates in seconds of wall time."""
 
-    def __init__(self, probes: Mapping[str, Probe], measured: Mapping[str, list[float]]) -> None:
+    def __init__(self, probes: Mapping[str, Probe], measured: Mapping[str, Sequence[Measured]]) -> None:
         self._probes = dict(probes)
-        self._measured = {point: list(seconds) for point, seconds in measured.items()}
+        self._measured = {point: list(processes) for point, processes in measured.items()}
         self._models: dict[str, float] = {}
+        self._beside: dict[str, list[float]] = {}
         self._ratios: dict[str, list[float]] = {}
         self._corrections: dict[str, float] = {}
 
-    def point(self, point: Point) -> float:
-        """One process of a point, warm-up included."""
+    def point(self, point: Point, runs: int | None = None) -> float:
+        """One process of a point, warm-up included; with so many timed runs, or as many as it has had."""
         if point.program.sha256 is None:
             return 0.0
-        if seconds := self._measured.get(point.id):
-            return statistics.median(seconds) + SECONDS_PER_PROCESS
-        return self._modelled(point) * self._correction(point.experiment) + SECONDS_PER_PROCESS
+        if runs is not None:
+            return self.fixed(point) + runs * self.run(point)
+        if measured := self._measured.get(point.id):
+            return statistics.median(seconds for seconds, _ in measured) + self._beside_of(point)
+        return self._modelled(point) * self._correction(point.experiment) + self._beside_of(point)
+
+    def run(self, point: Point) -> float:
+        """One timed run of a point."""
+        if times := [time for _, runs in self._measured.get(point.id, ()) for time in runs]:
+            return statistics.median(times)
+        if point.command is not None:
+            return _UNKNOWN_PROGRAM
+        return _run(point, self._probe(point)) * self._correction(point.experiment)
+
+    def fixed(self, point: Point) -> float:
+        """What a process of a point takes without its timed runs."""
+        if measured := self._measured.get(point.id):
+            spent = statistics.median(max(0.0, seconds - sum(runs)) for seconds, runs in measured)
+            return spent + self._beside_of(point)
+        return max(0.0, self.point(point) - point.repetitions * self.run(point))
 
     def check(self, point: Point) -> float:
         """The verification of every step of the point's variant on its scene."""
@@ -113,11 +136,22 @@ class Costs:
         """Generating a scene."""
         return 2 * _reading(scene)
 
-    def learn(self, point: Point, seconds: float) -> None:
-        """A process of the point took this long."""
-        self._measured.setdefault(point.id, []).append(seconds)
-        self._ratios.setdefault(point.experiment, []).append(seconds / self._modelled(point))
+    def learn(self, point: Point, seconds: float, runs: Sequence[float] = ()) -> None:
+        """A process of the point took this long, of which its timed runs took these seconds. What more runs
+        take than the one of a model says nothing of the model.
+        """
+        self._measured.setdefault(point.id, []).append((seconds, runs))
+        of_one = seconds - sum(runs[point.repetitions :])
+        self._ratios.setdefault(point.experiment, []).append(of_one / self._modelled(point))
         self._corrections.clear()
+
+    def learn_beside(self, experiment: str, seconds: float) -> None:
+        """A process of the experiment took this much longer than its own account, for each of its points."""
+        self._beside.setdefault(experiment, []).append(seconds)
+
+    def _beside_of(self, point: Point) -> float:
+        # The least, since the first process of a variant comes with its check.
+        return min(self._beside.get(point.experiment, [SECONDS_PER_PROCESS]))
 
     def _correction(self, experiment: str) -> float:
         """Measured over modelled: of this experiment if it has any measurement, else of all of them."""

@@ -1,10 +1,9 @@
-"""What each experiment was given so far: blocks, and which points take no part in the later ones."""
+"""How many blocks each experiment was given so far."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from experiments.plan.plan import Experiment
-from experiments.plan.point import Point
 from experiments.results.store import Found, Store
 
 PLAN = "plan.json"
@@ -12,16 +11,9 @@ PLAN = "plan.json"
 
 @dataclass
 class Given:
-    """A number of blocks and, by the id of a point, the first block without it: all that was asked of it is
-    settled.
-    """
+    """A number of blocks."""
 
     blocks: int
-    stopped: dict[str, int] = field(default_factory=dict)
-
-    def includes(self, point: Point, block: int) -> bool:
-        """Whether the point is part of the block."""
-        return block < self.stopped.get(point.id, block + 1)
 
 
 def given_before(
@@ -29,8 +21,8 @@ def given_before(
 ) -> dict[str, Given]:
     """What an earlier session gave to the experiments that it began.
 
-    A question that now asks for more blocks than that has changed, and is decided anew. Where a point is new,
-    those that had stopped are measured on with it: what was settled was so against others.
+    A question that now asks for more blocks than that has changed, and is decided anew. In older folders
+    points could stop before others: what all of them have counts, since later blocks lack a point.
     """
     plan = store.note(PLAN) or {}
     given = {}
@@ -38,9 +30,8 @@ def given_before(
         kept = plan.get(experiment.points[0].scale, {}).get(experiment.name)
         minimum = experiment.question.blocks.minimum
         if kept and found[experiment.name].seconds and minimum <= kept["blocks"]:
-            is_known = {point.id for point in experiment.points} <= set(kept["points"])
-            stopped = dict(kept.get("stopped", {})) if is_known else {}
-            given[experiment.name] = Given(int(kept["blocks"]), stopped)
+            whole = min([kept["blocks"], *kept.get("stopped", {}).values()])
+            given[experiment.name] = Given(max(minimum, int(whole)))
     return given
 
 
@@ -52,7 +43,6 @@ def keep(store: Store, experiment: Experiment, given: Given, runs: int) -> None:
         "runs": runs,
         "order_seed": experiment.order_seed,
         "points": [point.id for point in experiment.points],
-        **({"stopped": given.stopped} if given.stopped else {}),
     }
     of_scale = plan.setdefault(experiment.points[0].scale, {})
     if of_scale.get(experiment.name) != entry:

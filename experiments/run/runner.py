@@ -11,7 +11,7 @@ from experiments.plan.plan import Experiment
 from experiments.plan.point import PROCESS, Point, Tags
 from experiments.plan.program import CHECK_FAILED, Program, generate
 from experiments.plan.scenes import AnyScene, NoScene, SceneFile, SceneFolder
-from experiments.results.store import Store, unusable
+from experiments.results.store import Store, timed_runs, unusable
 from experiments.run.host_lock import run_alone
 from experiments.run.kept_records import KeptRecords
 from experiments.run.limits import measure_limits
@@ -20,6 +20,7 @@ from experiments.run.processes import Asked, Left, Processes
 from experiments.run.promises import keep_promises
 from experiments.run.verify import Verifier, representative, scope_of
 from experiments.run.written import Written, built_anew
+from experiments.support.digest import digest
 from experiments.support.errors import InputError
 from experiments.support.files import move, read_json
 from experiments.support.process import NOT_FOUND, Completed
@@ -42,6 +43,8 @@ class Task:
     position: int
     blocks: int
     points: int
+    runs: int = 1
+    """Timed runs of each point in the process, where several points take turns in it."""
 
     def tags(self, session: str) -> Tags:
         """Everything that the record remembers of the plan."""
@@ -59,11 +62,12 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Seconds of the whole process, or the reason of its failure with the exit code."""
+    """Seconds of the whole process and of its timed runs, or the reason of its failure with the exit code."""
 
     seconds: float | None
     reason: str = ""
     exit_code: int = 0
+    runs: tuple[float, ...] = ()
 
 
 Ready = tuple[Task, SceneFile | None]
@@ -163,7 +167,7 @@ class Runner:
             )
             for task, scene in ready
         ]
-        done, left = self._processes.measure(asked, ready[0][0].block + 1)
+        done, left = self._processes.measure(asked, seed_of(ready[0][0]))
         return [
             self._keep_process(replace(task, point=there.point), scene, there, done)
             for (task, scene), there in zip(ready, left, strict=True)
@@ -196,8 +200,9 @@ class Runner:
         first = ready[0][0]
         contenders = folder / "contenders.json"
         contenders.write_text(json.dumps([words[2:] for words in commands]), encoding="utf-8")
-        command = (commands[0][0], "turns", str(contenders), "--seed", str(first.block + 1))
-        done = run_alone(command, first.point.openmp, self._time_limit * len(ready))
+        options = ("--seed", str(seed_of(first)), "--runs", str(first.runs))
+        command = (commands[0][0], "turns", str(contenders), *options)
+        done = run_alone(command, first.point.openmp, self._time_limit * len(ready) * first.runs)
         if done.exit_code not in (0, CHECK_FAILED):
             is_suspended = done.exit_code > 0 and SUSPENDED in done.reason
             return [self._fail(task, done) for task, _ in ready] if is_suspended else None
@@ -232,7 +237,7 @@ class Runner:
         wrong = unusable(record, task.point, task.block)
         if wrong is None:
             self._store.keep_record(task.point, task.block, scratch)
-            return Outcome(float(record["process_seconds"]))
+            return Outcome(float(record["process_seconds"]), runs=timed_runs(record))
         violation = _violation(record)
         if done.exit_code == CHECK_FAILED and (violation or record is None):
             return self._fail(task, Completed(done.command, CHECK_FAILED, "", violation or done.reason))
@@ -249,6 +254,13 @@ class Runner:
 def _path(scene: SceneFile | None) -> Path:
     assert scene is not None
     return scene.path
+
+
+def seed_of(task: Task) -> int:
+    """Of the order of turns: another one for every block and every seed of the study. It fits into 32 bits,
+    which any reader of JSON holds.
+    """
+    return int(digest(f"turns {task.experiment.order_seed} {task.block}")[:8], 16)
 
 
 def is_drawn(point: Point, block: int) -> bool:

@@ -4,13 +4,17 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from experiments.plan.plan import Experiment
-from experiments.plan.point import Point
+from experiments.plan.point import PROCESS, Point
 from experiments.plan.question import CONTROL
 from experiments.results.store import Found, Store
 from experiments.run.budget import Load, allocate
 from experiments.run.costs import Costs
 from experiments.run.given import Given, given_before, keep
+from experiments.run.next_blocks import Waiting
 from experiments.run.progress import Status
+from experiments.run.repeats import choose_runs, spread
+from experiments.run.runner import Outcome
+from experiments.run.together import together
 from experiments.run.verdicts import Open, Verdicts
 from experiments.run.verify import representative
 from experiments.run.whole_blocks import WholeBlocks
@@ -37,6 +41,7 @@ class Schedule:
         least = {one.name: Given(one.question.blocks.minimum) for one in experiments}
         self.given = least | self._begun
         self._laid_out: dict[str, WholeBlocks] = {}
+        self._runs: dict[str, dict[str, int]] = {}
 
     def blocks_of(self, experiment: Experiment) -> WholeBlocks:
         """Its blocks, as its records stand now."""
@@ -59,43 +64,64 @@ class Schedule:
             block += 1
 
     def share(self, seconds_left: float, settled: Collection[str] = ()) -> None:
-        """Share the time left among the experiments that are not settled; none loses a block it was given."""
+        """Share the time left among the experiments but those settled; none loses a block it was given."""
         once = self._once_seconds()
-        loads = [self._load(one, once[one.name], stopped=one.name in settled) for one in self.experiments]
+        loads = [self._load(one, once[one.name], enough=one.name in settled) for one in self.experiments]
         for name, blocks in allocate(loads, seconds_left).items():
             self.given[name].blocks = blocks
         self._laid_out.clear()
 
     def give(self, experiment: Experiment, found: Open) -> None:
-        """Give an experiment the blocks up to its next look, without the points of which nothing is asked."""
+        """Give an experiment the blocks up to its next look."""
         given = self.given[experiment.name]
-        for point in experiment.points:
-            if (point.series, point.x) in found.points_stopped:
-                given.stopped.setdefault(point.id, self.blocks_of(experiment).next(point))
         given.blocks = max(given.blocks, found.next)
         self._laid_out.pop(experiment.name, None)
 
-    def cheapest(self, verdicts: Verdicts, seconds_left: float) -> Experiment | None:
-        """The experiment in which something is settled at the least expense, of those whose next look there
-        is time for; None if there is none. One that has its blocks waits for the others that a claim rests
-        on.
+    def waiting(self, verdicts: Verdicts) -> Iterator[Waiting]:
+        """What is open and may be measured on. Who has its blocks waits for the others that a claim rests on.
 
         What was spent on it since its least blocks counts as well: an effect near a border always seems a few
         blocks from being settled.
         """
-        best, least = None, math.inf
         for one in self.experiments:
             found = verdicts.open.get(one.name)
             if found is None or any(self._is_given_up(one, point) for point in one.points):
                 continue
-            if self.given[one.name].blocks >= found.next and self.is_complete(one):
+            lacking = found.next - self.given[one.name].blocks
+            if lacking <= 0 and self.is_complete(one):
                 continue
-            goes_on = [point for point in one.points if (point.series, point.x) not in found.points_stopped]
-            block = sum(map(self._costs.point, goes_on))
-            seconds = block * (found.needed - one.question.blocks.minimum)
-            if seconds < least and block * (found.next - found.blocks) <= seconds_left:
-                best, least = one, seconds
-        return best
+            block = self.block_seconds(one)
+            spent = found.needed - one.question.blocks.minimum
+            yield Waiting(one.name, max(1, lacking), block, block * spent)
+
+    def block_seconds(self, experiment: Experiment) -> float:
+        """What a block of an experiment takes, with the runs that its processes would make now."""
+        return sum(self._process_seconds(experiment, point) for point in experiment.points)
+
+    def runs(self, experiment: Experiment, group: Sequence[Point]) -> int:
+        """How many timed runs a process of these points makes, by what is known of their times so far."""
+        if len(group) < 2 or group[0].verb == PROCESS:
+            return 1
+        found = self._found[experiment.name].runs
+        processes = []
+        for block in range(1 + max((at for _, at in found), default=-1)):
+            process = [found.get((point.id, block), ()) for point in group]
+            if all(process):
+                processes.append(process)
+        fixed, run = (sum(map(cost, group)) for cost in (self._costs.fixed, self._costs.run))
+        last = len(processes[-1][0]) if processes else 0
+        return choose_runs(fixed, run, spread(processes), last)
+
+    def _process_seconds(self, experiment: Experiment, point: Point) -> float:
+        if experiment.name not in self._runs:
+            # A later block: what the first one does besides keeps points out of turns.
+            groups = together(experiment, 1, list(enumerate(experiment.points)))
+            self._runs[experiment.name] = {
+                point.id: self.runs(experiment, points)
+                for points in ([one for _, one in group] for group in groups if len(group) > 1)
+                for point in points
+            }
+        return self._costs.point(point, self._runs[experiment.name].get(point.id))
 
     def _is_given_up(self, experiment: Experiment, point: Point) -> bool:
         return (experiment.name, point.id) in self._given_up
@@ -134,22 +160,31 @@ class Schedule:
                 "what lost its partner is measured again with it"
             )
 
-    def finish(self, experiment: Experiment, point: Point, block: int, seconds: float | None) -> None:
-        """A process ended after so many seconds; None if it failed, and then its point is not tried again."""
+    def finish(self, experiment: Experiment, point: Point, block: int, outcome: Outcome) -> None:
+        """A process ended; if it failed, its point is not tried again."""
         self._laid_out.pop(experiment.name, None)
-        if seconds is None:
+        self._runs.pop(experiment.name, None)
+        if outcome.seconds is None:
             self._given_up.add((experiment.name, point.id))
             return
         found, key = self._found[experiment.name], (point.id, block)
-        found.seconds[key], found.sessions[key] = seconds, self._store.session
+        found.seconds[key], found.runs[key] = outcome.seconds, outcome.runs
+        found.sessions[key] = self._store.session
         found.failures.pop(key, None)
-        self._costs.learn(point, seconds)
+        self._costs.learn(point, outcome.seconds, outcome.runs)
+
+    def learn_beside(self, experiment: Experiment, seconds: float, outcomes: Sequence[Outcome]) -> None:
+        """These were measured in so many seconds, their records' checks and the like included."""
+        own = [one.seconds for one in outcomes if one.seconds is not None]
+        if len(own) == len(outcomes):
+            self._costs.learn_beside(experiment.name, max(0.0, seconds - sum(own)) / len(own))
+            self._runs.pop(experiment.name, None)
 
     def status(self) -> Status:
         """How far the study is; what is left counts scenes and checks too. What stands without its partners
         is not part of it.
         """
-        missing = [point for one in self.experiments for point in self.left(one)]
+        left = [self._process_seconds(one, point) for one in self.experiments for point in self.left(one)]
         planned = [(one.name, key) for one in self.experiments for key in self.blocks_of(one).keys]
         done = [
             seconds for name, key in planned if (seconds := self._found[name].seconds.get(key)) is not None
@@ -158,7 +193,7 @@ class Schedule:
             planned=len(planned),
             done=len(done),
             seconds_done=sum(done),
-            seconds_left=sum(self._once_seconds().values()) + sum(map(self._costs.point, missing)),
+            seconds_left=sum(self._once_seconds().values()) + sum(left),
         )
 
     def control_due(self, control: Experiment) -> int:
@@ -167,10 +202,10 @@ class Schedule:
         share = status.seconds_done / max(status.seconds_done + status.seconds_left, 1e-9)
         return math.ceil(self.given[control.name].blocks * share)
 
-    def _load(self, experiment: Experiment, once: float, *, stopped: bool) -> Load:
-        seconds = {point.id: self._costs.point(point) for point in experiment.points}
+    def _load(self, experiment: Experiment, once: float, *, enough: bool) -> Load:
+        seconds = {point.id: self._process_seconds(experiment, point) for point in experiment.points}
         minimum = self.given[experiment.name].blocks
-        wanted = minimum if stopped else max(minimum, experiment.question.blocks.wanted)
+        wanted = minimum if enough else max(minimum, experiment.question.blocks.wanted)
         measured = self._found[experiment.name].seconds
         done = sum(seconds[key[0]] for key in self.blocks_of(experiment).keys if key in measured)
         return Load(experiment.name, sum(seconds.values()), once - done, minimum, wanted)

@@ -4,10 +4,12 @@ import json
 import math
 import time
 from collections import Counter
+from collections.abc import Collection, Sequence
 
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.plan.site import what_limits
+from experiments.run.next_blocks import in_turns, next_blocks
 from experiments.run.progress import Report, warn
 from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.schedule import Schedule, split
@@ -99,27 +101,27 @@ class Session:
             self._run_control(everything=False)
             self._first_block(experiment)
             if experiment.question.blocks.wanted == 1:
-                self._measure(experiment)
-        for experiment in self._incomplete:
-            if experiment.question.blocks.wanted > 1:
-                self._measure(experiment)
+                self._measure([experiment])
+        self._measure([one for one in self._incomplete if one.question.blocks.wanted > 1])
         settings = self._study.settings
         if settings.builds:
             self._study.begin(time.monotonic() - self._began)
             return self._failed()
         if self._has_more or settings.until_decided or settings.budget_seconds is not None:
             looks = settings.figures and settings.blocks is None
-            settled = self._settle() if looks else frozenset()
+            verdicts = self._settle() if looks else Verdicts()
             if not settings.until_decided:
-                self._share(settled)
+                # What is still open has no time for its next look: more blocks of it come last of all.
+                self._share({*verdicts.settled, *verdicts.open})
+                self._share(verdicts.settled)
         self._run_control(everything=True)
         self._study.finish()
         failed = self._failed()
         return self._report_all() or failed
 
-    def _settle(self) -> frozenset[str]:
+    def _settle(self) -> Verdicts:
         """Measure what settles something soonest, and look again, as long as there is time; what is settled
-        gets no more. Returns the experiments in which nothing is open.
+        gets no more. Returns what the last look found.
         """
         self._keep_time_to_decide()
         while True:
@@ -128,25 +130,21 @@ class Session:
             verdicts = ask(self._analysis)
             if isinstance(verdicts, str):
                 warn(f"what is open is not known, so that nothing is measured to settle it: {verdicts}")
-                return frozenset()
+                return Verdicts()
             self._tell_decisions(verdicts)
             looked = time.monotonic()
-            if not self._measure_cheapest(verdicts, until=looked + MEASURED_A_LOOK * (looked - began)):
-                return verdicts.settled
+            if not self._measure_next(verdicts, least_seconds=MEASURED_A_LOOK * (looked - began)):
+                return verdicts
 
-    def _measure_cheapest(self, verdicts: Verdicts, until: float) -> bool:
-        """Bring what is settled at the least expense to its next look, and the next such, for as long as to
-        make a look worth its time. Returns whether there was any.
-        """
-        found = False
-        while not found or time.monotonic() < until:
-            chosen = self._schedule.cheapest(verdicts, self._until - time.monotonic())
-            if chosen is None:
-                break
-            self._schedule.give(chosen, verdicts.open[chosen.name])
-            self._measure(chosen)
-            found = True
-        return found
+    def _measure_next(self, verdicts: Verdicts, least_seconds: float) -> bool:
+        """Bring what is settled at the least expense to its next look. Returns whether there was any."""
+        waiting = list(self._schedule.waiting(verdicts))
+        blocks = next_blocks(waiting, self._until - time.monotonic(), least_seconds)
+        chosen = [one for one in self._study.experiments if one.name in blocks]
+        for experiment in chosen:
+            self._schedule.give(experiment, verdicts.open[experiment.name])
+        self._measure(chosen)
+        return bool(chosen)
 
     def _tell_decisions(self, verdicts: Verdicts) -> None:
         for name, said in verdicts.said.items():
@@ -154,20 +152,30 @@ class Session:
                 self._report.line(f"decided: {name} {said}")
         self._said.update(verdicts.said)
 
-    def _share(self, settled: frozenset[str]) -> None:
-        """Give the rest of the time to whatever is not settled, up to the blocks that it wants."""
-        self._schedule.share(self._until - time.monotonic(), settled)
+    def _share(self, enough: Collection[str]) -> None:
+        """Give the rest of the time to whatever has not enough, up to the blocks that it wants."""
+        self._schedule.share(self._until - time.monotonic(), enough)
         for experiment in self._others:
             if not self._schedule.is_complete(experiment):
-                self._schedule.share(self._until - time.monotonic(), settled)
-                self._measure(experiment)
+                self._schedule.share(self._until - time.monotonic(), enough)
+                self._measure([experiment])
 
-    def _measure(self, experiment: Experiment) -> None:
-        self._schedule.begin(experiment)
-        for block in self._schedule.blocks(experiment):
+    def _measure(self, experiments: Sequence[Experiment]) -> None:
+        """Run what is missing of these, a block of one and a block of another in turn."""
+        lacking = {}
+        for one in experiments:
+            self._schedule.begin(one)
+            blocks = self._schedule.blocks_of(one)
+            lacking[one.name] = [block for block in range(blocks.end()) if blocks.missing(block)]
+        of_name = {one.name: one for one in experiments}
+        for name in in_turns({name: len(blocks) for name, blocks in lacking.items()}):
             self._run_control(everything=False)
-            self._block(experiment, block)
-        self._schedule.begin(experiment)
+            self._block(of_name[name], lacking[name].pop(0))
+        for one in experiments:
+            # There are more where something that had failed succeeded.
+            for block in self._schedule.blocks(one):
+                self._block(one, block)
+            self._schedule.begin(one)
 
     def _first_block(self, experiment: Experiment) -> None:
         for block in self._schedule.blocks(experiment, most=1):
@@ -189,9 +197,13 @@ class Session:
         what = f"{experiment.name}, block {laid_out.ordinal(block)} of {blocks}"
         for group in together(experiment, block, missing):
             self._report.now(what, self._schedule.status)
-            tasks = [Task(experiment, point, block, position, blocks, size) for position, point in group]
-            for (_, point), outcome in zip(group, self._runner.run(tasks), strict=True):
-                self._schedule.finish(experiment, point, block, outcome.seconds)
+            runs = self._schedule.runs(experiment, [point for _, point in group])
+            tasks = [Task(experiment, point, block, at, blocks, size, runs) for at, point in group]
+            began = time.monotonic()
+            outcomes = self._runner.run(tasks)
+            self._schedule.learn_beside(experiment, time.monotonic() - began, outcomes)
+            for (_, point), outcome in zip(group, outcomes, strict=True):
+                self._schedule.finish(experiment, point, block, outcome)
                 if outcome.seconds is None:
                     self._tell(point, outcome)
         if missing:

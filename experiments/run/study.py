@@ -13,7 +13,7 @@ from experiments.plan.question import load_questions, with_blocks
 from experiments.plan.scale import find_scale
 from experiments.plan.scenes import SceneFolder
 from experiments.plan.site import Machine
-from experiments.results.store import Store, new_session, seconds_by_point
+from experiments.results.store import Store, measured_by_point, new_session
 from experiments.run.costs import PROBE, Costs, Probe, kept_probes, probe, probe_key, to_probe
 from experiments.run.progress import about
 from experiments.run.runner import Runner
@@ -103,7 +103,7 @@ class Study:
         """What is there and what is to be run; `settle` moves stale records out of the way first."""
         look = self.store.settle if settle else self.store.find
         found = {experiment.name: look(experiment) for experiment in self.experiments}
-        costs = Costs(self._probes(runner), seconds_by_point(found.values()))
+        costs = Costs(self._probes(runner), measured_by_point(found.values()))
         return Schedule(self.store, self.experiments, found, costs)
 
     @property

@@ -1,7 +1,7 @@
 """What the analysis program says so far: what is settled, and how many blocks the rest needs."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from experiments.support.process import Coprocess
@@ -13,19 +13,12 @@ _LIMIT = 600.0
 @dataclass(frozen=True)
 class Open:
     """An experiment in which something is open: the `blocks` it has, the `next` number at which the analysis
-    looks again, those `needed` to settle the first thing in it, and the points, by series and x, of which
-    nothing is asked any more (`stopped`).
+    looks again, and those `needed` to settle the first thing in it.
     """
 
     blocks: int
     next: int
     needed: int
-    stopped: Sequence[Sequence[str | float]] = ()
-
-    @property
-    def points_stopped(self) -> set[tuple[str, float]]:
-        """Those points, to look one up."""
-        return {(str(series), float(x)) for series, x in self.stopped}
 
 
 @dataclass(frozen=True)
@@ -44,7 +37,7 @@ def ask(analysis: Coprocess) -> Verdicts | str:
         return done.reason
     answer = json.loads(done.output)
     return Verdicts(
-        {name: Open(**one) for name, one in answer["open"].items()},
+        {name: Open(one["blocks"], one["next"], one["needed"]) for name, one in answer["open"].items()},
         frozenset(answer["settled"]),
         answer["said"],
     )

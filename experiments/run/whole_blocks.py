@@ -79,7 +79,6 @@ class WholeBlocks:
             for scene, points in self._scenes.items()
             for point in points
             for block in self.numbers[scene]
-            if self._given.includes(point, block)
         ]
 
     @cached_property
@@ -109,17 +108,9 @@ class WholeBlocks:
         places = [numbers.index(block) for numbers in self.numbers.values() if block in numbers]
         return 1 + max(places, default=block)
 
-    def next(self, point: Point) -> int:
-        """The number of the first block after those that count of the point's scene."""
-        return 1 + max(self.numbers[_scene(point)], default=-1)
-
     def size(self, block: int) -> int:
         """How many points the block has, of the scenes of which it counts."""
-        return sum(
-            self._given.includes(point, block)
-            for scene in self._counting.get(block, ())
-            for point in self._scenes[scene]
-        )
+        return sum(len(self._scenes[scene]) for scene in self._counting.get(block, ()))
 
     def missing(self, block: int) -> list[tuple[int, Point]]:
         """Position and point of what is still to be run in one block, in the block's order."""
@@ -152,7 +143,7 @@ class WholeBlocks:
 
     def _is_missing(self, point: Point, block: int, counting: Collection[str]) -> bool:
         key, place = (point.id, block), (_scene(point), block)
-        if key in self._found.seconds or point.id in self._given_up or not self._given.includes(point, block):
+        if key in self._found.seconds or point.id in self._given_up:
             return False
         if place[0] in counting and (block in self._busy or not self._is_old(place)):
             return True
@@ -163,7 +154,7 @@ class WholeBlocks:
         """Whether the block is of one session, or still can be."""
         if place[1] in self._busy or not self._is_old(place):
             return True
-        asked = [point for point in self._scenes[place[0]] if self._is_asked(point, place[1])]
+        asked = [point for point in self._scenes[place[0]] if point.id not in self._left_out]
         sessions = {self._found.sessions.get((point.id, place[1])) for point in asked}
         return len(sessions) <= 1 and None not in sessions
 
@@ -172,11 +163,8 @@ class WholeBlocks:
         return [
             point
             for point in points
-            if self._is_asked(point, place[1]) and (point.id, place[1]) not in self._found.seconds
+            if point.id not in self._left_out and (point.id, place[1]) not in self._found.seconds
         ]
-
-    def _is_asked(self, point: Point, block: int) -> bool:
-        return point.id not in self._left_out and self._given.includes(point, block)
 
     def _is_old(self, place: Place) -> bool:
         """Whether an earlier session measured some of it."""

@@ -152,7 +152,8 @@ def contenders(words: list[str]) -> list[list[str]]:
     """What those who take turns would be told alone."""
     if words[0] != "turns":
         return []
-    return [["bench", *said] for said in json.loads(Path(words[1]).read_text(encoding="utf-8"))]
+    runs = ["--repetitions", split(words[1:])[0].get("runs", "1")]
+    return [["bench", *said, *runs] for said in json.loads(Path(words[1]).read_text(encoding="utf-8"))]
 
 
 def described(words: list[str]) -> list[Options]:
@@ -256,6 +257,7 @@ def sha256(path: str) -> str:
 
 def make_record(verb: str, scene: str, options: Options, wrong: bool) -> dict[str, Any]:
     seconds = 0.001 + float(os.environ.get("FAKE_SECONDS", "0"))
+    runs = int(options.get("repetitions", 1)) if verb == "bench" else 1
     particles, side, radius, steps = map(float, Path(scene).read_text(encoding="utf-8").split()[:4])
     return any_record(verb, options) | {
         "axes": axes(options),
@@ -269,9 +271,9 @@ def make_record(verb: str, scene: str, options: Options, wrong: bool) -> dict[st
             "area_fraction": particles * 3.14159 * radius**2 / side**2,
         },
         "warm_ups": int(options.get("warm-up", 0)),
-        "repetitions": [] if wrong else [{"steps_seconds": seconds, "cpu_seconds": seconds}],
+        "repetitions": [] if wrong else [{"steps_seconds": seconds, "cpu_seconds": seconds}] * runs,
         "parse_seconds": 0.001,
-        "process_seconds": seconds + 0.01,
+        "process_seconds": runs * seconds + 0.01,
         "work": {"steps": int(steps), "overlaps": 5, "pair_resolves": 4, "wall_resolves": 3, "sweeps": 2},
         "errors": errors("errors" in options),
         "check": {

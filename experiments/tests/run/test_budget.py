@@ -137,7 +137,26 @@ def test_empty_boxes_and_crowded_discs_cost_more() -> None:
 
 def test_records_overrule_the_estimate() -> None:
     point = points("threads")[0]
-    assert Costs({}, {point.id: [3.0, 9.0, 4.0]}).point(point) == 4.0 + SECONDS_PER_PROCESS
+    measured = [(3.0, [2.5]), (9.0, [1.0]), (4.0, [1.5, 1.5])]
+    assert Costs({}, {point.id: measured}).point(point) == 4.0 + SECONDS_PER_PROCESS
+
+
+def test_more_runs_cost_as_much_as_a_run_does() -> None:
+    point = points("control")[0]
+    costs = Costs({}, {point.id: [(2.0, [1.5]), (4.0, [1.5, 1.5]), (2.4, [1.9])]})
+    assert costs.run(point) == 1.5
+    assert costs.fixed(point) == pytest.approx(0.5 + SECONDS_PER_PROCESS)
+    assert costs.point(point, runs=4) == pytest.approx(6.5 + SECONDS_PER_PROCESS)
+    costs.learn_beside(point.experiment, 7.0)
+    costs.learn_beside(point.experiment, 0.25)
+    assert costs.point(point, runs=4) == pytest.approx(6.75), "the first process came with its check"
+
+
+def test_before_anything_is_measured_a_process_is_its_runs_and_the_rest() -> None:
+    point = points("control")[0]
+    costs = Costs({probe_key(point): Probe(step=0.003, process=0.02)}, {})
+    assert costs.fixed(point) > 0.02
+    assert costs.fixed(point) + costs.run(point) == pytest.approx(costs.point(point))
 
 
 def test_what_is_learnt_about_one_point_corrects_the_others() -> None:

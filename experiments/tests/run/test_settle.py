@@ -4,12 +4,14 @@ import json
 import os
 import re
 import shutil
+from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
 
 from experiments.plan import scale
 from experiments.run import session
+from experiments.run.schedule import Schedule
 from experiments.run.session import run
 from experiments.run.study import Study
 from experiments.run.verdicts import Open, Verdicts
@@ -200,29 +202,46 @@ def test_the_cheapest_to_settle_comes_first(workplace: Workplace) -> None:
         schedule = study.schedule(study.runner(), settle=False)
     one, other = Open(2, 4, 6), Open(2, 4, 40)
     for first, pair, chunks in (("pair", one, other), ("chunks", other, one)):
-        chosen = schedule.cheapest(Verdicts({"pair": pair, "chunks": chunks}), 1e6)
-        assert chosen is not None
-        assert chosen.name == first
+        assert cheapest(schedule, {"pair": pair, "chunks": chunks}) == first
     near = Open(28, 42, 34)
-    chosen = schedule.cheapest(Verdicts({"pair": near, "chunks": Open(2, 4, 12)}), 1e6)
-    assert chosen is not None
-    assert chosen.name == "chunks", "what has had many blocks counts"
-    assert schedule.cheapest(Verdicts({"pair": one}), 0.0) is None, "there is no time for its next look"
-    assert schedule.cheapest(Verdicts(), 1e6) is None
+    assert cheapest(schedule, {"pair": near, "chunks": Open(2, 4, 12)}) == "chunks", "what it has had counts"
+    [waiting] = schedule.waiting(Verdicts({"pair": Open(2, 9, 20)}))
+    assert waiting.lacking == 7
+    assert waiting.seconds_to_settle == pytest.approx(18 * waiting.block_seconds)
+    assert not list(schedule.waiting(Verdicts()))
 
 
-def test_points_of_which_nothing_is_asked_stop_and_stay_so(workplace: Workplace) -> None:
-    run(replace(workplace.settings, figures=False))
+def cheapest(schedule: Schedule, found: Mapping[str, Open]) -> str:
+    return min(schedule.waiting(Verdicts(found)), key=lambda one: one.seconds_to_settle).name
+
+
+def test_blocks_of_what_is_open_take_turns(needing: Workplace) -> None:
+    want(needing, pair=8, chunks=8)
+    assert finish(needing.start("run", "--budget", "5"))[0] == 0
+    firsts = [call["words"] for call in needing.calls() if "--tag" in call["words"]]
+    order = [
+        (tags["experiment"], int(tags["block"]))
+        for words in firsts
+        for tags in [dict(word.split("=", 1) for word in words if "=" in word)]
+        if tags["experiment"] != "control"
+    ]
+    blocks = list(dict.fromkeys(order))
+    after = blocks[blocks.index(("pair", 2)) :] if ("pair", 2) in blocks else []
+    assert {name for name, _ in blocks[4:6]} == {"pair", "chunks"}, blocks
+    assert [name for name, _ in after[:4]] in (["pair", "chunks"] * 2, ["chunks", "pair"] * 2), blocks
+
+
+def test_a_folder_in_which_points_had_stopped_counts_the_blocks_of_all(workplace: Workplace) -> None:
+    run(replace(workplace.settings, figures=False, blocks=4))
     study = Study(workplace.settings)
     [chunks] = [one for one in study.experiments if one.name == "chunks"]
-    last = chunks.points[-1]
-    with study.store.opened():
-        schedule = study.schedule(study.runner(), settle=False)
-        schedule.give(chunks, Open(2, 4, 6, [[last.series, last.x]]))
-        schedule.begin(chunks)
-        assert [schedule.blocks_of(chunks).size(block) for block in range(4)] == [3, 3, 2, 2]
-        again = study.schedule(study.runner(), settle=False).blocks_of(chunks)
-        assert last not in [point for _, point in again.missing(2)]
-        assert len(again.missing(2)) == 2
-    [row] = [one for name, one in workplace.rows().items() if name == "chunks"]
-    assert (row.planned, row.done, row.missing) == (10, 6, 4)
+    note = study.store.note("plan.json")
+    note["paper"]["chunks"] |= {"blocks": 4, "stopped": {chunks.points[-1].id: 3}}
+    (workplace.results / "plan.json").write_text(json.dumps(note))
+    for path in (workplace.results / "records" / "chunks").glob(f"{chunks.points[-1].id}-b3.json"):
+        path.unlink()
+    before = len(workplace.calls())
+    run(replace(workplace.settings, figures=False))
+    assert len(workplace.records("chunks")) == 11
+    assert not any("--tag" in call["words"] for call in workplace.calls()[before:])
+    assert workplace.rows()["chunks"].blocks == 3

@@ -86,15 +86,3 @@ def test_a_run_ends_with_as_many_whole_blocks_as_were_given(
     again, rerun = finish(experiment, blocks, found, "later", hopeless)
     assert again.numbers == now.numbers
     assert {point for point, _ in rerun} <= hopeless, "only what failed is tried again"
-
-
-@given(st.data())
-@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_a_point_that_has_stopped_is_not_missed(experiment: Experiment, data: st.DataObject) -> None:
-    stopped = data.draw(st.sampled_from(experiment.points)).id
-    found = Found()
-    now, _ = finish(experiment, Given(4, {stopped: 2}), found, "now")
-    assert [now.size(block) for block in range(4)] == [8, 8, 7, 7]
-    later = WholeBlocks(experiment, Given(4, {stopped: 2}), found, "later")
-    assert later.broken == []
-    assert not any(later.missing(block) for block in range(later.end()))
