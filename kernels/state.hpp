@@ -74,6 +74,13 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
                      policies.box_side == BoxSide::wide ? rest_of(policies.order) : Rest::own_box),
                 threads) {}
 
+    /// Goes back to the start of the scene it was built of, on as many threads, and keeps its memory. All
+    /// else that it holds each step writes before it reads it.
+    void restart(const Scene& scene, int threads) {
+        Discs::place(scene, threads);
+        steps_flown = 0;
+    }
+
     int count() const { return static_cast<int>(this->discs.size()); }
     Real reach_squared() const { return (2 * radius) * (2 * radius); }
 

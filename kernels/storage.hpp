@@ -39,10 +39,15 @@ template <class Real> struct DiscsOf<Storage::numbered, Real> {
     std::vector<std::vector<int>> boxes;
     int boxes_ahead; ///< how many boxes hold about eight discs, at most twelve: see look_ahead.hpp
 
-    DiscsOf(const Scene& scene, const Grid& grid, int /*threads*/)
+    DiscsOf(const Scene& scene, const Grid& grid, int threads)
         : discs(scene.discs.size()), boxes(static_cast<std::size_t>(grid.box_count())),
           boxes_ahead(static_cast<int>(std::clamp(
               8.0 * grid.box_count() / std::max(static_cast<double>(discs.size()), 1.0), 1.0, 12.0))) {
+        place(scene, threads);
+    }
+
+    /// Puts the discs where the scene has them.
+    void place(const Scene& scene, int /*threads*/) {
         std::ranges::transform(scene.discs, discs.begin(), disc_cast<Real, double>);
     }
 
@@ -102,6 +107,11 @@ template <class Real> struct DiscsOf<Storage::sorted, Real> {
         : discs(scene.discs.size()), numbers(discs.size()), box_of_disc(discs.size()),
           box_begin(static_cast<std::size_t>(grid.box_count()) + 1), spare_discs(discs.size()),
           spare_numbers(discs.size()), spare_box_of_disc(discs.size()) {
+        place(scene, threads);
+    }
+
+    /// Puts the discs where the scene has them, in the order of their numbers.
+    void place(const Scene& scene, int threads) {
         NoProbe probe;
         parallel_for<Schedule::static_>(threads, static_cast<int>(discs.size()), 1, probe, [&](int i) {
             const auto index = static_cast<std::size_t>(i);

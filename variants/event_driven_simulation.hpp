@@ -25,6 +25,11 @@ template <class Log> class EventDrivenSimulation final : public Simulation {
                 .settled = settled};
     }
 
+    void restart(const Scene& scene) override {
+        exact_.restart(scene);
+        steps_ = 0;
+    }
+
     std::vector<Disc> discs() const override { return exact_.discs(); }
 
   private:

@@ -27,6 +27,8 @@ template <Policies policies, class SomeProbe> class SimulationOf final : public 
 
     Tally step() override { return carom::step(state_, tuning_, probe_); }
 
+    void restart(const Scene& scene) override { state_.restart(scene, tuning_.threads); }
+
     std::vector<Disc> discs() const override { return discs_by_number(state_); }
 
   private:

@@ -95,19 +95,20 @@ ProgramContender contender_of(AskedProcess& one) {
     return contender;
 }
 
-std::optional<Turns> turns_of(const Measured& measured, int contenders, std::uint64_t seed) {
+std::optional<ProcessTurns> turns_of(const Measured& measured, int contenders, std::uint64_t seed) {
     const bool took_turns = contenders > 1 && (measured.sliced || measured.runs.size() > 1);
     if (!took_turns) {
         return std::nullopt;
     }
-    Turns turns{.contenders = contenders, .seed = seed, .seconds = {}};
+    ProcessTurns turns{.contenders = contenders, .seed = seed, .seconds = {}};
     for (const ProcessEnd& run : measured.runs) {
         turns.seconds.insert(turns.seconds.end(), run.seconds.begin(), run.seconds.end());
     }
     return turns;
 }
 
-void write_record_of(const AskedProcess& one, const Measured& measured, const std::optional<Turns>& turns) {
+void write_record_of(const AskedProcess& one, const Measured& measured,
+                     const std::optional<ProcessTurns>& turns) {
     const DescribedProcess& described = one.described;
     Json scene = nullptr;
     if (!described.scene.empty()) {
@@ -160,7 +161,8 @@ void tell(const std::string& name, const Measured& measured) {
 }
 
 /// Leaves the record of a process that ended, or of its failure; returns why it failed, or nothing.
-std::string keep(const AskedProcess& one, const Measured& measured, const std::optional<Turns>& turns) {
+std::string keep(const AskedProcess& one, const Measured& measured,
+                 const std::optional<ProcessTurns>& turns) {
     std::string reason = measured.failure;
     if (reason.empty()) {
         try {

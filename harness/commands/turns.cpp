@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@
 #include "harness/support/errors.hpp"
 #include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
+#include "harness/support/process_clock.hpp"
 #include "harness/support/text.hpp"
 
 namespace carom {
@@ -31,7 +33,9 @@ namespace {
 struct TurnsOptions {
     std::string file;
     double turn_seconds = 0.02;
+    int runs = 1;
     std::uint64_t seed = 1;
+    bool counts = false;
 };
 
 /// What one contender's words say.
@@ -56,6 +60,9 @@ ContenderOptions parse_contender(const std::vector<std::string>& words, const st
     }
     if (options.measurement.record.empty()) {
         throw InputError(where + ": found no --record, expected a file for it");
+    }
+    if (options.simulation.variant != automatic) {
+        require_variant(options.simulation.variant);
     }
     require_writable(options.measurement.record);
     require_threads(options.simulation.tuning.threads);
@@ -82,9 +89,16 @@ std::vector<ContenderOptions> read_contenders(const std::string& path) {
     return contenders;
 }
 
-/// Lets them run; returns the seconds of each turn of each contender.
-std::vector<std::vector<double>> compete(std::deque<VariantContender>& contenders,
-                                         const TurnsOptions& options) {
+/// The measurement that one contender's words ask for. `scene` must outlive it.
+Measurement measurement_of(const LoadedScene& scene, const ContenderOptions& said) {
+    const Tuning& tuning = said.simulation.tuning;
+    return measurement_of(scene, require_variant(said.simulation.variant, scene.scene, tuning), tuning,
+                          said.measurement);
+}
+
+/// Lets them run; returns how.
+TurnsPlan compete(std::deque<VariantContender>& contenders, const TurnsOptions& options,
+                  std::vector<std::vector<Turn>>& turns) {
     std::vector<double> expected;
     std::vector<Contender*> everyone;
     int fewest_steps = contenders.front().steps();
@@ -93,11 +107,24 @@ std::vector<std::vector<double>> compete(std::deque<VariantContender>& contender
         everyone.push_back(&one);
         fewest_steps = std::min(fewest_steps, one.steps());
     }
-    return take_turns(everyone, count_rounds(expected, fewest_steps, options.turn_seconds), options.seed);
+    const TurnsPlan plan{.runs = options.runs,
+                         .rounds = count_rounds(expected, fewest_steps, options.turn_seconds),
+                         .seed = options.seed};
+    turns = take_turns(everyone, plan);
+    return plan;
 }
 
-void turns(const TurnsOptions& options) {
-    const std::vector<ContenderOptions> said = read_contenders(options.file);
+/// Writes the record; notes what is wrong with the run in `failure` if nothing was noted before.
+void keep(const Measurement& measurement, const std::string& record, std::optional<std::string>& failure) {
+    write_record(record, record_json(measurement));
+    if (measurement.violation && !failure) {
+        failure = measurement.scene_name + ", variant " + std::string(measurement.variant.name) + ": " +
+                  *measurement.violation;
+    }
+}
+
+std::optional<std::string> take_turns(const std::vector<ContenderOptions>& said,
+                                      const TurnsOptions& options) {
     std::map<std::string, LoadedScene> scenes;
     std::deque<VariantContender> contenders;
     for (const ContenderOptions& one : said) {
@@ -106,29 +133,60 @@ void turns(const TurnsOptions& options) {
         if (loaded == scenes.end()) {
             loaded = scenes.emplace(path, load_scene(path)).first;
         }
-        const LoadedScene& scene = loaded->second;
-        const Tuning& tuning = one.simulation.tuning;
-        contenders.emplace_back(measurement_of(
-            scene, require_variant(one.simulation.variant, scene.scene, tuning), tuning, one.measurement));
+        contenders.emplace_back(measurement_of(loaded->second, one));
     }
     Suspensions suspensions;
     suspensions.start();
-    const auto seconds = compete(contenders, options);
+    std::vector<std::vector<Turn>> turns;
+    const TurnsPlan plan = compete(contenders, options, turns);
     suspensions.require_none("turns of " + counted(contenders.size(), "contender"));
-    const VariantContender* failed = nullptr;
+    std::optional<std::string> failure;
     for (std::size_t k = 0; k < contenders.size(); ++k) {
-        VariantContender& one = contenders[k];
-        one.finish(
-            {.contenders = static_cast<int>(contenders.size()), .seed = options.seed, .seconds = seconds[k]});
-        write_record(said[k].measurement.record, record_json(one.measurement()));
-        if (one.measurement().violation && failed == nullptr) {
-            failed = &one;
-        }
+        contenders[k].finish(
+            {.contenders = static_cast<int>(contenders.size()), .plan = plan, .turns = std::move(turns[k])});
+        keep(contenders[k].measurement(), said[k].measurement.record, failure);
     }
-    if (failed != nullptr) {
-        const Measurement& measurement = failed->measurement();
-        throw CheckError(measurement.scene_name + ", variant " + std::string(measurement.variant.name) +
-                         ": " + *measurement.violation);
+    return failure;
+}
+
+/// Its one run, from cold.
+Run counted_run(const Measurement& measurement) {
+    if (measurement.scope == CheckScope::every_step) {
+        return checked_run(measurement.scene, measurement.variant, measurement.tuning);
+    }
+    const auto simulation = measurement.variant.simulate(measurement.scene, measurement.tuning);
+    return run_scene(measurement.scene, *simulation, measurement.tuning,
+                     Check(CheckScope::last_step, measurement.variant.policies));
+}
+
+/// One after the other, each gone before the next begins.
+std::optional<std::string> count(const std::vector<ContenderOptions>& said) {
+    std::optional<LoadedScene> scene;
+    std::string path;
+    std::optional<std::string> failure;
+    Suspensions suspensions;
+    suspensions.start();
+    for (const ContenderOptions& one : said) {
+        const double start = process_seconds();
+        if (!scene || path != one.simulation.scene) {
+            path = one.simulation.scene;
+            scene = load_scene(path);
+        }
+        Measurement measurement = measurement_of(*scene, one);
+        measurement.warm_ups = 0;
+        measurement.add(counted_run(measurement));
+        measurement.own_seconds = process_seconds() - start;
+        suspensions.require_none(measurement.scene_name + ", variant " +
+                                 std::string(measurement.variant.name));
+        keep(measurement, one.measurement.record, failure);
+    }
+    return failure;
+}
+
+void turns(const TurnsOptions& options) {
+    const std::vector<ContenderOptions> said = read_contenders(options.file);
+    if (const auto failure = options.counts ? count(said) : take_turns(said, options)) {
+        throw CheckError(*failure);
     }
 }
 
@@ -146,8 +204,17 @@ void add_turns_command(CLI::App& program) {
         ->required();
     add_number(*command, "--turn", options->turn_seconds, 1e-6, 1e6,
                "Seconds that a turn is to last, a step at least");
+    add_number(*command, "--runs", options->runs, 1, 1'000'000,
+               "Whole runs of each contender, all in turns; all start again together");
     add_number(*command, "--seed", options->seed, 0, std::numeric_limits<std::uint64_t>::max(),
                "Of the order of the turns");
+    command
+        ->add_flag("--counts", options->counts,
+                   "Only count the work: no turns and nothing warmed up, one contender after the other, each "
+                   "in memory alone; those of one scene should follow one another")
+        ->excludes(command->get_option("--turn"))
+        ->excludes(command->get_option("--runs"))
+        ->excludes(command->get_option("--seed"));
     command->callback([options] { turns(*options); });
 }
 

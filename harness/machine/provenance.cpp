@@ -52,7 +52,8 @@ Json slurm_json() {
 } // namespace
 
 Json provenance_json(int threads) {
-    const Machine machine = read_machine();
+    // It stays the same, too.
+    static const Machine machine = read_machine();
     const std::string dirty = build_info::dirty;
     return {{"host", machine.host},
             {"cpu_model", machine.cpu_model},

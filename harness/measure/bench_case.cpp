@@ -13,8 +13,9 @@ std::string BenchCase::name() const {
 }
 
 void BenchCase::run(benchmark::State& state) {
-    if (!std::exchange(warm_, true)) {
-        warm_up(measurement_);
+    if (!simulation_) {
+        simulation_ = measurement_.variant.simulate(measurement_.scene, measurement_.tuning);
+        warm_up(measurement_, *simulation_);
     }
     double seconds = 0;
     suspensions_.start();
@@ -24,11 +25,11 @@ void BenchCase::run(benchmark::State& state) {
             break;
         }
         state.PauseTiming();
-        const auto simulation = measurement_.variant.simulate(measurement_.scene, measurement_.tuning);
+        simulation_->restart(measurement_.scene);
         Stopwatch stopwatch([&state] { state.ResumeTiming(); }, [&state] { state.PauseTiming(); });
-        note(run_scene(measurement_.scene, *simulation, measurement_.tuning,
-                       Check(CheckScope::last_step, measurement_.variant.policies), nullptr,
-                       std::move(stopwatch)));
+        measurement_.add(run_scene(measurement_.scene, *simulation_, measurement_.tuning,
+                                   Check(CheckScope::last_step, measurement_.variant.policies), nullptr,
+                                   std::move(stopwatch)));
         state.ResumeTiming();
         state.SetIterationTime(measurement_.repetitions.back().steps_seconds);
         seconds += measurement_.repetitions.back().steps_seconds;
@@ -42,21 +43,6 @@ void BenchCase::run(benchmark::State& state) {
         state.SkipWithError(suspended_->c_str());
     } else {
         set_counters(state, seconds / static_cast<double>(state.iterations()));
-    }
-}
-
-void BenchCase::note(Run run) {
-    if (!measurement_.violation) {
-        measurement_.violation = run.violation;
-    }
-    if (!measurement_.violation && !measurement_.repetitions.empty() &&
-        measurement_.repetitions.back().discs != run.discs) {
-        measurement_.violation = "the final state differs from the one of the run before";
-    }
-    measurement_.repetitions.push_back(std::move(run));
-    if (measurement_.repetitions.size() > 1) {
-        auto& older = measurement_.repetitions[measurement_.repetitions.size() - 2].discs;
-        std::vector<Disc>().swap(older);
     }
 }
 

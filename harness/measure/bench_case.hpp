@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -11,7 +12,8 @@
 namespace carom {
 
 /// One variant on one scene with one tuning, as a case of Google Benchmark: an iteration is a whole run of S
-/// steps from the scene's initial state, its manual time the wall time of the steps alone. Each run is
+/// steps from the scene's initial state, its manual time the wall time of the steps alone. All runs, those
+/// that warm up among them, are of one simulation: no memory is touched first while it is timed. Each run is
 /// checked (its last step, or before the first of them every step) and must end in the same state, to the
 /// last bit; a case that fails, or stood still while it was timed, is skipped with its error and has no time.
 class BenchCase {
@@ -32,14 +34,13 @@ class BenchCase {
     const Measurement& measurement() const { return measurement_; }
 
   private:
-    void note(Run run);
     /// Of the runs of one measurement, which took so long on average; they all did the same work.
     void set_counters(benchmark::State& state, double mean_seconds) const;
 
     Measurement measurement_;
     Suspensions suspensions_;
     std::optional<std::string> suspended_;
-    bool warm_ = false;
+    std::unique_ptr<Simulation> simulation_; ///< of all runs; none before the first
 };
 
 } // namespace carom

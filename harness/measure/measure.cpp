@@ -36,23 +36,32 @@ RunInParts::RunInParts(const Scene& scene, Simulation& simulation, const Tuning&
                check.policies.impact),
       on_step_(std::move(on_step)), stopwatch_(std::move(stopwatch)) {}
 
-double RunInParts::advance(int steps) {
+Turn RunInParts::advance(int steps) {
     const double before = stopwatch_.wall_seconds();
     const int end = std::min(done_ + steps, scene_.steps);
+    std::optional<double> returning;
     stopwatch_.start();
+    if (end - done_ > 1 && !run_.violation) {
+        advance_by_one();
+        returning = stopwatch_.running_wall_seconds() - before;
+    }
     while (done_ < end && !run_.violation) {
-        ++done_;
-        for (int substep = 1; substep <= tuning_.substeps && !run_.violation; ++substep) {
-            step(substep);
-        }
-        if (on_step_) {
-            stopwatch_.stop();
-            on_step_(done_, simulation_);
-            stopwatch_.start();
-        }
+        advance_by_one();
     }
     stopwatch_.stop();
-    return stopwatch_.wall_seconds() - before;
+    return {.seconds = stopwatch_.wall_seconds() - before, .returning_seconds = returning};
+}
+
+void RunInParts::advance_by_one() {
+    ++done_;
+    for (int substep = 1; substep <= tuning_.substeps && !run_.violation; ++substep) {
+        step(substep);
+    }
+    if (on_step_) {
+        stopwatch_.stop();
+        on_step_(done_, simulation_);
+        stopwatch_.start();
+    }
 }
 
 void RunInParts::step(int substep) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/collisions/collision_checker.hpp"
+#include "harness/measure/turns.hpp"
 #include "harness/support/stopwatch.hpp"
 #include "harness/verify/checker.hpp"
 #include "harness/verify/rounding.hpp"
@@ -53,13 +54,14 @@ class RunInParts {
                OnStep on_step = nullptr, Stopwatch stopwatch = {});
 
     /// Simulates up to `steps` units of time more, fewer at the end of the scene or at a violation. Returns
-    /// the wall time that the steps took, in seconds.
-    double advance(int steps);
+    /// the wall time that they took.
+    Turn advance(int steps);
 
     /// What was run, with the state as it is now.
     Run finish();
 
   private:
+    void advance_by_one();
     void step(int substep);
     std::optional<std::string> violation_after(const std::vector<Disc>& after) const;
     std::string violation_unsettled() const;

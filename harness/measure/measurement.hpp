@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,11 +11,11 @@
 
 namespace carom {
 
-/// How a run was timed that took turns with others in its process.
+/// How runs were timed that took turns with others in their process.
 struct Turns {
-    int contenders = 0;          ///< that took turns, this one among them
-    std::uint64_t seed = 0;      ///< of the order of the turns
-    std::vector<double> seconds; ///< wall time of each turn
+    int contenders = 0; ///< that took turns, this one among them
+    TurnsPlan plan;
+    std::vector<Turn> turns; ///< of all runs, one run after the other
 };
 
 /// What of a measured process goes into its record (record.schema.json).
@@ -30,10 +29,14 @@ struct Measurement {
     int warm_ups = 0;
     double parse_seconds = 0;
     std::vector<std::string> tags;        ///< KEY=VALUE
-    std::vector<Run> repetitions;         ///< all of them, in the order they ran
+    std::vector<Run> repetitions;         ///< all of them, in the order they ran; only the last has its discs
     std::optional<std::string> violation; ///< of the first run that failed its check
     std::optional<Turns> turns;           ///< empty if it had its process for itself
     std::optional<double> own_seconds;    ///< of a process of several: those spent on this one
+
+    /// Adds a run from the scene's initial state, as all are: it must end in the same bits as the one before,
+    /// after the same work.
+    void add(Run run);
 };
 
 } // namespace carom

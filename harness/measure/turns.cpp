@@ -16,22 +16,27 @@ int count_rounds(std::span<const double> expected_seconds, int fewest_steps, dou
     return static_cast<int>(std::clamp(rounds, 1.0, std::max(1.0, static_cast<double>(fewest_steps))));
 }
 
-std::vector<std::vector<double>> take_turns(std::span<Contender* const> contenders, int rounds,
-                                            std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::vector<std::vector<double>> seconds(contenders.size());
+std::vector<std::vector<Turn>> take_turns(std::span<Contender* const> contenders, const TurnsPlan& plan) {
+    std::mt19937_64 random(plan.seed);
+    std::vector<std::vector<Turn>> turns(contenders.size());
     std::vector<std::size_t> order(contenders.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    for (int round = 0; round < rounds; ++round) {
-        std::ranges::shuffle(order, random);
-        for (const std::size_t next : order) {
-            const auto steps_until = [&](int rounds_done) {
-                return static_cast<int>(std::int64_t{contenders[next]->steps()} * rounds_done / rounds);
-            };
-            seconds[next].push_back(contenders[next]->advance(steps_until(round + 1) - steps_until(round)));
+    const auto steps_until = [&plan](const Contender& one, int rounds_done) {
+        return static_cast<int>(std::int64_t{one.steps()} * rounds_done / plan.rounds);
+    };
+    for (int run = 0; run < plan.runs; ++run) {
+        for (Contender* const one : contenders) {
+            one->start();
+        }
+        for (int round = 0; round < plan.rounds; ++round) {
+            std::ranges::shuffle(order, random);
+            for (const std::size_t next : order) {
+                Contender& one = *contenders[next];
+                turns[next].push_back(one.advance(steps_until(one, round + 1) - steps_until(one, round)));
+            }
         }
     }
-    return seconds;
+    return turns;
 }
 
 } // namespace carom

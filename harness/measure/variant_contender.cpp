@@ -1,5 +1,6 @@
 #include "harness/measure/variant_contender.hpp"
 
+#include <string>
 #include <utility>
 
 #include "harness/measure/warm_up.hpp"
@@ -9,28 +10,45 @@ namespace carom {
 
 double VariantContender::prepare() {
     const double start = process_seconds();
-    const double seconds = warm_up(measurement_) * steps();
-    if (!measurement_.violation) {
-        simulation_ = measurement_.variant.simulate(measurement_.scene, measurement_.tuning);
-        run_.emplace(measurement_.scene, *simulation_, measurement_.tuning,
-                     Check(CheckScope::last_step, measurement_.variant.policies));
-    }
+    simulation_ = measurement_.variant.simulate(measurement_.scene, measurement_.tuning);
+    const double seconds = warm_up(measurement_, *simulation_) * steps();
     measurement_.own_seconds = measurement_.parse_seconds + process_seconds() - start;
     return seconds;
 }
 
-double VariantContender::advance(int steps) { return run_ ? run_->advance(steps) : 0; }
+void VariantContender::start() {
+    const double start = process_seconds();
+    end_run();
+    if (!measurement_.violation) {
+        simulation_->restart(measurement_.scene);
+        const CheckScope scope = ++runs_ == 1 ? CheckScope::last_step : CheckScope::nothing;
+        run_.emplace(measurement_.scene, *simulation_, measurement_.tuning,
+                     Check(scope, measurement_.variant.policies));
+    }
+    *measurement_.own_seconds += process_seconds() - start;
+}
+
+Turn VariantContender::advance(int steps) { return run_ ? run_->advance(steps) : Turn{}; }
+
+void VariantContender::end_run() {
+    if (run_) {
+        measurement_.add(run_->finish());
+        *measurement_.own_seconds += measurement_.repetitions.back().steps_seconds;
+        run_.reset();
+    }
+}
 
 void VariantContender::finish(Turns turns) {
-    if (!run_) {
+    end_run();
+    simulation_.reset();
+    if (runs_ == 0) {
         return;
     }
-    measurement_.repetitions.push_back(run_->finish());
-    measurement_.violation = measurement_.repetitions.back().violation;
-    *measurement_.own_seconds += measurement_.repetitions.back().steps_seconds;
+    if (measurement_.violation && turns.plan.runs > 1) {
+        measurement_.violation = "run " + std::to_string(runs_) + " of " + std::to_string(turns.plan.runs) +
+                                 ": " + *measurement_.violation;
+    }
     measurement_.turns = std::move(turns);
-    run_.reset();
-    simulation_.reset();
 }
 
 } // namespace carom

@@ -47,7 +47,17 @@ Json turns_json(const std::optional<Turns>& turns) {
     if (!turns) {
         return nullptr;
     }
-    return {{"contenders", turns->contenders}, {"seed", turns->seed}, {"seconds", turns->seconds}};
+    Json seconds = Json::array();
+    Json returning_seconds = Json::array();
+    for (const Turn& turn : turns->turns) {
+        seconds.push_back(turn.seconds);
+        returning_seconds.push_back(or_null(turn.returning_seconds));
+    }
+    return {{"contenders", turns->contenders},
+            {"seed", turns->plan.seed},
+            {"rounds", turns->plan.rounds},
+            {"seconds", seconds},
+            {"returning_seconds", returning_seconds}};
 }
 
 Json errors_json(const Measurement& measurement, const Run& last) {

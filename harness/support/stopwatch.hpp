@@ -36,6 +36,12 @@ class Stopwatch {
         }
     }
 
+    /// While it runs: the wall time so far, at the cost of one look at the clock.
+    double running_wall_seconds() const {
+        return std::chrono::duration<double>(wall_ + (std::chrono::steady_clock::now() - wall_start_))
+            .count();
+    }
+
     double wall_seconds() const { return std::chrono::duration<double>(wall_).count(); }
     double cpu_seconds() const { return cpu_; }
 

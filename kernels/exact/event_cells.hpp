@@ -39,6 +39,9 @@ template <class Real> class EventCells {
         cells_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(stride_));
     }
 
+    /// Takes all discs out.
+    void clear() { std::ranges::fill(cells_, Cell{}); }
+
     /// What to add to the number of a cell for the cell in the next row; for the next column it is 1.
     int stride() const { return stride_; }
 

@@ -47,18 +47,21 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
           reach_squared_(4 * walls_[0] * walls_[0]), cells_(scene),
           queue_(static_cast<int>(scene.discs.size())) {
         flights_.reserve(scene.discs.size());
-        for (const Disc& disc : scene.discs) {
-            flights_.push_back({.x = static_cast<Real>(disc.x),
-                                .y = static_cast<Real>(disc.y),
-                                .vx = static_cast<Real>(disc.vx),
-                                .vy = static_cast<Real>(disc.vy)});
-            Flight<Real>& one = flights_.back();
-            one.cell = cells_.cell_at(one.x, one.y);
-            cells_.insert(static_cast<int>(flights_.size()) - 1, one.cell);
-        }
-        for (int i = 0; i < static_cast<int>(flights_.size()); ++i) {
-            look_ahead(i);
-        }
+        place(scene);
+    }
+
+    /// Goes back to the start of the scene it was built of and keeps its memory.
+    void restart(const Scene& scene) {
+        now_ = 0;
+        events_ = 0;
+        pair_collisions_ = 0;
+        wall_collisions_ = 0;
+        wall_impulse_ = 0;
+        momentum_from_walls_ = {};
+        flights_.clear();
+        cells_.clear();
+        queue_.clear();
+        place(scene);
     }
 
     /// Goes on to `time`, from 0 at the start. False if a limit is passed, with more events at one instant
@@ -124,6 +127,22 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
     static constexpr int wall_y = -3;
     static constexpr Real never = std::numeric_limits<Real>::infinity();
     static constexpr std::size_t at_hand = 4096; ///< discs in 256 KiB, which a second cache holds
+
+    /// Puts the discs where the scene has them, and looks ahead.
+    void place(const Scene& scene) {
+        for (const Disc& disc : scene.discs) {
+            flights_.push_back({.x = static_cast<Real>(disc.x),
+                                .y = static_cast<Real>(disc.y),
+                                .vx = static_cast<Real>(disc.vx),
+                                .vy = static_cast<Real>(disc.vy)});
+            Flight<Real>& one = flights_.back();
+            one.cell = cells_.cell_at(one.x, one.y);
+            cells_.insert(static_cast<int>(flights_.size()) - 1, one.cell);
+        }
+        for (int i = 0; i < static_cast<int>(flights_.size()); ++i) {
+            look_ahead(i);
+        }
+    }
 
     Flight<Real>& flight(int i) { return flights_[static_cast<std::size_t>(i)]; }
 

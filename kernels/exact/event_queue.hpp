@@ -29,6 +29,22 @@ template <class Real> class EventQueue {
         }
     }
 
+    /// Forgets all events and is as at the start, but for the memory it has.
+    void clear() {
+        std::ranges::fill(times_, never);
+        for (auto& bucket : buckets_) {
+            bucket.clear();
+        }
+        opened_ = static_cast<Real>(buckets_.size());
+        soon_.clear();
+        front_ = 0;
+        year_begin_ = 0;
+        buckets_per_time_ = never;
+        now_ = 0;
+        added_ = 0;
+        shifted_ = 0;
+    }
+
     /// The time of the earliest event; infinity if there is none.
     Real earliest_time() {
         if (added_ + shifted_ > 16 * times_.size() + 1000) {

@@ -118,6 +118,50 @@ TEST_P(EveryVariant, RunsTheSimulationOfItsOwnPolicies) {
     EXPECT_EQ(work, (Tally{.overlaps = 1, .pair_resolves = 1, .sweeps = sweeps}));
 }
 
+/// Runs to the end from the start, again and again on the same simulation: after a whole run, after one broken
+/// off at an odd step, at once, and after both have been looked at.
+void restarts_in_the_same_bits(const Variant& variant, const Scene& scene, const Tuning& tuning) {
+    const End expected = end_of(*variant.simulate(scene, tuning), scene.steps);
+    ASSERT_FALSE(same_bits(expected.discs, scene.discs));
+    const auto simulation = variant.simulate(scene, tuning);
+    for (const int steps_before : {scene.steps, 3, 0, 1}) {
+        SCOPED_TRACE(testing::Message() << "after " << steps_before << " steps");
+        end_of(*simulation, steps_before);
+        simulation->restart(scene);
+        EXPECT_TRUE(same_bits(simulation->discs(), variant.simulate(scene, tuning)->discs()));
+        const End found = end_of(*simulation, scene.steps);
+        EXPECT_TRUE(same_bits(found.discs, expected.discs));
+        EXPECT_EQ(found.work, expected.work);
+        simulation->restart(scene);
+    }
+}
+
+TEST_P(EveryVariant, RestartsInTheSameBits) {
+    const Scene dense = tests::random_scene_of_density(300, 0.9, 6, 93);
+    restarts_in_the_same_bits(GetParam(), dense, {});
+    restarts_in_the_same_bits(GetParam(), dense, {.threads = 3, .substeps = 2});
+    restarts_in_the_same_bits(GetParam(), tests::random_scene(200, 60, 1, 10, 3, 94), {.threads = 2});
+}
+
+TEST(EventDrivenVariant, RestartsInTheSameBits) {
+    restarts_in_the_same_bits(event_driven(), tests::cradle(), {});
+    // So many that the queue of events begins several years.
+    const Scene many = find_hard_case_like_scene();
+    restarts_in_the_same_bits(event_driven(), many, {});
+}
+
+/// What it is told, as text.
+class Told final : public CollisionLog<double> {
+  public:
+    void collided(const Collision<double>& one) override {
+        std::ostringstream line;
+        line << one.time << ' ' << one.first << ' ' << one.second;
+        lines.push_back(line.str());
+    }
+
+    std::vector<std::string> lines;
+};
+
 INSTANTIATE_TEST_SUITE_P(Registry, EveryVariant, testing::ValuesIn(variants().begin(), variants().end()),
                          tests::variant_test_name);
 

@@ -28,6 +28,10 @@ class Leaky final : public Simulation {
         }
         return tally;
     }
+    void restart(const Scene& some_scene) override {
+        right_->restart(some_scene);
+        steps_ = 0;
+    }
     std::vector<Disc> discs() const override { return steps_ == 0 ? right_->discs() : discs_; }
 
   private:

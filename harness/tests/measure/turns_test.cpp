@@ -18,13 +18,15 @@ class Diarist final : public Contender {
     Diarist(int number, int steps, std::vector<int>& diary) : number_(number), steps_(steps), diary_(diary) {}
 
     int steps() const override { return steps_; }
-    double advance(int steps) override {
+    void start() override { starts.push_back(static_cast<int>(taken.size())); }
+    Turn advance(int steps) override {
         diary_.push_back(number_);
         taken.push_back(steps);
-        return steps;
+        return {.seconds = static_cast<double>(steps), .returning_seconds = std::nullopt};
     }
 
-    std::vector<int> taken; ///< steps of each turn
+    std::vector<int> taken;  ///< steps of each turn
+    std::vector<int> starts; ///< of each run, how many turns were before it
 
   private:
     int number_;

@@ -85,15 +85,20 @@ mutants::Simulate chosen = nullptr;
 
 class Mutated final : public Simulation {
   public:
-    Mutated(const Scene& scene, const Tuning& tuning, mutants::Tell tell) {
+    Mutated(const Scene& scene, const Tuning& tuning, mutants::Tell tell)
+        : tuning_(tuning), tell_(std::move(tell)) {
+        restart(scene);
+    }
+
+    Tally step() override { return {.settled = simulation_->step()}; }
+
+    void restart(const Scene& scene) override {
         mutants::Scene plain{scene.side, scene.radius, {}};
         for (const Disc& disc : scene.discs) {
             plain.discs.push_back({disc.x, disc.y, disc.vx, disc.vy});
         }
-        simulation_ = chosen(plain, {tuning.threads, tuning.substeps, tuning.sweep_limit}, std::move(tell));
+        simulation_ = chosen(plain, {tuning_.threads, tuning_.substeps, tuning_.sweep_limit}, tell_);
     }
-
-    Tally step() override { return {.settled = simulation_->step()}; }
 
     std::vector<Disc> discs() const override {
         std::vector<Disc> discs;
@@ -104,6 +109,8 @@ class Mutated final : public Simulation {
     }
 
   private:
+    Tuning tuning_;
+    mutants::Tell tell_;
     std::unique_ptr<mutants::Simulation> simulation_;
 };
 
