@@ -253,7 +253,7 @@ def _path(scene: SceneFile | None) -> Path:
 
 def is_drawn(point: Point, block: int) -> bool:
     """Whether the process leaves a timeline: one a point of the phases is enough to see who waits."""
-    return point.verb == "profile" and point.figure == "phases" and block == 0
+    return point.verb == "profile" and point.kind == "phases" and block == 0
 
 
 def _violation(record: object) -> str | None:
