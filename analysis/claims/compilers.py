@@ -6,9 +6,8 @@ import pandas as pd
 
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import Compared, Outcome, judged, no_records, told
+from analysis.claims.outcome import Compared, Outcome, directed, judged, no_records, told
 from analysis.statistics.pairs import log_ratios, process_medians
-from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change
 
 NOT_TOLD_APART = (
@@ -31,8 +30,9 @@ def compilers(evidence: Evidence, experiment: str, candidate: str, reference: st
     if ours.empty or theirs.empty:
         return no_records(experiment, candidate if ours.empty else reference)
     shared = theirs["openmp_runtime"].isin(set(runtime[family == candidate]))
-    whole = None if theirs[~shared].empty else _against(theirs[~shared], ours, "with its own runtime")
-    code = None if theirs[shared].empty else _against(theirs[shared], ours, "with the same runtime")
+    margin = evidence.margin(experiment)
+    whole = None if theirs[~shared].empty else _against(theirs[~shared], ours, "with its own runtime", margin)
+    code = None if theirs[shared].empty else _against(theirs[shared], ours, "with the same runtime", margin)
     parts = [part for part in (whole, code) if part is not None]
     joined = both(parts)
     if code is None:
@@ -41,12 +41,12 @@ def compilers(evidence: Evidence, experiment: str, candidate: str, reference: st
     return joined
 
 
-def _against(reference: pd.DataFrame, candidate: pd.DataFrame, how: str) -> Outcome:
+def _against(reference: pd.DataFrame, candidate: pd.DataFrame, how: str, margin: float) -> Outcome:
     names = [
         f"{side['compiler_family'].iloc[0]} ({' or '.join(sorted(side['openmp_runtime'].unique()))})"
         for side in (candidate, reference)
     ]
-    row = judge_one(log_ratios(reference, candidate)["log_ratio"])
+    row = directed(log_ratios(reference, candidate)["log_ratio"], margin)
     said = told(row, "faster")
     measured = f"{names[0]} against {names[1]}: {change(row)} of time, {blocks(row)} ({said})"
     figure = Compared(f"time of {names[0]} against {names[1]}", "–", change(row))

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, judged, no_records, told
+from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, directed, judged, no_records, told
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, count
@@ -36,7 +36,7 @@ def fewer_wasted_attempts(
     if runs["pair_attempts"].isna().any():
         return Outcome(OPEN, why="attempts were not counted by the program that made the records")
     rows = {
-        value: judge_one(_over_seeds(before, after, value), once=True)
+        value: directed(_over_seeds(before, after, value), once=True)
         for value in ("wasted_attempts", "pair_attempts", "pair_resolves")
     }
     times = process_medians(evidence.study.times_of(experiment))
@@ -60,7 +60,7 @@ def fewer_wasted_attempts(
 
 def _told(row: Mapping[str, Any]) -> str:
     verdict = told(row, "faster")
-    return OF_COUNTS.get(verdict, verdict)
+    return OF_COUNTS.get(verdict, verdict.replace("faster", "fewer"))
 
 
 def _over_seeds(before: pd.DataFrame, after: pd.DataFrame, value: str) -> pd.Series:

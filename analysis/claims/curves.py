@@ -44,7 +44,7 @@ def _grows(evidence: Evidence, experiment: str) -> Outcome:
     kept = evidence.published.without_degenerate(experiment, processes)
     if kept["x"].nunique() < 2:
         return Outcome(OPEN, why=ONE_POINT)
-    trend = growth(kept)
+    trend = growth(kept, evidence.margin(experiment))
     name = processes["x_name"].iloc[0]
     without = sorted(set(processes["x"]) - set(kept["x"]))
     measured = (
@@ -110,12 +110,13 @@ def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = 
         return no_records(experiment)
     if processes["x"].nunique() < 3:
         return Outcome(OPEN, why="needs at least three values of the swept parameter")
-    shape = _shape(processes, published_curves.curve(evidence.published, experiment))
-    return shape if least is None else both([shape, _least_at(processes, least)])
+    margin = evidence.margin(experiment)
+    shape = _shape(processes, published_curves.curve(evidence.published, experiment), margin)
+    return shape if least is None else both([shape, _least_at(processes, least, margin)])
 
 
-def _shape(processes: pd.DataFrame, published: pd.DataFrame) -> Outcome:
-    ours = minimum(processes)
+def _shape(processes: pd.DataFrame, published: pd.DataFrame, margin: float) -> Outcome:
+    ours = minimum(processes, margin)
     name = processes["x_name"].iloc[0]
     measured = (
         f"least at {name} = {exact(ours.lowest)}{_break(ours)}; against it {change(ours.fall)} at "
@@ -142,7 +143,7 @@ def _break(least: Minimum) -> str:
     return f", break point {interval(found)}"
 
 
-def _least_at(processes: pd.DataFrame, least: float) -> Outcome:
+def _least_at(processes: pd.DataFrame, least: float, margin: float) -> Outcome:
     """Test that no other x is faster than the one said to be the least; several may be within the margin."""
     name = processes["x_name"].iloc[0]
     chosen, others = processes[processes["x"] == least], processes[processes["x"] != least]
@@ -153,7 +154,7 @@ def _least_at(processes: pd.DataFrame, least: float) -> Outcome:
     )
     if pairs.empty:
         return Outcome(OPEN, why=f"needs another {name} in a block with {exact(least)}")
-    found = alternatives(pairs)
+    found = alternatives(pairs, margin)
     best = found.best
     return found.outcome(f"{best['name']} against {exact(least)}: {change(best)} of time, {blocks(best)}")
 

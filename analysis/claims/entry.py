@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from analysis.derived.comparisons import stated
 from analysis.records.published import Published
 from analysis.records.reading import InputError
 from analysis.records.studies import SCALES, Study
@@ -66,6 +67,11 @@ class Evidence:
     study: Study
     studies: Sequence[Study]
     published: Published
+
+    def margin(self, experiment: str) -> float:
+        """Return the least difference that matters, as the experiment's question states it."""
+        runs = self.study.runs
+        return stated(runs[runs["experiment"] == experiment]).margin
 
 
 def load(results: Path | None = None) -> list[Claim]:

@@ -13,20 +13,25 @@ each other:
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, Outcome, Verdict
+from analysis.claims.outcome import FAILS, HOLDS, HOLDS_BY_LESS, OPEN, Outcome, Verdict
 from analysis.statistics.looks import ERROR
 from analysis.statistics.verdicts import holm
 from analysis.support.wording import count, number
 
-ALONE = {HOLDS: "hold", FAILS: "not hold"}
+ALONE = {HOLDS: "hold", HOLDS_BY_LESS: "hold by less than the margin", FAILS: "not hold"}
+IN_ORDER = (FAILS, OPEN, HOLDS_BY_LESS, HOLDS)
+"""What a claim comes to is the first of these that one of its parts comes to."""
 
 
 def both(outcomes: Sequence[Outcome]) -> Outcome:
-    """Join the outcomes of a claim's parts: it holds if all do, fails if one does, and is open otherwise."""
+    """Join the outcomes of a claim's parts: it holds if all do, by less than the margin if one does so, fails
+    if one does, and is open otherwise.
+    """
     parts = _corrected(outcomes, [FAILS], "part")
     verdicts = [outcome.verdict for outcome in parts]
-    verdict = FAILS if FAILS in verdicts else OPEN if OPEN in verdicts else HOLDS
-    decisive = [outcome for outcome in parts if outcome.verdict == verdict]
+    verdict = next((one for one in IN_ORDER if one in verdicts), HOLDS)
+    # That a claim holds, by whatever, rests on all of its parts.
+    decisive = [one for one in parts if one.verdict == verdict or verdict == HOLDS_BY_LESS]
     p = [outcome.p for outcome in decisive if outcome.p is not None]
     return Outcome(
         verdict,
@@ -56,7 +61,7 @@ def _against(parts: Sequence[Outcome]) -> float | None:
 
 def corrected(claims: Sequence[Outcome]) -> list[Outcome]:
     """Return the outcomes of the claims of one report, open where their verdict no longer stands."""
-    return _corrected(claims, [HOLDS, FAILS], "claim")
+    return _corrected(claims, list(ALONE), "claim")
 
 
 def _corrected(outcomes: Sequence[Outcome], said: Collection[Verdict], noun: str) -> list[Outcome]:

@@ -5,13 +5,13 @@ import math
 import pandas as pd
 
 from analysis.claims.entry import Claim, setting
-from analysis.claims.outcome import ELSEWHERE, FAILS, HOLDS, OPEN, Outcome
+from analysis.claims.outcome import ELSEWHERE, OPEN, Outcome
 from analysis.records.studies import Study
 from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
 from analysis.statistics.pairs import PAIR, without_partner
 from analysis.support.wording import count, number
 
-DECIDED = frozenset({HOLDS, FAILS, *ELSEWHERE.values()})
+DECIDED = frozenset({*ELSEWHERE, *ELSEWHERE.values()})
 
 
 def is_open(outcome: Outcome) -> bool:

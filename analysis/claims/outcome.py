@@ -6,9 +6,11 @@ from enum import StrEnum
 from math import isfinite
 from typing import Any
 
+from numpy.typing import ArrayLike
+
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.looks import ERROR
-from analysis.statistics.verdicts import MARGIN
+from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.wording import count, percent
 
 
@@ -18,15 +20,22 @@ class Verdict(StrEnum):
     """
 
     HOLDS = "holds"
+    HOLDS_BY_LESS = "holds by less than the margin"
     FAILS = "does not hold"
     HOLDS_ELSEWHERE = "holds elsewhere than claimed"
+    HOLDS_BY_LESS_ELSEWHERE = "holds by less than the margin elsewhere than claimed"
     FAILS_ELSEWHERE = "does not hold elsewhere than claimed"
     OPEN = "cannot be decided here"
     OTHER_SCALE = "cannot be decided at this scale"
 
 
 HOLDS, FAILS, OPEN = Verdict.HOLDS, Verdict.FAILS, Verdict.OPEN
-ELSEWHERE = {HOLDS: Verdict.HOLDS_ELSEWHERE, FAILS: Verdict.FAILS_ELSEWHERE}
+HOLDS_BY_LESS = Verdict.HOLDS_BY_LESS
+ELSEWHERE = {
+    HOLDS: Verdict.HOLDS_ELSEWHERE,
+    HOLDS_BY_LESS: Verdict.HOLDS_BY_LESS_ELSEWHERE,
+    FAILS: Verdict.FAILS_ELSEWHERE,
+}
 """A verdict, and what is left of it where the claim was made on other threads or at another scale."""
 
 NO_RECORDS = "no records yet"
@@ -73,6 +82,15 @@ def no_records(experiment: str, missing: str = "") -> Outcome:
     return Outcome(OPEN, why=f"{NO_RECORDS}{detail} (experiment {experiment!r})", missing=True)
 
 
+def directed(log_ratios: ArrayLike, margin: float = MARGIN, *, once: bool = False) -> dict[str, Any]:
+    """Return the row of `judge_one` with its `margin`, and the p-values of the ratio being less than 1 and
+    more than 1, by however little: `any_faster` and `any_slower`.
+    """
+    level = judge_one(log_ratios, 0.0, once=once)
+    any_change = {"any_faster": level["not_slower"], "any_slower": level["not_faster"]}
+    return {**judge_one(log_ratios, margin, once=once), "margin": margin, **any_change}
+
+
 def judged(
     row: Mapping[str, Any],
     expected: str,
@@ -80,13 +98,14 @@ def judged(
     figures: tuple[Compared, ...] = (),
     unsettled: str = TOO_FEW,
     unit: str = "block",
-    margin: float = MARGIN,
 ) -> Outcome:
     """Return what a verdict with its `p`, from so many `blocks` (or another unit), says of a claim that
     expects one; `unsettled` is why it is open where they are enough and do not decide.
 
-    It does not hold where the interval has no part in what was expected, whether or not it tells the other
-    verdicts from each other. A row without the p-value of that, e.g. `not_faster`, fails by another verdict.
+    That one choice is faster, or slower, holds by less than the margin where the interval of a row of
+    `directed` lies wholly on that side of 0 and has no part beyond the margin. Else a claim does not hold
+    where the interval has no part in what was expected, whether or not it tells the other verdicts from each
+    other. A row without the p-value of that, e.g. `not_faster`, fails by another verdict.
     """
     if row["blocks"] < FEWEST:
         why = f"rests on {count(row['blocks'], unit)}: a verdict needs at least {FEWEST}"
@@ -94,16 +113,23 @@ def judged(
     against = row.get(denial(expected))
     if row["verdict"] == expected:
         return Outcome(HOLDS, measured, figures=figures, p=row["p"], blocks=row["blocks"])
+    if _is_by_less(row, expected):
+        p = max(row[denial(expected)], row[f"any_{expected}"])
+        return Outcome(HOLDS_BY_LESS, measured, figures=figures, p=p, blocks=row["blocks"])
     if against is not None and against <= ERROR:
         return Outcome(FAILS, measured, figures=figures, p=against, blocks=row["blocks"])
     if row["verdict"] != "inconclusive":
         return Outcome(FAILS, measured, figures=figures, p=row["p"], blocks=row["blocks"])
-    unsettled += _short(row, expected, margin)
+    unsettled += _short(row, expected)
     return Outcome(OPEN, measured, unsettled, figures, p=row["p"], against=against, blocks=row["blocks"])
 
 
 def told(row: Mapping[str, Any], expected: str) -> str:
-    """Return the verdict of a row in words, with what it denies where it tells no more."""
+    """Return the verdict of a row in words, with what it denies where it tells no more, e.g. `faster`, `not
+    faster` or `faster, but by less than 2 %`.
+    """
+    if _is_by_less(row, expected):
+        return f"{expected}, but by less than {100 * row['margin']:g} %"
     if row["verdict"] == "inconclusive" and row.get(denial(expected), 1.0) <= ERROR:
         return denial(expected).replace("_", " ")
     return str(row["verdict"])
@@ -114,12 +140,18 @@ def denial(expected: str) -> str:
     return f"not_{expected}"
 
 
-def _short(row: Mapping[str, Any], expected: str, margin: float) -> str:
+def _is_by_less(row: Mapping[str, Any], expected: str) -> bool:
+    p = (row.get(denial(expected), 1.0), row.get(f"any_{expected}", 1.0))
+    return row["blocks"] >= FEWEST and max(p) <= ERROR
+
+
+def _short(row: Mapping[str, Any], expected: str) -> str:
     """Say by how much the interval of a ratio misses the verdict that it comes closest to; nothing of a row
     without one.
     """
     if "low" not in row or not isfinite(row["low"]) or not isfinite(row["high"]):
         return ""
+    margin = row.get("margin", MARGIN)
     least, most = 1 / (1 + margin), 1 + margin
     by = {
         "faster": row["high"] - least,

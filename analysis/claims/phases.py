@@ -6,9 +6,8 @@ import numpy as np
 import pandas as pd
 
 from analysis.claims.entry import Evidence
-from analysis.claims.outcome import Compared, Outcome, judged, no_records
+from analysis.claims.outcome import Compared, Outcome, directed, judged, no_records
 from analysis.statistics.pairs import PAIR
-from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import count, number, share
 
 VARIANTS = ["published", "self_contained_off"]
@@ -54,11 +53,11 @@ def _judged(
     late, resolving = with_early[phase], with_early[phase] + resolved_early
     parts = pd.DataFrame({"late": late, early: with_early[early], "early": resolved_early, "all": resolving})
     part = parts.div(whole, axis=0).median().map(share)
-    row = judge_one(np.log(late / (whole - late)))
+    row = directed(np.log(late / (whole - late)))
     if row["ratio"] > 1 and row["verdict"] != "equivalent":
         of = f"{part['late']} of a step in {phase} alone, without what is done early in {early}"
         return row, of, f"{part['late']} without early resolves"
     of = (
         f"{part['all']} of a step: {part['late']} in {phase} and {part['early']} early, of the {part[early]} "
     )
-    return judge_one(np.log(resolving / (whole - resolving))), f"{of}of {early}", str(part["all"])
+    return directed(np.log(resolving / (whole - resolving))), f"{of}of {early}", str(part["all"])

@@ -1,7 +1,8 @@
 """Claims that one choice is faster than, or as fast as, another.
 
-One rule for ties: a choice said to be faster has to be faster by more than the margin; where it is not, be
-the two equivalent or the other one faster, the claim does not hold.
+One rule for ties: where the interval has no part in faster by more than the margin, the claim does not hold,
+be the two equivalent or the other one faster. But where the interval lies wholly below 0 it holds, by less
+than the margin: that is ours, and no source of a claim stated it.
 """
 
 from collections.abc import Sequence
@@ -11,9 +12,8 @@ import pandas as pd
 from analysis.claims import published_curves
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records, told
+from analysis.claims.outcome import OPEN, Compared, Outcome, directed, judged, no_records, told
 from analysis.statistics.pairs import log_ratios, process_medians
-from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, exact, percent
 
 
@@ -47,7 +47,7 @@ def _one_pair(
     name, shared = times["x_name"].iloc[0], sorted(set(chosen["x"]) & set(against["x"]))
     if not shared:
         return no_records(experiment, f"{candidate} and {reference} at the same {name}")
-    rows = {x: judge_one(_ratios(against, chosen, x)) for x in shared}
+    rows = {x: directed(_ratios(against, chosen, x), evidence.margin(experiment)) for x in shared}
     theirs = published_curves.ratio(evidence.published, experiment, candidate, reference)
     published = "–" if pd.isna(theirs) else percent(theirs - 1)
     what = f"time of {candidate} against {reference}"

@@ -9,10 +9,10 @@ from analysis.claims import published_curves
 from analysis.claims.curves import published_processes
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, Compared, Outcome, judged, no_records, told
+from analysis.claims.outcome import FAILS, HOLDS, OPEN, Compared, Outcome, directed, judged, no_records, told
 from analysis.statistics.pairs import log_ratios
 from analysis.statistics.scalability import doubt
-from analysis.statistics.verdicts import MARGIN, judge_one
+from analysis.statistics.verdicts import MARGIN
 from analysis.support.wording import blocks, change, exact, factor
 
 ANOTHER_BINDING = "threads are bound at one end and not at the other: the binding changes with their number"
@@ -30,9 +30,9 @@ class Stretch:
     needs: str
 
     def judge(self, processes: pd.DataFrame) -> dict[str, Any]:
-        """Return the row of `judge_one` for the time at its end against that at its start."""
+        """Return the row of `directed` for the time at its end against that at its start."""
         ends = (processes[processes["x"] == end] for end in (self.start, self.end))
-        return judge_one(log_ratios(*ends)["log_ratio"], self.margin)
+        return directed(log_ratios(*ends)["log_ratio"], self.margin)
 
     def same_binding(self, processes: pd.DataFrame) -> bool:
         """Tell whether both ends were measured with threads bound alike."""
@@ -50,7 +50,10 @@ def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_m
         return no_records(experiment)
     study = evidence.study
     cores = study.cores or study.hardware_threads
-    stretches = _stretches(sorted(processes["x"].unique()), cores, study.hardware_threads, flat_margin)
+    margin = evidence.margin(experiment)
+    stretches = _stretches(
+        sorted(processes["x"].unique()), cores, study.hardware_threads, flat_margin, margin
+    )
     there = [stretch for stretch in stretches if stretch.start < stretch.end]
     tested = [_judged(stretch, processes, cores) for stretch in there]
     absent = [Outcome(OPEN, why=f"needs {one.needs}") for one in stretches if one not in there]
@@ -58,16 +61,18 @@ def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_m
     return both([*tested, *absent, Outcome(HOLDS, figures=figures)])
 
 
-def _stretches(x: list[float], cores: int, hardware: int, flat_margin: float) -> list[Stretch]:
+def _stretches(
+    x: list[float], cores: int, hardware: int, flat_margin: float, margin: float = MARGIN
+) -> list[Stretch]:
     at_cores, at_hardware = (max((n for n in x if n <= limit), default=x[0]) for limit in (cores, hardware))
     beyond = "runs with more threads than the machine has"
     return [
-        Stretch("up to the cores", x[0], at_cores, MARGIN, "faster", "more than one core"),
+        Stretch("up to the cores", x[0], at_cores, margin, "faster", "more than one core"),
         Stretch(
             "to the hardware threads", at_cores, at_hardware, flat_margin, "equivalent",
             "more hardware threads than cores",
         ),
-        Stretch("beyond", at_hardware, x[-1], MARGIN, "slower", beyond),
+        Stretch("beyond", at_hardware, x[-1], margin, "slower", beyond),
     ]  # fmt: skip
 
 
@@ -77,7 +82,7 @@ def _judged(stretch: Stretch, processes: pd.DataFrame, cores: int) -> Outcome:
     measured = f"{span}: {change(row)} of time, {blocks(row)}{unlikely and f' ({unlikely})'}"
     if not stretch.same_binding(processes):
         return Outcome(OPEN, measured, ANOTHER_BINDING)
-    outcome = judged(row, stretch.expected, measured, margin=stretch.margin)
+    outcome = judged(row, stretch.expected, measured)
     if outcome.verdict != FAILS:
         return outcome
     return replace(outcome, why=f"from {span} {told(row, stretch.expected)}, expected {stretch.expected}")

@@ -9,10 +9,9 @@ import pandas as pd
 from analysis.claims.alternatives import alternatives
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records, told
+from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, directed, judged, no_records, told
 from analysis.records.published import Published
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
-from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, count, exact, number, percent
 
 ONE_THREAD = "on a single thread a schedule shares nothing out: needs 2 hardware threads"
@@ -26,7 +25,8 @@ NOT_BETTER = {
 
 def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str, chunk: int) -> Outcome:
     """Test that a schedule is the one to choose, which says two things: that no other one measured is faster,
-    and that choosing matters, so that it is faster than the others on average, both by more than the margin.
+    and that choosing matters, so that it is faster than the others on average. If that is by
+    less than the margin, so does the claim hold.
 
     Were the first enough, the claim would hold where all schedules tie; a tie refutes claims about two
     choices, and so it does here. The average is that of the log ratios within each block.
@@ -47,8 +47,9 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     )
     if pairs.empty:
         return no_records(experiment, "any block with both sides")
-    average = judge_one(_average(pairs))
-    found = alternatives(pairs)
+    margin = evidence.margin(experiment)
+    average = directed(_average(pairs), margin)
+    found = alternatives(pairs, margin)
     best, seconds = found.best, number(float(np.median(chosen["steps_seconds"])))
     measured = (
         f"{schedule} {chunk}: {seconds} s on {count(int(chosen['threads'].iloc[0]), 'thread')}; "

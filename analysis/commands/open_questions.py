@@ -18,7 +18,7 @@ from analysis.statistics.looks import next_look
 from analysis.support.wording import change
 
 COMPARED = ("comparison", "control")
-"""Kinds of figures whose every difference has a verdict, also in a question that no claim is about."""
+"""Kinds of questions whose every difference has a verdict, also in a question that no claim is about."""
 
 OPTIMISM = 12
 """How many times the blocks there are settle what seems to lie on a margin, should it lie a standard error
@@ -76,7 +76,7 @@ def _comparisons(
 ) -> Iterator[tuple[str, int, float]]:
     """Yield the same of each difference that a comparison draws; add to `said` what is decided."""
     for experiment, times in study.times.groupby("experiment"):
-        if experiment in claimed or times["figure"].iloc[0] not in COMPARED:
+        if experiment in claimed or times["question_kind"].iloc[0] not in COMPARED:
             continue
         against = reference(times)
         table = differences(times, against)

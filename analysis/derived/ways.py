@@ -88,7 +88,7 @@ def _comparison(name: str, processes: pd.DataFrame, reference: str, candidate: s
 
 def bias_sentence(study: Study) -> str:
     """Say how far ratios by turns are off on this machine, as far as the study measured it; else nothing."""
-    names = study.times.loc[study.times["figure"] == KIND, "experiment"].unique()
+    names = study.times.loc[study.times["question_kind"] == KIND, "experiment"].unique()
     found = [one for name in sorted(names) for one in comparisons(study, str(name))]
     if not found:
         return ""

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from analysis import claims
 from analysis.derived.accuracy import MEASURES
 from analysis.derived.pauses import KIND as PAUSES
 from analysis.derived.ways import KIND, bias_sentence
@@ -84,6 +85,13 @@ def _pair(
     return Entry(experiment, experiment, title, bound(pairs.pair_drawing, sides=sides, work=work))
 
 
+def _schedule(experiment: str, title: str, subject: str) -> Entry:
+    """Return the entry of schedules, with the one that a published claim says is to be chosen."""
+    told = next(claim.arguments for claim in claims.load() if experiment in claim.experiments)
+    chosen = (told["schedule"], told["chunk"])
+    return _of_kind(experiment, title, schedules.schedule, subject, chosen=chosen)
+
+
 def _counted(name: str, title: str, source: str, subject: str) -> Entry:
     return Entry(name, "phases", title, bound(counters.panels, source=source, subject=subject))
 
@@ -136,12 +144,10 @@ FIGURES = [
     _pair("self_contained_repeat", "Self-contained resolves, sequential (repeat)", "on", "off",
           f"{_EARLY} sequential order (repeat)"),
     _own("sequential_orders", "Sequential orders", orders.sequential_orders),
-    _of_kind("schedule_find", "Schedule for finding overlaps", schedules.schedule,
-             "Schedules for finding overlaps", chosen=("guided", 4)),
-    _of_kind("schedule_resolve", "Schedule for the checkered resolve", schedules.schedule,
-             "Schedules for the checkered resolve", chosen=("guided", 5)),
-    _of_kind("schedule_resolve_row", "Schedule for the row resolve", schedules.schedule,
-             "Schedules for the row resolve", chosen=("dynamic", 1)),
+    _schedule("schedule_find", "Schedule for finding overlaps", "Schedules for finding overlaps"),
+    _schedule("schedule_resolve", "Schedule for the checkered resolve",
+              "Schedules for the checkered resolve"),
+    _schedule("schedule_resolve_row", "Schedule for the row resolve", "Schedules for the row resolve"),
     _own("row", "Row against checkered", orders.row),
     _pair("reverse", "Reverse against forward", "reverse", "forward",
           "A disc's overlaps in reverse against forward", work=True),

@@ -51,9 +51,9 @@ NO_SCENE: dict[str, Any] = {"name": "", "sha256": "", **dict.fromkeys(SCENE)}
 _OLD_REPLICATE = re.compile(r"(?:(.*) )?replicate (\d+)")
 IDENTITY = ["compiler_family", "node", "machine", "revision"]
 CONTEXT = [
-    "file", "kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene", "scene_sha256", *SCENE,
-    *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment", "warm_ups", "in_turns",
-    "time_from", "undisturbed", "command", *IDENTITY,
+    "file", "kind", "question_kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene",
+    "scene_sha256", *SCENE, *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment",
+    "warm_ups", "in_turns", "time_from", "undisturbed", "command", *IDENTITY,
 ]  # fmt: skip
 
 
@@ -70,6 +70,7 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
     return {
         "file": name,
         "kind": record["kind"],
+        "question_kind": tags.get("kind", tags.get("figure")),
         "recorded_at": record["recorded_at"],
         **{column: tags.get(column) for column in TAGS},
         **_replicate(tags),

@@ -155,6 +155,12 @@ def _control_verdict(study: Study, processes: pd.DataFrame, sides: Sequence[pd.D
     sessions, beside = study.times["session"].nunique(), processes["session"].nunique()
     over = "the whole run" if beside == sessions else f"{beside} of {count(sessions, 'session')}"
     said = f"one variant, measured under two labels over {over}, differs by {change(row)} ({blocks(row)})"
+    if row["verdict"] == "equivalent" and not row["low"] <= 1 <= row["high"]:
+        return (
+            f"The control is off: {said}. That is within the margin, but its interval leaves out 0, as it "
+            "does by chance in at most 5 % of studies. Only the label differs: this is a fault of the "
+            "machine or of the method, and a difference as small says nothing."
+        )
     if row["verdict"] == "equivalent":
         return f"The control came out equivalent, as it must: {said}."
     if row["verdict"] == "inconclusive":

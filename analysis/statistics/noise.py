@@ -59,7 +59,7 @@ def process_noise(times: pd.DataFrame) -> pd.DataFrame:
                 "blocks": len(table),
                 "needed": needed,
                 "enough": len(table) >= needed,
-                "small": str(group["figure"].iloc[0]) not in LARGE_EFFECTS,
+                "small": str(group["question_kind"].iloc[0]) not in LARGE_EFFECTS,
             }
         )
     return pd.DataFrame(

@@ -13,6 +13,7 @@ PUBLISHED_CLAIMS = (
     "self_contained_checkered", "self_contained_sequential", "find_schedule", "resolve_schedule",
     "row_schedule", "row", "reverse", "compiler", "resolve_dominates",
 )  # fmt: skip
+"""Those of analysis/claims/claims.toml, in its order: a test there compares them."""
 
 
 def require_claim(file: Path, claim: str) -> None:

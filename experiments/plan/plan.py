@@ -168,6 +168,7 @@ def _point(
     assert program is not None
     return Point(
         experiment=question.name,
+        kind=question.kind,
         figure=question.figure,
         claim=question.claim,
         margin=question.margin,

@@ -94,6 +94,7 @@ class Point(Measurement):
     """A measurement and what only says where in which figure it is shown."""
 
     experiment: str
+    kind: str
     figure: str
     claim: str | None
     margin: float

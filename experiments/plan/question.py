@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from experiments.plan.claims import CLAIMS, PUBLISHED_CLAIMS, require_claim
+from experiments.plan.kinds import kind_and_figure, require_what_kind_needs
 from experiments.plan.scenes import AnyScene, HardCase, NoScene, Scene
 from experiments.plan.series import Series, read_series, require_both_ways, require_replicated
 from experiments.support.errors import InputError, nearest, quoted, require_text
@@ -16,8 +17,6 @@ FOLDER = Path(__file__).parents[1] / "questions"
 CONTROL = "control"
 _NUMBER = re.compile(r"\s*-?(0|[1-9]\d*)(\.\d+)?([eE][+-]?\d+)?\s*")
 _OF_THE_RUN = ("threads", "find_chunk", "resolve_chunk", "substeps")
-_OF_ERRORS = ("speed_against_error", "hard_cases")
-_OF_SCENES = (*_OF_ERRORS, "ladder", "limits", "promises", "ways")
 _OF_A_SCENE = (
     "particles", "side", "radius", "steps", "min_velocity", "max_velocity", "area_fraction", "seed",
 )  # fmt: skip
@@ -66,6 +65,7 @@ class Question:
     name: str
     file: Path
     title: str
+    kind: str
     figure: str
     scenes: tuple[NamedScene, ...]
     series: tuple[Series, ...]
@@ -102,9 +102,12 @@ def load_question(path: Path) -> Question:
     sweep_table = document.pop("sweep", {})
     values = {key: tuple(sweep_table.pop(key, ())) for key in ("values", "quick_values")}
     series = read_series(path, document.pop("series"), values)
+    kind, figure = kind_and_figure(path, document.pop("kind", None), document.pop("figure", None))
     question = Question(
         name=path.stem,
         file=path,
+        kind=kind,
+        figure=figure,
         scenes=_scenes(path, document.pop("scene", None), document.pop("scenes", None)),
         sweep=Sweep(**{"x_name": sweep_table.get("parameter", Sweep.x_name), **sweep_table}),
         series=series,
@@ -179,7 +182,7 @@ def _require_valid(question: Question) -> None:
     _require_what_processes_can(question)
     _require_what_errors_need(question)
     _require_published_tolerance(question)
-    if question.figure == "ways":
+    if question.kind == "ways":
         require_both_ways(file, question.series)
     if sweep.parameter == "substeps" and question.substeps != 1:
         raise InputError(f"{file}: substeps: found beside a sweep of it, expected either")
@@ -272,21 +275,18 @@ def _require_what_processes_can(question: Question) -> None:
 
 
 def _require_what_errors_need(question: Question) -> None:
-    """What the figures about errors need, and what only they can draw."""
-    file, figure = question.file, question.figure
+    """What is measured beside times is measured by one verb, and a kind that judges it needs it."""
+    file = question.file
     if question.errors and question.verb != "bench":
         raise InputError(f"{file}: errors: found for verb {question.verb}, expected for bench only")
     if question.simulated and question.verb != "profile":
         raise InputError(f"{file}: simulated: found for verb {question.verb}, expected for profile only")
-    if figure in _OF_ERRORS and not question.errors:
-        raise InputError(f"{file}: errors: missing; expected true for figure {figure}")
-    if figure == "speed_against_error" and question.sweep.parameter != "substeps":
-        raise InputError(f"{file}: sweep.parameter: expected substeps for figure {figure}")
-    if figure not in _OF_SCENES and len(question.scenes) > 1:
-        raise InputError(
-            f"{file}: scenes: found several for figure {figure}, expected one, or one of the figures "
-            f"{', '.join(_OF_SCENES)}"
-        )
+    has = {
+        "errors": question.errors,
+        "sweep": question.sweep.parameter,
+        "scenes": len(question.scenes),
+    }
+    require_what_kind_needs(file, question.kind, question.figure, has)
 
 
 def _require_published_tolerance(question: Question) -> None:

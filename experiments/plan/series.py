@@ -100,13 +100,13 @@ def read_series(
 
 
 def require_both_ways(path: Path, series: Sequence[Series]) -> None:
-    """Each of a figure of the kind ways is measured by turns and apart. Raises InputError with one line."""
+    """Each of the kind ways is measured by turns and apart. Raises InputError with one line."""
     for number, one in enumerate(series, start=1):
         if not any(other.name == one.name and other.apart != one.apart for other in series):
             missing = "without" if one.apart else "with"
             raise InputError(
                 f'{path}: series[{number}]: found "{one.name}" once, expected another one {missing} '
-                "apart = true for figure ways"
+                "apart = true for kind ways"
             )
 
 

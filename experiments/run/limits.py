@@ -6,8 +6,8 @@ from experiments.plan.point import Point, Tags
 from experiments.run.kept_records import KeptRecords, key
 from experiments.support.process import Completed
 
-FIGURE = "limits"
-"""The kind of figure that compares with them."""
+KIND = "limits"
+"""The kind of question that compares with them."""
 
 FOLDER = "limits-of-machines"
 """Below `records/`, beside the folders of the experiments."""
@@ -16,9 +16,9 @@ FOLDER = "limits-of-machines"
 def measure_limits(point: Point, records: KeptRecords) -> Completed | None:
     """Run `carom limits`, once for each program, machine, number of threads and binding.
 
-    None if its record is there or the point's figure needs none.
+    None if its record is there or the point's kind needs none.
     """
-    if point.figure != FIGURE:
+    if point.kind != KIND:
         return None
     name = f"{FOLDER}/{key(point.program.sha256, asdict(point.machine), point.threads, point.openmp)}.json"
     tags: Tags = {"experiment": FOLDER, "site": point.site}

@@ -8,8 +8,8 @@ from experiments.plan.scenes import SceneFile
 from experiments.run.kept_records import KeptRecords, key
 from experiments.support.process import Completed
 
-FIGURE = "speed_against_error"
-"""The kind of figure that it stands in."""
+KIND = "speed_against_error"
+"""The kind of question that it stands beside."""
 
 FOLDER = "outside-engines"
 """Below `records/`, beside the folders of the experiments."""
@@ -25,11 +25,11 @@ class Outside:
     def measure(self, point: Point, block: int, scene: SceneFile, tags: Tags) -> Completed | None:
         """Measure the engine on the point's scene, with its substeps, in this block.
 
-        None if its record is there, the figure needs none, or the program was built without it. That it went
+        None if its record is there, the kind needs none, or the program was built without it. That it went
         wrong is no failure of the point.
         """
         program = point.program.sha256
-        if point.figure != FIGURE or program in self._without:
+        if point.kind != KIND or program in self._without:
             return None
         made_of = key(program, asdict(point.machine), scene.sha256, point.scene_name, point.substeps)
         words = [str(scene.path), "--substeps", str(point.substeps)]

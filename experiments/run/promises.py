@@ -7,8 +7,8 @@ from experiments.plan.scenes import SceneFile
 from experiments.run.kept_records import KeptRecords, key
 from experiments.support.process import Completed
 
-FIGURE = "promises"
-"""The kind of figure that shows them."""
+KIND = "promises"
+"""The kind of question that is about them."""
 
 FOLDER = "promises-of-errors"
 """Below `records/`, beside the folders of the experiments."""
@@ -17,9 +17,9 @@ FOLDER = "promises-of-errors"
 def keep_promises(point: Point, scene: SceneFile, tags: Tags, records: KeptRecords) -> Completed | None:
     """Run `carom promises`, once for each program, machine, number of threads, binding and scene.
 
-    None if its record is there or the point's figure needs none.
+    None if its record is there or the point's kind needs none.
     """
-    if point.figure != FIGURE:
+    if point.kind != KIND:
         return None
     made_of = key(
         point.program.sha256, asdict(point.machine), point.threads, point.openmp, scene.sha256,

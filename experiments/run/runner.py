@@ -265,7 +265,7 @@ def seed_of(task: Task) -> int:
 
 def is_drawn(point: Point, block: int) -> bool:
     """Whether the process leaves a timeline: one a point of the phases is enough to see who waits."""
-    return point.verb == "profile" and point.figure == "phases" and block == 0
+    return point.verb == "profile" and point.kind == "phases" and block == 0
 
 
 def _violation(record: object) -> str | None:

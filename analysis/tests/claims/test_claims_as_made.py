@@ -21,7 +21,14 @@ from analysis.tests.synthetic_study import study
     [
         (20, 1.0, HOLDS, "holds"),
         (20, 1.2, FAILS, "does not hold"),
+        (20, 1.04, Verdict.HOLDS_BY_LESS, "holds by less than the margin"),
         (2, 1.0, Verdict.HOLDS_ELSEWHERE, "holds at 2 threads (claimed at 20)"),
+        (
+            2,
+            1.04,
+            Verdict.HOLDS_BY_LESS_ELSEWHERE,
+            "holds by less than the margin at 2 threads (claimed at 20)",
+        ),
         (2, 1.2, Verdict.FAILS_ELSEWHERE, "does not hold at 2 threads (claimed at 20)"),
         (1, 1.2, Verdict.FAILS_ELSEWHERE, "does not hold at 1 thread (claimed at 20)"),
     ],
@@ -59,6 +66,15 @@ def test_every_claim_says_what_the_study_measured_and_where_it_may_be_decided() 
         assert claim.test in claims.TESTS
 
 
+def test_a_claim_is_judged_by_the_margin_of_its_question(tmp_path: Path) -> None:
+    records = study(["neighbourhood"], noise=QUIET, threads=20)
+    for record in records:
+        record["tags"]["margin"] = 0.1
+    row = row_of(tmp_path, records, "four_boxes")
+    assert row["verdict"] == Verdict.HOLDS_BY_LESS
+    assert row["measured"].endswith("(faster, but by less than 10 %)")
+
+
 # Scale and size
 
 
@@ -67,6 +83,7 @@ def test_every_claim_says_what_the_study_measured_and_where_it_may_be_decided() 
     [
         (20, 1.0, Verdict.HOLDS_ELSEWHERE, "holds at quick scale"),
         (20, 1.2, Verdict.FAILS_ELSEWHERE, "does not hold at quick scale"),
+        (20, 1.04, Verdict.HOLDS_BY_LESS_ELSEWHERE, "holds by less than the margin at quick scale"),
         (2, 1.0, Verdict.HOLDS_ELSEWHERE, "holds at quick scale, at 2 threads (claimed at 20)"),
     ],
 )

@@ -9,7 +9,18 @@ import pytest
 from analysis.claims.alternatives import alternatives
 from analysis.claims.family import both, corrected
 from analysis.claims.missing import is_open, needed
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, Outcome, judged, told
+from analysis.claims.outcome import (
+    FAILS,
+    HOLDS,
+    HOLDS_BY_LESS,
+    OPEN,
+    Outcome,
+    Verdict,
+    directed,
+    judged,
+    told,
+)
+from analysis.statistics.looks import ERROR
 from analysis.statistics.verdicts import judge_one
 
 
@@ -108,3 +119,64 @@ def test_few_blocks_refute_nothing_and_say_what_is_missing(blocks: int) -> None:
     outcome = judged(judge_one([0.5] * blocks), "faster", "")
     assert (outcome.verdict, outcome.p) == (OPEN, None)
     assert "a verdict needs at least 4" in outcome.why
+
+
+WITHIN = 0.001 * np.array([4, -3, 2, -4, 3, -2, 1, -1, 0])
+"""The noise of nine blocks, little enough to tell half of the margin."""
+
+
+@pytest.mark.parametrize(
+    ("centre", "verdict", "said"),
+    [
+        (-0.04, HOLDS, "faster"),
+        (-0.01, HOLDS_BY_LESS, "faster, but by less than 2 %"),
+        (0.0, FAILS, "equivalent"),
+        (0.01, FAILS, "equivalent"),
+        (0.04, FAILS, "slower"),
+    ],
+)
+def test_an_improvement_within_the_margin_is_no_refutation(
+    centre: float, verdict: Verdict, said: str
+) -> None:
+    row = directed(centre + WITHIN)
+    outcome = judged(row, "faster", "")
+    assert (outcome.verdict, told(row, "faster")) == (verdict, said)
+    mirrored = directed(-centre - WITHIN)
+    assert judged(mirrored, "slower", "").verdict == verdict
+    assert outcome.p is not None
+    assert outcome.p <= ERROR
+    assert said != "equivalent" or judged(row, "equivalent", "").verdict == HOLDS
+
+
+def test_the_interval_that_is_shown_is_the_one_that_tells_less_from_nothing() -> None:
+    generator = np.random.default_rng(3)
+    seen = set()
+    for centre in np.linspace(-0.03, 0.01, 80):
+        row = directed(generator.normal(centre, 0.006, 9))
+        outcome = judged(row, "faster", "")
+        by_less = row["low"] > 1 / 1.02 and row["high"] < 1
+        assert (outcome.verdict == HOLDS_BY_LESS) == by_less
+        assert (outcome.verdict == FAILS) == (row["low"] > 1 / 1.02 and not by_less)
+        assert (outcome.verdict == HOLDS) == (row["high"] < 1 / 1.02)
+        seen.add(outcome.verdict)
+    assert seen == {HOLDS, HOLDS_BY_LESS, FAILS, OPEN}
+
+
+def test_less_than_the_margin_is_that_of_the_question() -> None:
+    row = directed(-0.03 + WITHIN, 0.05)
+    assert (judged(row, "faster", "").verdict, told(row, "faster")) == (
+        HOLDS_BY_LESS,
+        "faster, but by less than 5 %",
+    )
+
+
+def test_parts_that_hold_by_less_make_a_claim_that_does_and_it_is_corrected() -> None:
+    by_less, whole = (judged(directed(centre + WITHIN), "faster", "") for centre in (-0.01, -0.04))
+    joined = both([whole, by_less])
+    assert (joined.verdict, joined.p) == (HOLDS_BY_LESS, max(whole.p or 0, by_less.p or 0))
+    assert both([by_less, refuted(0.001)]).verdict == FAILS
+    assert both([by_less, Outcome(OPEN)]).verdict == OPEN
+    weak = replace(by_less, p=0.04)
+    among = corrected([weak, *[held(0.001)] * 3, *[Outcome(OPEN, p=1.0)] * 3])[0]
+    assert among.verdict == OPEN
+    assert "alone it would hold by less than the margin" in among.why

@@ -94,3 +94,17 @@ def test_the_forecast_is_what_a_larger_sample_alike_takes() -> None:
     assert judge_one((ratios * 20)[:earlier])["verdict"] == "inconclusive"
     assert blocks_to_decide(row["p"], len(ratios), family=17) > needed
     assert blocks_to_decide(100.0, 6) > MOST_BLOCKS, "on the border nothing is in sight"
+
+
+def test_a_claim_that_holds_by_less_than_the_margin_is_settled_and_says_so(tmp_path: Path) -> None:
+    records = study(["neighbourhood"], blocks=21, noise=QUIET, threads=20)
+    for record in records:
+        wobble = 1 + 0.002 * (record["tags"]["block"] % 3 - 1)
+        pace = 0.99 * wobble if record["tags"]["series"] == "four" else 1 / wobble
+        record["repetitions"] = [{"steps_seconds": pace, "cpu_seconds": 1.0}]
+    write(tmp_path, records)
+    answer = open_questions(tmp_path)
+    assert answer["settled"] == ["neighbourhood"]
+    said = str(answer["said"]["four_boxes"]).replace("\u00a0", " ")
+    assert said.startswith("holds by less than the margin: ")
+    assert said.endswith("(faster, but by less than 2 %)")

@@ -99,3 +99,15 @@ def test_the_figure_and_the_running_study_judge_by_it(tmp_path: Path) -> None:
     answer = open_questions(tmp_path)
     assert answer["settled"] == ["mine"]
     assert answer["said"]["mine: old against new"].startswith("equivalent")
+
+
+@pytest.mark.parametrize(("kind", "compared"), [("comparison", True), ("trend", False), (None, True)])
+def test_the_kind_says_whether_each_difference_has_a_verdict_and_not_the_figure(
+    tmp_path: Path, kind: str | None, compared: bool
+) -> None:
+    drawn = {"comparison": "trend", "trend": "comparison", None: "comparison"}[kind]
+    if kind is None:
+        measured(tmp_path, figure=drawn)
+    else:
+        measured(tmp_path, figure=drawn, kind=kind)
+    assert open_questions(tmp_path)["settled"] == (["mine"] if compared else [])

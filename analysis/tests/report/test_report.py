@@ -164,6 +164,19 @@ def test_a_failed_control_is_shouted(tmp_path: Path) -> None:
     assert "The control FAILED" in text_of(report.render(tmp_path))
 
 
+def test_a_control_that_is_off_within_the_margin_is_said(tmp_path: Path) -> None:
+    records = study(["control"], blocks=21, noise=QUIET)
+    for record in records:
+        again = record["tags"]["label"] == "A-again"
+        wobble = 1 + 0.002 * (record["tags"]["block"] % 3 - 1) * (1 if again else -1)
+        record["repetitions"][0]["steps_seconds"] = (1.01 if again else 1.0) * wobble
+    write(tmp_path, records)
+    text = text_of(report.render(tmp_path))
+    assert "The control is off" in text
+    assert "its interval leaves out 0" in text
+    assert "The control came out" not in text
+
+
 def test_two_speeds_of_the_machine_are_said(tmp_path: Path) -> None:
     records = study(["control"], blocks=8, noise=QUIET)
     for record in records:

@@ -10,7 +10,7 @@ from analysis.tests.synthetic_noise import Noise, times_table
 
 def noise_of(noise: Noise, blocks: int = 40, figure: str = "comparison") -> pd.Series:
     table = times_table({"a": 1.0, "b": 1.3, "c": 2.0}, blocks, 1, noise, seed=1)
-    return process_noise(table.assign(figure=figure)).iloc[0]
+    return process_noise(table.assign(question_kind=figure)).iloc[0]
 
 
 @pytest.mark.parametrize("deviation", [0.005, 0.02])
@@ -44,8 +44,8 @@ def test_no_number_of_blocks_is_said_where_more_than_can_be_told_are_needed() ->
 
 def test_a_label_on_one_side_and_a_configuration_that_soon_failed_leave_the_estimate() -> None:
     table = times_table({"a": 1.0, "b": 1.3, "c": 2.0}, 8, 1, Noise(burst_rate=0, drift=0), seed=1)
-    whole = process_noise(table.assign(figure="comparison"))
-    labelled = table.assign(figure="comparison", label=table["series"].map({"a": "A"}))
+    whole = process_noise(table.assign(question_kind="comparison"))
+    labelled = table.assign(question_kind="comparison", label=table["series"].map({"a": "A"}))
     assert process_noise(labelled)["noise"].tolist() == whole["noise"].tolist()
     failed = labelled[(labelled["series"] != "c") | (labelled["block"] == 0)]
     assert process_noise(failed)["blocks"].tolist() == [8]
@@ -53,8 +53,8 @@ def test_a_label_on_one_side_and_a_configuration_that_soon_failed_leave_the_esti
 
 def test_what_has_no_partner_leaves_the_estimate_as_it_is() -> None:
     table = times_table({"a": 1.0, "b": 1.3}, 20, 1, Noise(burst_rate=0, drift=0), seed=1)
-    changed = table[(table["series"] == "a") | (table["block"] >= 12)].assign(figure="comparison")
-    whole = table[table["block"] >= 12].assign(figure="comparison")
+    changed = table[(table["series"] == "a") | (table["block"] >= 12)].assign(question_kind="comparison")
+    whole = table[table["block"] >= 12].assign(question_kind="comparison")
     assert process_noise(changed).equals(process_noise(whole))
 
 
@@ -63,7 +63,7 @@ def test_the_warning_names_the_worst_and_what_to_do() -> None:
     table = process_noise(
         pd.concat(
             times_table({f"{name}-a": 1.0, f"{name}-b": 1.0}, 6, 1, noise, seed=2).assign(
-                experiment=name, figure="comparison"
+                experiment=name, question_kind="comparison"
             )
             for name, noise in (("loud", loud), ("quiet", quiet))
         )
@@ -85,5 +85,5 @@ def test_trends_are_not_warned_about() -> None:
 
 
 def test_one_block_has_no_noise() -> None:
-    table = times_table({"a": 1.0, "b": 1.0}, 1, 3, Noise(), seed=1).assign(figure="control")
+    table = times_table({"a": 1.0, "b": 1.0}, 1, 3, Noise(), seed=1).assign(question_kind="control")
     assert process_noise(table).empty

@@ -69,6 +69,7 @@ CONTENT: dict[str, st.SearchStrategy[Any]] = {
 # What only says where in a figure the point stands, and so is no part of its id.
 SHOWN: dict[str, st.SearchStrategy[Any]] = {
     "experiment": st.sampled_from(["threads", "particles"]),
+    "kind": st.sampled_from(["scaling", "trend"]),
     "figure": st.sampled_from(["scaling", "trend"]),
     "claim": st.sampled_from([None, "threads"]),
     "margin": st.sampled_from([0.02, 0.05]),

@@ -170,17 +170,33 @@ MISTAKES = {
         f"substeps = 2\n{ERRORS}",
         "substeps: found beside a sweep of it, expected either",
     ),
+    "neither kind nor figure": (
+        CHUNKS.replace('figure = "schedule"\n', ""),
+        "kind: missing; expected one of comparison, control, trend",
+    ),
+    "unknown kind": (
+        f'kind = "trends"\n{CHUNKS}',
+        'kind: found "trends", expected one of scaling, trend',
+    ),
+    "figure that cannot draw the kind": (
+        f'kind = "hard_cases"\n{CHUNKS}',
+        "figure: found schedule for kind hard_cases, expected one of hard_cases",
+    ),
+    "kind of several scenes in a figure of one": (
+        ERRORS.replace('figure = "speed_against_error"', 'kind = "ladder"\nfigure = "comparison"'),
+        "scenes: found several for figure comparison, expected one, or one of the kinds",
+    ),
     "figure of errors without errors": (
         ERRORS.replace("errors = true\n", ""),
-        "errors: missing; expected true for figure speed_against_error",
+        "errors: missing; expected true for kind speed_against_error",
     ),
     "speed against error over threads": (
         ERRORS.replace('"substeps"', '"threads"'),
-        "sweep.parameter: expected substeps for figure speed_against_error",
+        "sweep.parameter: expected substeps for kind speed_against_error",
     ),
     "scenes that no figure tells apart": (
         ERRORS.replace("speed_against_error", "trend"),
-        "scenes: found several for figure trend, expected one, or one of the figures speed_against_error",
+        "scenes: found several for kind trend, expected one, or one of the kinds hard_cases, ladder",
     ),
     "errors of a profile": (
         f'verb = "profile"\n{ERRORS}',

@@ -1,0 +1,70 @@
+"""The table of kinds: what a question is about, and how it is drawn where the file does not say."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from experiments.plan.kinds import KINDS
+from experiments.plan.plan import plan
+from experiments.plan.question import FOLDER, load_question
+from experiments.tests.conftest import CHUNKS, ERRORS, Workplace
+from experiments.tests.plan.test_plan import surroundings
+
+README = Path(__file__).parents[2] / "README.md"
+
+
+def tags_of(place: Workplace, head: str) -> tuple[object, object]:
+    path = place.question("chunks", CHUNKS.replace('figure = "schedule"', head))
+    tags = plan(load_question(path), surroundings(place)).points[0].tags
+    return tags["kind"], tags["figure"]
+
+
+@pytest.mark.parametrize(
+    ("head", "told"),
+    [
+        ('figure = "trend"', ("trend", "trend")),
+        ('kind = "trend"', ("trend", "trend")),
+        ('kind = "control"', ("control", "control")),
+        ('kind = "comparison"\nfigure = "trend"', ("comparison", "trend")),
+        ('kind = "trend"\nfigure = "comparison"', ("trend", "comparison")),
+    ],
+)
+def test_a_figure_alone_stands_for_its_kind_and_a_kind_has_a_usual_figure(
+    workplace: Workplace, head: str, told: tuple[str, str]
+) -> None:
+    assert tags_of(workplace, head) == told
+
+
+def test_a_kind_is_no_part_of_an_id(workplace: Workplace) -> None:
+    alone, named = (
+        plan(load_question(workplace.question("chunks", f"{head}{CHUNKS}")), surroundings(workplace)).points
+        for head in ("", 'kind = "comparison"\n')
+    )
+    assert [point.id for point in alone] == [point.id for point in named]
+
+
+def test_several_scenes_are_for_kinds_that_tell_them_apart(workplace: Workplace) -> None:
+    question = load_question(workplace.question("errors", ERRORS))
+    assert KINDS[question.kind].scenes
+    assert len(question.scenes) > 1
+
+
+def test_every_kind_can_be_asked_for_and_its_usual_figure_is_its_own() -> None:
+    schema = json.loads((FOLDER / "question.schema.json").read_text(encoding="utf-8"))["properties"]
+    assert set(schema["kind"]["enum"]) == set(schema["figure"]["enum"]) == set(KINDS)
+    for name, kind in KINDS.items():
+        assert kind.figures[0] == name
+        assert set(kind.figures) <= set(KINDS)
+
+
+def test_the_page_has_the_table() -> None:
+    rows = re.findall(
+        r"^\| `(\w+)` \| (.*) \| (.*) \| (.*) \|$", README.read_text(encoding="utf-8"), re.MULTILINE
+    )
+    said = {name: rest for name, *rest in rows if name in KINDS}
+    assert said == {
+        name: [kind.measured, kind.judged, ", ".join(f"`{one}`" for one in kind.figures)]
+        for name, kind in KINDS.items()
+    }
