@@ -5,8 +5,8 @@
 # Goals and prerequisites run one after another in the order given, also in `make -j2 setup test`.
 .NOTPARALLEL:
 .SILENT:
-.PHONY: help setup environment build build-gcc build-clang build-gcc-libomp tests-gcc tests-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files movie \
-        experiments appendix status submit resume collect figures report compare lint lint-quick format clean distclean \
+.PHONY: help setup environment build build-gcc build-clang build-gcc-libomp calibration-gcc tests-gcc tests-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files movie \
+        experiments appendix status submit resume collect figures report compare calibrate lint lint-quick format clean distclean \
         settings
 
 export COMPILER ?= gcc
@@ -43,7 +43,7 @@ dry_run := $${DRY_RUN:+--dry-run}
 #:   COMPILER=   gcc, clang or gcc-libomp (gcc)
 #:   JOBS=       compilers and tests at a time (one a processor)
 #:   WERROR=     1: a compiler's warning stops the build (no)
-#:   TIME=       seconds of random input for each reader (60)
+#:   TIME=       seconds of random input for each reader, and of each stream of calibrate (60)
 #:   PYTHON=     the Python that makes .venv, 3.11 or newer (the system's)
 #:
 #: Exit codes: 0 done; else 2, and make's last line names that of the command, `Error N`:
@@ -187,6 +187,15 @@ compare: environment ## compare two results folders (A= B=); fails if something 
 	$(call need,A,a results folder)
 	$(call need,B,the results folder to compare with it)
 	code=0; $(python) analysis compare "$$A" "$$B" || code=$$?; case $$code in 4) ;; *) exit $$code;; esac
+
+calibration-gcc: calibration-%: settings
+	$(call own_build,build/$*)
+	$(configure)
+	cmake --build build/$* --target calibration $(jobs)
+
+calibrate: environment settings calibration-gcc ## measure how often verdicts are wrong on this machine (TIME=60 RESULTS=results/calibration)
+	$(python) experiments calibrate $(results) $${TIME:+--seconds "$$TIME"}
+	$(python) analysis calibration $(results)
 
 lint: settings lint-quick ## every static check of C++ and Python (clang-tidy from the package of that name)
 	CXX=clang++ $(generator) cmake --preset release -B build/lint -DCAROM_UNITY=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON

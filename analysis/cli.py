@@ -74,6 +74,13 @@ def _parser() -> argparse.ArgumentParser:
         if name == "figures":
             command.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
         command.set_defaults(run=run)
+    text = "tell how often verdicts are wrong here, from what `experiments calibrate` measured"
+    calibration = commands.add_parser("calibration", help=text, description=text)
+    told = "default: results/calibration"
+    calibration.add_argument(
+        "--results", type=Path, default=Path("results/calibration"), metavar="DIR", help=told
+    )
+    calibration.set_defaults(run=_calibration)
     compare = commands.add_parser(
         "compare",
         help="compare two results folders",
@@ -177,6 +184,16 @@ def _performance(options: argparse.Namespace) -> int:
     if not any(text for _, text in texts):
         raise InputError(f"{options.results}: no records of the ladder or the limits yet")
     print("\n\n".join(f"{name}:\n\n{text}" for name, text in texts if text))
+    return 0
+
+
+def _calibration(options: argparse.Namespace) -> int:
+    from analysis.calibration.result import write
+
+    text, files = write(options.results)
+    print(text)
+    for path in files:
+        print(path)
     return 0
 
 

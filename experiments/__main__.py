@@ -11,6 +11,8 @@ from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
+from experiments.calibration.command import add_options as add_calibrate_options
+from experiments.calibration.command import calibrate
 from experiments.plan import site
 from experiments.plan.new_question import new_question
 from experiments.plan.plan import Surroundings, plan
@@ -214,6 +216,11 @@ _VERBS = {
         "measure one task of a job array; batch scripts call it",
         lambda options: work(options.job, options.task),
         _add_work_options,
+    ),
+    "calibrate": _Verb(
+        "measure contenders whose true ratios are known, to see how often verdicts are wrong here",
+        calibrate,
+        add_calibrate_options,
     ),
     "collect": _Verb("merge other results folders into this one", _collect, _add_collect_options),
 }

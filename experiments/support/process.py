@@ -8,7 +8,7 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -86,6 +86,20 @@ def run(
         told = "how it ended is not known: somebody else took leave of it"
         return Completed(tuple(command), UNKNOWN_END, output.text, told, dropped)
     return Completed(tuple(command), exit_code, output.text, errors.text, dropped)
+
+
+@contextlib.contextmanager
+def alongside(command: Sequence[str]) -> Iterator[None]:
+    """Let a command that prints nothing run until the block ends. It ends with this process, however that
+    ends.
+    """
+    child = _start(command, None, subprocess.DEVNULL, None)
+    try:
+        yield
+    finally:
+        _kill(child)
+        with child:
+            pass
 
 
 class Coprocess:
@@ -172,7 +186,7 @@ def _start(
     command: Sequence[str],
     environment: Mapping[str, str] | None,
     stdin: int,
-    stderr: int | IO[str],
+    stderr: int | IO[str] | None,
     folder: Path | None = None,
 ) -> subprocess.Popen[bytes]:
     hear_of_ends()

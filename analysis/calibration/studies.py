@@ -1,0 +1,146 @@
+"""Small studies of a stream, each decided by Carom's rule as its blocks come.
+
+A study takes a stretch of successive blocks in the order of time, so that their dependence stays in it. It
+looks where looks are planned, and stops when it is decided or has no blocks left. Stretches of one set begin
+all over the stream and overlap: they show how often something happens, and are no independent tries. Those of
+the other set are disjoint: exact bounds rest on them.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from analysis.calibration.streams import Floats, Stream
+from analysis.statistics.looks import next_look
+from analysis.statistics.verdicts import MARGIN, judge_one
+from analysis.support.parallel import in_parallel
+
+FEWEST_STUDIES = 2000
+"""Of one stream, on stretches that overlap, if it has so many."""
+
+LONGEST_PART, DISJOINT_PART = 3, 20
+"""Overlapping stretches are a third of the stream at most; of disjoint ones there are twenty at least."""
+LONGEST_DISJOINT = 48
+
+DECIDED = ("faster", "slower", "equivalent")
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two contenders of a stream, and by which part of the first one's work the second does more."""
+
+    reference: int
+    candidate: int
+    more: float
+
+
+def comparisons(more: Sequence[float]) -> list[Comparison]:
+    """Return each contender against the first, then against the others that do the same work as the first."""
+    equal = [k for k, one in enumerate(more) if one == 0]
+    return [Comparison(one, k, more[k]) for one in equal for k in range(len(more)) if k > one and k > 0]
+
+
+def is_wrong(verdict: str, more: float, margin: float = MARGIN) -> bool:
+    """Return whether a verdict contradicts the truth: a difference beyond the margin where there is none, the
+    wrong direction, equivalence where the difference is beyond the margin.
+    """
+    truth = "slower" if more > margin else "faster" if 1 + more < 1 / (1 + margin) else "equivalent"
+    return verdict in DECIDED and verdict != truth
+
+
+def looks_up_to(most: float) -> list[int]:
+    """Return the planned looks at no more than so many blocks."""
+    looks = []
+    look = next_look(0)
+    while look <= most:
+        looks.append(look)
+        look = next_look(look)
+    return looks
+
+
+Rule = Callable[[Floats], Mapping[str, Any]]
+"""From the values of blocks to a row as `verdicts.judge_one` gives it."""
+
+
+def study(values: Floats, looks: Sequence[int], more: float, rule: Rule = judge_one) -> dict[str, Any]:
+    """Return what came of the study of these blocks: its `verdict`, how many `blocks` it took, whether that
+    is `wrong`, and whether every interval up to there `covered` the truth.
+    """
+    verdict, covered, blocks = "inconclusive", True, 0
+    for look in looks:
+        row = rule(values[:look])
+        verdict, blocks = row["verdict"], look
+        covered = covered and row["low"] <= 1 + more <= row["high"]
+        if verdict in DECIDED:
+            break
+    return {
+        "verdict": verdict,
+        "blocks": blocks,
+        "wrong": is_wrong(verdict, more),
+        "covered": covered,
+    }
+
+
+def of_stream(stream: Stream, one: Comparison, rule: Rule = judge_one) -> Iterator[dict[str, Any]]:
+    """Yield every study of one comparison: a row with the columns of `study`, `start`, `disjoint` and
+    `seconds`, which measuring those two alone would have taken.
+    """
+    values = stream.log_ratios(one.reference, one.candidate)
+    seconds = stream.seconds_of_block(one.reference, one.candidate)
+    plans = [(False, overlapping(stream))] + [(True, disjoint(stream))] * (one.reference == 0)
+    for is_disjoint, (starts, looks) in plans:
+        for start in starts:
+            row = study(values[start:], looks, one.more, rule)
+            told = {"start": start, "disjoint": is_disjoint, "seconds": row["blocks"] * seconds}
+            yield {**row, **told}
+
+
+def overlapping(stream: Stream) -> tuple[range, list[int]]:
+    """Return where the overlapping studies of a comparison begin, and their looks."""
+    first = next_look(0)
+    looks = looks_up_to(max(stream.blocks / LONGEST_PART, min(first, stream.blocks)))
+    if not looks:
+        return range(0), []
+    places = stream.blocks - looks[-1] + 1
+    wanted = -(-FEWEST_STUDIES // len(comparisons(stream.more)))
+    return range(0, places, max(1, places // wanted)), looks
+
+
+def disjoint(stream: Stream) -> tuple[range, list[int]]:
+    """Return where the disjoint studies of a comparison begin, and their looks."""
+    first = next_look(0)
+    looks = looks_up_to(min(LONGEST_DISJOINT, max(first, stream.blocks / DISJOINT_PART)))
+    return range(0, stream.blocks - looks[-1] + 1, looks[-1]), looks
+
+
+def all_studies(streams: Sequence[Stream], rule: Rule = judge_one) -> pd.DataFrame:
+    """Return the studies of all streams, a row each: the columns of `of_stream`, `kind`, `condition`,
+    `reference` and `more`. All processors work on it.
+    """
+    asked = [(stream, one) for stream in streams for one in comparisons(stream.more)]
+
+    def rows(number: int) -> list[dict[str, Any]]:
+        stream, one = asked[number]
+        named = {"kind": stream.kind, "condition": stream.condition}
+        known = {**named, "reference": one.reference, "more": one.more}
+        return [{**known, **row} for row in of_stream(stream, one, rule)]
+
+    found = [row for several in in_parallel(rows, len(asked)) for row in several]
+    return pd.DataFrame(found, columns=COLUMNS).astype({"wrong": bool, "covered": bool, "disjoint": bool})
+
+
+COLUMNS = [
+    *("kind", "condition", "reference", "more", "start", "disjoint"),
+    *("verdict", "blocks", "seconds", "wrong", "covered"),
+]
+
+
+def quantile_until_found(studies: pd.DataFrame, level: float) -> float:
+    """Return the seconds by which this part of the studies had found that the candidate is slower; infinite
+    where fewer found it.
+    """
+    seconds = np.where(studies["verdict"] == "slower", studies["seconds"], np.inf)
+    return float(np.quantile(seconds, level, method="higher")) if len(seconds) else np.inf
