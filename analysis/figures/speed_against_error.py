@@ -211,7 +211,8 @@ def _advice(table: pd.DataFrame, races: Mapping[str, Race], measure: Measure) ->
     columns = ["For an error below", *(_panel_name(str(scene), part) for scene, part in scenes.items())]
     title = (
         f"The cheapest choice by {measure.title} (bounds: {measure.label}), and what a unit of simulated "
-        "time costs with it:"
+        "time costs with it. All intervals of a scene, and all that was found slower, hold together in 95 % "
+        "of studies, since the choice was made by looking:"
     )
     return Table(title, columns, rows)
 
@@ -274,8 +275,8 @@ def _caption(table: pd.DataFrame, data: Data, experiment: str, subject: str, mea
     )
     return (
         f"{opened} The error is {measure.meaning}; down and to the left is better. {certain}{without_steps}"
-        f"{zeros} No other choice has at most the error and at most the time of one on the Pareto front "
-        f"(grey): {fronts}."
+        f"{zeros} By the medians, no other choice has at most the error and at most the time of one on the "
+        f"Pareto front (grey): {fronts}."
     )
 
 

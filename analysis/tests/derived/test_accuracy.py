@@ -18,9 +18,10 @@ from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
 from analysis.report.horizons import horizons
+from analysis.statistics.bootstrap import summarise
 from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import Machine, outside, write
-from analysis.tests.synthetic_noise import QUIET
+from analysis.tests.synthetic_noise import QUIET, Noise, times_table
 from analysis.tests.synthetic_points import SUBSTEPS
 from analysis.tests.synthetic_study import study
 
@@ -29,7 +30,7 @@ BY_KEY = {measure.key: measure for measure in MEASURES}
 
 
 def records(**more: Any) -> list[dict[str, Any]]:  # noqa: ANN401
-    return study([NAME], blocks=5, noise=QUIET, seed=4, **more)
+    return study([NAME], blocks=6, noise=QUIET, seed=4, **more)
 
 
 @pytest.fixture(scope="module")
@@ -155,6 +156,22 @@ def test_equal_choices_are_both_named(tmp_path: Path) -> None:
     assert {x for _, x in choice.others} == {16}
 
 
+def test_the_time_of_the_least_of_equals_is_within_its_interval() -> None:
+    """The former rule: the interval of the least, as if nobody had chosen it."""
+    noise = Noise(process=0.1, repetition=0.0, burst_rate=0.0, drift=0.0)
+    former = now = 0
+    for seed in range(100):
+        timed = times_table(dict.fromkeys("abcdefghijklmnopqrst", 1.0), 9, 1, noise, seed)
+        timed = timed.rename(columns={"steps_seconds": "seconds"})
+        least = timed.groupby("series")["seconds"].median().idxmin()
+        alone = summarise(timed[timed["series"] == least], ["series"], "seconds").iloc[0]
+        found = accuracy.Race(timed).seconds((least, 0.0))
+        former += not alone["low"] < 1 < alone["high"]
+        now += not found.low < 1 < found.high
+    assert former > 8
+    assert now <= 5
+
+
 def test_bounds_with_the_same_choices_are_one(measured: Study) -> None:
     table = points(measured, BY_KEY["energy"])
     advice = accuracy.advice(table, accuracy.races(measured, NAME))
@@ -167,7 +184,7 @@ def test_every_measure_has_a_figure_from_the_same_records(measured: Study, key: 
     assert len(drawn.figure.axes) == 3
     assert BY_KEY[key].meaning in drawn.caption
     assert "the same in every run, to the last bit, and has no interval" in drawn.caption
-    assert "315 timed runs" in drawn.caption.replace("\u00a0", " ")
+    assert "378 timed runs" in drawn.caption.replace("\u00a0", " ")
     assert any("Order of convergence" in table.title for table in drawn.tables) == BY_KEY[key].converges
 
 

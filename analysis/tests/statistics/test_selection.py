@@ -1,0 +1,106 @@
+"""What is said of the one that was picked from many, where all are equal, beside the former rule, which took
+the one for the only one. Seeds are fixed.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy import stats
+
+from analysis.statistics.selection import interval_among, judge_among, pairs_of
+from analysis.statistics.verdicts import MARGIN, judge_one
+
+Floats = NDArray[np.float64]
+Noise = Callable[[np.random.Generator, tuple[int, int]], Floats]
+
+EQUALS, STUDIES = 20, 100
+LOOKS = (6, 9)
+CHANCE = 0.044
+"""Two standard errors of a rate of 5 % in so many studies."""
+
+
+def quiet(generator: np.random.Generator, shape: tuple[int, int]) -> Floats:
+    return generator.normal(0, 0.1, shape)
+
+
+def two_speeds(generator: np.random.Generator, shape: tuple[int, int]) -> Floats:
+    return np.log(2.3) * (generator.random(shape) < 0.3) + generator.normal(0, 0.007, shape)
+
+
+def against_the_least(logs: Floats) -> Floats:
+    """Return the log ratios of all others against the candidate with the least median, a row each."""
+    least = int(np.median(logs, axis=1).argmin())
+    ratios: Floats = np.delete(logs, least, axis=0) - logs[least]
+    return ratios
+
+
+def is_called_better_as_before(logs: Floats) -> bool:
+    """Whether some other is slower by Student's t, with the error that one look of seven had."""
+    ratios = against_the_least(logs)
+    error = ratios.std(axis=1, ddof=1) / np.sqrt(ratios.shape[1])
+    half = stats.t.ppf(1 - 0.05 * 0.9 / 7 / 2, ratios.shape[1] - 1) * error
+    return bool((ratios.mean(axis=1) - half > np.log1p(MARGIN)).any())
+
+
+def is_called_better(logs: Floats) -> bool:
+    comparisons = pairs_of(len(logs))
+    return any(judge_among(row, comparisons)["verdict"] == "slower" for row in against_the_least(logs))
+
+
+@pytest.mark.parametrize("noise", [quiet, two_speeds])
+def test_the_best_of_equals_is_not_called_better(noise: Noise) -> None:
+    generator = np.random.default_rng(1)
+    studies = [noise(generator, (EQUALS, LOOKS[-1])) for _ in range(STUDIES)]
+    former, now = (
+        np.mean([any(says(study[:, :look]) for look in LOOKS) for study in studies])
+        for says in (is_called_better_as_before, is_called_better)
+    )
+    assert former > 0.05
+    assert now <= 0.05 + CHANCE
+
+
+@pytest.mark.parametrize("noise", [quiet, two_speeds])
+def test_the_farthest_off_of_equals_has_an_interval_with_the_truth(noise: Noise) -> None:
+    """The former rule: an interval of 95 %, as if it were not the one that is farthest off."""
+    generator = np.random.default_rng(2)
+    former = now = 0
+    for _ in range(STUDIES):
+        ratios = noise(generator, (EQUALS, 2 * LOOKS[0])).reshape(EQUALS, 2, -1)
+        differences = ratios[:, 0] - ratios[:, 1]
+        farthest = differences[np.abs(differences.mean(axis=1)).argmax()]
+        low, high = stats.t.interval(0.95, LOOKS[0] - 1, farthest.mean(), stats.sem(farthest))
+        former += not low < 0 < high
+        among = interval_among(farthest, EQUALS)
+        now += not among.low < 0 < among.high
+    assert former > 0.15 * STUDIES
+    assert now <= (0.05 + CHANCE) * STUDIES
+
+
+def test_one_comparison_is_judged_as_one_standing_alone() -> None:
+    values = np.random.default_rng(3).normal(0.05, 0.01, 9)
+    alone, one = judge_one(values), judge_among(values, 1)
+    assert one["verdict"] == alone["verdict"] == "slower"
+    assert one["low"] <= alone["low"] < alone["high"] <= one["high"]
+
+
+def test_the_shown_interval_decides() -> None:
+    generator = np.random.default_rng(4)
+    for effect in (-0.1, 0.0, 0.1):
+        for comparisons in (1, 10, 1000):
+            row = judge_among(effect + generator.normal(0, 0.01, 9), comparisons)
+            border = 1 + MARGIN
+            shown = (
+                "faster" if row["high"] < 1 / border
+                else "slower" if row["low"] > border
+                else "equivalent" if 1 / border < row["low"] and row["high"] < border
+                else "inconclusive"
+            )  # fmt: skip
+            assert row["verdict"] == shown
+
+
+@pytest.mark.parametrize("blocks", [0, 1, 3])
+def test_too_few_blocks_have_no_interval(blocks: int) -> None:
+    row = judge_among(np.linspace(0.5, 0.51, blocks), 10)
+    assert (row["verdict"], row["blocks"], row["high"]) == ("inconclusive", blocks, np.inf)
