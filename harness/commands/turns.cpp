@@ -98,7 +98,7 @@ Measurement measurement_of(const LoadedScene& scene, const ContenderOptions& sai
 
 /// Lets them run; returns how.
 TurnsPlan compete(std::deque<VariantContender>& contenders, const TurnsOptions& options,
-                  std::vector<std::vector<Turn>>& turns) {
+                  std::vector<std::vector<TurnTime>>& turns) {
     std::vector<double> expected;
     std::vector<Contender*> everyone;
     int fewest_steps = contenders.front().steps();
@@ -137,7 +137,7 @@ std::optional<std::string> take_turns(const std::vector<ContenderOptions>& said,
     }
     Suspensions suspensions;
     suspensions.start();
-    std::vector<std::vector<Turn>> turns;
+    std::vector<std::vector<TurnTime>> turns;
     const TurnsPlan plan = compete(contenders, options, turns);
     suspensions.require_none("turns of " + counted(contenders.size(), "contender"));
     std::optional<std::string> failure;

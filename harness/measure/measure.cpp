@@ -36,7 +36,7 @@ RunInParts::RunInParts(const Scene& scene, Simulation& simulation, const Tuning&
                check.policies.impact),
       on_step_(std::move(on_step)), stopwatch_(std::move(stopwatch)) {}
 
-Turn RunInParts::advance(int steps) {
+TurnTime RunInParts::advance(int steps) {
     const double before = stopwatch_.wall_seconds();
     const int end = std::min(done_ + steps, scene_.steps);
     std::optional<double> returning;

@@ -55,7 +55,7 @@ class RunInParts {
 
     /// Simulates up to `steps` units of time more, fewer at the end of the scene or at a violation. Returns
     /// the wall time that they took.
-    Turn advance(int steps);
+    TurnTime advance(int steps);
 
     /// What was run, with the state as it is now.
     Run finish();

@@ -15,7 +15,7 @@ namespace carom {
 struct Turns {
     int contenders = 0; ///< that took turns, this one among them
     TurnsPlan plan;
-    std::vector<Turn> turns; ///< of all runs, one run after the other
+    std::vector<TurnTime> turns; ///< of all runs, one run after the other
 };
 
 /// What of a measured process goes into its record (record.schema.json).

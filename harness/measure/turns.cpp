@@ -16,9 +16,9 @@ int count_rounds(std::span<const double> expected_seconds, int fewest_steps, dou
     return static_cast<int>(std::clamp(rounds, 1.0, std::max(1.0, static_cast<double>(fewest_steps))));
 }
 
-std::vector<std::vector<Turn>> take_turns(std::span<Contender* const> contenders, const TurnsPlan& plan) {
+std::vector<std::vector<TurnTime>> take_turns(std::span<Contender* const> contenders, const TurnsPlan& plan) {
     std::mt19937_64 random(plan.seed);
-    std::vector<std::vector<Turn>> turns(contenders.size());
+    std::vector<std::vector<TurnTime>> turns(contenders.size());
     std::vector<std::size_t> order(contenders.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     const auto steps_until = [&plan](const Contender& one, int rounds_done) {

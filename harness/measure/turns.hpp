@@ -8,7 +8,7 @@
 namespace carom {
 
 /// What a turn took.
-struct Turn {
+struct TurnTime {
     double seconds = 0; ///< that count
 
     /// Those of its first step, which finds the caches as the contender before has left them; empty if the
@@ -27,7 +27,7 @@ class Contender {
     /// Goes back to the first step; the run before, if there was one, has ended.
     virtual void start() = 0;
 
-    virtual Turn advance(int steps) = 0;
+    virtual TurnTime advance(int steps) = 0;
 };
 
 /// How often they run, in how many rounds of turns each time, and what draws the order of the turns.
@@ -49,6 +49,6 @@ int count_rounds(std::span<const double> expected_seconds, int fewest_steps, dou
 /// their last step, all start again together, as often as there are runs.
 ///
 /// Returns, for each contender, each of its turns, run by run.
-std::vector<std::vector<Turn>> take_turns(std::span<Contender* const> contenders, const TurnsPlan& plan);
+std::vector<std::vector<TurnTime>> take_turns(std::span<Contender* const> contenders, const TurnsPlan& plan);
 
 } // namespace carom

@@ -28,7 +28,7 @@ void VariantContender::start() {
     *measurement_.own_seconds += process_seconds() - start;
 }
 
-Turn VariantContender::advance(int steps) { return run_ ? run_->advance(steps) : Turn{}; }
+TurnTime VariantContender::advance(int steps) { return run_ ? run_->advance(steps) : TurnTime{}; }
 
 void VariantContender::end_run() {
     if (run_) {

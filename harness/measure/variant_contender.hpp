@@ -22,7 +22,7 @@ class VariantContender final : public Contender {
 
     int steps() const override { return measurement_.scene.steps; }
     void start() override;
-    Turn advance(int steps) override;
+    TurnTime advance(int steps) override;
 
     /// Ends the last run. A violation is told with the run that has it, if there were several.
     void finish(Turns turns);

@@ -49,7 +49,7 @@ Json turns_json(const std::optional<Turns>& turns) {
     }
     Json seconds = Json::array();
     Json returning_seconds = Json::array();
-    for (const Turn& turn : turns->turns) {
+    for (const TurnTime& turn : turns->turns) {
         seconds.push_back(turn.seconds);
         returning_seconds.push_back(or_null(turn.returning_seconds));
     }

@@ -69,12 +69,51 @@ TEST_F(TurnsCommand, LeavesARecordForEachThatIsAsOfAProcessOfItsOwn) {
         const Json turns = record(name)["turns"];
         EXPECT_EQ(turns["contenders"], 3);
         EXPECT_EQ(turns["seed"], 7);
+        EXPECT_EQ(turns["rounds"], 20);
         EXPECT_EQ(turns["seconds"].size(), 20) << "a step a turn";
+        EXPECT_EQ(turns["returning_seconds"], Json(std::vector<Json>(20)));
         const auto seconds = turns["seconds"].get<std::vector<double>>();
         EXPECT_NEAR(std::accumulate(seconds.begin(), seconds.end(), 0.0),
                     record(name)["repetitions"][0]["steps_seconds"].get<double>(), 1e-9);
         EXPECT_GE(record(name)["process_seconds"], record(name)["repetitions"][0]["steps_seconds"]);
     }
+}
+
+TEST_F(TurnsCommand, RepeatsWholeRunsOfAll) {
+    const auto result = turns({words("published", "one"), words("event_driven", "two"),
+                               words("published", "slower", {"--substeps", "2"})},
+                              {"--runs", "3", "--turn", "1000"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const auto alone = run_carom({"bench", scene, "--threads", "2", "--record", directory / "alone"});
+    ASSERT_EQ(alone.exit_code, 0) << alone.error;
+    EXPECT_EQ(record("one")["state_hash"], record("alone")["state_hash"]);
+    EXPECT_EQ(record("one")["work"], record("alone")["work"]);
+    for (const char* name : {"one", "two", "slower"}) {
+        const Json found = record(name);
+        ASSERT_EQ(found["repetitions"].size(), 3);
+        EXPECT_EQ(found["turns"]["rounds"], 1);
+        ASSERT_EQ(found["turns"]["seconds"].size(), 3);
+        for (std::size_t run = 0; run < 3; ++run) {
+            const double seconds = found["turns"]["seconds"][run];
+            EXPECT_NEAR(seconds, found["repetitions"][run]["steps_seconds"].get<double>(), 1e-9);
+            EXPECT_LT(found["turns"]["returning_seconds"][run].get<double>(), seconds);
+        }
+    }
+}
+
+TEST_F(TurnsCommand, CountsOneAfterTheOther) {
+    const auto result = turns({words("published", "one"), words("nine", "two")}, {"--counts"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const auto alone = run_carom({"bench", scene, "--threads", "2", "--record", directory / "alone"});
+    ASSERT_EQ(alone.exit_code, 0) << alone.error;
+    EXPECT_EQ(record("one")["work"], record("alone")["work"]);
+    EXPECT_EQ(record("one")["state_hash"], record("alone")["state_hash"]);
+    for (const char* name : {"one", "two"}) {
+        EXPECT_TRUE(record(name)["turns"].is_null());
+        EXPECT_EQ(record(name)["repetitions"].size(), 1);
+        EXPECT_EQ(record(name)["check"]["verdict"], "passed");
+    }
+    EXPECT_TRUE(refused(turns({words("published", "one")}, {"--counts", "--runs", "2"}), 1, {"--counts"}));
 }
 
 TEST_F(TurnsCommand, LetsTheEventDrivenSimulationTakePart) {
@@ -119,6 +158,7 @@ TEST_F(TurnsCommand, RefusesTurnsThatCannotBe) {
     const Json contenders{words("published", "one")};
     EXPECT_TRUE(refused(turns(contenders, {"--turn", "0"}), 1,
                         {"--turn: found '0', expected a number from 1e-06 to 1000000"}));
+    EXPECT_TRUE(refused(turns(contenders, {"--runs", "0"}), 1, {"--runs: found '0'"}));
     EXPECT_TRUE(
         refused(turns(contenders, {"--seed", "-1"}), 1, {"--seed: found '-1', expected a whole number"}));
 }
@@ -128,12 +168,12 @@ TEST_F(TurnsCommand, OneThatFailsItsCheckHasNoTimesAndTheOthersHave) {
     std::ofstream(directory / "wedged.in") << scene_text(wedged);
     const Json endless{directory / "wedged.in", "--threads",     "1", "--record",
                        directory / "wedged",    "--sweep-limit", "1"};
-    const auto result = turns({words("published", "one"), endless});
-    EXPECT_TRUE(refused(result, 2, {"wedged.in", "sweeps"}));
+    const auto result = turns({words("published", "one"), endless}, {"--runs", "2"});
+    EXPECT_TRUE(refused(result, 2, {"wedged.in", "run 1 of 2: step 1: ", "sweeps"}));
     EXPECT_EQ(record("wedged")["check"]["verdict"], "failed");
     EXPECT_TRUE(record("wedged")["repetitions"].empty());
     EXPECT_EQ(record("one")["check"]["verdict"], "passed");
-    EXPECT_EQ(record("one")["repetitions"].size(), 1);
+    EXPECT_EQ(record("one")["repetitions"].size(), 2);
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 #include <vector>
 
@@ -19,7 +20,7 @@ class Diarist final : public Contender {
 
     int steps() const override { return steps_; }
     void start() override { starts.push_back(static_cast<int>(taken.size())); }
-    Turn advance(int steps) override {
+    TurnTime advance(int steps) override {
         diary_.push_back(number_);
         taken.push_back(steps);
         return {.seconds = static_cast<double>(steps), .returning_seconds = std::nullopt};
@@ -40,7 +41,7 @@ TEST(Turns, EachTakesOneInEveryRoundAndAllItsStepsInAll) {
     Diarist two(1, 37, diary);
     Diarist three(2, 10, diary);
     const std::vector<Contender*> everyone{&one, &two, &three};
-    const auto seconds = take_turns(everyone, 10, 1);
+    const auto turns = take_turns(everyone, {.runs = 1, .rounds = 10, .seed = 1});
     ASSERT_EQ(diary.size(), 30);
     for (auto round = diary.begin(); round != diary.end(); round += 3) {
         std::vector<int> turn(round, round + 3);
@@ -52,7 +53,8 @@ TEST(Turns, EachTakesOneInEveryRoundAndAllItsStepsInAll) {
         EXPECT_EQ(std::accumulate(who->taken.begin(), who->taken.end(), 0), steps);
         EXPECT_LE(std::ranges::max(who->taken) - std::ranges::min(who->taken), 1);
     }
-    EXPECT_EQ(seconds[2], std::vector<double>(10, 1));
+    ASSERT_EQ(turns[2].size(), 10);
+    EXPECT_TRUE(std::ranges::all_of(turns[2], [](const TurnTime& turn) { return turn.seconds == 1; }));
 }
 
 TEST(Turns, TheirOrderIsDrawnAnewInEachRoundAndFollowsTheSeed) {
@@ -61,7 +63,7 @@ TEST(Turns, TheirOrderIsDrawnAnewInEachRoundAndFollowsTheSeed) {
         Diarist one(0, 1000, diary);
         Diarist two(1, 1000, diary);
         const std::vector<Contender*> both{&one, &two};
-        take_turns(both, 1000, seed);
+        take_turns(both, {.runs = 1, .rounds = 1000, .seed = seed});
         return diary;
     };
     const std::vector<int> diary = diary_of(1);
@@ -72,6 +74,23 @@ TEST(Turns, TheirOrderIsDrawnAnewInEachRoundAndFollowsTheSeed) {
     EXPECT_NEAR(first, 500, 80) << "five standard deviations";
     EXPECT_EQ(diary, diary_of(1));
     EXPECT_NE(diary, diary_of(2));
+}
+
+TEST(Turns, AllStartAgainTogetherAndTheOrderIsAnotherOne) {
+    std::vector<int> diary;
+    Diarist one(0, 20, diary);
+    Diarist two(1, 20, diary);
+    const std::vector<Contender*> both{&one, &two};
+    const auto turns = take_turns(both, {.runs = 3, .rounds = 20, .seed = 4});
+    EXPECT_EQ(one.starts, (std::vector<int>{0, 20, 40}));
+    EXPECT_EQ(two.starts, one.starts);
+    EXPECT_EQ(turns[0].size(), 60);
+    EXPECT_EQ(std::accumulate(one.taken.begin(), one.taken.end(), 0), 60);
+    const auto run = [&diary](int number) {
+        return std::vector<int>(diary.begin() + 40 * number, diary.begin() + 40 * (number + 1));
+    };
+    EXPECT_NE(run(0), run(1));
+    EXPECT_NE(run(1), run(2));
 }
 
 TEST(Turns, AreAsLongAsAskedButNoShorterThanAStep) {
@@ -104,20 +123,30 @@ TEST(VariantContender, EndsAsIfItHadRunAlone) {
     EXPECT_GT(published.prepare(), 0);
     EXPECT_GT(track.prepare(), 0);
     const std::vector<Contender*> both{&published, &track};
-    const auto seconds = take_turns(both, 5, 3);
+    const TurnsPlan plan{.runs = 2, .rounds = 5, .seed = 3};
+    const auto all_turns = take_turns(both, plan);
     int number = 0;
     for (VariantContender* one : {&published, &track}) {
-        const auto turns = seconds[static_cast<std::size_t>(number++)];
-        one->finish({.contenders = 2, .seed = 3, .seconds = turns});
+        const auto turns = all_turns[static_cast<std::size_t>(number++)];
+        one->finish({.contenders = 2, .plan = plan, .turns = turns});
         const Measurement& measurement = one->measurement();
-        ASSERT_EQ(measurement.repetitions.size(), 1);
+        ASSERT_EQ(measurement.repetitions.size(), 2);
         EXPECT_FALSE(measurement.violation);
         const auto& run = measurement.repetitions.back();
         const auto alone = measurement.variant.simulate(scene, measurement.tuning);
         const auto whole = run_scene(scene, *alone, measurement.tuning, CheckScope::nothing);
         EXPECT_EQ(run.discs, whole.discs);
         EXPECT_EQ(run.work, whole.work);
-        EXPECT_NEAR(std::accumulate(turns.begin(), turns.end(), 0.0), run.steps_seconds, 1e-9);
+        ASSERT_EQ(turns.size(), 10);
+        const double of_last_run =
+            std::accumulate(turns.begin() + 5, turns.end(), 0.0,
+                            [](double sum, const TurnTime& turn) { return sum + turn.seconds; });
+        EXPECT_NEAR(of_last_run, run.steps_seconds, 1e-9);
+        for (const TurnTime& turn : turns) {
+            ASSERT_TRUE(turn.returning_seconds) << "two steps or three";
+            EXPECT_GT(*turn.returning_seconds, 0);
+            EXPECT_LT(*turn.returning_seconds, turn.seconds);
+        }
         EXPECT_GE(*measurement.own_seconds, run.steps_seconds);
     }
 }
