@@ -1,0 +1,94 @@
+"""The verb `calibrate`, with the real program."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from experiments.calibration.busy import busy
+from experiments.calibration.command import CONDITIONS, FILE, UNFINISHED
+from experiments.calibration.kinds import KINDS, PERCENT_MORE
+
+ROOT = Path(__file__).resolve().parents[3]
+PROGRAM = ROOT / "build" / "gcc" / "carom"
+WORKERS = [PROGRAM.parent / "harness" / "tests" / f"calibration_{name}" for name in ("process", "benchmark")]
+COMMAND = [sys.executable, "-m", "experiments", "calibrate", "--seconds", "0.1", "--results"]
+
+needs_programs = pytest.mark.skipif(
+    not all(path.exists() for path in (PROGRAM, *WORKERS)), reason="`make calibrate` has built nothing here"
+)
+
+
+@needs_programs
+def test_six_streams_come_into_one_file_and_what_was_begun_is_gone_on_with(tmp_path: Path) -> None:
+    subprocess.run([*COMMAND, str(tmp_path)], cwd=ROOT, check=True, timeout=120)
+    content = json.loads((tmp_path / FILE).read_text(encoding="utf-8"))
+    assert [(one["kind"], one["condition"]) for one in content["streams"]] == [
+        (kind.__name__, condition) for kind in KINDS for condition in CONDITIONS
+    ]
+    for one in content["streams"]:
+        assert all(len(row) == len(PERCENT_MORE) for block in one["blocks"] for row in block)
+        assert all(seconds > 0 for block in one["blocks"] for row in block for seconds in row)
+    begun = {**content, "streams": content["streams"][:5]}
+    (tmp_path / UNFINISHED).write_text(json.dumps(begun), encoding="utf-8")
+    subprocess.run([*COMMAND, str(tmp_path)], cwd=ROOT, check=True, timeout=120)
+    again = json.loads((tmp_path / FILE).read_text(encoding="utf-8"))
+    assert again["streams"][:5] == begun["streams"]
+    assert again["streams"][5] != content["streams"][5]
+    assert not (tmp_path / UNFINISHED).exists()
+
+
+def test_seconds_that_cannot_be_are_one_line(tmp_path: Path) -> None:
+    for wrong in ("0", "-1", "nan", "x"):
+        done = subprocess.run(
+            [*COMMAND[:-3], "--seconds", wrong, "--results", str(tmp_path)],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        assert done.returncode != 0
+        assert f"found {wrong}, expected a number of seconds above 0" in done.stderr
+
+
+def loops_of(parent: int) -> list[int]:
+    """Return the processes that keep a processor busy for this parent."""
+    found = subprocess.run(["pgrep", "-P", str(parent)], capture_output=True, text=True, check=False).stdout
+    return [int(one) for one in found.split()]
+
+
+def test_the_loops_beside_end_with_the_block_and_with_their_parent() -> None:
+    with busy(2):
+        inside = loops_of(os.getpid())
+        assert len(inside) >= 2
+    assert not set(inside) & set(loops_of(os.getpid()))
+    code = (
+        "import time\nfrom experiments.calibration.busy import busy\n"
+        "with busy(2):\n  print(1, flush=True)\n  time.sleep(60)"
+    )
+    parent = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE)
+    assert parent.stdout is not None
+    parent.stdout.readline()
+    loops = loops_of(parent.pid)
+    assert len(loops) == 2
+    parent.send_signal(signal.SIGKILL)
+    parent.wait()
+    parent.stdout.close()
+    until = time.monotonic() + 10
+    while any(is_running(one) for one in loops) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not any(is_running(one) for one in loops)
+
+
+def is_running(process: int) -> bool:
+    """Tell whether a process is there and no zombie."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
