@@ -9,12 +9,12 @@ import pandas as pd
 
 from analysis import claims
 from analysis.claims.missing import DECIDED
-from analysis.derived.comparisons import differences, reference
+from analysis.derived.comparisons import differences, reference, stated
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
 from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
-from analysis.statistics.looks import next_look
+from analysis.statistics.looks import ERROR, next_look
 from analysis.support.wording import change
 
 COMPARED = ("comparison", "control")
@@ -79,7 +79,7 @@ def _comparisons(
         if experiment in claimed or times["question_kind"].iloc[0] not in COMPARED:
             continue
         against = reference(times)
-        table = differences(times, against)
+        table, error = differences(times, against), stated(times).error
         undecided = int((table["verdict"] == "inconclusive").sum())
         for row in table.to_dict("records"):
             name = f"{experiment}: {row['series']} against {against}"
@@ -87,4 +87,6 @@ def _comparisons(
                 said[name] = f"{row['verdict']}: {change(row)} of time"
                 yield str(experiment), row["blocks"], math.nan
             else:
-                yield str(experiment), row["blocks"], blocks_to_decide(row["alone"], row["blocks"], undecided)
+                # The forecast waits for `ERROR`: a stricter error is that of a larger family.
+                family = max(1, round(undecided * ERROR / error))
+                yield str(experiment), row["blocks"], blocks_to_decide(row["alone"], row["blocks"], family)

@@ -36,7 +36,7 @@ from analysis.tests.synthetic_study import study
 def test_a_verdict_on_other_threads_says_so(
     tmp_path: Path, threads: int, factor: float, verdict: Verdict, said: str
 ) -> None:
-    records = study(["neighbourhood"], noise=QUIET, threads=threads)
+    records = study(["neighbourhood"], blocks=21, noise=QUIET, threads=threads)
     row = row_of(tmp_path, slowed(records, factor, series="four"), "four_boxes")
     assert row["verdict"] == verdict
     assert row["said"].replace("\u00a0", " ") == said
@@ -90,7 +90,7 @@ def test_a_claim_is_judged_by_the_margin_of_its_question(tmp_path: Path) -> None
 def test_a_verdict_at_a_smaller_scale_speaks_of_it_alone(
     tmp_path: Path, threads: int, factor: float, verdict: Verdict, said: str
 ) -> None:
-    records = study(["neighbourhood"], noise=QUIET, scale="quick", threads=threads)
+    records = study(["neighbourhood"], blocks=21, noise=QUIET, scale="quick", threads=threads)
     row = row_of(tmp_path, slowed(records, factor, series="four"), "four_boxes")
     assert row["verdict"] == verdict
     assert row["said"].replace("\u00a0", " ") == said

@@ -11,7 +11,7 @@ from analysis.derived.comparisons import USUAL, Stated, differences, reference, 
 from analysis.figures.studies import draw_all
 from analysis.records.reading import load
 from analysis.tests.synthetic import write
-from analysis.tests.synthetic_noise import QUIET
+from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_study import study
 
 PACE = {"old": 1.0, "new": 1.03}
@@ -99,6 +99,19 @@ def test_the_figure_and_the_running_study_judge_by_it(tmp_path: Path) -> None:
     answer = open_questions(tmp_path)
     assert answer["settled"] == ["mine"]
     assert answer["said"]["mine: old against new"].startswith("equivalent")
+
+
+def test_a_stricter_error_asks_for_more_blocks(tmp_path: Path) -> None:
+    needed = []
+    for error in (0.05, 1e-5):
+        folder = tmp_path / str(error)
+        noise = Noise(process=0.025, repetition=0, burst_rate=0, drift=0)
+        records = study(["neighbourhood"], blocks=9, noise=noise, seed=2)
+        for record in records:
+            record["tags"] |= {"experiment": "mine", "error": error}
+        write(folder, records)
+        needed.append(open_questions(folder)["open"]["mine"]["needed"])
+    assert needed[0] < needed[1]
 
 
 @pytest.mark.parametrize(("kind", "compared"), [("comparison", True), ("trend", False), (None, True)])
