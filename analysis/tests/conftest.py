@@ -20,7 +20,7 @@ from analysis.tests.synthetic_study import failures, study, trace
 @pytest.fixture(scope="session")
 def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("results")
-    write(folder, study(blocks=8, noise=Noise(process=0.003, repetition=0.002, burst_rate=0)))
+    write(folder, study(blocks=9, noise=Noise(process=0.003, repetition=0.002, burst_rate=0)))
     write(folder, failures())
     (folder / "timelines").mkdir()
     for schedule, chunks in (("guided", 12), ("static", 1)):

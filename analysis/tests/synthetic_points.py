@@ -87,7 +87,7 @@ def _reverse() -> list[Point]:
     return [
         _at("seed", seed, seconds, direction, axes={"direction": direction, "variant": variant},
             pair_resolves=resolves + 1000 * seed, pair_attempts=attempts + 9000 * seed**2)
-        for seed in (1, 2, 3, 4)
+        for seed in (1, 2, 3, 4, 5, 6)
         for direction, variant, seconds, resolves, attempts in (
             ("reverse", "published", 1.10, 12_000_000, 30_000_000),
             ("forward", "forward", 1.18, 13_100_000, 35_000_000),

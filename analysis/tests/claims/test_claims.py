@@ -62,7 +62,7 @@ def pair_folder(folder: Path, effect: float, noise: Noise = QUIET, threads: int 
         record | {"repetitions": [{"steps_seconds": r["steps_seconds"] * (1 + effect), "cpu_seconds": 1.0}
                                   for r in record["repetitions"]]}
         if record["tags"]["series"] == "four" else record
-        for record in study(["neighbourhood"], blocks=10, noise=noise, threads=threads)
+        for record in study(["neighbourhood"], blocks=14, noise=noise, threads=threads)
     ]  # fmt: skip
     write(folder, changed)
     return folder
@@ -80,7 +80,7 @@ def pair_folder(folder: Path, effect: float, noise: Noise = QUIET, threads: int 
 def test_a_ratio_claim_follows_the_effect(tmp_path: Path, effect: float, noise: Noise, verdict: str) -> None:
     row = verdicts_of(pair_folder(tmp_path, effect, noise)).loc["four_boxes"]
     assert row["verdict"] == verdict
-    assert "10 blocks" in row["measured"].replace("\u00a0", " ")
+    assert "14 blocks" in row["measured"].replace("\u00a0", " ")
     assert verdict != OPEN or "more blocks" in row["why"]
 
 
@@ -97,7 +97,7 @@ def test_the_command_that_would_settle_a_claim_names_the_folder_of_its_question(
 def test_a_schedule_claim_falls_when_another_is_faster(
     tmp_path: Path, faster: float, verdict: str, said: str
 ) -> None:
-    records = study(["schedule_find"], blocks=8, noise=QUIET, threads=8)
+    records = study(["schedule_find"], blocks=14, noise=QUIET, threads=8)
     for record in records:
         if (record["tags"]["series"], record["tags"]["x"]) == ("dynamic", 10):
             for repetition in record["repetitions"]:
@@ -119,7 +119,7 @@ def test_a_schedule_claim_falls_when_another_is_faster(
 def test_the_thread_claim_needs_the_machine_to_have_its_stretches(
     tmp_path: Path, machine: Machine, verdict: str, said: str
 ) -> None:
-    write(tmp_path, study(["threads"], machine=machine, noise=QUIET))
+    write(tmp_path, study(["threads"], blocks=9, machine=machine, noise=QUIET))
     if machine.cores == 8:
         for path in tmp_path.rglob("*.json"):
             if '"x": 1,' in (text := path.read_text()):

@@ -12,7 +12,7 @@ from analysis.records.reading import load
 from analysis.records.studies import split
 from analysis.tests.synthetic import Machine, Point, bench, write
 
-SEEDS = (1, 2, 3, 4, 5)
+SEEDS = (1, 2, 3, 4, 5, 6)
 
 
 def row_of(
@@ -36,20 +36,23 @@ def row_of(
     return claims.evaluate(studies[0], studies, published.load()).set_index("id").loc["reverse"]
 
 
-FEWER = {"reverse": [1500, 1510, 1490, 1505, 1495], "forward": [2000, 2010, 1990, 1980, 2020]}
+FEWER = {"reverse": [1500, 1510, 1490, 1505, 1495, 1500], "forward": [2000, 2010, 1990, 1980, 2020, 2000]}
 
 
 def test_fewer_wasted_attempts_hold_whatever_the_time_and_the_resolves(tmp_path: Path) -> None:
     row = row_of(tmp_path, FEWER, {"reverse": 1000, "forward": 1000})
     assert row["verdict"] == HOLDS
-    assert "over 5\u00a0seeds" in row["measured"]
+    assert "over 6\u00a0seeds" in row["measured"]
     assert "of wasted attempts (fewer)" in row["measured"]
     assert "of pair resolves (equivalent)" in row["measured"]
     assert "+20.0\u00a0% [+20.0\u00a0%, +20.0\u00a0%] of time" in row["measured"]
 
 
 def test_the_same_waste_does_not_hold_though_fewer_are_resolved(tmp_path: Path) -> None:
-    attempts = {"reverse": [1500, 1510, 1490, 1505, 1495], "forward": [1600, 1610, 1590, 1605, 1595]}
+    attempts = {
+        "reverse": [1500, 1510, 1490, 1505, 1495, 1500],
+        "forward": [1600, 1610, 1590, 1605, 1595, 1600],
+    }
     row = row_of(tmp_path, attempts, {"reverse": 1000, "forward": 1100})
     assert row["verdict"] == FAILS
     assert "of pair resolves (fewer)" in row["measured"]
@@ -59,11 +62,11 @@ def test_blocks_are_no_repetitions_of_a_count(tmp_path: Path) -> None:
     one = {direction: counts[:1] for direction, counts in FEWER.items()}
     row = row_of(tmp_path, one)
     assert row["verdict"] == OPEN
-    assert row["why"] == "rests on 1\u00a0seed: a verdict needs at least 4"
+    assert row["why"] == "rests on 1\u00a0seed: a verdict needs at least 6"
 
 
 def test_seeds_that_disagree_decide_nothing(tmp_path: Path) -> None:
-    row = row_of(tmp_path, {"reverse": [1220, 1500, 1480, 1510, 1490], "forward": [1500] * 5})
+    row = row_of(tmp_path, {"reverse": [1220, 1700, 1300, 1650, 1250, 1600], "forward": [1500] * 6})
     assert row["verdict"] == OPEN
     assert "more seeds" in row["why"]
 

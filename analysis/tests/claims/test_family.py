@@ -118,7 +118,7 @@ def test_a_choice_beaten_alone_is_open_among_many_and_goes_on() -> None:
 def test_few_blocks_refute_nothing_and_say_what_is_missing(blocks: int) -> None:
     outcome = judged(judge_one([0.5] * blocks), "faster", "")
     assert (outcome.verdict, outcome.p) == (OPEN, None)
-    assert "a verdict needs at least 4" in outcome.why
+    assert "a verdict needs at least 6" in outcome.why
 
 
 WITHIN = 0.001 * np.array([4, -3, 2, -4, 3, -2, 1, -1, 0])

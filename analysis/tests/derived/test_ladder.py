@@ -21,7 +21,7 @@ FACTORS = [factor for factor, _ in LADDER.values()]
 
 
 def ladder_records(noise: Noise = QUIET) -> list[dict[str, Any]]:
-    return study(["ladder"], blocks=6, noise=noise)
+    return study(["ladder"], blocks=9, noise=noise)
 
 
 def study_of(folder: Path, records: list[dict[str, Any]]) -> Study:
@@ -54,7 +54,7 @@ def test_each_rung_is_judged_against_the_one_before_on_its_scene(tmp_path: Path)
         truth = FACTORS[int(row["series_number"]) - 1]
         assert 1 / row["ratio"] == pytest.approx(truth, rel=0.01)
         assert row["verdict"] == ("faster" if truth > 1 else "equivalent")
-        assert row["blocks"] == 6
+        assert row["blocks"] == 9
 
 
 def test_the_total_is_the_product_of_the_factors(tmp_path: Path) -> None:
@@ -86,7 +86,7 @@ def test_a_rung_shows_its_time_its_work_and_the_policy_that_it_changes(tmp_path:
     table = rungs(runs, times, one.counters)
     sparse = table[table["scene_name"] == "sparse"].sort_values("series_number")
     assert list(sparse["change"]) == ["published", "storage sorted", "order strips", "overlaps contacts"]
-    assert list(sparse["passed"]) == list(sparse["records"]) == [6] * 4
+    assert list(sparse["passed"]) == list(sparse["records"]) == [9] * 4
     assert sparse["nanoseconds"].iloc[0] == pytest.approx(1e9 / (100_000 * 100), rel=0.05)
     assert (sparse["low"] <= sparse["nanoseconds"]).all()
     assert (sparse["resolves"] == 1.2).all()
@@ -115,7 +115,7 @@ def test_the_figure_says_every_factor_and_the_caption_the_totals(tmp_path: Path)
     assert said.count("✓") == 2 * len(LADDER) + 2, "a mark for each rung, and the headings"
     assert "✗" not in said
     assert "100\u00a0000 discs at area fraction 0.80: 2.5" in drawing.caption
-    assert "all 48\u00a0results passed" in drawing.caption
+    assert "all 72\u00a0results passed" in drawing.caption
     assert "were not counted" in drawing.caption
     assert drawing.verdicts is not None
     assert list(drawing.verdicts["name"].str.contains("storage sorted")).count(True) == 2
@@ -130,7 +130,7 @@ def test_a_rung_that_fails_its_check_is_shown_as_wrong_and_has_no_time(tmp_path:
     drawing = drawn(study_of(tmp_path, records), tmp_path)
     assert texts(drawing).count("✗") == 2
     assert texts(drawing).count("none") == 2
-    assert "12 of 48\N{NO-BREAK SPACE}results failed" in drawing.caption
+    assert "18 of 72\N{NO-BREAK SPACE}results failed" in drawing.caption
 
 
 def test_a_rung_without_a_result_is_named_and_lends_its_place_to_no_other(tmp_path: Path) -> None:
@@ -140,7 +140,7 @@ def test_a_rung_without_a_result_is_named_and_lends_its_place_to_no_other(tmp_pa
     kept = [
         record for record in records if lacking[str(record["tags"]["scene_name"])] != record["tags"]["series"]
     ]
-    assert len(kept) == len(records) - 12
+    assert len(kept) == len(records) - 18
     failed = failure("ladder", third, "step 3: two discs left colliding", scene_name="sparse")
     one = study_of(tmp_path, [*kept, failed])
     runs, times = tables(one)
@@ -151,7 +151,7 @@ def test_a_rung_without_a_result_is_named_and_lends_its_place_to_no_other(tmp_pa
     drawing = drawn(one, tmp_path)
     assert texts(drawing).count("no result") == 2
     assert sum("faster than the published best" in sentence for sentence in claims(runs, times)) == 1
-    assert "1 of 37\N{NO-BREAK SPACE}results failed" in drawing.caption
+    assert "1 of 55\N{NO-BREAK SPACE}results failed" in drawing.caption
 
 
 def test_noise_leaves_a_small_factor_inconclusive(tmp_path: Path) -> None:
@@ -164,7 +164,7 @@ def test_records_of_several_machines_do_not_meet(tmp_path: Path) -> None:
     write(tmp_path, ladder_records())
     write(tmp_path, [moved_to("other", record) for record in ladder_records()])
     for one in split(load(tmp_path)):
-        assert (totals(named(one.times_of("ladder")))["blocks"] == 6).all()
+        assert (totals(named(one.times_of("ladder")))["blocks"] == 9).all()
 
 
 def moved_to(host: str, record: dict[str, Any]) -> dict[str, Any]:

@@ -33,7 +33,7 @@ def test_both_ways_are_paired_within_blocks(tmp_path: Path) -> None:
 
 def test_intervals_narrow_with_the_time_spent(tmp_path: Path) -> None:
     table = comparisons(measured(tmp_path, "ways"), "ways")[0].half_widths(TURNS)
-    assert list(table["seconds"] / table["seconds"].iloc[0]) == pytest.approx([n / 4 for n in range(4, 13)])
+    assert list(table["seconds"] / table["seconds"].iloc[0]) == pytest.approx([n / 6 for n in range(6, 13)])
     assert table["half"].iloc[-1] < table["half"].iloc[0]
 
 

@@ -112,7 +112,7 @@ def test_make_appendix_asks_what_the_table_says() -> None:
 
 def test_the_box_on_noise_agrees_with_the_verdicts(tmp_path: Path) -> None:
     noisy = Noise(process=0.03, repetition=0, burst_rate=0, drift=0)
-    far, near = (study([name], blocks=6, noise=noisy) for name in ("self_contained_track", "neighbourhood"))
+    far, near = (study([name], blocks=14, noise=noisy) for name in ("self_contained_track", "neighbourhood"))
     for record in near:
         if record["tags"]["series"] == "nine":
             record["repetitions"][0]["steps_seconds"] /= 1.25 / 1.19
