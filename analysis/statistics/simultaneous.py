@@ -92,7 +92,7 @@ class Curves:
     def _difference(self, one: int, other: int) -> Centre:
         first, second = sorted((one, other))
         found = self._differences[first, second]
-        return found if one == first else Centre(-found.estimate, found.error, found.freedom)
+        return found if one == first else found.mirrored()
 
     @cached_property
     def _differences(self) -> dict[tuple[int, int], Centre]:

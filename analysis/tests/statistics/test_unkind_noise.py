@@ -9,7 +9,7 @@ from analysis.statistics.dependence import autocorrelation, widening, widening_o
 from analysis.statistics.intervals import centre
 from analysis.statistics.looks import ERROR, LOOKS, last_look, seen
 from analysis.statistics.simultaneous import Curves
-from analysis.statistics.verdicts import MARGIN, judge_one
+from analysis.statistics.verdicts import MARGIN, holm, judge_one
 from analysis.tests.statistics.unkind_noise import (
     FORMER_LOOKS,
     FORMER_SHARE,
@@ -84,6 +84,22 @@ def test_bursts_on_one_side_are_not_missed_and_leave_something_to_decide() -> No
     widths = [centre(row).high - centre(row).low for row in bursts]
     of_the_mean = [np.subtract(*student(row, FORMER_SHARE)[:0:-1]) for row in bursts]
     assert np.median(widths) < 0.5 * np.median(of_the_mean)
+
+
+@pytest.mark.parametrize("slow", [0.3, 0.5])
+def test_a_table_of_equals_on_a_machine_of_two_speeds(slow: float) -> None:
+    """Nineteen equals against one, anew in each block: the correction needs small p-values that hold."""
+    generator = np.random.default_rng(12)
+    wrong = 0
+    for _ in range(20):
+        logs = np.log(2.3) * (generator.random((20, LAST)) < slow) + generator.normal(0, 0.007, (20, LAST))
+        rows = [[judge_one(one[:look] - logs[0, :look]) for one in logs[1:]] for look in LOOKS]
+        wrong += any(
+            corrected <= ERROR and row["verdict"] in ("faster", "slower")
+            for table in rows
+            for row, corrected in zip(table, holm([row["p"] for row in table]), strict=True)
+        )
+    assert wrong <= 1
 
 
 @pytest.mark.parametrize("skewed", ["lognormal", "exponential"])
