@@ -1,0 +1,72 @@
+"""What a contender loses because it comes back to cold caches at each of its turns, and what a verdict is
+worth beside it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from analysis.statistics.verdicts import MARGIN, judge_one
+
+
+@dataclass(frozen=True)
+class Excess:
+    """By how many `seconds` the first step of a turn is longer than its neighbours, with its standard
+    `error`, and the `share` of the time of the runs that all of the turns lose so.
+    """
+
+    seconds: float
+    error: float
+    share: float
+
+
+def excess(
+    seconds: Sequence[float], returning: Sequence[float | None], steps: int, rounds: int
+) -> Excess | None:
+    """Return what the turns of one contender in one process lose; None where it cannot be told.
+
+    `seconds` of the turns, run by run, each run of so many `steps` in so many `rounds`; `returning` those of
+    the first step of each turn, None where a turn is one step. A first step lies between the other steps of
+    its turn and those of the turn before; it is compared with the line through the two, so that work that
+    grows or shrinks over a run does not look like cold caches. First turns of a run have no turn before.
+    """
+    ends = steps * np.arange(rounds + 1) // rounds
+    counts = np.diff(ends).astype(float)
+    if rounds < 2 or counts.min() < 2 or len(seconds) == 0 or any(one is None for one in returning):
+        return None
+    turns = np.asarray(seconds, dtype=float).reshape(-1, rounds)
+    firsts = np.asarray(returning, dtype=float).reshape(-1, rounds)
+    rest = (turns - firsts) / (counts - 1)
+    before, after = counts[:-1], counts[1:]
+    line = (rest[:, :-1] * after + rest[:, 1:] * before) / (before + after)
+    lost = firsts[:, 1:] - line
+    error = float(lost.std(ddof=1) / np.sqrt(lost.size)) if lost.size > 1 else float("nan")
+    return Excess(float(lost.mean()), error, float(lost.mean() * turns.size / turns.sum()))
+
+
+def bias(reference: Excess | None, candidate: Excess | None) -> float:
+    """Return by how much turns make ln(candidate / reference) of a block greater; NaN where not known."""
+    if reference is None or candidate is None or max(reference.share, candidate.share) >= 1:
+        return float("nan")
+    return float(np.log1p(-reference.share) - np.log1p(-candidate.share))
+
+
+def biased_verdict(log_ratios: ArrayLike, biases: ArrayLike, margin: float = MARGIN) -> dict[str, Any]:
+    """Return the row of `judge_one` that stands for the log ratios as measured and for those without their
+    `biases`, a value of each a block: its interval is the hull of both, its p-value the greater.
+
+    A verdict on which the two do not agree is inconclusive, as is one with a bias that is not known (NaN).
+    """
+    measured = np.asarray(log_ratios, dtype=float)
+    rows = [judge_one(values, margin) for values in (measured, measured - np.asarray(biases, dtype=float))]
+    agreed = rows[0]["verdict"] == rows[1]["verdict"] and not np.isnan(biases).any()
+    return {
+        **rows[0],
+        **{key: max(row[key] for row in rows) for key in rows[0] if key not in ("ratio", "low", "verdict")},
+        "low": min(row["low"] for row in rows),
+        "blocks": rows[0]["blocks"],
+        "verdict": rows[0]["verdict"] if agreed else "inconclusive",
+    }

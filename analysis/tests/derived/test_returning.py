@@ -1,0 +1,59 @@
+"""Cold caches at each turn whose cost is known: found, and kept out of verdicts."""
+
+import numpy as np
+import pytest
+
+from analysis.derived.returning import Excess, bias, biased_verdict, excess
+from analysis.statistics.verdicts import judge_one
+
+STEPS, ROUNDS, RUNS, BLOCKS = 40, 10, 4, 9
+
+
+def process(
+    generator: np.random.Generator, cold: float, noise: float = 0.02
+) -> tuple[list[float], list[float]]:
+    """Return the turns and first steps of runs whose steps grow by half; a turn loses `cold` of its time."""
+    steps = np.linspace(1, 1.5, STEPS) * np.exp(generator.normal(0, noise, (RUNS, STEPS)))
+    each = steps.reshape(RUNS, ROUNDS, -1)
+    each[..., 0] += cold * each.sum(axis=2)
+    return list(each.sum(axis=2).ravel()), list(each[..., 0].ravel())
+
+
+def test_a_known_cost_is_found_though_steps_grow() -> None:
+    found = excess(*process(np.random.default_rng(1), 0.03, noise=0.002), STEPS, ROUNDS)
+    none = excess(*process(np.random.default_rng(1), 0.0, noise=0.002), STEPS, ROUNDS)
+    assert found is not None
+    assert none is not None
+    assert found.share == pytest.approx(0.03 / 1.03, abs=0.002)
+    assert abs(none.seconds) < 3 * none.error
+    assert bias(none, found) == pytest.approx(np.log(1.03), abs=0.002)
+
+
+def test_where_it_cannot_be_told_nothing_is_said() -> None:
+    assert excess([1.0, 1.0], [None, None], 2, 2) is None
+    assert excess([4.0], [1.0], 4, 1) is None
+    assert np.isnan(bias(None, Excess(0.0, 0.0, 0.0)))
+
+
+def test_what_turns_cost_one_of_two_equals_is_no_verdict() -> None:
+    """The former rule: the ratio as it was measured. One pays 3 % a turn, the other nothing."""
+    generator = np.random.default_rng(2)
+    former = now = 0
+    for _ in range(100):
+        ratios, biases = np.empty(BLOCKS), np.empty(BLOCKS)
+        for block in range(BLOCKS):
+            reference, candidate = (process(generator, cold) for cold in (0.0, 0.03))
+            ratios[block] = np.log(sum(candidate[0]) / sum(reference[0]))
+            biases[block] = bias(excess(*reference, STEPS, ROUNDS), excess(*candidate, STEPS, ROUNDS))
+        former += judge_one(ratios)["verdict"] == "slower"
+        now += biased_verdict(ratios, biases)["verdict"] in ("slower", "faster")
+    assert former > 50
+    assert now <= 5
+
+
+def test_a_true_difference_beyond_the_bias_is_still_found() -> None:
+    ratios = np.random.default_rng(3).normal(0.1, 0.005, BLOCKS)
+    row = biased_verdict(ratios, np.random.default_rng(4).normal(0.01, 0.002, BLOCKS))
+    assert row["verdict"] == "slower"
+    assert row["low"] < 1.09 < row["high"]
+    assert biased_verdict(ratios, np.full(BLOCKS, np.nan))["verdict"] == "inconclusive"
