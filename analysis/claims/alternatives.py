@@ -53,7 +53,10 @@ def alternatives(pairs: pd.DataFrame, margin: float = MARGIN) -> Alternatives:
     That nothing is faster needs evidence against every alternative (an intersection of tests, each at 5 %);
     that something is faster is Holm-corrected over the alternatives.
     """
-    alone = {name: judge_one(group["log_ratio"], margin) for name, group in pairs.groupby("name")}
+    alone = {
+        name: judge_one(group["log_ratio"], margin, biases=group.get("bias"))
+        for name, group in pairs.groupby("name")
+    }
     table = judge(pairs, ["name"], margin)
     behind, ahead = ([p(alone[name]) for name in table["name"]] for p in (_behind, _ahead))
     return Alternatives(table.assign(behind=behind, ahead=ahead), margin)

@@ -6,6 +6,7 @@ than the margin: that is ours, and no source of a claim stated it.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import pandas as pd
 
@@ -47,7 +48,7 @@ def _one_pair(
     name, shared = times["x_name"].iloc[0], sorted(set(chosen["x"]) & set(against["x"]))
     if not shared:
         return no_records(experiment, f"{candidate} and {reference} at the same {name}")
-    rows = {x: directed(_ratios(against, chosen, x), evidence.margin(experiment)) for x in shared}
+    rows = {x: _judged(against, chosen, x, evidence.margin(experiment)) for x in shared}
     theirs = published_curves.ratio(evidence.published, experiment, candidate, reference)
     published = "–" if pd.isna(theirs) else percent(theirs - 1)
     what = f"time of {candidate} against {reference}"
@@ -63,5 +64,6 @@ def _one_pair(
     return judged(row, expected, measured, figures)
 
 
-def _ratios(against: pd.DataFrame, chosen: pd.DataFrame, x: float) -> pd.Series:
-    return log_ratios(against[against["x"] == x], chosen[chosen["x"] == x])["log_ratio"]
+def _judged(against: pd.DataFrame, chosen: pd.DataFrame, x: float, margin: float) -> dict[str, Any]:
+    pairs = log_ratios(against[against["x"] == x], chosen[chosen["x"] == x])
+    return directed(pairs["log_ratio"], margin, biases=pairs["bias"])

@@ -6,6 +6,8 @@ from typing import Any
 
 import pandas as pd
 
+from analysis.statistics.returning import excess
+
 Named = list[tuple[str, dict[str, Any]]]
 
 TAGS = [
@@ -173,16 +175,32 @@ def _has_errors(record: dict[str, Any]) -> bool:
 
 
 def times(records: Named) -> pd.DataFrame:
-    """One row a repetition of every timed run: context, `repetition`, `steps_seconds`, `cpu_seconds`. Of a
-    whole process these are its time, as seen from outside or as it says itself, and its CPU time.
+    """One row a repetition of every timed run: context, `repetition`, `steps_seconds`, `cpu_seconds`, and
+    `lost_by_turns`, the share of the process's time that coming back to cold caches took, NaN where not
+    known. Of a whole process these are its time, as seen from outside or as it says itself, and its CPU time.
     """
     rows = [
-        {**context(name, record), "repetition": number, **repetition}
+        {
+            **context(name, record),
+            "repetition": number,
+            "lost_by_turns": _lost_by_turns(record) if number == 0 else None,
+            **repetition,
+        }
         for name, record in records
         if record["kind"] in ("bench", "process")
         for number, repetition in enumerate(record["repetitions"])
     ]
-    return _table(rows, ["repetition", "steps_seconds", "cpu_seconds"])
+    table = _table(rows, ["repetition", "steps_seconds", "cpu_seconds", "lost_by_turns"])
+    return table.astype({"lost_by_turns": float})
+
+
+def _lost_by_turns(record: dict[str, Any]) -> float | None:
+    turns = record.get("turns") or {}
+    if "returning_seconds" not in turns:
+        return None
+    steps, rounds = record["scene"]["steps"], turns["rounds"]
+    found = excess(turns["seconds"], turns["returning_seconds"], steps, rounds)
+    return found.share if found is not None else None
 
 
 def phases(records: Named) -> pd.DataFrame:

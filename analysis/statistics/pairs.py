@@ -4,6 +4,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from analysis.statistics.returning import bias
+
 Floats = NDArray[np.float64]
 
 PAIR = ["node", "block", "session"]
@@ -45,8 +47,8 @@ def log_ratios(
     match: tuple[str, ...] = (),
     value: str = "steps_seconds",
 ) -> pd.DataFrame:
-    """Return a row a pair, in the order of time: the columns of `match`, those of `PAIR` and `log_ratio` =
-    ln(candidate / reference).
+    """Return a row a pair, in the order of time: the columns of `match`, those of `PAIR`, `log_ratio` =
+    ln(candidate / reference), and `bias`, by how much turns make it too great (NaN where not known).
 
     Takes a row a process on either side. Where the two took turns through several whole runs, each run of the
     one stands beside the same run of the other, and the median over the runs is the block's: a burst of noise
@@ -65,7 +67,12 @@ def log_ratios(
     ratios = [
         _block_ratio(*logs) for logs in zip(joined["logs_reference"], joined["logs_candidate"], strict=True)
     ]
-    found = joined[["at_reference"]].assign(log_ratio=np.array(ratios, dtype=float)).reset_index()
+    biases = [
+        bias(*shares) for shares in zip(joined["lost_reference"], joined["lost_candidate"], strict=True)
+    ]
+    found = (
+        joined[["at_reference"]].assign(log_ratio=np.array(ratios, dtype=float), bias=biases).reset_index()
+    )
     return found.sort_values(["at_reference", *PAIR], kind="stable").drop(columns="at_reference")
 
 
@@ -86,12 +93,15 @@ def without_partner(runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def _per_block(processes: pd.DataFrame, keys: list[str], value: str) -> pd.DataFrame:
-    """Return what each block has: `logs` of its runs, and the time `at` which it was recorded."""
+    """Return what each block has: `logs` of its runs, the time `at` which it was recorded, and the share of
+    its time `lost` by turns.
+    """
     runs = processes.get(_runs_of(value), processes[value])
     logs = [np.log(np.atleast_1d(np.asarray(one, dtype=float))) for one in runs]
     at = processes.get("recorded_at", processes["block"])
-    table = processes[keys].assign(logs=logs, at=at)
-    return table.groupby(keys).agg({"logs": _of_replicates, "at": "min"})
+    lost = processes.get("lost_by_turns", np.nan)
+    table = processes[keys].assign(logs=logs, at=at, lost=lost)
+    return table.groupby(keys).agg({"logs": _of_replicates, "at": "min", "lost": "mean"})
 
 
 def _of_replicates(logs: pd.Series) -> Floats:

@@ -5,10 +5,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from analysis.statistics.intervals import FEWEST, Interval, measure
 from analysis.statistics.looks import ERROR, seen, share
+
+Floats = NDArray[np.float64]
 
 MARGIN = 0.02
 COLUMNS = ["ratio", "low", "high", "blocks", "p", "verdict", "alone"]
@@ -32,7 +34,8 @@ def judge(pairs: pd.DataFrame, by: list[str], margin: float = MARGIN, error: flo
     """
     rows: list[dict[str, Any]] = []
     for key, group in pairs.groupby(by, sort=True):
-        rows.append({**dict(zip(by, key, strict=True)), **judge_one(group["log_ratio"], margin, error)})
+        row = judge_one(group["log_ratio"], margin, error, biases=group.get("bias"))
+        rows.append({**dict(zip(by, key, strict=True)), **row})
     table = pd.DataFrame(rows, columns=[*by, *COLUMNS])
     return corrected(table, error)
 
@@ -47,16 +50,30 @@ def corrected(table: pd.DataFrame, error: float = ERROR) -> pd.DataFrame:
 
 
 def judge_one(
-    log_ratios: ArrayLike, margin: float = MARGIN, error: float = ERROR, *, once: bool = False
+    log_ratios: ArrayLike,
+    margin: float = MARGIN,
+    error: float = ERROR,
+    *,
+    once: bool = False,
+    biases: ArrayLike | None = None,
 ) -> dict[str, Any]:
     """Return the row of one comparison standing alone: the columns that `judge` adds, and `denials`.
 
     The log ratios are in the order of time; those up to the last planned look count. `once`: how many values
     there are was settled before the first of them, and each has a seed of its own: they are looked at once,
-    the whole of the error is this look's, and none depends on the one before.
+    the whole of the error is this look's, and none depends on the one before. `biases`: by how much each log
+    ratio is too great because of how it was measured, NaN where not known; the verdict then has to stand with
+    and without the middle one of them, and the interval reaches over both.
     """
     values = np.asarray(log_ratios, dtype=float)
     values = values if once else seen(values)
+    known = np.empty(0) if biases is None else np.asarray(biases, dtype=float)[: len(values)]
+    known = known[~np.isnan(known)]
+    row = _judged(values, margin, error, once)
+    return row if known.size == 0 else _both(row, _judged(values - np.median(known), margin, error, once))
+
+
+def _judged(values: Floats, margin: float, error: float, once: bool) -> dict[str, Any]:
     bound, blocks = np.log1p(margin), len(values)
     part = 1.0 if once else share(blocks)
     found = measure(values, independent=once)
@@ -65,6 +82,13 @@ def judge_one(
     verdict, p = decide(faster, slower, max(not_faster, not_slower), blocks, part, error)
     row = verdict_row(found.interval(1 - error * part), blocks, p, verdict)
     return {**row, **denials(faster, slower, not_faster, not_slower, blocks, part)}
+
+
+def _both(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
+    """Return the row of what both rows say: the hull of their intervals, the greater of their p-values."""
+    greater = {key: max(one[key], other[key]) for key in one if key not in ("ratio", "low", "verdict")}
+    verdict = one["verdict"] if one["verdict"] == other["verdict"] else "inconclusive"
+    return {**one, **greater, "low": min(one["low"], other["low"]), "verdict": verdict}
 
 
 def verdict_row(log_ratio: Interval, blocks: int, p: float, verdict: str) -> dict[str, Any]:

@@ -1,15 +1,9 @@
-"""What a contender loses because it comes back to cold caches at each of its turns, and what a verdict is
-worth beside it.
-"""
+"""What a contender loses because it comes back to cold caches at each of its turns."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
-
-from analysis.statistics.verdicts import MARGIN, judge_one
 
 
 @dataclass(frozen=True)
@@ -47,26 +41,10 @@ def excess(
     return Excess(float(lost.mean()), error, float(lost.mean() * turns.size / turns.sum()))
 
 
-def bias(reference: Excess | None, candidate: Excess | None) -> float:
-    """Return by how much turns make ln(candidate / reference) of a block greater; NaN where not known."""
-    if reference is None or candidate is None or max(reference.share, candidate.share) >= 1:
-        return float("nan")
-    return float(np.log1p(-reference.share) - np.log1p(-candidate.share))
-
-
-def biased_verdict(log_ratios: ArrayLike, biases: ArrayLike, margin: float = MARGIN) -> dict[str, Any]:
-    """Return the row of `judge_one` that stands for the log ratios as measured and for those without their
-    `biases`, a value of each a block: its interval is the hull of both, its p-value the greater.
-
-    A verdict on which the two do not agree is inconclusive, as is one with a bias that is not known (NaN).
+def bias(reference: float, candidate: float) -> float:
+    """Return by how much turns make ln(candidate / reference) of a block greater, of the shares that either
+    loses; NaN where one is not known.
     """
-    measured = np.asarray(log_ratios, dtype=float)
-    rows = [judge_one(values, margin) for values in (measured, measured - np.asarray(biases, dtype=float))]
-    agreed = rows[0]["verdict"] == rows[1]["verdict"] and not np.isnan(biases).any()
-    return {
-        **rows[0],
-        **{key: max(row[key] for row in rows) for key in rows[0] if key not in ("ratio", "low", "verdict")},
-        "low": min(row["low"] for row in rows),
-        "blocks": rows[0]["blocks"],
-        "verdict": rows[0]["verdict"] if agreed else "inconclusive",
-    }
+    if not max(reference, candidate) < 1:
+        return float("nan")
+    return float(np.log1p(-reference) - np.log1p(-candidate))

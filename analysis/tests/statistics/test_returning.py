@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.derived.returning import Excess, bias, biased_verdict, excess
+from analysis.statistics.returning import bias, excess
 from analysis.statistics.verdicts import judge_one
 
 STEPS, ROUNDS, RUNS, BLOCKS = 40, 10, 4, 9
@@ -26,13 +26,13 @@ def test_a_known_cost_is_found_though_steps_grow() -> None:
     assert none is not None
     assert found.share == pytest.approx(0.03 / 1.03, abs=0.002)
     assert abs(none.seconds) < 3 * none.error
-    assert bias(none, found) == pytest.approx(np.log(1.03), abs=0.002)
+    assert bias(none.share, found.share) == pytest.approx(np.log(1.03), abs=0.002)
 
 
 def test_where_it_cannot_be_told_nothing_is_said() -> None:
     assert excess([1.0, 1.0], [None, None], 2, 2) is None
     assert excess([4.0], [1.0], 4, 1) is None
-    assert np.isnan(bias(None, Excess(0.0, 0.0, 0.0)))
+    assert np.isnan(bias(np.nan, 0.0))
 
 
 def test_what_turns_cost_one_of_two_equals_is_no_verdict() -> None:
@@ -44,16 +44,17 @@ def test_what_turns_cost_one_of_two_equals_is_no_verdict() -> None:
         for block in range(BLOCKS):
             reference, candidate = (process(generator, cold) for cold in (0.0, 0.03))
             ratios[block] = np.log(sum(candidate[0]) / sum(reference[0]))
-            biases[block] = bias(excess(*reference, STEPS, ROUNDS), excess(*candidate, STEPS, ROUNDS))
+            lost = [excess(*side, STEPS, ROUNDS) for side in (reference, candidate)]
+            biases[block] = bias(*(one.share for one in lost if one is not None))
         former += judge_one(ratios)["verdict"] == "slower"
-        now += biased_verdict(ratios, biases)["verdict"] in ("slower", "faster")
+        now += judge_one(ratios, biases=biases)["verdict"] in ("slower", "faster")
     assert former > 50
     assert now <= 5
 
 
 def test_a_true_difference_beyond_the_bias_is_still_found() -> None:
     ratios = np.random.default_rng(3).normal(0.1, 0.005, BLOCKS)
-    row = biased_verdict(ratios, np.random.default_rng(4).normal(0.01, 0.002, BLOCKS))
+    row = judge_one(ratios, biases=np.random.default_rng(4).normal(0.01, 0.002, BLOCKS))
     assert row["verdict"] == "slower"
     assert row["low"] < 1.09 < row["high"]
-    assert biased_verdict(ratios, np.full(BLOCKS, np.nan))["verdict"] == "inconclusive"
+    assert judge_one(ratios, biases=np.full(BLOCKS, np.nan)) == judge_one(ratios), "not known, not said"
