@@ -54,14 +54,14 @@ class Schedule:
         return self._laid_out[name]
 
     def blocks(self, experiment: Experiment, most: int | None = None) -> Iterator[int]:
-        """The numbers of its blocks, up to the last one in which something may be missing, or of the first
-        so many alone. They may grow more while they are measured: what failed in an earlier session and now
-        does not is measured again with all others.
+        """The numbers of its blocks in which something is missing, or of the first so many alone, each to be
+        measured before the next one is asked for. They may grow more: what failed in an earlier session and
+        now does not is measured again with all others.
         """
-        block = 0
-        while block < self.blocks_of(experiment).end(most):
+        block = self.blocks_of(experiment).following(-1, most)
+        while block is not None:
             yield block
-            block += 1
+            block = self.blocks_of(experiment).following(block, most)
 
     def share(self, seconds_left: float, settled: Collection[str] = ()) -> None:
         """Share the time left among the experiments but those settled; none loses a block it was given."""
