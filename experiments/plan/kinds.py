@@ -28,9 +28,13 @@ class Kind:
 _EACH = "each difference from the reference has a verdict"
 _LARGE = "how the time changes over the sweep; small differences have no verdict"
 
+COUNTS = "counts"
+"""The kind of which nothing is timed for comparison: one process counts the work of many points."""
+
 KINDS = {
     "comparison": Kind("times", _EACH, _OF_TIMES),
     "control": Kind("times of the same under two labels", _EACH, ("control", "comparison")),
+    COUNTS: Kind("work, once each", "a ratio of counts, by the claim about it", ("comparison",)),
     "trend": Kind("times", _LARGE, ("trend", *(one for one in _OF_TIMES if one != "trend"))),
     "scaling": Kind("times", _LARGE, ("scaling", *(one for one in _OF_TIMES if one != "scaling"))),
     "schedule": Kind("times", "whether one choice is the best", ("schedule", "trend", "comparison")),

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from experiments.plan.kinds import COUNTS
 from experiments.plan.plan import Experiment
 from experiments.plan.point import PROCESS, Point
 from experiments.plan.question import CONTROL
@@ -100,7 +101,7 @@ class Schedule:
 
     def runs(self, experiment: Experiment, group: Sequence[Point]) -> int:
         """How many timed runs a process of these points makes, by what is known of their times so far."""
-        if len(group) < 2 or group[0].verb == PROCESS:
+        if len(group) < 2 or group[0].verb == PROCESS or group[0].kind == COUNTS:
             return 1
         found = self._found[experiment.name].runs
         processes = []
