@@ -50,9 +50,7 @@ def fewer_wasted_attempts(
         f"{change(row)} of {value.replace('_', ' ')} ({_told(row)})" for value, row in rows.items()
     )
     wasted = rows["wasted_attempts"]
-    measured = (
-        f"{candidate} against {reference}, over {count(wasted['blocks'], 'seed')}: {said}"
-    )
+    measured = f"{candidate} against {reference}, over {count(wasted['blocks'], 'seed')}: {said}"
     if seconds is not None:
         measured += f"; {change(seconds)} of time, {blocks(seconds)} ({seconds['verdict']})"
     figures = (

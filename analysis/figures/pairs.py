@@ -28,7 +28,6 @@ from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.wording import blocks, change, count, exact, number
 
-
 COUNTS = "counts"
 """The kind of questions whose runs are counted: nothing was warmed up, and their times are not compared."""
 

@@ -34,7 +34,6 @@ COUNTS = "counts"
 KINDS = {
     "comparison": Kind("times", _EACH, _OF_TIMES),
     "control": Kind("times of the same under two labels", _EACH, ("control", "comparison")),
-    COUNTS: Kind("work, once each", "a ratio of counts, by the claim about it", ("comparison",)),
     "trend": Kind("times", _LARGE, ("trend", *(one for one in _OF_TIMES if one != "trend"))),
     "scaling": Kind("times", _LARGE, ("scaling", *(one for one in _OF_TIMES if one != "scaling"))),
     "schedule": Kind("times", "whether one choice is the best", ("schedule", "trend", "comparison")),
@@ -56,6 +55,7 @@ KINDS = {
     "promises": Kind(
         "times, and runs that promise an error", "whether promises are kept", ("promises",), scenes=True
     ),
+    COUNTS: Kind("work, once each", "a ratio of counts, by the claim about it", ("comparison",)),
 }  # fmt: skip
 """By the name that a question and its records give."""
 
