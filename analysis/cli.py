@@ -126,13 +126,15 @@ def _follow(options: argparse.Namespace) -> int:
     """Answer a line with a line of JSON: `open` with what is open; `report` with the files of the report,
     `report HOW FAR` with that of what is there so far.
     """
+    from analysis.claims import Tested
     from analysis.commands.open_questions import open_questions
     from analysis.report import write, write_meanwhile
 
+    remembered: Tested = {}
     for line in sys.stdin:
         match line.split():
             case ["open"]:
-                answer: object = open_questions(options.results)
+                answer: object = open_questions(options.results, remembered)
             case ["report"]:
                 answer = [str(path) for path in write(options.results, _asked(options))]
             case ["report", *how_far]:

@@ -25,7 +25,7 @@ from analysis.records.reading import InputError
 from analysis.records.studies import Study
 from analysis.support.wording import count, listed
 
-__all__ = ["TESTS", "Claim", "evaluate", "load"]
+__all__ = ["TESTS", "Claim", "Tested", "evaluate", "load"]
 
 TESTS: dict[str, Callable[..., Outcome]] = {
     "scaling": scaling.scaling,
@@ -47,9 +47,16 @@ COLUMNS = [
     "measured", "why", "figures", "missing", "p", "blocks", "needed",
 ]  # fmt: skip
 
+Tested = dict[str, tuple[object, Outcome]]
+"""What claims were tested on, and what came of it, by their ids."""
+
 
 def evaluate(
-    study: Study, studies: Sequence[Study], published: Published, claimed: Sequence[Claim] | None = None
+    study: Study,
+    studies: Sequence[Study],
+    published: Published,
+    claimed: Sequence[Claim] | None = None,
+    remembered: Tested | None = None,
 ) -> pd.DataFrame:
     """Return a row a claim, of those that are `claimed`, or of the published ones.
 
@@ -60,10 +67,14 @@ def evaluate(
     Everything is judged on the records of `study`, except the claim about machines, which needs all of them.
     Those that are decided at its scale are corrected for their number (see `family`). Raises InputError
     for a test that there is not.
+
+    What was tested is `remembered` for the next time, and not tested again on the same records: whoever
+    looks at a growing folder again and again pays for what is new.
     """
     evidence = Evidence(study, studies, published)
+    before = {} if remembered is None else remembered
     listed_claims = load() if claimed is None else claimed
-    tested = [_at_scale(_tested(evidence, one), one, study.scale) for one in listed_claims]
+    tested = [_at_scale(_remembered(evidence, one, before), one, study.scale) for one in listed_claims]
     outcomes = family.corrected(tested)
     open_claims = sum(map(missing.is_open, outcomes))
     rows = []
@@ -71,6 +82,22 @@ def evaluate(
         wanted = missing.needed(alone, open_claims) if missing.is_open(outcome) else math.nan
         rows.append({**_row(claim, outcome, study, wanted), "needed": wanted})
     return pd.DataFrame(rows, columns=COLUMNS).astype({"missing": bool})
+
+
+def _remembered(evidence: Evidence, claim: Claim, tested: Tested) -> Outcome:
+    """Test a claim, unless it was tested on the same records before."""
+    known = (claim, evidence.study.name, tuple(map(_records_of(claim), evidence.studies)))
+    if claim.id not in tested or tested[claim.id][0] != known:
+        tested[claim.id] = (known, _tested(evidence, claim))
+    return tested[claim.id][1]
+
+
+def _records_of(claim: Claim) -> Callable[[Study], object]:
+    def records(study: Study) -> object:
+        runs = study.runs[study.runs["experiment"].isin(claim.experiments)]
+        return study.name, *runs[["file", "recorded_at", "session"]].itertuples(index=False, name=None)
+
+    return records
 
 
 def _tested(evidence: Evidence, claim: Claim) -> Outcome:

@@ -13,6 +13,9 @@ from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, count
 
+COUNTED = "counts"
+"""The kind of questions whose runs are counted alone: their times are not for comparing."""
+
 OF_COUNTS = {"faster": "fewer", "slower": "more", "not faster": "not fewer"}
 """The verdicts on a ratio in words for a number of things; the others are the same."""
 
@@ -24,7 +27,7 @@ def fewer_wasted_attempts(
 
     A count is the same in each repetition, so that its repetitions are the seeds of the scene: the interval
     is over them. The question says how many, so that they are looked at once. Attempts, resolves and the
-    time stand beside, and do not decide.
+    time, where it was measured, stand beside, and do not decide.
     """
     runs = evidence.study.runs_of(experiment)
     runs = runs[runs["x_name"] == "seed"].assign(
@@ -40,18 +43,19 @@ def fewer_wasted_attempts(
         for value in ("wasted_attempts", "pair_attempts", "pair_resolves")
     }
     times = process_medians(evidence.study.times_of(experiment))
-    seconds = judge_one(_over_blocks(*(times[times[axis] == value] for value in (reference, candidate))))
+    seconds = None
+    if not (runs["question_kind"] == COUNTED).all():
+        seconds = judge_one(_over_blocks(*(times[times[axis] == value] for value in (reference, candidate))))
     said = "; ".join(
         f"{change(row)} of {value.replace('_', ' ')} ({_told(row)})" for value, row in rows.items()
     )
     wasted = rows["wasted_attempts"]
-    measured = (
-        f"{candidate} against {reference}, over {count(wasted['blocks'], 'seed')}: {said}; "
-        f"{change(seconds)} of time, {blocks(seconds)} ({seconds['verdict']})"
-    )
+    measured = f"{candidate} against {reference}, over {count(wasted['blocks'], 'seed')}: {said}"
+    if seconds is not None:
+        measured += f"; {change(seconds)} of time, {blocks(seconds)} ({seconds['verdict']})"
     figures = (
         *(Compared(f"{value.replace('_', ' ')}", "–", change(row)) for value, row in rows.items()),
-        Compared("time", "–", change(seconds)),
+        *([Compared("time", "–", change(seconds))] if seconds is not None else []),
     )
     unsettled = TOO_FEW.replace("blocks or a quieter machine", "seeds")
     found = judged(wasted, "faster", measured, figures, unsettled, unit="seed")

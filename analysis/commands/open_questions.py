@@ -26,19 +26,20 @@ off: the square of the 3.5 standard errors that a look at one of a dozen claims 
 """
 
 
-def open_questions(results: Path) -> dict[str, Any]:
+def open_questions(results: Path, remembered: claims.Tested | None = None) -> dict[str, Any]:
     """Return `open`: experiment -> the `blocks` it has, the `next` number at which to look again, and those
     that are `needed` to settle the first thing that is open in it; `settled`: the experiments in which
     nothing is; `said`: name -> what was decided.
 
     Of the first study in the folder. What is not in sight, as measured, is given the benefit of a standard
-    error (`OPTIMISM`), up to `MOST_BLOCKS`; beyond, it is neither open nor settled.
+    error (`OPTIMISM`), up to `MOST_BLOCKS`; beyond, it is neither open nor settled. What is `remembered` of
+    an earlier look at the folder is not tested again.
     """
     studies = split(load(results))
     found: dict[str, Any] = {"open": {}, "settled": [], "said": {}}
     if not studies:
         return found
-    table = claims.evaluate(studies[0], studies, published.load(), claims.load(results))
+    table = claims.evaluate(studies[0], studies, published.load(), claims.load(results), remembered)
     decided = table[table["verdict"].isin(DECIDED)]
     found["said"] = {row.id: f"{row.said}: {row.measured}" for row in decided.itertuples()}
     claimed = {experiment for claim in claims.load(results) for experiment in claim.experiments}

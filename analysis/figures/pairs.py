@@ -26,7 +26,10 @@ from analysis.figures.style import (
 )
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge_one
-from analysis.support.wording import blocks, change, exact, number, percent
+from analysis.support.wording import blocks, change, count, exact, number, percent
+
+COUNTS = "counts"
+"""The kind of questions whose runs are counted: nothing was warmed up, and their times are not compared."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,8 @@ def pair_drawing(
     )
     if candidate.empty or reference.empty:
         return None
+    if work and (times["question_kind"] == COUNTS).all():
+        return _of_counts(data, sides)
     published = data.published.experiment(sides.experiment)
     extra = work or not published.empty
     figure, axes = new_figure(2.4, columns=2 + extra, widths=[1.2, *([1.0] * extra), 1.1])
@@ -69,6 +74,19 @@ def pair_drawing(
     said = _sentences(row, theirs, sides, by)
     verdicts = pd.DataFrame([{**row, "name": f"{sides.names[0]} against {sides.names[1]}"}])
     return Drawing(figure, opening(times, sides.subject, dots) + said + lost_by_turns(pairs), verdicts)
+
+
+def _of_counts(data: Data, sides: Sides) -> Drawing:
+    """Draw the attempts alone. They have no verdict here: the claim about them has."""
+    figure, axes = new_figure(1.6)
+    _work(axes[0], data, sides)
+    scenes = data.study.runs_of(sides.experiment)["x"].nunique()
+    return Drawing(
+        figure,
+        f"{sides.subject}: attempts at resolving a pair, and in a stronger shade those that resolved it, of "
+        f"one step; the median of {count(scenes, 'scene')}. They were counted in one run each, whose time "
+        "is not compared.",
+    )
 
 
 def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:

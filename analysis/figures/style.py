@@ -236,7 +236,11 @@ def mark_partial(figure: Figure, text: str | None) -> None:
 
 
 def save(drawing: Drawing, folder: Path, name: str, formats: Sequence[str] = FORMATS) -> list[Path]:
-    """Write the figure in these formats; return the files."""
+    """Write the figure in these formats; return the files. Earlier ones in other formats would be outdated,
+    and are removed.
+    """
+    for outdated in set(FORMATS) - set(formats):
+        (folder / f"{name}.{outdated}").unlink(missing_ok=True)
     files = []
     with styled(name):
         # The layout is settled once, not once a format.

@@ -15,6 +15,9 @@ from analysis.report.content import content
 from analysis.support.files import replacing
 
 TEMPLATE = "report.html.jinja"
+SHOWN = ("svg", "png")
+"""The formats of figures in the page and in the PDF; `analysis figures` draws PDF files as well."""
+
 REMEDY = "apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 
 
@@ -31,7 +34,7 @@ def write(results: Path, asked: Sequence[str] = ()) -> list[Path]:
     for name in dict.fromkeys(asked):
         if name not in present:
             print(f"study: found no records of {name}, which does not lead the report", file=sys.stderr)
-    gathered = content(records, results, asked)
+    gathered = content(records, results, asked, formats=SHOWN)
     html, pdf = results / "report.html", results / "report.pdf"
     with replacing(html) as part:
         part.write_text(_page(gathered), encoding="utf-8")

@@ -19,7 +19,9 @@ Floats = NDArray[np.float64]
 
 BURST = 4.0
 MOST_BLOCKS = 1000
-LARGE_EFFECTS = ("trend", "scaling", "machine", "phases", "speed_against_error", "hard_cases", "promises")
+LARGE_EFFECTS = (
+    "trend", "scaling", "machine", "phases", "speed_against_error", "hard_cases", "promises", "counts",
+)  # fmt: skip
 ADVICE = (
     "close other programs, keep the machine on mains power and a fixed clock, run on bare metal or a whole "
     "node rather than a shared virtual machine, and raise the number of blocks"

@@ -28,6 +28,9 @@ class Kind:
 _EACH = "each difference from the reference has a verdict"
 _LARGE = "how the time changes over the sweep; small differences have no verdict"
 
+COUNTS = "counts"
+"""The kind of which nothing is timed for comparison: one process counts the work of many points."""
+
 KINDS = {
     "comparison": Kind("times", _EACH, _OF_TIMES),
     "control": Kind("times of the same under two labels", _EACH, ("control", "comparison")),
@@ -52,6 +55,7 @@ KINDS = {
     "promises": Kind(
         "times, and runs that promise an error", "whether promises are kept", ("promises",), scenes=True
     ),
+    COUNTS: Kind("work, once each", "a ratio of counts, by the claim about it", ("comparison",)),
 }  # fmt: skip
 """By the name that a question and its records give."""
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from experiments.plan.kinds import COUNTS
 from experiments.plan.plan import Experiment
 from experiments.plan.point import PROCESS, Point, Tags
 from experiments.plan.program import CHECK_FAILED, Program, generate
@@ -200,7 +201,8 @@ class Runner:
         first = ready[0][0]
         contenders = folder / "contenders.json"
         contenders.write_text(json.dumps([words[2:] for words in commands]), encoding="utf-8")
-        options = ("--seed", str(seed_of(first)), "--runs", str(first.runs))
+        is_count = first.point.kind == COUNTS
+        options = ("--counts",) if is_count else ("--seed", str(seed_of(first)), "--runs", str(first.runs))
         command = (commands[0][0], "turns", str(contenders), *options)
         done = run_alone(command, first.point.openmp, self._time_limit * len(ready) * first.runs)
         if done.exit_code not in (0, CHECK_FAILED):

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from experiments.plan.kinds import COUNTS
 from experiments.plan.plan import Experiment
 from experiments.plan.point import PROCESS, Point
 from experiments.plan.question import CONTROL
@@ -54,14 +55,14 @@ class Schedule:
         return self._laid_out[name]
 
     def blocks(self, experiment: Experiment, most: int | None = None) -> Iterator[int]:
-        """The numbers of its blocks, up to the last one in which something may be missing, or of the first
-        so many alone. They may grow more while they are measured: what failed in an earlier session and now
-        does not is measured again with all others.
+        """The numbers of its blocks in which something is missing, or of the first so many alone, each to be
+        measured before the next one is asked for. They may grow more: what failed in an earlier session and
+        now does not is measured again with all others.
         """
-        block = 0
-        while block < self.blocks_of(experiment).end(most):
+        block = self.blocks_of(experiment).following(-1, most)
+        while block is not None:
             yield block
-            block += 1
+            block = self.blocks_of(experiment).following(block, most)
 
     def share(self, seconds_left: float, settled: Collection[str] = ()) -> None:
         """Share the time left among the experiments but those settled; none loses a block it was given."""
@@ -100,7 +101,7 @@ class Schedule:
 
     def runs(self, experiment: Experiment, group: Sequence[Point]) -> int:
         """How many timed runs a process of these points makes, by what is known of their times so far."""
-        if len(group) < 2 or group[0].verb == PROCESS:
+        if len(group) < 2 or group[0].verb == PROCESS or group[0].kind == COUNTS:
             return 1
         found = self._found[experiment.name].runs
         processes = []

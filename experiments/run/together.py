@@ -10,6 +10,7 @@ import os
 from collections import Counter
 from collections.abc import Sequence
 
+from experiments.plan.kinds import COUNTS
 from experiments.plan.plan import Experiment
 from experiments.plan.point import PROCESS, Point
 from experiments.plan.scenes import Scene
@@ -27,12 +28,26 @@ _PROGRAMS_TOGETHER = 8
 
 def together(experiment: Experiment, block: int, missing: Sequence[Position]) -> list[list[Position]]:
     """The points that are still to be run of one block, in groups that one process measures."""
+    if experiment.question.kind == COUNTS:
+        return _counted(block, missing)
     if not _may_take_turns(experiment, block):
         return [[one] for one in missing]
     groups: dict[object, list[Position]] = {}
     for position, point in missing:
         groups.setdefault(_process(point), []).append((position, point))
     return [part for group in groups.values() for part in _fitting(group)]
+
+
+def _counted(block: int, missing: Sequence[Position]) -> list[list[Position]]:
+    """What is only counted follows one another in one process, one in memory at a time, and those of one
+    scene next to each other, which is read once. A point whose process does something besides is alone.
+    """
+    groups: dict[object, list[Position]] = {}
+    for position, point in missing:
+        alone = point.verb != "bench" or point.besides(block)
+        key = point.id if alone else (point.program.sha256, point.openmp, point.threads)
+        groups.setdefault(key, []).append((position, point))
+    return [sorted(group, key=lambda one: (str(one[1].scene), one[0])) for group in groups.values()]
 
 
 def _process(point: Point) -> tuple[object, ...]:

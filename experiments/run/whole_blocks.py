@@ -116,6 +116,15 @@ class WholeBlocks:
         """Position and point of what is still to be run in one block, in the block's order."""
         return self._missing(block, self._counting.get(block, ()))
 
+    def following(self, block: int, most: int | None = None) -> int | None:
+        """The next block after this one in which something is missing, and from the first on after the last;
+        None if nothing is. What had failed and now does not lets an earlier block count no more, so that one
+        between may count in its place.
+        """
+        end = self.end(most)
+        after = min(block + 1, end)
+        return next((one for one in (*range(after, end), *range(after)) if self.missing(one)), None)
+
     def missing_if_given(self, block: int) -> list[tuple[int, Point]]:
         """The same of a block that somebody was told to measure, whether or not it counts."""
         return self._missing(block, list(self._scenes))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from analysis import claims
 from analysis.cli import main
 from analysis.commands.open_questions import open_questions
 from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
@@ -117,3 +118,26 @@ def test_a_claim_that_holds_by_less_than_the_margin_is_settled_and_says_so(tmp_p
     said = str(answer["said"]["four_boxes"]).replace("\u00a0", " ")
     assert said.startswith("holds by less than the margin: ")
     assert said.endswith("(faster, but by less than 2 %)")
+
+
+def test_what_was_tested_is_not_tested_again_until_it_has_new_records(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tested: list[str] = []
+    counted = {
+        name: lambda *given, test=test, **named: tested.append(named["experiment"]) or test(*given, **named)
+        for name, test in claims.TESTS.items()
+        if name == "pair"
+    }
+    monkeypatch.setattr(claims, "TESTS", {**claims.TESTS, **counted})
+    remembered: claims.Tested = {}
+    names = ["neighbourhood", "row"]
+    write(tmp_path, study(names, blocks=6, noise=QUIET, threads=20))
+    first = open_questions(tmp_path, remembered)
+    assert {*names} <= {*tested}
+    tested.clear()
+    assert open_questions(tmp_path, remembered) == first
+    assert tested == []
+    write(tmp_path, study(["row"], blocks=9, noise=QUIET, threads=20))
+    assert open_questions(tmp_path, remembered) == open_questions(tmp_path)
+    assert tested.count("row") > tested.count("neighbourhood")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from experiments.plan.kinds import KINDS
+from experiments.plan.kinds import COUNTS, KINDS
 from experiments.plan.plan import plan
 from experiments.plan.question import FOLDER, load_question
 from experiments.tests.conftest import CHUNKS, ERRORS, Workplace
@@ -53,9 +53,9 @@ def test_several_scenes_are_for_kinds_that_tell_them_apart(workplace: Workplace)
 
 def test_every_kind_can_be_asked_for_and_its_usual_figure_is_its_own() -> None:
     schema = json.loads((FOLDER / "question.schema.json").read_text(encoding="utf-8"))["properties"]
-    assert set(schema["kind"]["enum"]) == set(schema["figure"]["enum"]) == set(KINDS)
+    assert set(schema["kind"]["enum"]) == {*schema["figure"]["enum"], COUNTS} == set(KINDS)
     for name, kind in KINDS.items():
-        assert kind.figures[0] == name
+        assert kind.figures[0] == ("comparison" if name == COUNTS else name)
         assert set(kind.figures) <= set(KINDS)
 
 

@@ -58,6 +58,23 @@ def test_what_a_question_compares_takes_turns(empty_workplace: Workplace) -> Non
     assert sizes(groups_of(empty_workplace, CHUNKS)) == [3]
 
 
+def test_what_is_counted_is_in_one_process_scene_by_scene(empty_workplace: Workplace) -> None:
+    text = f"""
+title = "Counts"
+kind = "counts"
+figure = "comparison"
+{SCENE}
+[sweep]
+parameter = "seed"
+values = [3, 1, 2]
+{FOUR_AND_NINE}"""
+    (group,) = groups_of(empty_workplace, text)
+    assert len(group) == 6
+    scenes = [point.scene for point in group]
+    assert all(one == other for one, other in zip(scenes[::2], scenes[1::2], strict=True))
+    assert len(set(scenes)) == 3
+
+
 def test_only_as_many_threads_take_turns(empty_workplace: Workplace) -> None:
     groups = groups_of(empty_workplace, THREADS)
     assert sizes(groups) == [2, 2]

@@ -44,9 +44,9 @@ def finish(
     """Run what is missing as the runner does; the blocks as they are then, and what was run."""
     given_up: set[str] = set()
     ran, failed = [], {}
-    block = 0
     now = WholeBlocks(experiment, blocks, found, session)
-    while block < now.end():
+    block = now.following(-1)
+    while block is not None:
         for _, point in now.missing(block):
             key = (point.id, block)
             ran.append(key)
@@ -57,10 +57,22 @@ def finish(
                 found.seconds[key], found.sessions[key] = 1.0, session
                 found.failures.pop(key, None)
         now = WholeBlocks(experiment, blocks, found, session, given_up)
-        block += 1
+        block = now.following(block)
     assert not any(now.missing(block) for block in range(now.end()))
     found.failures |= failed
     return now, ran
+
+
+def test_a_block_counts_in_the_place_of_an_earlier_one_whose_failures_are_mended(
+    experiment: Experiment,
+) -> None:
+    own = [point.id for point in experiment.points if point.scene_name == experiment.points[0].scene_name]
+    found = Found()
+    found.seconds[own[0], 0], found.sessions[own[0], 0] = 1.0, "monday"
+    for block in (0, 1):
+        found.failures |= {(point, block): "crashed" for point in own[1:]}
+    now, _ = finish(experiment, Given(1), found, "now")
+    assert now.numbers[experiment.points[0].scene_name or ""] == [1]
 
 
 @given(st.data())
