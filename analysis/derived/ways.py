@@ -3,6 +3,7 @@ the ratios by turns are off, and how soon either way knows a ratio.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import pandas as pd
@@ -86,8 +87,12 @@ def _comparison(name: str, processes: pd.DataFrame, reference: str, candidate: s
     return Comparison(name, pd.concat(tables, axis=1, join="inner").reset_index(), seconds)
 
 
+@lru_cache(maxsize=1)
 def bias_sentence(study: Study) -> str:
-    """Say how far ratios by turns are off on this machine, as far as the study measured it; else nothing."""
+    """Say how far ratios by turns are off on this machine, as far as the study measured it; else nothing.
+
+    Many figures of one study say it.
+    """
     names = study.times.loc[study.times["question_kind"] == KIND, "experiment"].unique()
     found = [one for name in sorted(names) for one in comparisons(study, str(name))]
     if not found:

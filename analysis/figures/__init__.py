@@ -194,6 +194,7 @@ def draw(
     """
     known = [*FIGURES, *further(data.study)]
     entries = [entry for entry in known if not wanted or entry.experiment in wanted]
+    bias_sentence(data.study)  # before there are several processes, of which each would work it out
 
     def drawn(number: int) -> _Saved | None:
         return _draw(entries[number], data, folder, f"{prefix}{entries[number].name}", formats)

@@ -239,8 +239,6 @@ def save(drawing: Drawing, folder: Path, name: str, formats: Sequence[str] = FOR
     """Write the figure in these formats; return the files. Earlier ones in other formats would be outdated,
     and are removed.
     """
-    for outdated in set(FORMATS) - set(formats):
-        (folder / f"{name}.{outdated}").unlink(missing_ok=True)
     files = []
     with styled(name):
         # The layout is settled once, not once a format.
@@ -256,4 +254,6 @@ def save(drawing: Drawing, folder: Path, name: str, formats: Sequence[str] = FOR
                     text = part.read_text(encoding="utf-8")
                     part.write_text(with_titles(text, drawing.figure, lines), encoding="utf-8")
             files.append(target)
+    for outdated in set(FORMATS) - set(formats):
+        (folder / f"{name}.{outdated}").unlink(missing_ok=True)
     return files

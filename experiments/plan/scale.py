@@ -16,7 +16,7 @@ class Scale:
     """How large the scenes are, which of a question's values are taken, and how long it all may last.
 
     `divisor` divides discs and area, `steps_divisor` the steps, `blocks_divisor` the least number of blocks;
-    the budget covers the report too.
+    the budget covers the report too, which takes about `report_seconds`.
     """
 
     name: str
@@ -24,6 +24,7 @@ class Scale:
     steps_divisor: int
     blocks_divisor: int
     budget_seconds: float
+    report_seconds: float
 
     def question(self, question: Question) -> Question:
         """A question at this scale: a smaller least number of blocks leaves more to the budget.
@@ -59,8 +60,12 @@ class Scale:
 
 
 SCALES = {
-    "paper": Scale("paper", divisor=1, steps_divisor=1, blocks_divisor=1, budget_seconds=45 * 60),
-    "quick": Scale("quick", divisor=10, steps_divisor=2, blocks_divisor=2, budget_seconds=2.5 * 60),
+    "paper": Scale(
+        "paper", divisor=1, steps_divisor=1, blocks_divisor=1, budget_seconds=45 * 60, report_seconds=40.0
+    ),
+    "quick": Scale(
+        "quick", divisor=10, steps_divisor=2, blocks_divisor=2, budget_seconds=2.5 * 60, report_seconds=25.0
+    ),
 }
 
 

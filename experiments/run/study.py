@@ -29,9 +29,6 @@ BEGUN = "begun.json"
 REPORT_FAILED = 1
 POINTS_FAILED = 2
 
-REPORT_SECONDS = 40.0
-"""What the report takes, which comes last and out of the same budget."""
-
 
 @dataclass(frozen=True)
 class Settings:
@@ -79,7 +76,7 @@ class Study:
         questions = [
             one for one in all_questions if not settings.builds or one.programs <= {*settings.builds}
         ]
-        report_seconds = REPORT_SECONDS if settings.figures else 0.0
+        report_seconds = self.scale.report_seconds if settings.figures else 0.0
         self.is_whole = len(questions) == len(all_questions)
         self.measuring_seconds = (self.budget_seconds - report_seconds) * len(questions) / len(all_questions)
         self.experiments: tuple[Experiment, ...] = tuple(

@@ -80,7 +80,7 @@ def test_the_conversation_is_a_line_for_a_line(
     assert set(answer) == {"open", "settled", "said"}
     assert written[0] == str(tmp_path / "report.html")
     assert "found 'dance', expected `open`, `report` or `report ...`" in said.err
-    assert (tmp_path / "figures" / "neighbourhood.pdf").exists()
+    assert (tmp_path / "figures" / "neighbourhood.png").exists()
 
 
 @pytest.mark.parametrize("effect", [0.0, 0.04, 0.06])

@@ -109,8 +109,8 @@ def test_a_slow_machine_still_has_time_to_decide(
 ) -> None:
     want(needing, pair=8, chunks=2)
     needing.monkeypatch.chdir(needing.root)
-    monkeypatch.setattr("experiments.run.study.REPORT_SECONDS", 0.0)
-    monkeypatch.setitem(scale.SCALES, "paper", replace(scale.SCALES["paper"], budget_seconds=1e-6))
+    short = replace(scale.SCALES["paper"], budget_seconds=1e-6, report_seconds=0.0)
+    monkeypatch.setitem(scale.SCALES, "paper", short)
     monkeypatch.setattr(session, "DECIDING_SHARE", share)
     assert run(replace(needing.settings, figures=True, study=("pair", "chunks"))) == 0
     assert blocks_of(needing, "pair") == blocks

@@ -80,7 +80,7 @@ TEST_F(TurnsCommand, LeavesARecordForEachThatIsAsOfAProcessOfItsOwn) {
 }
 
 TEST_F(TurnsCommand, RepeatsWholeRunsOfAll) {
-    const auto result = turns({words("published", "one"), words("event_driven", "two"),
+    const auto result = turns({words("published", "one"), words("track", "two"),
                                words("published", "slower", {"--substeps", "2"})},
                               {"--runs", "3", "--turn", "1000"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
