@@ -57,9 +57,7 @@ def variants(program: Program, openmp: Mapping[str, str], folder: Path) -> Kind:
     file = _written(folder / "variants.json", contenders)
     # A turn is a whole run, however long that is.
     command = (str(program.path), "turns", str(file), "--turn", "1000000")
-    told = process.run([str(program.path), "turns", "--help"], time_limit=_LIMIT_SECONDS).output
-    runs = ("--runs", str(_RUNS)) if "--runs" in told else ()
-    return Kind("variants", (*command, *runs), records, openmp, _RUNS)
+    return Kind("variants", (*command, "--runs", str(_RUNS)), records, openmp, _RUNS)
 
 
 def processes(program: Program, openmp: Mapping[str, str], folder: Path) -> Kind:
