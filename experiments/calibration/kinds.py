@@ -22,10 +22,8 @@ _SCENE = Scene(500, 707, 12, 100, 1, 3, placement="random", isotropic=True)
 _RUNS = 3
 """Whole runs of each variant in a process, which are a block."""
 
-_LOOPS, _SECONDS = 6_000_000, 0.01
+_LOOPS, _SECONDS = 12_000_000, 0.02
 """Of a whole process; about how long it takes, which decides how many slices there are."""
-
-_SLICE_SECONDS = 0.005
 
 _LIMIT_SECONDS = 60.0
 """Of one contender's process."""
@@ -76,7 +74,7 @@ def processes(program: Program, openmp: Mapping[str, str], folder: Path) -> Kind
         for one, record in zip(loops, records, strict=True)
     ]
     file = _written(folder / "processes.json", content)
-    command = (str(program.path), "processes", str(file), "--slice", str(_SLICE_SECONDS))
+    command = (str(program.path), "processes", str(file))
     return Kind("processes", command, records, openmp, 1)
 
 
