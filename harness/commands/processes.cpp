@@ -229,7 +229,8 @@ void add_processes_command(CLI::App& program) {
                      "and the file for its record")
         ->required();
     add_number(*command, "--slice", options->how.slice_seconds, 1e-3, 1e6,
-               "Seconds that the longest runs before the next does; the others in proportion");
+               "Seconds that the longest runs before the next does, the others in proportion; below "
+               "some 0.02 the stops lengthen what is timed");
     add_number(*command, "--seed", options->how.seed, 0, std::numeric_limits<std::uint64_t>::max(),
                "Of the order of the slices");
     command->callback([options] { processes(*options); });
