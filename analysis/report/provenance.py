@@ -11,9 +11,10 @@ from analysis.figures.captions import by_series
 from analysis.records.reading import Records
 from analysis.records.studies import Study
 from analysis.statistics.pairs import without_partner
-from analysis.support.wording import count, exact, number
+from analysis.support.wording import count, exact, number, share
 
 CONTROL = "control"
+COUNTS = "counts"
 UNTOLD = "not told by the system"
 
 
@@ -43,7 +44,21 @@ def machine(study: Study) -> list[tuple[str, str]]:
         ("Measured", f"{runs['recorded_at'].min()} to {runs['recorded_at'].max()} (UTC)"),
         ("Sessions", exact(runs["session"].nunique())),
         ("Records", f"{exact(len(runs))} processes, {exact(len(study.times))} timed runs"),
+        ("In the clock", in_the_clock(study)),
     ]
+
+
+def in_the_clock(study: Study) -> str:
+    """Say which part of the time, from the first record of each session to its last, was in the clock of what
+    is compared, and what else its processes took. Counts are not compared by their time.
+    """
+    compared = study.times[study.times["question_kind"] != COUNTS]
+    at = pd.to_datetime(study.runs["recorded_at"]).groupby(study.runs["session"])
+    whole = float((at.max() - at.min()).dt.total_seconds().sum())
+    timed, processes = float(compared["steps_seconds"].sum()), float(study.runs["process_seconds"].sum())
+    if whole < timed:
+        return f"{number(timed)} s of {number(processes)} s of the processes"
+    return f"{number(timed)} s of {number(whole)} s ({share(timed / whole)}); processes {number(processes)} s"
 
 
 def _values(column: pd.Series) -> str:

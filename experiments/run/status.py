@@ -32,6 +32,10 @@ class Row:
     stale: int
     alone: int
     """Records of blocks that are not of one session, and give no ratio."""
+    seconds: float
+    """Of its processes."""
+    in_the_clock: float
+    """Of their seconds those of timed runs."""
     reason: str
 
     @property
@@ -65,6 +69,8 @@ def rows(store: Store, experiments: Sequence[Experiment]) -> list[Row]:
                 failed=sum(key not in one.seconds and key[0] in failed_points for key in keys),
                 stale=len(one.stale),
                 alone=len(one.seconds.keys() - set(keys)),
+                seconds=sum(one.seconds.values()),
+                in_the_clock=sum(sum(runs) for runs in one.runs.values()),
                 reason=next(iter(one.failures.values()), ""),
             )
         )
@@ -74,14 +80,20 @@ def rows(store: Store, experiments: Sequence[Experiment]) -> list[Row]:
 def show_status(settings: Settings) -> int:
     """Print the state of the study; nothing is written, and a run may be under way."""
     study = Study(settings)
-    table = new_table("experiment", "points", "blocks", "done", "failed", "missing", "stale")
+    table = new_table(
+        "experiment", "points", "blocks", "done", "failed", "missing", "stale", "seconds", "in the clock"
+    )
     state = rows(study.store, study.experiments)
     for row in state:
         blocks = str(row.blocks) if row.decided else f"{row.blocks} or more"
         counts = (row.points, blocks, row.done, row.failed, row.missing, row.stale)
-        table.add_row(row.name, *map(str, counts))
+        table.add_row(
+            row.name, *map(str, counts), f"{row.seconds:.1f}", _share(row.in_the_clock, row.seconds)
+        )
     totals = (sum(getattr(row, name) for row in state) for name in ("done", "failed", "missing", "stale"))
-    table.add_row("all", str(sum(row.points for row in state)), "", *map(str, totals))
+    spent, timed = (sum(getattr(row, name) for row in state) for name in ("seconds", "in_the_clock"))
+    last = (f"{spent:.1f}", _share(timed, spent))
+    table.add_row("all", str(sum(row.points for row in state)), "", *map(str, totals), *last)
     console = new_console()
     console.print(table)
     for row in state:
@@ -92,6 +104,10 @@ def show_status(settings: Settings) -> int:
                 f"{row.name}: {row.alone} more records are in blocks that no session measured whole"
             )
     return 0
+
+
+def _share(part: float, whole: float) -> str:
+    return f"{100 * part / whole:.0f} %" if whole else "-"
 
 
 def show_plan(settings: Settings) -> int:

@@ -1,5 +1,6 @@
 import re
 import sys
+from dataclasses import replace
 from html.parser import HTMLParser
 from importlib.abc import MetaPathFinder
 from pathlib import Path
@@ -8,8 +9,10 @@ import pytest
 
 from analysis import claims, report
 from analysis.cli import main
+from analysis.figures.style import Data
 from analysis.records.reading import InputError, load
-from analysis.report.provenance import commands
+from analysis.report.provenance import commands, in_the_clock
+from analysis.support.wording import number, share
 from analysis.tests.figures.test_figures import DRAWN
 from analysis.tests.synthetic import Machine, failure, write
 from analysis.tests.synthetic_noise import QUIET
@@ -213,3 +216,13 @@ def test_text_from_records_is_escaped(tmp_path: Path) -> None:
 def test_no_folder_is_bad_input(tmp_path: Path) -> None:
     with pytest.raises(InputError):
         report.write(tmp_path / "absent")
+
+
+def test_it_says_which_part_of_the_time_was_in_the_clock(data: Data) -> None:
+    compared = data.study.times[data.study.times["question_kind"] != "counts"]
+    assert in_the_clock(data.study).startswith(f"{number(compared['steps_seconds'].sum())} s of ")
+    one = replace(data.study, times=data.study.times.iloc[:1], runs=data.study.runs.iloc[:2])
+    moved = one.runs.assign(recorded_at=["2026-01-01T00:00:00Z", "2026-01-01T01:00:00Z"], session="s")
+    timed = float(one.times["steps_seconds"].iloc[0])
+    said = f"{number(timed)} s of {number(3600.0)} s ({share(timed / 3600)}); processes "
+    assert in_the_clock(replace(one, runs=moved)).startswith(said)

@@ -80,9 +80,9 @@ TEST_F(TurnsCommand, LeavesARecordForEachThatIsAsOfAProcessOfItsOwn) {
 }
 
 TEST_F(TurnsCommand, RepeatsWholeRunsOfAll) {
-    const auto result = turns({words("published", "one"), words("track", "two"),
-                               words("published", "slower", {"--substeps", "2"})},
-                              {"--runs", "3", "--turn", "1000"});
+    const auto result = turns(
+        {words("published", "one"), words("track", "two"), words("published", "slower", {"--substeps", "2"})},
+        {"--runs", "3", "--turn", "1000"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
     const auto alone = run_carom({"bench", scene, "--threads", "2", "--record", directory / "alone"});
     ASSERT_EQ(alone.exit_code, 0) << alone.error;
