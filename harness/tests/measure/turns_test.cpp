@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -114,6 +116,32 @@ Measurement measurement_of(const Scene& scene, const char* variant,
                             .own_seconds = {}};
     measurement.scope = scope;
     return measurement;
+}
+
+carom::Run run_to(const std::vector<Disc>& discs) {
+    carom::Run run;
+    run.discs = discs;
+    return run;
+}
+
+TEST(VariantContender, ALaterRunHasToEndInTheSameBitsAfterTheSameWork) {
+    const Scene scene = tests::random_scene_of_density(20, 0.2, 3, 5);
+    const auto violation_after = [&scene](const carom::Run& second) {
+        Measurement measurement = measurement_of(scene, "published");
+        measurement.add(run_to(scene.discs));
+        measurement.add(second);
+        return measurement.violation.value_or("");
+    };
+    EXPECT_EQ(violation_after(run_to(scene.discs)), "");
+    std::vector<Disc> moved = scene.discs;
+    moved.back().x = std::nextafter(moved.back().x, 1e9);
+    carom::Run other = run_to(moved);
+    EXPECT_EQ(violation_after(other), "the final state differs from the one of the run before");
+    other.violation = "a step is wrong";
+    EXPECT_EQ(violation_after(other), "a step is wrong");
+    carom::Run busier = run_to(scene.discs);
+    busier.work.pair_resolves = 1;
+    EXPECT_NE(violation_after(busier).find("the work differs"), std::string::npos);
 }
 
 TEST(VariantContender, EndsAsIfItHadRunAlone) {
