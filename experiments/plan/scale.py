@@ -7,9 +7,6 @@ from experiments.plan.scenes import AnyScene, Scene
 from experiments.plan.series import Series
 from experiments.support.errors import InputError, nearest
 
-FEWEST_BLOCKS = 2
-"""An interval needs two."""
-
 
 @dataclass(frozen=True)
 class Scale:
@@ -34,7 +31,7 @@ class Scale:
         asked = question.blocks
         if asked.minimum == asked.wanted:
             return question
-        least = min(asked.minimum, max(FEWEST_BLOCKS, asked.minimum // self.blocks_divisor))
+        least = min(asked.minimum, max(1, asked.minimum // self.blocks_divisor))
         return replace(question, blocks=replace(asked, minimum=least))
 
     def simulated(self, question: Question) -> int:
@@ -64,7 +61,7 @@ SCALES = {
         "paper", divisor=1, steps_divisor=1, blocks_divisor=1, budget_seconds=45 * 60, report_seconds=40.0
     ),
     "quick": Scale(
-        "quick", divisor=10, steps_divisor=2, blocks_divisor=2, budget_seconds=2.5 * 60, report_seconds=25.0
+        "quick", divisor=10, steps_divisor=2, blocks_divisor=4, budget_seconds=2.5 * 60, report_seconds=25.0
     ),
 }
 

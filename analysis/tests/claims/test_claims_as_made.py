@@ -98,7 +98,7 @@ def test_a_verdict_at_a_smaller_scale_speaks_of_it_alone(
 
 
 def test_what_is_open_at_a_smaller_scale_says_what_is_missing(tmp_path: Path) -> None:
-    records = study(["neighbourhood"], noise=Noise(process=0.2), scale="quick", threads=20, blocks=5)
+    records = study(["neighbourhood"], noise=Noise(process=0.2), scale="quick", threads=20, blocks=9)
     row = row_of(tmp_path, records, "four_boxes")
     assert row["verdict"] == OPEN
     assert "24 rows" not in row["why"]
