@@ -64,10 +64,11 @@ def loops_of(parent: int) -> list[int]:
 
 
 def test_the_loops_beside_end_with_the_block_and_with_their_parent() -> None:
+    before = set(loops_of(os.getpid()))
     with busy(2):
-        inside = loops_of(os.getpid())
-        assert len(inside) >= 2
-    assert not set(inside) & set(loops_of(os.getpid()))
+        inside = set(loops_of(os.getpid())) - before
+        assert len(inside) == 2
+    assert not any(map(is_running, inside))
     code = (
         "import time\nfrom experiments.calibration.busy import busy\n"
         "with busy(2):\n  print(1, flush=True)\n  time.sleep(60)"
