@@ -57,9 +57,7 @@ def best_runs(fixed_seconds: float, run_seconds: float, variances: Spread) -> fl
     within, between = variances.within, variances.between
     if within == 0.0:
         return 1.0
-    if run_seconds <= 0.0:
-        return math.inf
-    cost = fixed_seconds / run_seconds
+    cost = fixed_seconds / max(run_seconds, 1e-9)
     if between == 0.0:
         return cost
     # 2 between runs^2 + within runs - within cost = 0, the root that does not cancel.
