@@ -62,15 +62,19 @@ def judge_one(
     The log ratios are in the order of time; those up to the last planned look count. `once`: how many values
     there are was settled before the first of them, and each has a seed of its own: they are looked at once,
     the whole of the error is this look's, and none depends on the one before. `biases`: by how much each log
-    ratio is too great because of how it was measured, NaN where not known; the verdict then has to stand with
-    and without the middle one of them, and the interval reaches over both.
+    ratio is too great because of how it was measured, NaN where not known; where half of them are, the verdict
+    has to stand with and without the middle one, and the interval reaches over both.
     """
     values = np.asarray(log_ratios, dtype=float)
     values = values if once else seen(values)
     known = np.empty(0) if biases is None else np.asarray(biases, dtype=float)[: len(values)]
     known = known[~np.isnan(known)]
     row = _judged(values, margin, error, once)
-    return row if known.size == 0 else _both(row, _judged(values - np.median(known), margin, error, once))
+    return (
+        row
+        if not 0 < len(values) <= 2 * known.size
+        else _both(row, _judged(values - np.median(known), margin, error, once))
+    )
 
 
 def _judged(values: Floats, margin: float, error: float, once: bool) -> dict[str, Any]:

@@ -48,6 +48,9 @@ _UNPROBED_STEP, _UNPROBED_PROCESS = 0.01, 0.05
 _UNKNOWN_PROGRAM = 1.0
 """Seconds of somebody else's program until it has run once: a guess."""
 
+_MOST_BESIDE = 0.3
+"""The most that it is taken to be: the first process of an experiment checks variants besides."""
+
 SECONDS_PER_PROCESS = 0.03
 """What a process takes beside its own account of its time, until that was seen: its start, its end, the look
 at its record.
@@ -151,7 +154,7 @@ class Costs:
 
     def _beside_of(self, point: Point) -> float:
         # The least, since the first process of a variant comes with its check.
-        return min(self._beside.get(point.experiment, [SECONDS_PER_PROCESS]))
+        return min([*self._beside.get(point.experiment, [SECONDS_PER_PROCESS]), _MOST_BESIDE])
 
     def _correction(self, experiment: str) -> float:
         """Measured over modelled: of this experiment if it has any measurement, else of all of them."""

@@ -57,4 +57,6 @@ def test_a_true_difference_beyond_the_bias_is_still_found() -> None:
     row = judge_one(ratios, biases=np.random.default_rng(4).normal(0.01, 0.002, BLOCKS))
     assert row["verdict"] == "slower"
     assert row["low"] < 1.09 < row["high"]
-    assert judge_one(ratios, biases=np.full(BLOCKS, np.nan)) == judge_one(ratios), "not known, not said"
+    few = np.r_[np.full(BLOCKS - 2, np.nan), 0.5, 0.5]
+    for unknown in (np.full(BLOCKS, np.nan), few):
+        assert judge_one(ratios, biases=unknown) == judge_one(ratios), "not known, not said"
