@@ -48,13 +48,13 @@ _UNPROBED_STEP, _UNPROBED_PROCESS = 0.01, 0.05
 _UNKNOWN_PROGRAM = 1.0
 """Seconds of somebody else's program until it has run once: a guess."""
 
-_MOST_BESIDE = 0.3
-"""The most that it is taken to be: the first process of an experiment checks variants besides."""
-
 SECONDS_PER_PROCESS = 0.03
 """What a process takes beside its own account of its time, until that was seen: its start, its end, the look
 at its record.
 """
+
+_MOST_BESIDE = 0.3
+"""The most that this is taken to be: the first process of an experiment checks variants besides."""
 
 Measured = tuple[float, Sequence[float]]
 """Seconds of a whole process, and of each of its timed runs."""
