@@ -62,8 +62,8 @@ def judge_one(
     The log ratios are in the order of time; those up to the last planned look count. `once`: how many values
     there are was settled before the first of them, and each has a seed of its own: they are looked at once,
     the whole of the error is this look's, and none depends on the one before. `biases`: by how much each log
-    ratio is too great because of how it was measured, NaN where not known; where half of them are, the verdict
-    has to stand with and without the middle one, and the interval reaches over both.
+    ratio is too great because of how it was measured, NaN where not known; where half of them are, the
+    verdict has to stand with and without the middle one, and the interval reaches over both.
     """
     values = np.asarray(log_ratios, dtype=float)
     values = values if once else seen(values)
