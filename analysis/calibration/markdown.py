@@ -18,7 +18,10 @@ def markdown(
     return "\n\n".join([_errors(by_stream), _truths(by_truth), _power(found), _compared(compared)])
 
 
-_COUNTS = ["comparisons", "decided", "wrong", "interval misses", "disjoint: wrong", "at most (95 %)"]
+_COUNTS = [
+    *("comparisons", "decided", "wrong", "interval misses", "disjoint: wrong", "at most (95 %)"),
+    *("stretches: wrong", "at most (95 %)"),
+]
 
 
 def _errors(table: pd.DataFrame) -> str:
@@ -36,7 +39,9 @@ def _counts(row: Row) -> list[str]:
     parts = {name: row[name] / tries if tries else np.nan for name in ("wrong", "missed")}
     counts = [f"{row[name]:.0f} ({_share(part)})" for name, part in parts.items()]
     apart = f"{row['disjoint_wrong']:.0f} of {row['disjoint']:.0f}"
-    return [f"{tries:.0f}", _share(row["decided"]), *counts, apart, _share(row["bound"])]
+    once = f"{row['stretches_wrong']:.0f} of {row['stretches']:.0f}"
+    bounds = [apart, _share(row["bound"]), once, _share(row["stretch_bound"])]
+    return [f"{tries:.0f}", _share(row["decided"]), *counts, *bounds]
 
 
 def _power(table: pd.DataFrame) -> str:

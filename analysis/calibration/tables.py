@@ -19,12 +19,15 @@ STREAM = ["kind", "condition"]
 def errors(studies: pd.DataFrame, by: Sequence[str]) -> pd.DataFrame:
     """Return a row a group of studies: how many overlap (`studies`), what part of them `decided`, how many
     were `wrong` and how many had an interval that `missed` the truth; how many are `disjoint` and how many of
-    those were wrong (`disjoint_wrong`), with the exact `bound` (95 %) that this puts on the share.
+    those were wrong (`disjoint_wrong`), with the exact `bound` (95 %) that this puts on the share. The
+    comparisons of one stretch share a contender: of the `stretches` themselves, each counted once, how many
+    have anything wrong (`stretches_wrong`), and the bound of that (`stretch_bound`).
     """
     rows = []
     for key, group in studies.groupby(list(by), sort=False):
         apart, over = group[group["disjoint"]], group[~group["disjoint"]]
         wrong = int(apart["wrong"].sum())
+        stretches = apart.groupby([*STREAM, "start"])["wrong"].any()
         rows.append(
             {
                 **dict(zip(by, key, strict=True)),
@@ -35,6 +38,9 @@ def errors(studies: pd.DataFrame, by: Sequence[str]) -> pd.DataFrame:
                 "disjoint": len(apart),
                 "disjoint_wrong": wrong,
                 "bound": upper_bound(wrong, len(apart)),
+                "stretches": len(stretches),
+                "stretches_wrong": int(stretches.sum()),
+                "stretch_bound": upper_bound(int(stretches.sum()), len(stretches)),
             }
         )
     return pd.DataFrame(rows)

@@ -9,12 +9,10 @@ import pandas as pd
 
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, directed, judged, no_records, told
+from analysis.records.tables import COUNTS
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, count
-
-COUNTED = "counts"
-"""The kind of questions whose runs are counted alone: their times are not for comparing."""
 
 OF_COUNTS = {"faster": "fewer", "slower": "more", "not faster": "not fewer"}
 """The verdicts on a ratio in words for a number of things; the others are the same."""
@@ -44,7 +42,7 @@ def fewer_wasted_attempts(
     }
     times = process_medians(evidence.study.times_of(experiment))
     seconds = None
-    if not (runs["question_kind"] == COUNTED).all():
+    if not (runs["question_kind"] == COUNTS).all():
         seconds = judge_one(_over_blocks(*(times[times[axis] == value] for value in (reference, candidate))))
     said = "; ".join(
         f"{change(row)} of {value.replace('_', ' ')} ({_told(row)})" for value, row in rows.items()

@@ -19,7 +19,7 @@ from analysis.statistics.intervals import Interval
 from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.pareto import front
-from analysis.statistics.selection import judge_among, pairs_of
+from analysis.statistics.verdicts import error_of_picked, judge_one
 
 POINT = ["scene_name", "series", "x"]
 Entrant = tuple[str, float]
@@ -246,7 +246,7 @@ class Race:
         if key not in self._slower:
             sides = self._processes[reference], self._processes[candidate]
             ratios = log_ratios(*sides, value="seconds")["log_ratio"]
-            row = judge_among(ratios, pairs_of(len(self._processes)))
+            row = judge_one(ratios, error=error_of_picked(len(self._processes)))
             self._slower[key] = row["verdict"] == "slower"
         return self._slower[key]
 

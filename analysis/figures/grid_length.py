@@ -13,8 +13,7 @@ from analysis.figures.style import Data, Drawing, lighten, logarithmic_ticks, ne
 from analysis.figures.sweeps import ranges_agree, trend
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, process_medians
-from analysis.statistics.selection import judge_among, pairs_of
-from analysis.statistics.verdicts import judge_one
+from analysis.statistics.verdicts import error_of_picked, judge_one
 from analysis.support.wording import exact, interval_of, number
 
 EXPERIMENT = "grid_length"
@@ -95,7 +94,7 @@ def _flatness(processes: pd.DataFrame) -> str:
     if len(rest) < 2:
         return ""
     ends = [processes[processes["x"] == x] for x in (rest.idxmin(), rest.idxmax())]
-    row = judge_among(log_ratios(*ends)["log_ratio"], pairs_of(len(rest)))
+    row = judge_one(log_ratios(*ends)["log_ratio"], error=error_of_picked(len(rest)))
     return (
         f" From {exact(rest.index[0])} on, the greatest time (at {exact(rest.idxmax())}) is "
         f"{interval_of(row, 'ratio')} times the least (at {exact(rest.idxmin())})."

@@ -24,12 +24,10 @@ from analysis.figures.style import (
     new_figure,
     plain_ticks,
 )
+from analysis.records.tables import COUNTS
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.wording import blocks, change, count, exact, number, percent
-
-COUNTS = "counts"
-"""The kind of questions whose runs are counted: nothing was warmed up, and their times are not compared."""
 
 
 @dataclass(frozen=True)

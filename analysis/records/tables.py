@@ -10,6 +10,9 @@ from analysis.statistics.returning import excess
 
 Named = list[tuple[str, dict[str, Any]]]
 
+COUNTS = "counts"
+"""The kind of questions whose runs are counted alone: nothing was warmed up, their times are not compared."""
+
 TAGS = [
     "experiment", "series", "x_name", "x", "block", "position", "session", "scale", "site", "point",
     "label", "scene_name", "series_number", "figure", "title", "points_planned", "blocks_planned",

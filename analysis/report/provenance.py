@@ -10,11 +10,11 @@ from analysis.figures import experiments
 from analysis.figures.captions import by_series
 from analysis.records.reading import Records
 from analysis.records.studies import Study
+from analysis.records.tables import COUNTS
 from analysis.statistics.pairs import without_partner
 from analysis.support.wording import count, exact, number, share
 
 CONTROL = "control"
-COUNTS = "counts"
 UNTOLD = "not told by the system"
 
 

@@ -95,6 +95,13 @@ def _both(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
     return {**one, **greater, "low": min(one["low"], other["low"]), "verdict": verdict}
 
 
+def error_of_picked(candidates: int) -> float:
+    """Return the error of one of all comparisons between so many candidates, for `judge_one`: who compares
+    the best of them with another has picked one of all pairs. All together may err in 5 % (Bonferroni).
+    """
+    return ERROR / max(1, candidates * (candidates - 1) // 2)
+
+
 def verdict_row(log_ratio: Interval, blocks: int, p: float, verdict: str) -> dict[str, Any]:
     """Return the columns that `judge` adds, of an interval of a log ratio."""
     ratio, low, high = (float(np.exp(one)) for one in (log_ratio.estimate, log_ratio.low, log_ratio.high))

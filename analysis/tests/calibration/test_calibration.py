@@ -1,6 +1,7 @@
 """What is made of streams whose truth is known."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ from analysis.calibration.studies import (
     looks_up_to,
     overlapping,
 )
-from analysis.calibration.tables import OURS, STREAM, errors, ours_and_theirs, power
+from analysis.calibration.tables import OURS, errors, ours_and_theirs, power
 from analysis.calibration.usual_ways import WAYS, all_ways
 from analysis.records.reading import InputError
 from analysis.tests.statistics.unkind_noise import dependent
@@ -55,11 +56,14 @@ def bursts(seed: int) -> Stream:
 @pytest.mark.parametrize("made", [independent, depending, bursts])
 def test_few_verdicts_are_wrong_whatever_the_noise(made: object) -> None:
     assert callable(made)
-    studies = all_studies([made(seed) for seed in (1, 2)])
-    row = errors(studies, STREAM).iloc[0]
+    studies = all_studies([made(1), replace(made(2), condition="busy")])
+    row = errors(studies, ["kind"]).iloc[0]
     assert row["wrong"] <= 0.05 * row["studies"]
     assert row["disjoint"] > 2 * 20
     assert row["disjoint_wrong"] / row["disjoint"] <= row["bound"] < 0.12
+    assert row["stretches"] * (len(MORE) - 1) == row["disjoint"]
+    assert row["stretches_wrong"] <= row["disjoint_wrong"]
+    assert row["stretch_bound"] >= row["bound"]
 
 
 def test_more_work_is_found_sooner() -> None:

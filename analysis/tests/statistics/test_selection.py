@@ -9,8 +9,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy import stats
 
-from analysis.statistics.selection import interval_among, judge_among, pairs_of
-from analysis.statistics.verdicts import MARGIN, judge_one
+from analysis.statistics.looks import ERROR
+from analysis.statistics.verdicts import MARGIN, error_of_picked, judge_one
 
 Floats = NDArray[np.float64]
 Noise = Callable[[np.random.Generator, tuple[int, int]], Floats]
@@ -45,8 +45,8 @@ def is_called_better_as_before(logs: Floats) -> bool:
 
 
 def is_called_better(logs: Floats) -> bool:
-    comparisons = pairs_of(len(logs))
-    return any(judge_among(row, comparisons)["verdict"] == "slower" for row in against_the_least(logs))
+    error = error_of_picked(len(logs))
+    return any(judge_one(row, error=error)["verdict"] == "slower" for row in against_the_least(logs))
 
 
 @pytest.mark.parametrize("noise", [quiet, two_speeds])
@@ -72,35 +72,11 @@ def test_the_farthest_off_of_equals_has_an_interval_with_the_truth(noise: Noise)
         farthest = differences[np.abs(differences.mean(axis=1)).argmax()]
         low, high = stats.t.interval(0.95, LOOKS[0] - 1, farthest.mean(), stats.sem(farthest))
         former += not low < 0 < high
-        among = interval_among(farthest, EQUALS)
-        now += not among.low < 0 < among.high
+        row = judge_one(farthest, error=ERROR / EQUALS)
+        now += not row["low"] < 1 < row["high"]
     assert former > 0.15 * STUDIES
     assert now <= (0.05 + CHANCE) * STUDIES
 
 
-def test_one_comparison_is_judged_as_one_standing_alone() -> None:
-    values = np.random.default_rng(3).normal(0.05, 0.01, 9)
-    alone, one = judge_one(values), judge_among(values, 1)
-    assert one["verdict"] == alone["verdict"] == "slower"
-    assert one["low"] <= alone["low"] < alone["high"] <= one["high"]
-
-
-def test_the_shown_interval_decides() -> None:
-    generator = np.random.default_rng(4)
-    for effect in (-0.1, 0.0, 0.1):
-        for comparisons in (1, 10, 1000):
-            row = judge_among(effect + generator.normal(0, 0.01, 9), comparisons)
-            border = 1 + MARGIN
-            shown = (
-                "faster" if row["high"] < 1 / border
-                else "slower" if row["low"] > border
-                else "equivalent" if 1 / border < row["low"] and row["high"] < border
-                else "inconclusive"
-            )  # fmt: skip
-            assert row["verdict"] == shown
-
-
-@pytest.mark.parametrize("blocks", [0, 1, 3])
-def test_too_few_blocks_have_no_interval(blocks: int) -> None:
-    row = judge_among(np.linspace(0.5, 0.51, blocks), 10)
-    assert (row["verdict"], row["blocks"], row["high"]) == ("inconclusive", blocks, np.inf)
+def test_of_two_candidates_there_is_one_comparison() -> None:
+    assert [error_of_picked(number) for number in (1, 2, 3, 20)] == [ERROR, ERROR, ERROR / 3, ERROR / 190]
