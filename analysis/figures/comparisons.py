@@ -12,7 +12,7 @@ from analysis.figures.captions import opening, time_axis
 from analysis.figures.curves import dots
 from analysis.figures.hover import Told, tell
 from analysis.figures.league import league
-from analysis.figures.pairs import Sides, bounded, pair_drawing
+from analysis.figures.pairs import Sides, bounded, interval_bar, pair_drawing
 from analysis.figures.style import BAND, BLUE, FAINT, INK, Data, Drawing, new_figure
 from analysis.statistics.bootstrap import summarise
 from analysis.support.wording import change, exact
@@ -72,8 +72,8 @@ def _differences(axes: Axes, table: pd.DataFrame, rows: pd.DataFrame, margin: fl
     heights = {(row.series, row.x): height for height, row in enumerate(rows.itertuples())}
     for row in table.to_dict("records"):
         height = heights[row["series"], row["x"]]
-        estimate, low, high = (100 * (row[end] - 1) for end in ("ratio", "low", "high"))
-        axes.plot([low, high], [height, height], color=BLUE, linewidth=1.4)
+        estimate = 100 * (row["ratio"] - 1)
+        interval_bar(axes, row, height, BLUE, 1.4)
         (dot,) = axes.plot(estimate, height, "o", color=BLUE, markersize=5)
         tell(dot, [Told(f"{_label(row, table)}: {row['verdict']}", change(row))])
         axes.annotate(

@@ -1,5 +1,6 @@
 """Two variants against each other: every block of the measurement, the published runs, and the ratio."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -148,8 +149,8 @@ def ratio_panel(
     axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
     entries = [("measured", ours, INK)] + ([("published", theirs, lighten(INK))] if theirs else [])
     for height, (name, row, colour) in zip((1.0, 0.0), entries, strict=False):
-        estimate, low, high = (100 * (row[end] - 1) for end in ("ratio", "low", "high"))
-        axes.plot([low, high], [height, height], color=colour, linewidth=2.6, zorder=2)
+        interval_bar(axes, row, height, colour, 2.6)
+        estimate = 100 * (row["ratio"] - 1)
         (dot,) = axes.plot(
             estimate, height, "o", color=colour, markersize=5, markeredgecolor="white", zorder=3
         )
@@ -168,6 +169,13 @@ def ratio_panel(
     axes.xaxis.set_major_locator(MaxNLocator(5))
     axes.spines["left"].set_visible(False)
     bounded(axes, margin)
+
+
+def interval_bar(axes: Axes, row: Mapping[Any, Any], height: float, colour: str, width: float) -> None:
+    """Draw the interval of a ratio in per cent; nothing without one, whose ends would stretch the axis."""
+    if np.isfinite(row["high"]):
+        ends = [100 * (row[end] - 1) for end in ("low", "high")]
+        axes.plot(ends, [height, height], color=colour, linewidth=width, zorder=2)
 
 
 def bounded(axes: Axes, margin: float = MARGIN) -> None:

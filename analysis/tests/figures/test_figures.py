@@ -5,14 +5,16 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from matplotlib import image
 
 from analysis import figures
 from analysis.figures import FIGURES, Entry
 from analysis.figures.labels import spread
+from analysis.figures.pairs import ratio_panel
 from analysis.figures.studies import draw_all
-from analysis.figures.style import Data, styled
+from analysis.figures.style import Data, new_figure, styled
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import split
@@ -188,3 +190,19 @@ def test_labels_are_moved_apart_as_little_as_needed() -> None:
     assert all(upper - lower >= 10 - 1e-9 for lower, upper in pairwise(ordered))
     assert moved[3] == 40
     assert moved[0] < moved[2] < moved[1]
+
+
+def test_a_ratio_without_an_interval_does_not_stretch_the_axis() -> None:
+    _, (axes,) = new_figure(2)
+    known: dict[str, Any] = {"ratio": 0.95, "low": 0.93, "high": 0.97, "verdict": "faster", "blocks": 9}
+    unknown: dict[str, Any] = {
+        "ratio": 0.96,
+        "low": 0.0,
+        "high": np.inf,
+        "verdict": "inconclusive",
+        "blocks": 5,
+    }
+    ratio_panel(axes, known, unknown, ("one", "other"))
+    low, high = axes.get_xlim()
+    assert -15 < low < -7
+    assert high < 15
