@@ -56,7 +56,7 @@ def _parser() -> argparse.ArgumentParser:
         (
             "follow",
             _follow,
-            "answer each line of standard input, as a running study asks: open, report",
+            "answer each line of standard input, as a running study asks: open, page, report",
         ),
         ("performance", _performance, "print the ladder and the limits as Markdown tables"),
     ):
@@ -124,7 +124,7 @@ def _figures(options: argparse.Namespace) -> int:
 
 def _follow(options: argparse.Namespace) -> int:
     """Answer a line with a line of JSON: `open` with what is open; `report` with the files of the report,
-    `report HOW FAR` with that of what is there so far.
+    `page` with its HTML alone, `report HOW FAR` with that of what is there so far.
     """
     from analysis.claims import Tested
     from analysis.commands.open_questions import open_questions
@@ -135,12 +135,15 @@ def _follow(options: argparse.Namespace) -> int:
         match line.split():
             case ["open"]:
                 answer: object = open_questions(options.results, remembered)
-            case ["report"]:
-                answer = [str(path) for path in write(options.results, _asked(options))]
+            case ["report" | "page" as wanted]:
+                written = write(options.results, _asked(options), pdf=wanted == "report")
+                answer = [str(path) for path in written]
             case ["report", *how_far]:
                 answer = [str(write_meanwhile(options.results, _asked(options), " ".join(how_far)))]
             case _:
-                raise InputError(f"follow: found {line.strip()!r}, expected `open`, `report` or `report ...`")
+                raise InputError(
+                    f"follow: found {line.strip()!r}, expected `open`, `page`, `report` or `report ...`"
+                )
         print(json.dumps(answer), flush=True)
     return 0
 

@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import jsonschema_rs
 import pandas as pd
 from jsonschema import Draft202012Validator
 from jsonschema.exceptions import best_match
@@ -113,7 +114,14 @@ def _readable(
 
 @cache
 def _validator() -> Draft202012Validator:
+    """Says what is wrong."""
     return Draft202012Validator(json.loads(SCHEMA_FILE.read_text(encoding="utf-8")))
+
+
+@cache
+def _quick_validator() -> jsonschema_rs.Draft202012Validator:
+    """Says only whether anything is wrong, a hundred times as fast: nearly no record is."""
+    return jsonschema_rs.Draft202012Validator(json.loads(SCHEMA_FILE.read_text(encoding="utf-8")))
 
 
 @cache
@@ -141,9 +149,12 @@ def _checked(record: Any, failures: bool) -> tuple[str | None, dict[str, Any]]: 
     expected = validator.schema["properties"]["schema_version"]["const"]  # type: ignore[index]
     if record["schema_version"] != expected:
         return f"schema version {record['schema_version']!r}, expected {expected}", {}
-    violation = best_match(validator.iter_errors(record))
-    if violation is not None:
-        return f"{violation.json_path}: {_shortened(violation.message)}", {}
+    if not _quick_validator().is_valid(record):
+        violation = best_match(validator.iter_errors(record))
+        told = (
+            f"{violation.json_path}: {_shortened(violation.message)}" if violation else "not a Carom record"
+        )
+        return told, {}
     return _wrong_tag(record, failures), record
 
 

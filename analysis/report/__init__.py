@@ -21,23 +21,31 @@ SHOWN = ("svg", "png")
 REMEDY = "apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 
 
-def write(results: Path, asked: Sequence[str] = ()) -> list[Path]:
-    """Write `report.html` and `report.pdf` into the results folder from whatever records are there; return
-    what was written. Questions that were `asked` by name lead.
+def write(results: Path, asked: Sequence[str] = (), *, pdf: bool = True) -> list[Path]:
+    """Write `report.html` and, if wanted, `report.pdf` into the results folder from whatever records are
+    there; return what was written. Questions that were `asked` by name lead.
 
-    Draws the figures on the way. Without the libraries that the PDF needs, one line on standard error says so
-    and an earlier, now outdated PDF is removed; a line tells each question asked that has no records. Raises
-    InputError if there is no such folder.
+    Draws the figures on the way. Without the libraries that the PDF needs, one line on standard error says
+    so. A PDF that is not written anew is removed, since it would be outdated. A line tells each question
+    asked that has no records. Raises InputError if there is no such folder.
     """
     records = load(results)
     present = {*records.runs["experiment"], *records.failures["experiment"]}
     for name in dict.fromkeys(asked):
         if name not in present:
             print(f"study: found no records of {name}, which does not lead the report", file=sys.stderr)
-    gathered = content(records, results, asked, formats=SHOWN)
-    html, pdf = results / "report.html", results / "report.pdf"
+    gathered = content(records, results, asked, formats=SHOWN if pdf else SHOWN[:1])
+    html = results / "report.html"
     with replacing(html) as part:
         part.write_text(_page(gathered), encoding="utf-8")
+    if not pdf:
+        (results / "report.pdf").unlink(missing_ok=True)
+        return [html]
+    return [html, *_write_pdf(gathered, results)]
+
+
+def _write_pdf(gathered: dict[str, Any], results: Path) -> list[Path]:
+    pdf = results / "report.pdf"
     try:
         document = _pdf(_page(gathered, images=True), results)
     except (ImportError, OSError) as error:
@@ -46,10 +54,10 @@ def write(results: Path, asked: Sequence[str] = ()) -> list[Path]:
         why = " ".join(str(error).split())
         print(f"{pdf}: not written, only the HTML: {why} (WeasyPrint needs Pango; {REMEDY})", file=sys.stderr)
         pdf.unlink(missing_ok=True)
-        return [html]
+        return []
     with replacing(pdf) as part:
         part.write_bytes(document)
-    return [html, pdf]
+    return [pdf]
 
 
 def write_meanwhile(results: Path, asked: Sequence[str], how_far: str) -> Path:

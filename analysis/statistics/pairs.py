@@ -58,21 +58,15 @@ def log_ratios(
     partner of its own session has no ratio: the machine may have been another since.
     """
     keys = [*match, *PAIR]
-    joined = _per_block(reference, keys, value).merge(
-        _per_block(candidate, keys, value),
-        left_index=True,
-        right_index=True,
-        suffixes=("_reference", "_candidate"),
-    )
+    sides = (_per_block(side, keys, value) for side in (reference, candidate))
+    joined = pd.merge(*sides, on=keys, suffixes=("_reference", "_candidate"))
     ratios = [
         _block_ratio(*logs) for logs in zip(joined["logs_reference"], joined["logs_candidate"], strict=True)
     ]
     biases = [
         bias(*shares) for shares in zip(joined["lost_reference"], joined["lost_candidate"], strict=True)
     ]
-    found = (
-        joined[["at_reference"]].assign(log_ratio=np.array(ratios, dtype=float), bias=biases).reset_index()
-    )
+    found = joined[[*keys, "at_reference"]].assign(log_ratio=np.array(ratios, dtype=float), bias=biases)
     return found.sort_values(["at_reference", *PAIR], kind="stable").drop(columns="at_reference")
 
 
@@ -93,15 +87,18 @@ def without_partner(runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def _per_block(processes: pd.DataFrame, keys: list[str], value: str) -> pd.DataFrame:
-    """Return what each block has: `logs` of its runs, the time `at` which it was recorded, and the share of
-    its time `lost` by turns.
+    """Return what each block has beside its `keys`: `logs` of its runs, the time `at` which it was recorded,
+    and the share of its time `lost` by turns.
     """
     runs = processes.get(_runs_of(value), processes[value])
     logs = [np.log(np.atleast_1d(np.asarray(one, dtype=float))) for one in runs]
     at = processes.get("recorded_at", processes["block"])
     lost = processes.get("lost_by_turns", np.nan)
     table = processes[keys].assign(logs=logs, at=at, lost=lost)
-    return table.groupby(keys).agg({"logs": _of_replicates, "at": "min", "lost": "mean"})
+    if not table.duplicated(keys).any():
+        return table
+    table = table.groupby(keys).agg({"logs": _of_replicates, "at": "min", "lost": "mean"})
+    return table.reset_index()
 
 
 def _of_replicates(logs: pd.Series) -> Floats:

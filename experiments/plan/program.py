@@ -83,13 +83,13 @@ def variants(program: Program) -> tuple[str, ...]:
 @cache
 def build_of(program: Program) -> dict[str, Any]:
     """How a build of Carom was made, as in a record's provenance. Raises InputError if it does not say."""
-    done = process.run([str(program.path), "doctor", "--json"], time_limit=60)
+    done = process.run([str(program.path), "doctor", "--build"], time_limit=60)
     try:
         told = json.loads(done.output)
-        return {**told["program"], "openmp": {"runtime": told["openmp"]["runtime"]}}
-    except (ValueError, KeyError, TypeError) as error:
+        return dict(told)
+    except (ValueError, TypeError) as error:
         raise InputError(
-            f"{program.path}: `doctor --json` does not say how it was built: {done.reason}"
+            f"{program.path}: `doctor --build` does not say how it was built: {done.reason}"
         ) from error
 
 

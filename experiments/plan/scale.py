@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+from experiments.plan.kinds import COUNTS
 from experiments.plan.question import NamedScene, Question
 from experiments.plan.scenes import AnyScene, Scene
 from experiments.plan.series import Series
@@ -13,7 +14,7 @@ class Scale:
     """How large the scenes are, which of a question's values are taken, and how long it all may last.
 
     `divisor` divides discs and area, `steps_divisor` the steps, `blocks_divisor` the least number of blocks;
-    the budget covers the report too, which takes about `report_seconds`.
+    the budget covers the report too, which takes about `report_seconds`, as a `pdf` beside the page or not.
     """
 
     name: str
@@ -22,6 +23,7 @@ class Scale:
     blocks_divisor: int
     budget_seconds: float
     report_seconds: float
+    pdf: bool
 
     def question(self, question: Question) -> Question:
         """A question at this scale: a smaller least number of blocks leaves more to the budget.
@@ -43,6 +45,8 @@ class Scale:
     def scenes(self, question: Question) -> tuple[NamedScene, ...]:
         """A question's scenes at this scale."""
         kept = (one for one in question.scenes if self.divisor == 1 or not one.paper_only)
+        if question.kind == COUNTS:
+            return tuple(kept)  # nothing is timed: the question says itself how much is counted
         return tuple(replace(one, scene=self._scene(one.scene)) for one in kept)
 
     def values(self, series: Series) -> tuple[float, ...]:
@@ -58,10 +62,22 @@ class Scale:
 
 SCALES = {
     "paper": Scale(
-        "paper", divisor=1, steps_divisor=1, blocks_divisor=1, budget_seconds=45 * 60, report_seconds=40.0
+        "paper",
+        divisor=1,
+        steps_divisor=1,
+        blocks_divisor=1,
+        budget_seconds=45 * 60,
+        report_seconds=40.0,
+        pdf=True,
     ),
     "quick": Scale(
-        "quick", divisor=10, steps_divisor=2, blocks_divisor=4, budget_seconds=2.5 * 60, report_seconds=25.0
+        "quick",
+        divisor=10,
+        steps_divisor=2,
+        blocks_divisor=4,
+        budget_seconds=2.5 * 60,
+        report_seconds=15.0,
+        pdf=False,
     ),
 }
 

@@ -1,5 +1,6 @@
 """How long a point takes: from its own records, else from a probe of its variant and its scene's size."""
 
+import json
 import statistics
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -43,6 +44,8 @@ _SECONDS_OF_LONG_CASES = {"drift": 3.0}
 
 _PROBED = 3
 """Runs of a probe, of which the least counts: enough for one without a disturbance, and over in 0.1 s."""
+_STARTING = 0.02
+"""Seconds in which a process starts and ends, which no probe among others tells."""
 _UNPROBED_STEP, _UNPROBED_PROCESS = 0.01, 0.05
 """Seconds of a variant whose probe failed: several times what the published one takes."""
 _UNKNOWN_PROGRAM = 1.0
@@ -182,18 +185,52 @@ def probe_key(point: Point) -> str:
     return f"{str(point.program.sha256)[:12]} {point.variant} {point.threads}"
 
 
-def probe(point: Point, scene: Path, record: Path, time_limit: float) -> Probe | None:
-    """Time a short run of the point's variant; None if it fails, which the run proper will explain."""
-    words = [str(point.program.path), "bench", str(scene), "--variant", str(point.variant)]
-    words += ["--threads", str(point.threads), "--record", str(record), "--warm-up", "0"]
-    words += ["--repetitions", str(_PROBED)]
-    done = run_alone(words, point.openmp, time_limit)
-    content = read_json(record)
-    if done.exit_code != 0 or content is None:
-        return None
-    # The least of them: a probe is short, and whatever else runs can only lengthen it.
-    steps = min(float(repetition["steps_seconds"]) for repetition in content["repetitions"])
-    return Probe(steps / PROBE.steps, max(0.0, float(content["process_seconds"]) - _PROBED * steps))
+def probe(points: Sequence[Point], scene: Path, folder: Path, time_limit: float) -> dict[str, Probe]:
+    """Time short runs of the points' variants: of those that have a program and threads in common in one
+    process. What fails in it is tried alone, and left out if it fails again, which the run proper explains.
+    """
+    groups: dict[object, list[Point]] = {}
+    for point in points:
+        groups.setdefault((point.program.path, point.openmp, point.threads), []).append(point)
+    probes: dict[str, Probe] = {}
+    for group in groups.values():
+        found = _probe(group, scene, folder, time_limit)
+        if not found and len(group) > 1:
+            for one in group:
+                found |= _probe([one], scene, folder, time_limit)
+        probes |= found
+    return probes
+
+
+def _probe(points: Sequence[Point], scene: Path, folder: Path, time_limit: float) -> dict[str, Probe]:
+    records = [[folder / f"{number}-{run}.json" for run in range(_PROBED)] for number in range(len(points))]
+    words = [
+        [
+            str(scene),
+            "--variant",
+            str(point.variant),
+            "--threads",
+            str(point.threads),
+            "--record",
+            str(record),
+        ]
+        for point, several in zip(points, records, strict=True)
+        for record in several
+    ]
+    contenders = folder / "contenders.json"
+    contenders.write_text(json.dumps(words), encoding="utf-8")
+    command = [str(points[0].program.path), "turns", str(contenders), "--counts"]
+    if run_alone(command, points[0].openmp, time_limit).exit_code != 0:
+        return {}
+    probes = {}
+    for point, several in zip(points, records, strict=True):
+        contents = [read_json(record) for record in several]
+        if all(contents):
+            # The least of them: a probe is short, and whatever else runs can only lengthen it.
+            steps = min(float(one["repetitions"][0]["steps_seconds"]) for one in contents)
+            beside = min(float(one["process_seconds"]) for one in contents) - steps
+            probes[probe_key(point)] = Probe(steps / PROBE.steps, _STARTING + max(0.0, beside))
+    return probes
 
 
 def to_probe(points: Iterable[Point], known: Mapping[str, object]) -> list[Point]:

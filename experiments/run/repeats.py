@@ -9,7 +9,7 @@ root. Least is therefore the variance times the square of what a process costs.
 
 import math
 import statistics
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 MOST_RUNS = 30
@@ -79,6 +79,32 @@ def choose_runs(fixed_seconds: float, run_seconds: float, known: Spread | None, 
         wanted = min(max(wanted, last / AT_ONCE), last * AT_ONCE)
     most = min(MOST_RUNS, MOST_SECONDS / max(run_seconds, 1e-9))
     return max(1, round(min(wanted, most)))
+
+
+class Repeated:
+    """The runs of the processes that whoever measures has seen itself, by what they measured."""
+
+    def __init__(self) -> None:
+        self._processes: dict[Hashable, list[Process]] = {}
+        self._fixed: dict[Hashable, list[float]] = {}
+
+    def runs(self, group: Hashable) -> int:
+        """How many runs the next process of a group makes; one before anything of it was seen."""
+        seen = self._processes.get(group)
+        if not seen:
+            return 1
+        run = statistics.median(sum(runs) / len(runs) for runs in _by_contender(seen)) * len(seen[-1])
+        return choose_runs(statistics.median(self._fixed[group]), run, spread(seen), len(seen[-1][0]))
+
+    def learn(self, group: Hashable, seconds: float, process: Process) -> None:
+        """A process took so long, its runs of several contenders included."""
+        if len(process) > 1 and all(process):
+            self._processes.setdefault(group, []).append(process)
+            self._fixed.setdefault(group, []).append(max(0.0, seconds - sum(map(sum, process))))
+
+
+def _by_contender(processes: Sequence[Process]) -> list[Sequence[float]]:
+    return [runs for process in processes for runs in process]
 
 
 def _ratios(process: Process) -> list[list[float]]:

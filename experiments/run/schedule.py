@@ -43,6 +43,7 @@ class Schedule:
         self.given = least | self._begun
         self._laid_out: dict[str, WholeBlocks] = {}
         self._runs: dict[str, dict[str, int]] = {}
+        self._statuses: dict[str, tuple[WholeBlocks, Status]] = {}
 
     def blocks_of(self, experiment: Experiment) -> WholeBlocks:
         """Its blocks, as its records stand now."""
@@ -185,17 +186,27 @@ class Schedule:
         """How far the study is; what is left counts scenes and checks too. What stands without its partners
         is not part of it.
         """
-        left = [self._process_seconds(one, point) for one in self.experiments for point in self.left(one)]
-        planned = [(one.name, key) for one in self.experiments for key in self.blocks_of(one).keys]
-        done = [
-            seconds for name, key in planned if (seconds := self._found[name].seconds.get(key)) is not None
-        ]
+        parts = [self._status_of(one) for one in self.experiments]
         return Status(
-            planned=len(planned),
-            done=len(done),
-            seconds_done=sum(done),
-            seconds_left=sum(self._once_seconds().values()) + sum(left),
+            planned=sum(one.planned for one in parts),
+            done=sum(one.done for one in parts),
+            seconds_done=sum(one.seconds_done for one in parts),
+            seconds_left=sum(self._once_seconds().values()) + sum(one.seconds_left for one in parts),
         )
+
+    def _status_of(self, experiment: Experiment) -> Status:
+        """The part of one experiment, worked out anew once it was given or has got more, and as long as what
+        others took is all that is known of its costs.
+        """
+        blocks = self.blocks_of(experiment)
+        known = self._statuses.get(experiment.name)
+        found = self._found[experiment.name].seconds
+        if known is None or known[0] is not blocks or not found:
+            done = [seconds for key in blocks.keys if (seconds := found.get(key)) is not None]
+            left = sum(self._process_seconds(experiment, point) for point in self.left(experiment))
+            known = (blocks, Status(len(blocks.keys), len(done), sum(done), left))
+            self._statuses[experiment.name] = known
+        return known[1]
 
     def control_due(self, control: Experiment) -> int:
         """How many of the control's blocks should be done by now: spread evenly over the study's time."""

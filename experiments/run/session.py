@@ -236,7 +236,7 @@ class Session:
         if not self._study.settings.figures:
             return 0
         self._report.now("writing the report")
-        done = self._analysis.ask("report", REPORT_LIMIT)
+        done = self._analysis.ask("report" if self._study.scale.pdf else "page", REPORT_LIMIT)
         if done.exit_code != 0:
             warn(f"the report could not be written: {done.reason}")
             return REPORT_FAILED

@@ -14,7 +14,7 @@ from experiments.plan.scale import find_scale
 from experiments.plan.scenes import SceneFolder
 from experiments.plan.site import Machine
 from experiments.results.store import Store, measured_by_point, new_session
-from experiments.run.costs import PROBE, Costs, Probe, kept_probes, probe, probe_key, to_probe
+from experiments.run.costs import PROBE, Costs, Probe, kept_probes, probe, to_probe
 from experiments.run.progress import about
 from experiments.run.runner import Runner
 from experiments.run.schedule import Schedule
@@ -138,13 +138,10 @@ class Study:
         probes = kept_probes(self.store.note(COSTS))
         points = [point for experiment in self.experiments for point in experiment.points]
         wanted = to_probe(points, probes)
-        for point in wanted:
-            record = self.store.temporary / "probe.json"
-            record.unlink(missing_ok=True)
-            timed = probe(point, runner.scene(PROBE).path, record, self.site.time_limit_seconds)
-            if timed is not None:
-                probes[probe_key(point)] = timed
         if wanted:
+            folder = self.store.temporary / "probes"
+            folder.mkdir(exist_ok=True)
+            probes |= probe(wanted, runner.scene(PROBE).path, folder, self.site.time_limit_seconds)
             content = {key: {"step": one.step, "process": one.process} for key, one in probes.items()}
             self.store.keep_note(COSTS, content)
         return probes

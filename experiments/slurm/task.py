@@ -1,14 +1,18 @@
 """One task of a job array: measures the blocks that are its own, within its allocation."""
 
-from collections.abc import Sequence
+import time
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from experiments.plan.kinds import COUNTS
 from experiments.plan.plan import Experiment
+from experiments.plan.point import PROCESS, Point
 from experiments.plan.scenes import SceneFolder
 from experiments.run.progress import Report
+from experiments.run.repeats import Repeated
 from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.study import POINTS_FAILED, Study
-from experiments.run.together import together
+from experiments.run.together import Position, together
 from experiments.slurm.jobs import PartitionFolder, Unit, blocks_of, folders, read_job
 from experiments.support.errors import InputError
 
@@ -43,6 +47,7 @@ class _Worker:
         scenes = SceneFolder(store.temporary / "scenes", store.temporary, str(study.generator.sha256))
         self._runner = Runner(store, scenes, study.generator, study.site.time_limit_seconds)
         self._failed: set[tuple[str, str]] = set()
+        self._repeated = Repeated()
 
     def run(self, own: Sequence[Unit]) -> int:
         experiments = {one.name: one for one in self._study.experiments}
@@ -55,12 +60,24 @@ class _Worker:
         missing = blocks_of(self._study, experiment).missing_if_given(block)
         hopeful = [one for one in missing if (experiment.name, one[1].id) not in self._failed]
         for group in together(experiment, block, hopeful):
-            size = len(experiment.points)
-            tasks = [Task(experiment, point, block, at, _blocks(experiment), size) for at, point in group]
+            size, runs = len(experiment.points), self._runs(experiment, group)
+            tasks = [
+                Task(experiment, point, block, at, _blocks(experiment), size, runs) for at, point in group
+            ]
             self._measure([one for one in tasks if not self._study.store.has(one.point, block)])
 
+    def _runs(self, experiment: Experiment, group: Sequence[Position]) -> int:
+        """As many as pay, by what this task has seen of the same points: others may measure elsewhere."""
+        may_repeat = experiment.question.kind != COUNTS and group[0][1].verb != PROCESS
+        return self._repeated.runs(_key(point for _, point in group)) if may_repeat else 1
+
     def _measure(self, tasks: Sequence[Task]) -> None:
-        for task, outcome in zip(tasks, self._runner.run(tasks), strict=True):
+        began = time.monotonic()
+        outcomes = self._runner.run(tasks)
+        self._repeated.learn(
+            _key(task.point for task in tasks), time.monotonic() - began, [one.runs for one in outcomes]
+        )
+        for task, outcome in zip(tasks, outcomes, strict=True):
             self._tell(task, outcome)
 
     def _tell(self, task: Task, outcome: Outcome) -> None:
@@ -71,6 +88,10 @@ class _Worker:
             self._report.line(f"{where}: failed: {outcome.reason}")
         else:
             self._report.line(f"{where}: measured in {outcome.seconds:.3g} s")
+
+
+def _key(points: Iterable[Point]) -> frozenset[str]:
+    return frozenset(point.id for point in points)
 
 
 def _blocks(experiment: Experiment) -> int:

@@ -143,17 +143,32 @@ Json noise_json(double seconds) {
             {"steal", or_null(noise.steal)}};
 }
 
+Json picked_from(const Json& provenance, std::initializer_list<const char*> fields) {
+    Json json = Json::object();
+    for (const char* field : fields) {
+        json[field] = provenance[field];
+    }
+    return json;
+}
+
+Json program_json(const Json& provenance) {
+    return picked_from(provenance, {"compiler", "compiler_flags", "build_type", "commit", "dirty"});
+}
+
 } // namespace
+
+Json build_json() {
+    const Json provenance = provenance_json(1);
+    Json build = program_json(provenance);
+    build["openmp"] = {{"runtime", provenance["openmp"]["runtime"]}};
+    return build;
+}
 
 Json doctor_json(double noise_seconds) {
     const Silence silence;
     const Json provenance = provenance_json(1);
     const auto picked = [&provenance](std::initializer_list<const char*> fields) {
-        Json json = Json::object();
-        for (const char* field : fields) {
-            json[field] = provenance[field];
-        }
-        return json;
+        return picked_from(provenance, fields);
     };
     Json machine = picked({"host", "operating_system", "cpu_model", "virtualised", "memory_bytes"});
     machine["memory_available_bytes"] = or_null(memory_bytes("MemAvailable"));
@@ -169,7 +184,7 @@ Json doctor_json(double noise_seconds) {
             {"openmp", provenance["openmp"]},
             {"perf_events", perf_json()},
             {"counters", counters_json()},
-            {"program", picked({"compiler", "compiler_flags", "build_type", "commit", "dirty"})},
+            {"program", program_json(provenance)},
             {"tools", tools_json()},
             {"slurm", {{"version", version_of("srun")}, {"job", provenance["slurm"]}}},
             {"noise", noise}};

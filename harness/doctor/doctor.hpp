@@ -11,7 +11,10 @@ namespace carom {
 /// noise is probed for so many seconds. Nothing of the machine is changed.
 nlohmann::ordered_json doctor_json(double noise_seconds);
 
-/// The same for a reader: lines of at most 80 columns.
+/// How the program was built, and its OpenMP runtime: what a record says of that, at once.
+nlohmann::ordered_json build_json();
+
+/// The findings for a reader: lines of at most 80 columns.
 std::string doctor_text(const nlohmann::ordered_json& findings);
 
 } // namespace carom

@@ -2,15 +2,16 @@
 
 import copy
 import json
+import math
 import tempfile
 from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from analysis.records.reading import load
+from analysis.records.reading import _quick_validator, _validator, load
 from analysis.records.studies import split
 from analysis.tests.fuzzing import for_a_while
 from analysis.tests.synthetic import write
@@ -89,6 +90,31 @@ quick = settings(max_examples=200, deadline=None, suppress_health_check=[HealthC
 @quick
 def test_whatever_lies_there_is_counted_or_named(content: bytes, folder: str) -> None:
     is_counted_or_named(content, folder)
+
+
+def is_judged_as_the_schema_says(content: bytes) -> None:
+    record = json.loads(content)
+    assume(finite(record))
+    assert _quick_validator().is_valid(record) == _validator().is_valid(record)
+
+
+def finite(value: object) -> bool:
+    """Whether the reader lets its numbers pass."""
+    if isinstance(value, float):
+        return math.isfinite(value)
+    inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return all(map(finite, inner))
+
+
+@given(st.one_of(damaged_records(), junk.map(json.dumps).map(str.encode)))
+@quick
+def test_the_quick_validator_says_what_the_schema_says(content: bytes) -> None:
+    is_judged_as_the_schema_says(content)
+
+
+@pytest.mark.fuzz
+def test_the_quick_validator_says_what_the_schema_says_for_a_while() -> None:
+    for_a_while(given(damaged_records())(is_judged_as_the_schema_says))
 
 
 @pytest.mark.fuzz

@@ -12,6 +12,7 @@ from experiments.run.repeats import (
     MOST_RUNS,
     MOST_SECONDS,
     Process,
+    Repeated,
     Spread,
     best_runs,
     choose_runs,
@@ -105,3 +106,20 @@ def test_it_keeps_its_bounds(fixed: float, run: float, known: Spread | None, las
     runs = choose_runs(fixed, run, known, last)
     assert 1 <= runs <= MOST_RUNS
     assert runs == 1 or runs * run <= 1.5 * MOST_SECONDS
+
+
+def test_who_has_seen_nothing_of_a_group_makes_one_run_then_what_pays() -> None:
+    seen = Repeated()
+    assert seen.runs("group") == 1
+    for made in processes(FEWEST_PROCESSES + 2, 1, within=0.001, between=0.02):
+        process = [[seconds / 100 for seconds in runs] for runs in made]
+        seen.learn("group", 10 * sum(map(sum, process)), process)
+    assert seen.runs("group") > 1, "a process costs more than its run"
+    assert seen.runs("another") == 1
+
+
+def test_a_process_of_one_contender_or_that_failed_tells_nothing() -> None:
+    seen = Repeated()
+    seen.learn("group", 9.0, [(1.0, 1.1)])
+    seen.learn("group", 9.0, [(1.0,), ()])
+    assert seen.runs("group") == 1

@@ -117,6 +117,16 @@ TEST(Doctor, ALimitOfProcessorsIsShownWithTheThreadsThatFollow) {
     EXPECT_EQ(unwrapped(json).find("2-4, of"), std::string::npos);
 }
 
+TEST(Doctor, TellsAloneHowTheProgramWasBuilt) {
+    const auto result = tests::run_carom({"doctor", "--build"});
+    EXPECT_EQ(result.exit_code, 0);
+    const Json told = Json::parse(result.output);
+    for (const auto& [field, value] : findings()["program"].items()) {
+        EXPECT_EQ(told[field], value) << field;
+    }
+    EXPECT_EQ(told["openmp"]["runtime"], findings()["openmp"]["runtime"]);
+}
+
 TEST(Doctor, TheProgramPrintsNothingElse) {
     const auto result = tests::run_carom({"doctor", "--json"});
     EXPECT_EQ(result.exit_code, 0);
