@@ -5,9 +5,9 @@
 # Goals and prerequisites run one after another in the order given, also in `make -j2 setup test`.
 .NOTPARALLEL:
 .SILENT:
-.PHONY: help setup environment build build-gcc build-clang build-gcc-libomp calibration-gcc tests-gcc tests-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files movie \
-        experiments appendix status submit resume collect figures report compare calibrate lint lint-quick format clean distclean \
-        settings
+.PHONY: help setup environment build build-gcc build-clang build-gcc-libomp install uninstall package calibration-gcc \
+        tests-gcc tests-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files experiments appendix calibrate \
+        lint lint-quick format clean distclean settings
 
 export COMPILER ?= gcc
 CXX_gcc := g++
@@ -21,8 +21,6 @@ sources := find kernels variants harness -name '*.[ch]pp'
 study := $${STUDY:+--study "$$STUDY"} $${SCALE:+--scale "$$SCALE"} $${SITE:+--site "$$SITE"} $${QUESTIONS:+--questions "$$QUESTIONS"}
 results := $${RESULTS:+--results "$$RESULTS"}
 limits := $${BUDGET:+--budget "$$BUDGET"} $${UNTIL:+"--until-$$UNTIL"}
-picture := $${OUT:+--output "$$OUT"} $${STEP:+--step "$$STEP"}
-dry_run := $${DRY_RUN:+--dry-run}
 
 # What may be given, with what holds if it is not: `make help` prints these lines.
 #: Settings, given as NAME=VALUE behind the verb; in brackets what holds without:
@@ -34,12 +32,8 @@ dry_run := $${DRY_RUN:+--dry-run}
 #:   BUDGET=     minutes for the whole study, report included (45 at paper scale, 2.5 at quick scale)
 #:   UNTIL=      decided: measure until all that can be decided is (no: for the budget)
 #:   DRY_RUN=    1: say what would be done, do nothing (no)
-#:   SCENE=      the scene file of a movie
-#:   OUT=        its file *.mp4, *.gif or *.png (results/movies/SCENE.mp4, *.gif without ffmpeg)
-#:   STEP=       the step of a *.png (the last)
-#:   VARIANT=    the variant of a movie (published)
-#:   A= B=       two results folders to compare
-#:   FROM=       a results folder to collect from (those of SITE)
+#:   PREFIX=     where it is installed (~/.local)
+#:   DESTDIR=    a folder put before PREFIX, to make a package of what is installed (none)
 #:   COMPILER=   gcc, clang or gcc-libomp (gcc)
 #:   JOBS=       compilers and tests at a time (one a processor)
 #:   WERROR=     1: a compiler's warning stops the build (no)
@@ -49,14 +43,12 @@ dry_run := $${DRY_RUN:+--dry-run}
 #: Exit codes: 0 done; else 2, and make's last line names that of the command, `Error N`:
 #:   1 wrong input or usage, told in one line; 2 a point or a check failed, as the report says; 3 of compare:
 #:   something is slower (what is undecided is told, and is no error); 130 stopped, the same command goes on.
-settings := STUDY SCALE SITE QUESTIONS RESULTS BUDGET UNTIL DRY_RUN SCENE OUT STEP VARIANT A B FROM COMPILER JOBS WERROR TIME PYTHON
+settings := STUDY SCALE SITE QUESTIONS RESULTS BUDGET UNTIL DRY_RUN PREFIX DESTDIR COMPILER JOBS WERROR TIME PYTHON
 of_tools := CC CXX CFLAGS CXXFLAGS LDFLAGS MAKEFLAGS SHELL CMAKE_% CTEST_% CCACHE_% CAROM_% PYTEST_% OMP_% PIP_%
 given := $(foreach one,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(one)))),$(one)))
 unknown := $(firstword $(filter-out $(settings) $(of_tools),$(given)))
 $(if $(unknown),$(error $(unknown)=: is no setting, expected one of $(settings) (see `make help`)))
 
-# What has to be given. The second word says what it is.
-need = test -n "$${$(1)-}" || { echo "$(1)=: missing, expected $(2)" >&2; exit 1; }
 # A copied or moved checkout brings a build folder along that is not its own: CMake would not say what to do.
 own_build = made=$$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' $(1)/CMakeCache.txt 2>/dev/null); \
 	test -z "$$made" || test "$$made" -ef . || { \
@@ -97,6 +89,23 @@ build-gcc-libomp: settings
 		-DOpenMP_CXX_FLAGS=-fopenmp -DOpenMP_CXX_LIB_NAMES=omp \
 		-DOpenMP_omp_LIBRARY="$$(dirname "$$(readlink -f "$$(command -v clang++)")")/../lib/libomp.so"
 	cmake --build build/gcc-libomp $(jobs) --target carom
+
+# What is there, in one folder, lib/carom, which looks as a checkout does; and links to it.
+prefix := "$${PREFIX:-$$HOME/.local}"
+install: environment build-gcc build-clang ## install it, to be called `carom` in any folder (PREFIX=~/.local DESTDIR=)
+	cmake --install build/clang --prefix $(prefix) --component clang >/dev/null
+	cmake --install build/gcc --prefix $(prefix) --component gcc >/dev/null
+	echo "installed: $${DESTDIR-}"$(prefix)/bin/carom
+
+uninstall: ## remove what was installed (PREFIX= DESTDIR=)
+	place="$${DESTDIR-}"$(prefix); rm -rf "$$place/lib/carom"; rm -f "$$place/bin/carom" \
+		"$$place/share/man/man1/carom.1.gz" "$$place/share/bash-completion/completions/carom" \
+		"$$place/share/zsh/site-functions/_carom"
+
+package: environment build-gcc build-clang ## make a Debian package of it, for the distribution at hand (needs dpkg-dev)
+	command -v dpkg-shlibdeps >/dev/null || { echo "package: needs dpkg-shlibdeps (Debian: the package dpkg-dev)" >&2; exit 1; }
+	cd build/gcc && cpack -B ../package >/dev/null && rm -rf ../package/_CPack_Packages
+	ls build/package/*.deb
 
 test: settings lint-quick tests-gcc tests-clang ## build with both compilers and run every quick test
 	ctest --test-dir build/gcc --output-on-failure --no-tests=error -LE slow $(jobs)
@@ -152,41 +161,6 @@ experiments: environment settings ## run the study, then report (STUDY= SCALE= S
 appendix: ## draw the graphs of the published appendix, measuring what is missing (SCALE= RESULTS= BUDGET=)
 	$(MAKE) --no-print-directory experiments \
 		STUDY=neighbourhood,self_contained_checkered,self_contained_track,self_contained_repeat,schedule_find,schedule_resolve,schedule_resolve_row
-
-status: environment ## what of the study is done, what is missing (STUDY= SCALE= SITE= RESULTS=)
-	$(python) experiments status $(study) $(results)
-
-submit: environment ## hand what is missing to a Slurm cluster (SITE= STUDY= SCALE= RESULTS= DRY_RUN=1)
-	$(call need,SITE,the site of a cluster (a file *.toml))
-	$(python) experiments submit $(study) $(results) $(dry_run)
-
-resume: environment ## hand it again what is missing of all that was submitted (SITE= RESULTS= DRY_RUN=1)
-	$(call need,SITE,the site of a cluster (a file *.toml))
-	$(python) experiments resume $(study) $(results) $(dry_run)
-
-collect: environment ## merge a cluster's records, or another folder's, into RESULTS (SITE= or FROM=)
-	test -n "$${FROM-}" || $(call need,SITE,the site of a cluster (a file *.toml) or FROM= with a results folder)
-	$(python) experiments collect $(study) $(results) $${FROM:+"$$FROM"}
-
-figures: environment ## draw the figures of whatever is there (RESULTS=)
-	$(python) analysis figures $(results)
-
-report: environment ## write the report of whatever is there (RESULTS=; STUDY= puts questions first)
-	$(python) analysis report $(results) $${STUDY:+--study "$$STUDY"}
-
-movie: environment ## draw a run (SCENE= OUT=*.mp4|*.gif|*.png VARIANT= STEP=)
-	$(call need,SCENE,a scene file (make movie SCENE=scene.in))
-	$(python) analysis movie "$$SCENE" $(picture)
-	$(MAKE) --no-print-directory build
-	folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
-	"build/$$COMPILER/carom" run "$$SCENE" --variant "$${VARIANT:-published}" --trajectory "$$folder/trajectory" && \
-	$(python) analysis movie "$$SCENE" "$$folder/trajectory" $(picture)
-
-# What is undecided (4) is an answer, and no failure of the command.
-compare: environment ## compare two results folders (A= B=); fails if something is slower
-	$(call need,A,a results folder)
-	$(call need,B,the results folder to compare with it)
-	code=0; $(python) analysis compare "$$A" "$$B" || code=$$?; case $$code in 4) ;; *) exit $$code;; esac
 
 calibration-gcc: calibration-%: settings
 	$(call own_build,build/$*)

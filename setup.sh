@@ -134,6 +134,7 @@ identity() { "$1" -c 'import sys; print(sys.base_prefix, sys.version)' 2>/dev/nu
 environment_is_current() {
     local now
     cmp -s requirements.txt .venv/requirements.txt && now=$(identity .venv/bin/python) &&
+        compgen -G '.venv/lib/python*/site-packages/carom.pth' >/dev/null &&
         [[ -z ${PYTHON:-} || $now == "$(identity "$PYTHON")" ]]
 }
 
@@ -147,6 +148,8 @@ make_environment() {
         rm -rf .venv
         fail "pip could not install requirements.txt into .venv (its reason is above); run make setup again"
     fi
+    # Lets it find the packages of this checkout from any folder.
+    echo ../../../.. >"$(echo .venv/lib/python*/site-packages)/carom.pth"
     # Copied last: it says that the environment is whole.
     cp requirements.txt .venv/requirements.txt
 }

@@ -1,4 +1,4 @@
-"""The command line: `python -m analysis figures | report | claims | compare | movie ...`."""
+"""The verbs of `carom` that tell of what was measured: report, claims, figures, movie and a few more."""
 
 import argparse
 import io
@@ -47,7 +47,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="python -m analysis", description=__doc__)
+    parser = _Parser(prog="carom", description=__doc__)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name, run, text in (
         ("figures", _figures, "draw the figures of whatever records are there"),
@@ -74,7 +74,7 @@ def _parser() -> argparse.ArgumentParser:
         if name == "figures":
             command.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
         command.set_defaults(run=run)
-    text = "tell how often verdicts are wrong here, from what `experiments calibrate` measured"
+    text = "tell how often verdicts are wrong here, from what `carom study calibrate` measured"
     calibration = commands.add_parser("calibration", help=text, description=text)
     told = "default: results/calibration"
     calibration.add_argument(
@@ -92,9 +92,12 @@ def _parser() -> argparse.ArgumentParser:
     compare.set_defaults(run=_compare)
     text = "draw a run as an animation, or one step of it as a picture"
     movie = commands.add_parser("movie", help=text, description=text)
-    movie.add_argument("scene", type=Path, metavar="SCENE", help="the scene file that was run")
-    told = "from `carom run --trajectory`; without it, only see whether the movie could be drawn"
+    movie.add_argument("scene", type=Path, metavar="SCENE", help="a scene file")
+    told = "its run, from `carom run --trajectory`; without it the scene is simulated"
     movie.add_argument("trajectory", type=Path, nargs="?", metavar="TRAJECTORY", help=told)
+    told = "what simulates it (default: %(default)s)"
+    movie.add_argument("--variant", default="published", metavar="NAME", help=told)
+    movie.add_argument("--program", type=Path, help=argparse.SUPPRESS)  # `carom` tells where it is
     movie.add_argument("--output", type=Path, metavar="FILE", help="*.mp4 (needs ffmpeg), *.gif or *.png")
     movie.add_argument("--step", type=_step, metavar="S", help="of a picture (default: the last)")
     movie.set_defaults(run=_movie)
@@ -229,12 +232,20 @@ def _compare(options: argparse.Namespace) -> int:
 
 
 def _movie(options: argparse.Namespace) -> int:
-    if options.trajectory is None:
-        from analysis.commands.movie_file import target_of
+    from analysis.commands.movie_file import target_of
 
-        target_of(options.scene, options.output, options.step)
-        return 0
+    target_of(options.scene, options.output, options.step)  # a mistake is told before anything is simulated
     from analysis.commands import movie
+    from analysis.commands.simulated import ProgramFailed, simulated
 
-    print(movie.draw(options.scene, options.trajectory, options.output, options.step))
+    if options.trajectory is not None:
+        print(movie.draw(options.scene, options.trajectory, options.output, options.step))
+        return 0
+    if options.program is None:
+        raise InputError("TRAJECTORY: missing, expected a file that `carom run --trajectory` wrote")
+    try:
+        with simulated(options.program, options.scene, options.variant) as trajectory:
+            print(movie.draw(options.scene, trajectory, options.output, options.step))
+    except ProgramFailed as failed:
+        return failed.exit_code
     return 0

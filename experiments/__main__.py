@@ -1,9 +1,10 @@
-"""`python -m experiments`: plan, run and look after the study."""
+"""`carom study`: plan, run and look after a study."""
 
 import argparse
 import io
 import os
 import signal
+import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
@@ -31,6 +32,7 @@ from experiments.slurm.task import work
 from experiments.support.descendants import hear_of_ends
 from experiments.support.errors import InputError, Interrupted, cannot
 from experiments.support.files import require_room_for_folder
+from experiments.support.home import analysis
 
 # Slurm sends SIGUSR1 ahead of a task's time limit.
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)
@@ -93,7 +95,7 @@ def _builds(options: argparse.Namespace) -> int:
     questions = load_questions(options.questions, options.study)
     where = load_site(options.site)
     if where.cluster is not None:
-        raise InputError(f"site {where.name}: is a cluster; use `make submit SITE={options.site}`")
+        raise InputError(f"site {where.name}: is a cluster; use `carom study submit --site {options.site}`")
     require_room_for_folder("results", options.results)
     asked = {GENERATOR}.union(*(one.programs for one in questions))
     print(*(name for name in where.programs if name in asked))
@@ -117,6 +119,11 @@ def _collect(options: argparse.Namespace) -> int:
     return code
 
 
+def _calibrate(options: argparse.Namespace) -> int:
+    """Measure, then tell."""
+    return calibrate(options) or subprocess.call(analysis("calibration", "--results", str(options.results)))
+
+
 def _settings(options: argparse.Namespace) -> Settings:
     """Every setting is an option."""
     require_room_for_folder("results", options.results)
@@ -128,15 +135,17 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Say what is wrong and leave."""
-        print(f"{message} (see `python -m experiments --help`)", file=sys.stderr)
+        print(f"{message} (see `{self.prog} --help`)", file=sys.stderr)
         raise SystemExit(1)
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="python -m experiments", description=__doc__)
+    parser = _Parser(prog="carom study", description="Plan, run and look after a study.")
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     for name, verb in _VERBS.items():
-        verb.add_options(verbs.add_parser(name, help=verb.told, description=verb.told))
+        # What only the runner and batch scripts call is not listed.
+        listed = {} if name in _CALLED_BY_PROGRAMS else {"help": verb.told}
+        verb.add_options(verbs.add_parser(name, description=verb.told, **listed))
     return parser
 
 
@@ -168,6 +177,11 @@ def _add_submit_options(parser: argparse.ArgumentParser) -> None:
 def _add_collect_options(parser: argparse.ArgumentParser) -> None:
     _add_options(parser)
     parser.add_argument("folders", type=Path, nargs="*", help="results folders (default: those of --site)")
+
+
+def _add_compare_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("first", type=Path, metavar="A")
+    parser.add_argument("second", type=Path, metavar="B")
 
 
 def _add_new_options(parser: argparse.ArgumentParser) -> None:
@@ -218,12 +232,19 @@ _VERBS = {
         _add_work_options,
     ),
     "calibrate": _Verb(
-        "measure contenders whose true ratios are known, to see how often verdicts are wrong here",
-        calibrate,
+        "measure contenders whose true ratios are known, and tell how often verdicts are wrong here",
+        _calibrate,
         add_calibrate_options,
     ),
     "collect": _Verb("merge other results folders into this one", _collect, _add_collect_options),
+    "compare": _Verb(
+        "compare results folder B with A; exit code 3: something is slower; 4: something is undecided",
+        lambda options: subprocess.call(analysis("compare", str(options.first), str(options.second))),
+        _add_compare_options,
+    ),
 }
+
+_CALLED_BY_PROGRAMS = ("builds", "work")
 
 
 def names(text: str) -> tuple[str, ...]:

@@ -1,15 +1,21 @@
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
 #include <exception>
+#include <initializer_list>
 #include <iostream>
 #include <memory>
 #include <new>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "harness/command_line/help.hpp"
+#include "harness/command_line/python_verbs.hpp"
 #include "harness/command_line/usage_errors.hpp"
 #include "harness/commands/commands.hpp"
+#include "harness/machine/provenance.hpp"
 #include "harness/machine/waiting.hpp"
 #include "harness/support/errors.hpp"
 
@@ -21,21 +27,31 @@ int fail(int code, const char* message) {
     return code;
 }
 
+using AddVerb = void (*)(CLI::App&);
+
+void add_group(CLI::App& program, const char* group, std::initializer_list<AddVerb> verbs) {
+    const auto all = [](const CLI::App*) { return true; };
+    const std::size_t before = program.get_subcommands(all).size();
+    for (const AddVerb add : verbs) {
+        add(program);
+    }
+    const auto added = program.get_subcommands(all);
+    for (std::size_t verb = before; verb < added.size(); ++verb) {
+        added[verb]->group(group);
+    }
+}
+
 void add_verbs(CLI::App& program) {
-    carom::add_list_command(program);
-    carom::add_run_command(program);
-    carom::add_check_command(program);
-    carom::add_bench_command(program);
-    carom::add_turns_command(program);
-    carom::add_processes_command(program);
-    carom::add_profile_command(program);
-    carom::add_generate_command(program);
-    carom::add_reference_command(program);
-    carom::add_doctor_command(program);
-    carom::add_limits_command(program);
-    carom::add_outside_command(program);
-    carom::add_promises_command(program);
-    carom::add_help_command(program);
+    using namespace carom;
+    add_group(program, groups::simulate,
+              {add_run_command, add_check_command, add_reference_command, add_generate_command,
+               add_list_command, add_movie_command});
+    add_group(program, groups::study, {add_study_commands});
+    add_group(program, groups::machine,
+              {add_doctor_command, add_limits_command, add_bench_command, add_profile_command});
+    add_group(program, groups::none,
+              {add_turns_command, add_processes_command, add_outside_command, add_promises_command,
+               add_help_command});
     program.footer(
         "Exit codes: 0 done; 1 wrong usage or bad input, told in one line; 2 a result failed its check; "
         "3 this build has not what was asked for. A scene of `-` is read from standard input.");
@@ -45,6 +61,11 @@ void add_verbs(CLI::App& program) {
 
 int main(int count, char** arguments) {
     carom::settle_waiting();
+    try {
+        carom::hand_over(std::vector<std::string>(arguments + 1, arguments + count));
+    } catch (const carom::InputError& error) {
+        return fail(1, error.what());
+    }
     // A file that may not grow further is then told as a full disk is, in one line.
     std::signal(SIGXFSZ, SIG_IGN);
     // Whoever started this may ignore it, and the system would not tell how a child ended.
@@ -52,7 +73,8 @@ int main(int count, char** arguments) {
     CLI::App program("Carom: a performance study of colliding discs that checks itself", "carom");
     program.formatter(std::make_shared<carom::Help>());
     program.require_subcommand(1);
-    program.set_version_flag("--version", "carom " CAROM_VERSION, "Print the version and exit");
+    program.set_version_flag("--version", "carom " CAROM_VERSION " (" + carom::commit_text() + ")",
+                             "Print the version and the commit that it was built from, and exit");
     program.set_help_all_flag("--help-all", "Print the help of every verb");
     add_verbs(program);
     try {

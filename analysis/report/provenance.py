@@ -121,7 +121,7 @@ def verbs(records: Records, questions: str) -> list[str]:
     studies = [
         f"make experiments{_study(records, scale)} SCALE={scale}{setting(questions)}" for scale in scales
     ]
-    return ["make setup", *(builds or ["make build"]), *(studies or ["make experiments"]), "make report"]
+    return ["make setup", *(builds or ["make build"]), *(studies or ["make experiments"]), "carom report"]
 
 
 def _study(records: Records, scale: str) -> str:

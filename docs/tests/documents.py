@@ -64,11 +64,12 @@ def write_file(block: Block, folder: Path) -> None:
 
 
 def output_of(script: str, folder: Path) -> str:
-    """What a script prints that is run as a reader would."""
+    """What a script prints that is run as a reader would, who has the program on the path."""
     left_out = ("MAKE", "OMP_", "PYTEST")
     settings = {key: value for key, value in os.environ.items() if not key.startswith(left_out)}
     # More threads than idle processors must not spin for each other.
     settings["OMP_WAIT_POLICY"] = "passive"
+    settings["PATH"] = f"{folder / 'build' / 'gcc'}{os.pathsep}{settings['PATH']}"
     done = subprocess.run(
         ["bash", "-euo", "pipefail", "-c", script],
         cwd=folder, env=settings, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,

@@ -151,13 +151,14 @@ def test_without_root_there_are_instructions_and_nothing_else(machine: Machine) 
 def test_the_two_commands_as_a_user_with_sudo(machine: Machine) -> None:
     clone(machine, "sudoer")
     (commands,) = shell("README.md", "fresh")
-    experiments, test = commands.text.splitlines()
+    experiments, test, install = commands.text.splitlines()
     assert "missing packages" in machine.succeed(
         "sudoer", f"cd carom && {experiments.split('#')[0]} SCALE=quick"
     )
     report = machine.root / "home" / "sudoer" / "carom" / "results" / "report.html"
     assert report.stat().st_size > 100_000
     machine.succeed("sudoer", f"cd carom && {test}")
+    machine.succeed("sudoer", f"cd carom && {install}")
     for block in shell("docs/tutorial.md", "fresh"):
         machine.succeed("sudoer", f"cd carom && {block.text}")
     assert machine.succeed("sudoer", "cd carom && git status --porcelain") == ""

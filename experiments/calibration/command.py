@@ -15,6 +15,7 @@ from experiments.plan.site import load_site, this_machine
 from experiments.run.progress import Report
 from experiments.support.errors import InputError
 from experiments.support.files import locked, read_json, require_room_for_folder, write_json
+from experiments.support.home import BUILDS
 
 FILE = "calibration.json"
 UNFINISHED = "unfinished.json"
@@ -32,7 +33,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     told = "how long each of the six streams is measured (default: %(default)g)"
     parser.add_argument("--seconds", type=_seconds, default=60.0, help=told)
     told = "folder of the programs (default: %(default)s)"
-    parser.add_argument("--build", type=Path, default=Path("build"), help=told)
+    parser.add_argument("--build", type=Path, default=BUILDS, help=told)
 
 
 def calibrate(options: argparse.Namespace) -> int:

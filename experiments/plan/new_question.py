@@ -32,5 +32,5 @@ def new_question(name: str, folder: Path) -> int:
     text = TEMPLATE.read_text(encoding="utf-8").replace("NAME.txt", sorted_file.name)
     asked, results = shlex.quote(str(folder)), shlex.quote(str(folder / "results"))
     question.write_text(text.replace("FOLDER", asked), encoding="utf-8")
-    print(f"{question}: edit it, then `make experiments QUESTIONS={asked} RESULTS={results}`")
+    print(f"{question}: edit it, then `carom study run --questions {asked} --results {results}`")
     return 0

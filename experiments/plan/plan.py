@@ -8,7 +8,7 @@ from typing import Any
 from experiments.plan.blocks import orders
 from experiments.plan.command import SCENE, Command, Place, command_of
 from experiments.plan.point import Point
-from experiments.plan.program import GENERATOR, Program, variants
+from experiments.plan.program import GENERATOR, SHORT_NAMES, Program, variants
 from experiments.plan.question import NamedScene, Question, Threads
 from experiments.plan.scale import Scale
 from experiments.plan.scenes import AnyScene, NoScene, Scene
@@ -120,10 +120,10 @@ def _known(question: Question, number: int, series: Series, around: Surroundings
             f"{nearest(series.program, names)}"
         )
     program = around.programs[series.program]
-    if program.sha256 is not None and series.variant not in variants(program):
+    if program.sha256 is not None and series.variant not in (*SHORT_NAMES, *variants(program)):
         raise InputError(
-            f'{key}.variant: found "{series.variant}", expected a name out of `carom list --names`'
-            f"{nearest(str(series.variant), variants(program))}"
+            f'{key}.variant: found "{series.variant}", expected a name out of `carom list --names`, or one of '
+            f"{', '.join(SHORT_NAMES)}{nearest(str(series.variant), [*SHORT_NAMES, *variants(program)])}"
         )
     return series
 

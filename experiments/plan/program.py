@@ -20,6 +20,12 @@ GENERATOR = "gcc"
 """The build that makes the scenes, whichever is measured."""
 
 
+SHORT_NAMES = ("auto", "fastest")
+"""What the program understands beside the names of its variants: the fastest for the scene at hand, and the
+one that is the fastest for all but the smallest scenes.
+"""
+
+
 @dataclass(frozen=True)
 class Program:
     """One build of the program, or somebody else's; without a SHA-256 where it is not built."""

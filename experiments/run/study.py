@@ -1,7 +1,6 @@
 """The study as the command line asks for it: its questions planned, its results folder, its schedule."""
 
 import json
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,8 +20,8 @@ from experiments.run.schedule import Schedule
 from experiments.run.written import first_seen
 from experiments.support.errors import InputError
 from experiments.support.files import write_text
+from experiments.support.home import BUILDS, ROOT, analysis
 
-ROOT = question.FOLDER.parents[1]
 COSTS = "costs.json"
 FINISHED = "finished.json"
 BEGUN = "begun.json"
@@ -38,7 +37,7 @@ class Settings:
     scale: str = "paper"
     site: str = "local"
     results: Path = Path("results")
-    build: Path = Path("build")
+    build: Path = BUILDS
     builds: tuple[str, ...] = ()
     questions: Path = question.FOLDER
     blocks: int | None = None
@@ -58,7 +57,7 @@ class Study:
         self.scale = find_scale(settings.scale)
         self.budget_seconds = settings.budget_seconds or self.scale.budget_seconds
         if self.site.cluster is not None and machine is None:
-            raise InputError(f"site {self.site.name}: is a cluster; use `make submit SITE={settings.site}`")
+            raise InputError(f"site {self.site.name}: is a cluster; use `carom study submit --site {settings.site}`")
         programs = find_programs(self.site, settings.build)
         self.generator: Program = programs[GENERATOR]
         if self.generator.sha256 is None:
@@ -86,7 +85,7 @@ class Study:
     def analysis_command(self) -> list[str]:
         """What says what is open, and writes the report."""
         asked = ["--study", ",".join(self.settings.study)] if self.settings.study else []
-        return [sys.executable, "-m", "analysis", "follow", "--results", str(self.store.root), *asked]
+        return analysis("follow", "--results", str(self.store.root), *asked)
 
     def scenes(self) -> SceneFolder:
         """The generated scenes; the results folder must be held."""

@@ -9,8 +9,8 @@ import jinja2
 
 from experiments.plan.cluster import Partition
 from experiments.support.errors import InputError
+from experiments.support.home import ROOT
 
-ROOT = Path(__file__).parents[2]
 COMPILERS = {"gcc": "g++", "clang": "clang++"}
 
 

@@ -51,7 +51,7 @@ def resume(settings: Settings, *, dry_run: bool = False) -> int:
     """Submit what is missing of all that has been submitted before, at the scale of the last time."""
     chosen = submitted(settings)
     if chosen is None:
-        raise InputError(f"site {settings.site}: nothing has been submitted yet; `make submit` does it")
+        raise InputError(f"site {settings.site}: nothing has been submitted yet; `carom study submit` does it")
     return submit(chosen, dry_run=dry_run)
 
 

@@ -207,7 +207,7 @@ class Workplace:
         return sum("--tag" in call["words"] for call in self.calls())
 
     def rows(self) -> dict[str, status.Row]:
-        """Question -> its line of `make status`."""
+        """Question -> its line of `carom study status`."""
         study = Study(self.settings)
         return {row.name: row for row in status.rows(study.store, study.experiments)}
 

@@ -71,12 +71,12 @@ def test_a_new_question_tells_a_command_that_a_shell_understands(
 ) -> None:
     folder = tmp_path / "my questions"
     assert main(["new", "mine", "--questions", str(folder)]) == 0
-    assert f"`make experiments QUESTIONS='{folder}' RESULTS='{folder}/results'`" in capsys.readouterr().out
-    assert f"QUESTIONS='{folder}' RESULTS='{folder}'/results\n" in (folder / "mine.toml").read_text()
+    assert f"`carom study run --questions '{folder}' --results '{folder}/results'`" in capsys.readouterr().out
+    assert f"--questions '{folder}' --results '{folder}'/results\n" in (folder / "mine.toml").read_text()
 
 
 MISTAKES = {
-    "verb": (["walk"], r"argument VERB: invalid choice: 'walk' .*\(see `python -m experiments --help`\)"),
+    "verb": (["walk"], r"argument VERB: invalid choice: 'walk' .*\(see `carom study --help`\)"),
     "scale": (["run", "--scale", "pape"], r'scale: found "pape", expected one of .*; did you mean "paper"\?'),
     "study": (["run", "--study", "pears"], r'study: found "pears", expected the name of a question; did .*'),
     "no study": (["run", "--study", "x"], r'study: found "x", expected names out of chunks, control, pair'),
@@ -105,7 +105,7 @@ MISTAKES = {
     ),
     "builds for a cluster": (
         ["builds", "--site", "example-slurm"],
-        r"site example-slurm: is a cluster; use `make submit SITE=example-slurm`",
+        r"site example-slurm: is a cluster; use `carom study submit --site example-slurm`",
     ),
     "build": (
         ["status", "--build", "nowhere"],

@@ -10,27 +10,9 @@
 namespace carom {
 namespace {
 
-constexpr std::size_t columns = 80;
 constexpr std::size_t column_of_text = 30;
 
 using Options = std::vector<const CLI::Option*>;
-
-/// Breaks one line at its spaces; what follows a break is indented by so many columns.
-std::string wrapped(std::string line, std::size_t indent) {
-    std::string text;
-    while (line.size() > columns) {
-        std::size_t end = line.rfind(' ', columns);
-        if (end == std::string::npos || end <= indent) {
-            end = line.find(' ', columns);
-        }
-        if (end == std::string::npos) {
-            break;
-        }
-        text += line.substr(0, end) + '\n';
-        line = std::string(indent, ' ') + line.substr(end + 1);
-    }
-    return text + line + '\n';
-}
 
 /// What stands on the left, and what is told of it on the right, or below if the left is too long.
 std::string entry(const std::string& left, const std::string& right) {
@@ -57,53 +39,76 @@ std::string told_of(const CLI::Option& option) {
     return text;
 }
 
-std::string arguments_text(const Options& arguments) {
-    std::string text = arguments.empty() ? "" : "\nArguments:\n";
-    for (const CLI::Option* option : arguments) {
-        text += entry(with_default(option->get_name(true), *option), told_of(*option));
+Options positional(const CLI::App& app) {
+    return app.get_options([](const CLI::Option* option) { return option->get_positional(); });
+}
+
+std::string under(const std::string& heading, const std::vector<HelpEntry>& entries) {
+    std::string text = entries.empty() ? "" : "\n" + heading + ":\n";
+    for (const auto& [left, right] : entries) {
+        text += entry(left, right);
     }
     return text;
 }
 
-std::string options_text(const Options& options) {
-    std::string text = options.empty() ? "" : "\nOptions:\n";
-    for (const CLI::Option* option : options) {
+/// The verbs of a group, with their whole help or a line each.
+std::string group_text(const CLI::App& app, const std::string& name, const std::string& group, bool whole) {
+    std::string text;
+    std::vector<HelpEntry> lines;
+    for (const CLI::App* verb : verbs_of(app, group)) {
+        text += whole ? "\n" + verb->help(name) : "";
+        lines.push_back({verb->get_name(), verb->get_description()});
+    }
+    return whole ? text : under(group, lines);
+}
+
+std::string verbs_text(const CLI::App& app, const std::string& name, bool whole) {
+    std::string text;
+    for (const char* group : {groups::simulate, groups::study, groups::machine}) {
+        text += group_text(app, name, group, whole);
+    }
+    return whole ? text + group_text(app, name, groups::none, whole) : text;
+}
+
+} // namespace
+
+std::vector<HelpEntry> arguments_of(const CLI::App& verb) {
+    std::vector<HelpEntry> entries;
+    for (const CLI::Option* option : positional(verb)) {
+        entries.push_back({with_default(option->get_name(true), *option), told_of(*option)});
+    }
+    return entries;
+}
+
+std::vector<HelpEntry> options_of(const CLI::App& verb) {
+    std::vector<HelpEntry> entries;
+    for (const CLI::Option* option : verb.get_options([](const auto* one) { return one->nonpositional(); })) {
         const bool takes_a_value = option->get_items_expected_max() > 0;
-        const std::string type = takes_a_value ? " " + option->get_type_name() : "";
         const std::string names = option->get_name(false, true);
-        text += entry(takes_a_value ? with_default(names + type, *option) : names, told_of(*option));
+        const std::string typed = takes_a_value ? names + " " + option->get_type_name() : names;
+        entries.push_back({takes_a_value ? with_default(typed, *option) : typed, told_of(*option)});
     }
-    return text;
+    return entries;
 }
 
-/// "Usage: carom run [OPTIONS] SCENE [THREADS]".
-std::string usage(const CLI::App& app, const std::string& name, const Options& arguments) {
-    std::string line = "Usage: " + name + " [OPTIONS]";
-    for (const CLI::Option* option : arguments) {
+std::string usage_of(const CLI::App& app, const std::string& name) {
+    std::string line = name + " [OPTIONS]";
+    for (const CLI::Option* option : positional(app)) {
         const std::string many = option->get_items_expected_max() > 1 ? "..." : "";
         const std::string shown = option->get_name(true) + many;
         line += option->get_required() ? " " + shown : " [" + shown + "]";
     }
     const bool has_verbs = !app.get_subcommands([](const CLI::App*) { return true; }).empty();
-    return wrapped(line + (has_verbs ? " VERB" : ""), 2);
+    return line + (has_verbs ? " VERB" : "");
 }
 
-std::string verbs_text(const CLI::App& app, const std::string& name, bool whole) {
-    std::string text;
-    for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-        text += whole ? "\n" + verb->help(name) : entry(verb->get_name(), verb->get_description());
-    }
-    return text.empty() || whole ? text : "\nVerbs:\n" + text;
+std::vector<const CLI::App*> verbs_of(const CLI::App& program, const std::string& group) {
+    return program.get_subcommands([&](const CLI::App* verb) { return verb->get_group() == group; });
 }
-
-} // namespace
 
 std::string Help::make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const {
-    const auto arguments =
-        app->get_options([](const CLI::Option* option) { return option->get_positional(); });
-    const auto options = app->get_options([](const CLI::Option* option) { return option->nonpositional(); });
-    std::string text = wrapped(app->get_description(), 0) + usage(*app, name, arguments) +
-                       arguments_text(arguments) + options_text(options) +
+    std::string text = wrapped(app->get_description(), 0) + wrapped("Usage: " + usage_of(*app, name), 2) +
+                       under("Arguments", arguments_of(*app)) + under("Options", options_of(*app)) +
                        verbs_text(*app, name, mode == CLI::AppFormatMode::All);
     const std::string footer = app->get_footer();
     return text + (footer.empty() ? "" : "\n" + wrapped(footer, 2));

@@ -31,7 +31,7 @@ constexpr std::size_t fewest_discs_for_threads = 500;
 constexpr std::size_t fewest_discs_to_share_processors = 50'000;
 
 std::vector<std::string> variant_names() {
-    std::vector<std::string> names{automatic};
+    std::vector<std::string> names{automatic, fastest_name};
     for (const Variant& variant : variants()) {
         names.emplace_back(variant.name);
     }
@@ -41,7 +41,7 @@ std::vector<std::string> variant_names() {
 
 /// The variant that may have been meant.
 std::string suggested_variant(const std::string& name) {
-    constexpr std::array<std::string_view, 4> superlatives{"fastest", "automatic", "best", "default"};
+    constexpr std::array<std::string_view, 3> superlatives{"automatic", "best", "default"};
     return std::ranges::find(superlatives, name) != superlatives.end() ? automatic
                                                                        : nearest(name, variant_names());
 }
@@ -129,6 +129,9 @@ void note_withheld_threads(const SimulationOptions& options) {
 }
 
 const Variant& require_variant(const std::string& name) {
+    if (name == fastest_name) {
+        return fastest_variant();
+    }
     if (const Variant* variant = find_variant(name)) {
         return *variant;
     }

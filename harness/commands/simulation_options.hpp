@@ -22,6 +22,9 @@ struct SimulationOptions {
 /// The name that stands for the fastest variant for the scene.
 inline constexpr auto automatic = "auto";
 
+/// The short name of the variant that is the fastest for all but the smallest scenes.
+inline constexpr auto fastest_name = "fastest";
+
 /// Adds SCENE, THREADS, --variant, --threads and the tunings. `options` holds the defaults.
 void add_simulation_options(CLI::App& command, SimulationOptions& options);
 

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "harness/doctor/doctor.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -18,18 +18,9 @@ class Screen {
   public:
     void line(const std::string& label, const std::string& text) {
         constexpr std::size_t indent = 12;
-        constexpr std::size_t width = 80;
-        std::string current = label;
-        std::istringstream words(text);
-        for (std::string word; words >> word;) {
-            if (current.size() + 1 + word.size() > width) {
-                text_ += current + "\n";
-                current.clear();
-            }
-            current.resize(std::max(current.size(), indent - 1), ' ');
-            current += " " + word;
-        }
-        text_ += current + "\n";
+        std::string begun = label;
+        begun.resize(std::max(label.size() + 1, indent), ' ');
+        text_ += wrapped(begun + text, indent);
     }
 
     const std::string& text() const { return text_; }
@@ -58,8 +49,7 @@ std::string bytes(const Json& value) {
 }
 
 std::string plural(const Json& count, const std::string& one) {
-    return count.is_null() ? one + "s not told"
-                           : std::to_string(count.get<int>()) + " " + one + (count == 1 ? "" : "s");
+    return count.is_null() ? one + "s not told" : counted(count.get<int>(), one);
 }
 
 /// A text, or on and off for a yes or no; `unknown` for null.
@@ -136,7 +126,7 @@ void show_openmp(const Json& openmp, Screen& screen) {
     for (const auto& [name, value] : openmp["environment"].items()) {
         environment += " " + name + "=" + value.get<std::string>();
     }
-    screen.line("", environment.empty() ? "no OMP_*, GOMP_* or KMP_* variable is set" : environment);
+    screen.line("", environment.empty() ? "no OMP_*, GOMP_* or KMP_* variable is set" : environment.substr(1));
 }
 
 /// The events that are missing for one reason together, in the order in which the reasons come up.

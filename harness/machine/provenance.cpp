@@ -51,6 +51,15 @@ Json slurm_json() {
 
 } // namespace
 
+std::string commit_text() {
+    const std::string commit = build_info::commit;
+    if (commit.empty()) {
+        return "unknown commit";
+    }
+    const bool is_changed = std::string(build_info::dirty) == "true";
+    return "commit " + commit.substr(0, 12) + (is_changed ? " with changes" : "");
+}
+
 Json provenance_json(int threads) {
     // It stays the same, too.
     static const Machine machine = read_machine();

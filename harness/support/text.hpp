@@ -65,6 +65,25 @@ inline std::string on_one_line(std::string_view text, std::size_t longest = 200)
     return shown + (text.size() > longest ? "..." : "");
 }
 
+/// Breaks one line at its spaces so that it fits a terminal of 80 columns; what follows a break is indented by so
+/// many of them. The end of the last line is in it.
+inline std::string wrapped(std::string line, std::size_t indent) {
+    constexpr std::size_t columns = 80;
+    std::string text;
+    while (line.size() > columns) {
+        std::size_t end = line.rfind(' ', columns);
+        if (end == std::string::npos || end <= indent) {
+            end = line.find(' ', columns);
+        }
+        if (end == std::string::npos) {
+            break;
+        }
+        text += line.substr(0, end) + '\n';
+        line = std::string(indent, ' ') + line.substr(end + 1);
+    }
+    return text + line + '\n';
+}
+
 /// "1 disc", "2 discs".
 template <class Count> std::string counted(Count count, const std::string& one) {
     return number_text(count) + " " + one + (count == 1 ? "" : "s");

@@ -145,14 +145,33 @@ def test_what_cannot_be_drawn_is_one_line(
     assert sorted(scene.parent.iterdir()) == there
 
 
-def test_without_a_run_it_is_only_seen_whether_it_could_be_drawn(
-    scene: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+def test_without_a_run_it_is_simulated_by_the_program(
+    scene: Path, trajectory: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.chdir(scene.parent)
-    assert main(["movie", str(scene), "--output", "run.gif"]) == 0
-    assert main(["movie", str(scene), "--step", "2"]) == 0
-    assert capsys.readouterr() == ("", "")
-    assert [path.name for path in scene.parent.iterdir()] == ["scene.in"]
+    program = tmp_path / "program"
+    program.write_text(f'#!/bin/sh\necho "$1 $4"\ncp {trajectory} "$6"\n')
+    program.chmod(0o755)
+    target = tmp_path / "run.png"
+    words = ["movie", str(scene), "--variant", "nine", "--output", str(target), "--program", str(program)]
+    assert main(words) == 0
+    assert capfd.readouterr() == (f"run nine\n{target}\n", "")
+
+
+def test_what_the_program_refuses_is_the_exit_code_of_the_movie(
+    scene: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    program = tmp_path / "program"
+    program.write_text("#!/bin/sh\necho wrong >&2\nexit 2\n")
+    program.chmod(0o755)
+    words = ["movie", str(scene), "--output", str(tmp_path / "run.png"), "--program", str(program)]
+    assert main(words) == 2
+    assert capfd.readouterr() == ("", "wrong\n")
+    assert not (tmp_path / "run.png").exists()
+
+
+def test_a_movie_needs_a_run_or_the_program(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["movie", str(scene)]) == 1
+    assert capsys.readouterr().err.startswith("TRAJECTORY: missing, expected")
 
 
 def test_a_disc_of_a_movie_is_where_the_picture_has_it(scene: Path, trajectory: Path) -> None:

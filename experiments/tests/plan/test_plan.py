@@ -289,7 +289,8 @@ def test_what_cannot_be_judged_by_is_one_line(workplace: Workplace, line: str, m
 MISTAKES = {
     "variant": (
         PAIR.replace('variant = "nine"', 'variant = "nien"'),
-        'series[2].variant: found "nien", expected a name out of `carom list --names`; did you mean "nine"?',
+        'series[2].variant: found "nien", expected a name out of `carom list --names`, or one of auto, fastest; '
+        'did you mean "nine"?',
     ),
     "program": (
         PAIR.replace('variant = "nine"', 'variant = "nine"\nprogram = "clan"'),

@@ -157,7 +157,7 @@ def test_a_dry_run_writes_nothing_and_needs_no_cluster(workplace: Workplace) -> 
 
 def test_a_cluster_is_not_measured_from_here(workplace: Workplace) -> None:
     with pytest.raises(
-        InputError, match=r"site cluster: is a cluster; use `make submit SITE=\S+cluster.toml`"
+        InputError, match=r"site cluster: is a cluster; use `carom study submit --site \S+cluster.toml`"
     ):
         Study(replace(workplace.settings, site=site(workplace.root)))
 

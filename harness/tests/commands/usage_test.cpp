@@ -74,7 +74,7 @@ TEST_F(Usage, ANameThatIsNone) {
     EXPECT_TRUE(answers({"generate", "--case", "cradel"},
                         "--case: found 'cradel', expected a name from `carom generate --cases`; did you mean "
                         "'cradle'?"));
-    for (const std::string name : {"fastest", "best", "atuo"}) {
+    for (const std::string name : {"automatic", "best", "atuo"}) {
         EXPECT_TRUE(
             answers({"run", scene, "--variant", name},
                     "--variant: found '" + name + "', expected a name from `carom list`, such as 'auto'"));
