@@ -41,8 +41,8 @@ limits := $${BUDGET:+--budget "$$BUDGET"} $${UNTIL:+"--until-$$UNTIL"}
 #:   PYTHON=     the Python that makes .venv, 3.11 or newer (the system's)
 #:
 #: Exit codes: 0 done; else 2, and make's last line names that of the command, `Error N`:
-#:   1 wrong input or usage, told in one line; 2 a point or a check failed, as the report says; 3 of compare:
-#:   something is slower (what is undecided is told, and is no error); 130 stopped, the same command goes on.
+#:   1 wrong input or usage, told in one line; 2 a point or a check failed, as the report says; 130 stopped, the
+#:   same command goes on.
 settings := STUDY SCALE SITE QUESTIONS RESULTS BUDGET UNTIL DRY_RUN PREFIX DESTDIR COMPILER JOBS WERROR TIME PYTHON
 of_tools := CC CXX CFLAGS CXXFLAGS LDFLAGS MAKEFLAGS SHELL CMAKE_% CTEST_% CCACHE_% CAROM_% PYTEST_% OMP_% PIP_%
 given := $(foreach one,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(one)))),$(one)))
@@ -196,3 +196,5 @@ distclean: clean ## and .venv and caches; results/ always stays
 
 environment:
 	test -x .venv/bin/python || { echo "no .venv here: run \`make setup\` first" >&2; exit 1; }
+	cmp -s requirements.txt .venv/requirements.txt || { \
+		echo ".venv has not what requirements.txt asks for now: run \`make setup\` again" >&2; exit 1; }

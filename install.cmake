@@ -11,7 +11,7 @@ if(NOT build STREQUAL "gcc")
   return() # the rest comes with g++'s build, which is always there
 endif()
 
-foreach(package IN ITEMS analysis experiments)
+foreach(package IN ITEMS analysis experiments support)
   install(DIRECTORY ${package} DESTINATION ${home} COMPONENT gcc
     PATTERN tests EXCLUDE
     PATTERN __pycache__ EXCLUDE)
@@ -20,8 +20,8 @@ install(FILES harness/record.schema.json DESTINATION ${home}/harness COMPONENT g
 install(FILES VERSION LICENSE DESTINATION ${home} COMPONENT gcc)
 install(CODE "
   set(prefix \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\")
-  execute_process(COMMAND ${PROJECT_SOURCE_DIR}/install.sh \"\${prefix}\"
-    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} COMMAND_ERROR_IS_FATAL ANY)" COMPONENT gcc)
+  execute_process(COMMAND \"${PROJECT_SOURCE_DIR}/install.sh\" \"\${prefix}\"
+    WORKING_DIRECTORY \"${PROJECT_SOURCE_DIR}\" COMMAND_ERROR_IS_FATAL ANY)" COMPONENT gcc)
 
 # `make package`: both builds in one package, for the distribution that it is made on.
 set(CPACK_GENERATOR DEB)
@@ -32,5 +32,6 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libpango-1.0-0, libpangoft2-1.0-0, fonts-dejavu-core") # for the PDF of a report
 set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/package.cmake)
 include(CPack)

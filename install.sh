@@ -24,7 +24,7 @@ sed -i '/^command = /d' "$environment/pyvenv.cfg"
 packages=$(echo "$environment"/lib/python*/site-packages)
 echo ../../../.. >"$packages/carom.pth"
 # Written now, they belong to the installation: nothing is left behind when it is removed.
-"$environment/bin/python" -m compileall -q -f -s "$prefix" -p / "$home/analysis" "$home/experiments" "$packages"
+"$environment/bin/python" -m compileall -q -f ${DESTDIR:+-s "$DESTDIR"} "$home/analysis" "$home/experiments" "$home/support" "$packages"
 
 mkdir -p "$prefix/bin" "$prefix/share/man/man1" "$prefix/share/bash-completion/completions" \
     "$prefix/share/zsh/site-functions"

@@ -1,53 +1,28 @@
 """The verbs of `carom` that tell of what was measured: report, claims, figures, movie and a few more."""
 
 import argparse
-import io
 import json
-import os
 import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from analysis.records.reading import InputError
+from support.command_line import Parser, exit_code_of, print_anything
+from support.errors import InputError
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; return its exit code: 0 done, 1 bad input, and those of `compare`."""
+    """Run a verb; return its exit code: 0 done, 1 bad input, and those of `compare`."""
     # Where whoever started this ignores the ends of children, Python takes all of them for successes.
     if signal.getsignal(signal.SIGCHLD) is signal.SIG_IGN:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            # What a locale has no letters for is told in another way.
-            stream.reconfigure(errors="backslashreplace")
+    print_anything()
     options = _parser().parse_args(arguments)
-    try:
-        code = int(options.run(options))
-        sys.stdout.flush()  # here, so that what cannot be written is told below
-        return code
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 1
-    except BrokenPipeError:
-        # Whoever read the output, say `head`, has seen enough; Python would complain once more at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
-    except OSError as error:
-        reason = error.strerror or error
-        print(f"{error.filename or 'a file'}: {reason}, expected a writable place with room", file=sys.stderr)
-        return 1
-
-
-class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line and ends with exit code 1, as the rest of the project does."""
-
-    def error(self, message: str) -> None:  # type: ignore[override]
-        self.exit(1, f"{self.prog}: {message} (see --help)\n")
+    return exit_code_of(lambda: int(options.run(options)))
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="carom", description=__doc__)
+    parser = Parser(prog="carom", description=__doc__)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name, run, text in (
         ("figures", _figures, "draw the figures of whatever records are there"),
@@ -223,10 +198,11 @@ def _compare(options: argparse.Namespace) -> int:
     print("The folders were not interleaved: a change of the machine between them shows as a change of time.")
     code = comparison.exit_code(table)
     if code == comparison.SLOWER:
-        print(f"Slower (exit code {code} of analysis compare).")
+        print(f"Slower (exit code {code} of carom study compare).")
     elif code == comparison.UNDECIDED:
         print(
-            f"Undecided: more blocks or a quieter machine would tell (exit code {code} of analysis compare)."
+            f"Undecided: more blocks or a quieter machine would tell "
+            f"(exit code {code} of carom study compare)."
         )
     return code
 
@@ -236,7 +212,7 @@ def _movie(options: argparse.Namespace) -> int:
 
     target_of(options.scene, options.output, options.step)  # a mistake is told before anything is simulated
     from analysis.commands import movie
-    from analysis.commands.simulated import ProgramFailed, simulated
+    from analysis.commands.simulated import ProgramError, simulated
 
     if options.trajectory is not None:
         print(movie.draw(options.scene, options.trajectory, options.output, options.step))
@@ -246,6 +222,6 @@ def _movie(options: argparse.Namespace) -> int:
     try:
         with simulated(options.program, options.scene, options.variant) as trajectory:
             print(movie.draw(options.scene, trajectory, options.output, options.step))
-    except ProgramFailed as failed:
+    except ProgramError as failed:
         return failed.exit_code
     return 0

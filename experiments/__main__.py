@@ -1,8 +1,6 @@
 """`carom study`: plan, run and look after a study."""
 
 import argparse
-import io
-import os
 import signal
 import subprocess
 import sys
@@ -10,7 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from types import FrameType
-from typing import NoReturn
 
 from experiments.calibration.command import add_options as add_calibrate_options
 from experiments.calibration.command import calibrate
@@ -30,9 +27,10 @@ from experiments.slurm.status import show_cluster_status
 from experiments.slurm.submit import resume, submit
 from experiments.slurm.task import work
 from experiments.support.descendants import hear_of_ends
-from experiments.support.errors import InputError, Interrupted, cannot
-from experiments.support.files import require_room_for_folder
-from experiments.support.home import analysis
+from experiments.support.places import analysis
+from support.command_line import Parser, exit_code_of, print_anything
+from support.errors import InputError, Interrupted
+from support.files import require_room_for_folder
 
 # Slurm sends SIGUSR1 ahead of a task's time limit.
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)
@@ -41,34 +39,14 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb; returns the exit code. Bad input is one line on standard error and 1."""
     hear_of_ends()
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            # What a locale has no letters for is told in another way.
-            stream.reconfigure(errors="backslashreplace")
+    print_anything()
     for number in _SIGNALS:
         # What is ignored stays ignored: `nohup` relies on it.
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _interrupt)
     options = _parser().parse_args(arguments)
-    try:
-        code = _VERBS[options.verb].run(options)
-        sys.stdout.flush()  # here, so that what cannot be written is told below
-        return code
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 1
-    except BrokenPipeError:
-        # Whoever read the output, say `head`, has seen enough; Python would complain once more at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
-    except OSError as error:
-        # The disk is full, or the results folder cannot be written: nothing that is finished suffers from it.
-        print(f"{cannot(error)}; what is finished is kept, the same command goes on", file=sys.stderr)
-        return 1
-    except Interrupted as stopped:
-        told = "what is finished is kept; the same command goes on with the rest"
-        print(f"\nstopped: {told}", file=sys.stderr)
-        return 128 + stopped.signal_number
+    kept = "what is finished is kept; the same command goes on with the rest"
+    return exit_code_of(lambda: _VERBS[options.verb].run(options), kept)
 
 
 def _check(options: argparse.Namespace) -> int:
@@ -130,22 +108,15 @@ def _settings(options: argparse.Namespace) -> Settings:
     return Settings(**{field.name: getattr(options, field.name) for field in fields(Settings)})
 
 
-class _Parser(argparse.ArgumentParser):
-    """Wrong usage is one line and exit code 1, as for every other bad input."""
-
-    def error(self, message: str) -> NoReturn:
-        """Say what is wrong and leave."""
-        print(f"{message} (see `{self.prog} --help`)", file=sys.stderr)
-        raise SystemExit(1)
-
-
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="carom study", description="Plan, run and look after a study.")
+    parser = Parser(prog="carom study", description="Plan, run and look after a study.")
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     for name, verb in _VERBS.items():
         # What only the runner and batch scripts call is not listed.
-        listed = {} if name in _CALLED_BY_PROGRAMS else {"help": verb.told}
-        verb.add_options(verbs.add_parser(name, description=verb.told, **listed))
+        if name in _CALLED_BY_PROGRAMS:
+            verb.add_options(verbs.add_parser(name, description=verb.told))
+        else:
+            verb.add_options(verbs.add_parser(name, help=verb.told, description=verb.told))
     return parser
 
 

@@ -30,7 +30,7 @@ int fail(int code, const char* message) {
 using AddVerb = void (*)(CLI::App&);
 
 void add_group(CLI::App& program, const char* group, std::initializer_list<AddVerb> verbs) {
-    const auto all = [](const CLI::App*) { return true; };
+    const auto all = [](CLI::App*) { return true; };
     const std::size_t before = program.get_subcommands(all).size();
     for (const AddVerb add : verbs) {
         add(program);
@@ -62,7 +62,7 @@ void add_verbs(CLI::App& program) {
 int main(int count, char** arguments) {
     carom::settle_waiting();
     try {
-        carom::hand_over(std::vector<std::string>(arguments + 1, arguments + count));
+        carom::hand_over(std::vector<std::string>(arguments + (count > 0 ? 1 : 0), arguments + count));
     } catch (const carom::InputError& error) {
         return fail(1, error.what());
     }

@@ -80,16 +80,16 @@ template <Policies policies> struct Candidates {
         return carom::may_overlap(x + j, y + j, x[i], y[i], filter_reach_squared, end - j);
     }
 
-    /// Writes disc i with a set of the four discs from j on.
-    static OverlappingDiscs* write(int i, int j, unsigned set, OverlappingDiscs* found) {
+    /// Writes disc i with those of the four discs from j on that are in the bitmask.
+    static OverlappingDiscs* write(int i, int j, unsigned bitmask, OverlappingDiscs* found) {
         static_assert(sizeof(OverlappingDiscs) == 2 * sizeof(int));
         const FourInts first{i, i, i, i};
-        const FourInts second = members_from(j, set);
+        const FourInts second = compressed_indices(j, bitmask);
         const FourInts one_and_two = __builtin_shufflevector(first, second, 0, 4, 1, 5);
         const FourInts three_and_four = __builtin_shufflevector(first, second, 2, 6, 3, 7);
         std::memcpy(found, &one_and_two, sizeof one_and_two);
         std::memcpy(found + 2, &three_and_four, sizeof three_and_four);
-        return found + sets_of_four.count[set];
+        return found + compress_table.count[bitmask];
     }
 };
 

@@ -8,16 +8,17 @@
 #include <limits>
 
 // Four discs or contacts at a time, or two pairs, in registers, by GNU's vectors and one instruction of its
-// own. Which of the four something is true of is a set, in bits: that of the first one is the lowest.
+// own. A mask is -1 where something is true and 0 elsewhere; a bitmask has a bit for each of the four, that
+// of the first one the lowest.
 
 namespace carom {
 
 using FourFloats [[gnu::vector_size(16)]] = float;
 using FourInts [[gnu::vector_size(16)]] = int;
 
-/// Four truths, each -1 or 0, as a set.
-inline unsigned set_of(FourInts truths) {
-    const FourInts bits = truths & FourInts{1, 2, 4, 8};
+/// A mask as a bitmask.
+inline unsigned to_bitmask_portably(FourInts mask) {
+    const FourInts bits = mask & FourInts{1, 2, 4, 8};
     std::array<std::uint64_t, 2> halves;
     std::memcpy(halves.data(), &bits, sizeof halves);
     const std::uint64_t both = halves[0] | halves[1];
@@ -25,50 +26,50 @@ inline unsigned set_of(FourInts truths) {
 }
 
 /// The same, by the one instruction for it where there is one.
-inline unsigned fast_set_of(FourInts truths) {
+inline unsigned to_bitmask(FourInts mask) {
 #ifdef __SSE__
     FourFloats signs;
-    std::memcpy(&signs, &truths, sizeof signs);
+    std::memcpy(&signs, &mask, sizeof signs);
     return static_cast<unsigned>(__builtin_ia32_movmskps(signs));
 #else
-    return set_of(truths);
+    return to_bitmask_portably(mask);
 #endif
 }
 
-/// Of each set its members, in order, and how many it has.
-struct SetsOfFour {
-    alignas(16) std::array<std::array<int, 4>, 16> members{};
+/// Of each bitmask the numbers of its bits, in order, and how many it has: what a compress instruction does.
+struct CompressTable {
+    alignas(16) std::array<std::array<int, 4>, 16> indices{};
     std::array<int, 16> count{};
 
-    constexpr SetsOfFour() {
-        for (unsigned set = 0; set < 16; ++set) {
-            for (int member = 0; member < 4; ++member) {
-                if ((set >> member & 1U) != 0) {
-                    members[set][static_cast<std::size_t>(count[set]++)] = member;
+    constexpr CompressTable() {
+        for (unsigned bitmask = 0; bitmask < 16; ++bitmask) {
+            for (int bit = 0; bit < 4; ++bit) {
+                if ((bitmask >> bit & 1U) != 0) {
+                    indices[bitmask][static_cast<std::size_t>(count[bitmask]++)] = bit;
                 }
             }
         }
     }
 };
 
-inline constexpr SetsOfFour sets_of_four;
+inline constexpr CompressTable compress_table;
 
-/// The members of a set of those from `first` on, in order; what follows the last of them means nothing.
-inline FourInts members_from(int first, unsigned set) {
-    FourInts members;
-    std::memcpy(&members, sets_of_four.members[set].data(), sizeof members);
-    return members + first;
+/// The numbers from `first` on whose bits are set, in order; what follows the last of them means nothing.
+inline FourInts compressed_indices(int first, unsigned bitmask) {
+    FourInts indices;
+    std::memcpy(&indices, compress_table.indices[bitmask].data(), sizeof indices);
+    return indices + first;
 }
 
 /// Of four, the first `count`: -1; the rest: 0.
-inline FourInts first_of_four(int count) { return FourInts{0, 1, 2, 3} < count; }
+inline FourInts mask_of_first(int count) { return FourInts{0, 1, 2, 3} < count; }
 
 /// The sum of the two components of each of two vectors.
 template <class Both> [[gnu::always_inline]] inline Both sums(Both one, Both other) {
     return __builtin_shufflevector(one, other, 0, 2) + __builtin_shufflevector(one, other, 1, 3);
 }
 
-/// Of each of four vectors, whether the sum of its two components is below 0, or a NaN; as truths.
+/// Of each of four vectors, whether the sum of its two components is below 0, or a NaN; as a mask.
 template <class Both> FourInts sums_below_zero(Both first, Both second, Both third, Both fourth) {
     const auto before = ~(sums(first, second) >= 0);
     const auto after = ~(sums(third, fourth) >= 0);
@@ -95,8 +96,8 @@ inline float filter_reach_squared(double side, double radius) {
     return static_cast<float>(reach * reach * (1 + 0x1p-20));
 }
 
-/// Of the first `count` discs of the four from `x` and `y` on the set of those that may overlap the disc at
-/// (x0, y0).
+/// Of the first `count` discs of the four from `x` and `y` on those that may overlap the disc at (x0, y0), as
+/// a bitmask.
 inline unsigned may_overlap(const float* x, const float* y, float x0, float y0, float reach_squared,
                             int count) {
     FourFloats dx;
@@ -105,7 +106,7 @@ inline unsigned may_overlap(const float* x, const float* y, float x0, float y0, 
     std::memcpy(&dy, y, sizeof dy);
     dx -= x0;
     dy -= y0;
-    return fast_set_of(~(dx * dx + dy * dy > reach_squared) & first_of_four(count));
+    return to_bitmask(~(dx * dx + dy * dy > reach_squared) & mask_of_first(count));
 }
 
 } // namespace carom

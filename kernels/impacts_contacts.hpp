@@ -245,13 +245,13 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
     const auto back = way_back(state, tuning);
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     const int strips = state.grid.strip_count(strip_height(policies.order));
-    const std::vector<Turn> turns = turns_of(strips, 2, strips);
+    const std::vector<StripSweep> order = sweep_order(strips, 2, strips);
     Wavefront wavefront(strips);
     return sweep_impacts(tuning, probe, [&](int sweep, int threads) {
         return parallel_for<policies.resolve_schedule>(
-            threads, static_cast<int>(turns.size()), tuning.resolve_chunk, probe,
+            threads, static_cast<int>(order.size()), tuning.resolve_chunk, probe,
             [&](int index) {
-                const auto [strip, half] = turns[static_cast<std::size_t>(index)];
+                const auto [strip, half] = order[static_cast<std::size_t>(index)];
                 const Changes changes = half == 0
                                             ? look_back(state, strip, sweep, back)
                                             : collide_earliest(state, strip, sweep, back, approaching, probe);
@@ -259,7 +259,7 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
                 return Tally(changes);
             },
             [&](int index) {
-                const auto [strip, half] = turns[static_cast<std::size_t>(index)];
+                const auto [strip, half] = order[static_cast<std::size_t>(index)];
                 return wavefront.can_begin(strip, 2 * sweep + half);
             });
     });

@@ -38,10 +38,10 @@ int* look_at_contacts(const State<policies>& state, const Strip<RealOf<policies.
     for (int k = begin; k < end; k += 4) {
         const FourInts approaching =
             sums_below_zero(approach(k), approach(k + 1), approach(k + 2), approach(k + 3));
-        const unsigned set = fast_set_of(approaching & first_of_four(end - k));
-        const FourInts members = members_from(k, set);
-        std::memcpy(colliding, &members, sizeof members);
-        colliding += sets_of_four.count[set];
+        const unsigned bitmask = to_bitmask(approaching & mask_of_first(end - k));
+        const FourInts indices = compressed_indices(k, bitmask);
+        std::memcpy(colliding, &indices, sizeof indices);
+        colliding += compress_table.count[bitmask];
     }
     return colliding;
 }

@@ -29,12 +29,12 @@
 namespace carom {
 
 /// A strip in a sweep.
-struct Turn {
+struct StripSweep {
     int strip;
     int sweep;
 };
 
-/// The turns of some sweeps over all strips, each after those that it waits for. They are taken by groups of
+/// The order of some sweeps over all strips, each after those that it waits for. They are taken by groups of
 /// `pairs_at_once` pairs, of an even strip and the odd one before it: the even strips of a group, then the
 /// odd ones.
 ///
@@ -42,9 +42,9 @@ struct Turn {
 /// behind the one before it (the odd strip that a group's last even one waits for is in the next group), so
 /// that what one sweep has brought into the cache the next ones find there. (Time skewing: McCalpin and
 /// Wonnacott, Rutgers DCS-TR-379, 1999.)
-inline std::vector<Turn> turns_of(int strips, int sweeps, int pairs_at_once) {
-    std::vector<Turn> turns;
-    turns.reserve(static_cast<std::size_t>(strips) * static_cast<std::size_t>(sweeps));
+inline std::vector<StripSweep> sweep_order(int strips, int sweeps, int pairs_at_once) {
+    std::vector<StripSweep> order;
+    order.reserve(static_cast<std::size_t>(strips) * static_cast<std::size_t>(sweeps));
     const int groups = strips / 2 / pairs_at_once + 1;
     for (int stage = 0; stage < groups + 2 * (sweeps - 1); ++stage) {
         for (int odd = 0; odd < 2; ++odd) {
@@ -52,12 +52,12 @@ inline std::vector<Turn> turns_of(int strips, int sweeps, int pairs_at_once) {
                 const int group = stage - 2 * sweep;
                 const int end = std::min((group + 1) * pairs_at_once, (strips + odd + 1) / 2);
                 for (int pair = std::max(group * pairs_at_once, odd); pair < end; ++pair) {
-                    turns.push_back({2 * pair - odd, sweep});
+                    order.push_back({2 * pair - odd, sweep});
                 }
             }
         }
     }
-    return turns;
+    return order;
 }
 
 /// How far each strip has come in the resolve of one step.
@@ -117,11 +117,12 @@ Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, in
     const int wanted = skewed ? most_sweeps_at_once : tuning.threads == 1 ? 1 : done + 1;
     const int count = std::min({wanted, most, most_sweeps_at_once});
     const int strips = state.grid.strip_count(strip_height(policies.order));
-    const std::vector<Turn> turns = turns_of(strips, count, skewed ? tuning.threads / 4 + 1 : strips);
+    const std::vector<StripSweep> order =
+        sweep_order(strips, count, skewed ? tuning.threads / 4 + 1 : strips);
     std::array<std::atomic<int>, most_sweeps_at_once> changes{};
     std::array<std::atomic<int>, most_sweeps_at_once> attempts{};
     const auto resolve_turn = [&](int index) {
-        const auto [strip, sweep] = turns[static_cast<std::size_t>(index)];
+        const auto [strip, sweep] = order[static_cast<std::size_t>(index)];
         Changes made = resolve_strip(state, strip, approaching);
         attempts[static_cast<std::size_t>(sweep)].fetch_add(std::exchange(made.attempts, 0),
                                                             std::memory_order_relaxed);
@@ -133,10 +134,10 @@ Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, in
     };
     Swept swept;
     swept.work =
-        parallel_for<policies.resolve_schedule>(tuning.threads, static_cast<int>(turns.size()),
+        parallel_for<policies.resolve_schedule>(tuning.threads, static_cast<int>(order.size()),
                                                 tuning.resolve_chunk, probe, resolve_turn, [&](int index) {
                                                     const auto [strip, sweep] =
-                                                        turns[static_cast<std::size_t>(index)];
+                                                        order[static_cast<std::size_t>(index)];
                                                     return wavefront.can_begin(strip, done + sweep);
                                                 });
     const auto last = std::find(changes.begin(), changes.begin() + count - 1, 0);

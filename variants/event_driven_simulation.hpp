@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kernels/probe.hpp"
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 
 namespace carom {
 

@@ -37,8 +37,6 @@ const Variant& fastest_variant(const Scene& scene) {
     return *find_variant(rule->variant);
 }
 
-const Variant& fastest_variant() {
-    return *find_variant(std::rbegin(rules)->variant);
-}
+const Variant& fastest_variant() { return *find_variant(std::rbegin(rules)->variant); }
 
 } // namespace carom

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 #include "variants/parts.hpp"
 #include "variants/table.hpp"
 

@@ -9,8 +9,8 @@ from analysis.calibration.studies import all_studies
 from analysis.calibration.tables import STREAM, errors, ours_and_theirs, power
 from analysis.calibration.usual_ways import all_ways
 from analysis.figures.style import save
-from analysis.records.reading import InputError
-from analysis.support.files import replacing
+from support.errors import InputError
+from support.files import replacing
 
 
 def write(folder: Path) -> tuple[str, list[Path]]:

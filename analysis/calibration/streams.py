@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.records.reading import InputError
+from support.errors import InputError
 
 FILE = "calibration.json"
 SCHEMA_VERSION = 1

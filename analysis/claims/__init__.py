@@ -21,9 +21,9 @@ from analysis.claims import (
 from analysis.claims.entry import Claim, Evidence, load
 from analysis.claims.outcome import ELSEWHERE, OPEN, Compared, Outcome, Verdict
 from analysis.records.published import Published
-from analysis.records.reading import InputError
 from analysis.records.studies import Study
 from analysis.support.wording import count, listed
+from support.errors import InputError
 
 __all__ = ["TESTS", "Claim", "Tested", "evaluate", "load"]
 

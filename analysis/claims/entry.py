@@ -9,8 +9,8 @@ from typing import Any
 
 from analysis.derived.comparisons import stated
 from analysis.records.published import Published
-from analysis.records.reading import InputError
 from analysis.records.studies import SCALES, Study
+from support.errors import InputError
 
 CLAIMS_FILE = Path(__file__).parent / "claims.toml"
 

@@ -6,11 +6,12 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.records.reading import InputError, load
+from analysis.records.reading import load
 from analysis.records.studies import Study, split
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.unpaired import judge_unpaired
 from analysis.statistics.verdicts import COLUMNS, corrected
+from support.errors import InputError
 
 POINT = [
     "scale", "experiment", "series", "x", "label", "replicate", "scene_name", "scene_sha256", "threads",

@@ -14,9 +14,9 @@ from analysis.commands.frames import TRANSPARENT, Bytes, Canvas
 from analysis.commands.movie_file import target_of
 from analysis.commands.picture import Moment, Picture
 from analysis.figures.style import SETTINGS
-from analysis.records.reading import InputError
 from analysis.records.trajectory import read_box, read_trajectory
-from analysis.support.files import replacing
+from support.errors import InputError
+from support.files import replacing
 
 FRAMES_PER_SECOND = 25
 FRAMES = 150

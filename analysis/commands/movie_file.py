@@ -3,8 +3,8 @@
 import shutil
 from pathlib import Path
 
-from analysis.records.reading import InputError
 from analysis.records.trajectory import read_box
+from support.errors import InputError
 
 FOLDER = Path("results", "movies")
 SUFFIXES = (".mp4", ".gif", ".png")

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 
-class ProgramFailed(Exception):
+class ProgramError(Exception):
     """The program said on standard error why; it ended with `exit_code`."""
 
     def __init__(self, exit_code: int) -> None:
@@ -19,12 +19,12 @@ class ProgramFailed(Exception):
 def simulated(program: Path, scene: Path, variant: str) -> Iterator[Path]:
     """The trajectory of a variant on a scene. The program's summary goes where this program's output goes.
 
-    Raises ProgramFailed.
+    Raises ProgramError.
     """
     with tempfile.TemporaryDirectory(prefix="carom-") as folder:
         trajectory = Path(folder) / "trajectory"
         words = [program, "run", scene, "--variant", variant, "--trajectory", trajectory]
         code = subprocess.call([str(word) for word in words])
         if code != 0:
-            raise ProgramFailed(code if code > 0 else 128 - code)
+            raise ProgramError(code if code > 0 else 128 - code)
         yield trajectory

@@ -7,8 +7,9 @@ from pathlib import Path
 from analysis.figures import Drawn, draw, experiments
 from analysis.figures.style import FORMATS, Data
 from analysis.records import published
-from analysis.records.reading import InputError, load
+from analysis.records.reading import load
 from analysis.records.studies import Study, split
+from support.errors import InputError
 
 
 def draw_all(results: Path, wanted: Sequence[str] = (), formats: Sequence[str] = FORMATS) -> list[Drawn]:

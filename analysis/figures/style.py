@@ -22,8 +22,8 @@ from analysis.figures.hover import identify, with_titles
 from analysis.records.plans import planned_runs
 from analysis.records.published import Published
 from analysis.records.studies import Study
-from analysis.support.files import replacing
 from analysis.support.wording import exact
+from support.files import replacing
 
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = (
     "#0072B2",

@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import math
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -10,21 +9,17 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import jsonschema_rs
 import pandas as pd
-from jsonschema import Draft202012Validator
 from jsonschema.exceptions import best_match
 
 from analysis.records import promises, tables
+from support.errors import InputError
+from support.files import finite
+from support.record_schema import definition, is_record
 
-SCHEMA_FILE = Path(__file__).parents[2] / "harness" / "record.schema.json"
 NEEDED_TAGS = ["experiment", "series", "x_name", "x", "block"]
 NUMERIC_TAGS = ["x", "block"]
 TEXT_TAGS = ["experiment"]
-
-
-class InputError(Exception):
-    """Bad input, as one line for the user; the program ends with exit code 1."""
 
 
 @dataclass(frozen=True)
@@ -113,25 +108,13 @@ def _readable(
 
 
 @cache
-def _validator() -> Draft202012Validator:
-    """Says what is wrong."""
-    return Draft202012Validator(json.loads(SCHEMA_FILE.read_text(encoding="utf-8")))
-
-
-@cache
-def _quick_validator() -> jsonschema_rs.Draft202012Validator:
-    """Says only whether anything is wrong, a hundred times as fast: nearly no record is."""
-    return jsonschema_rs.Draft202012Validator(json.loads(SCHEMA_FILE.read_text(encoding="utf-8")))
-
-
-@cache
 def _parse(content: bytes, failures: bool) -> tuple[str | None, dict[str, Any]]:
     """Return what is wrong with a file's content, or None and the record, which is not to be changed.
 
     Remembered by content: whoever loads a growing folder again and again pays for what is new.
     """
     try:
-        return _checked(json.loads(content, parse_float=_finite, parse_constant=_finite), failures)
+        return _checked(json.loads(content, parse_float=finite, parse_constant=finite), failures)
     except UnicodeDecodeError:
         return "not UTF-8 text", {}
     except json.JSONDecodeError as error:
@@ -143,27 +126,18 @@ def _parse(content: bytes, failures: bool) -> tuple[str | None, dict[str, Any]]:
 
 
 def _checked(record: Any, failures: bool) -> tuple[str | None, dict[str, Any]]:  # noqa: ANN401 - any JSON
-    validator = _validator()
     if not isinstance(record, dict) or "schema_version" not in record:
         return "not a Carom record (no schema_version)", {}
-    expected = validator.schema["properties"]["schema_version"]["const"]  # type: ignore[index]
+    expected = definition().schema["properties"]["schema_version"]["const"]  # type: ignore[index]
     if record["schema_version"] != expected:
         return f"schema version {record['schema_version']!r}, expected {expected}", {}
-    if not _quick_validator().is_valid(record):
-        violation = best_match(validator.iter_errors(record))
+    if not is_record(record):
+        violation = best_match(definition().iter_errors(record))
         told = (
             f"{violation.json_path}: {_shortened(violation.message)}" if violation else "not a Carom record"
         )
         return told, {}
     return _wrong_tag(record, failures), record
-
-
-def _finite(text: str) -> float:
-    """Return the number; JSON knows no NaN and no infinity, whatever Python makes of them."""
-    number = float(text)
-    if not math.isfinite(number):
-        raise ValueError(f"found {text}, expected a finite number")
-    return number
 
 
 def _shortened(message: str, limit: int = 160) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.records.reading import InputError
+from support.errors import InputError
 
 Floats = NDArray[np.float64]
 

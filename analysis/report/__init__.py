@@ -12,7 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 
 from analysis.records.reading import load
 from analysis.report.content import content
-from analysis.support.files import replacing
+from support.files import replacing
 
 TEMPLATE = "report.html.jinja"
 SHOWN = ("svg", "png")

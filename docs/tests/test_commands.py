@@ -45,7 +45,7 @@ def copy_of_the_project(folder: Path) -> Path:
 
 
 def copy_programs(folder: Path) -> None:
-    """Put what is built where the copy would have built it: a program looks for its checkout around itself."""
+    """Put what is built where the copy would have built it: a program takes what is around it for its own."""
     for program in (ROOT / "build").glob("*/carom"):
         (folder / "build" / program.parent.name).mkdir(parents=True)
         shutil.copy(program, folder / "build" / program.parent.name)
@@ -108,10 +108,8 @@ def exists(words: list[str]) -> bool:
             return bool(goals) and goals <= MAKEFILE_VERBS
         case [".venv/bin/python", "-m", *rest]:
             return has_help([sys.executable, "-m", *rest[:2]])
-        case ["carom", "study", verb, *_]:
-            return not BUILT or has_help(["build/gcc/carom", "study", verb])
-        case ["carom", verb, *_]:
-            return not BUILT or has_help(["build/gcc/carom", verb])
+        case ["carom", *rest]:
+            return not BUILT or has_help(["build/gcc/carom", *rest[: 2 if rest[0] == "study" else 1]])
         case [program] if program.startswith("build/gcc/"):
             return not TESTS_BUILT or (ROOT / program).is_file()
         case ["cmake" | "ctest", "--preset", preset] | ["cmake", "--build", "--preset", preset, *_]:

@@ -82,7 +82,7 @@ def test_a_program_without_its_python_parts_says_what_it_needs(tmp_path: Path) -
     shutil.copy(PROGRAM, alone)
     done = say("report", folder=tmp_path, program=alone)
     assert done.returncode == 1
-    told = f"carom: report: needs Carom's Python parts, which are not in {tmp_path}, expected there as in a checkout"
+    told = f"carom: report: needs Carom's Python parts, which are not in {tmp_path}, expected there"
     assert done.stderr.startswith(told)
     assert say("list", "--names", folder=tmp_path, program=alone).returncode == 0
 
@@ -138,7 +138,12 @@ def test_zsh_takes_the_completions(tmp_path: Path) -> None:
     if shutil.which("zsh") is None:
         pytest.skip("no zsh here")
     (tmp_path / "_carom").write_text(say("help", "--completion", "zsh", folder=tmp_path).stdout)
-    words = ["zsh", "-f", "-c", f"autoload -U compinit; compinit -u -D; source {tmp_path}/_carom; whence -w _carom"]
+    words = [
+        "zsh",
+        "-f",
+        "-c",
+        f"autoload -U compinit; compinit -u -D; source {tmp_path}/_carom; whence -w _carom",
+    ]
     done = subprocess.run(words, capture_output=True, text=True, check=True)
     assert (done.stdout, done.stderr) == ("_carom: function\n", "")
 

@@ -13,9 +13,9 @@ from experiments.calibration.stream import measure
 from experiments.plan.program import GENERATOR, Program, find_programs
 from experiments.plan.site import load_site, this_machine
 from experiments.run.progress import Report
-from experiments.support.errors import InputError
-from experiments.support.files import locked, read_json, require_room_for_folder, write_json
-from experiments.support.home import BUILDS
+from experiments.support.places import BUILDS
+from support.errors import InputError
+from support.files import locked, read_json, require_room_for_folder, write_json
 
 FILE = "calibration.json"
 UNFINISHED = "unfinished.json"

@@ -10,8 +10,8 @@ from experiments.plan.benchmark_cases import filter_of
 from experiments.plan.program import Program, generate
 from experiments.plan.scenes import Scene
 from experiments.support import process
-from experiments.support.errors import InputError
-from experiments.support.files import read_json
+from support.errors import InputError
+from support.files import read_json
 
 PERCENT_MORE = (0, 0, 1, 2, 3, 5, 10)
 """Of the work of the first contender: how much more each one does."""

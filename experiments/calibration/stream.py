@@ -8,8 +8,8 @@ from experiments.calibration.kinds import PERCENT_MORE, Kind, rounds
 from experiments.plan.site import clean_environment
 from experiments.run.host_lock import host_lock
 from experiments.support import process
-from experiments.support.errors import InputError
-from experiments.support.files import read_json
+from support.errors import InputError
+from support.files import read_json
 
 _LIMIT_SECONDS = 120.0
 """Of one call."""

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from experiments.plan.pattern import PatternError, groups_of
 from experiments.support import process
-from experiments.support.errors import InputError, quoted
+from support.errors import InputError, quoted
 
 _LIST_SECONDS = 60.0
 _OF_NO_CASE = "^$"

@@ -3,7 +3,7 @@
 import tomllib
 from pathlib import Path
 
-from experiments.support.errors import InputError, nearest
+from support.errors import InputError, nearest
 
 CLAIMS = "claims.toml"
 """Beside questions: what is claimed of them. It is no question."""

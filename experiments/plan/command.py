@@ -11,7 +11,7 @@ from experiments.plan.executable import UnfitError, found, program_of, require_e
 from experiments.plan.program import Program
 from experiments.plan.series import SECONDS_OF_UNIT, Series
 from experiments.support.digest import digest
-from experiments.support.errors import InputError, nearest
+from support.errors import InputError, nearest
 
 SCENE, OUTPUT, FOLDER = "scene", "out", "folder"
 """Placeholders of files that are known only when the program is run, and of the question's folder."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from experiments.plan.program import Program
 from experiments.plan.scenes import sha256_of
 from experiments.support.digest import digest_of_hashes
-from experiments.support.errors import quoted
+from support.errors import quoted
 
 _SCRIPT = b"#!"
 _LONGEST_FIRST_LINE = 4096

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from experiments.support.errors import InputError
+from support.errors import InputError
 
 _OF_TIMES = ("comparison", "trend", "scaling", "schedule")
 

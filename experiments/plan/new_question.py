@@ -5,8 +5,8 @@ import shlex
 from pathlib import Path
 
 from experiments.plan.question import FOLDER
-from experiments.support.errors import InputError
-from experiments.support.files import require_room_for_folder
+from support.errors import InputError
+from support.files import require_room_for_folder
 
 TEMPLATE = FOLDER / "question.template"
 

@@ -14,7 +14,7 @@ from experiments.plan.scale import Scale
 from experiments.plan.scenes import AnyScene, NoScene, Scene
 from experiments.plan.series import Series
 from experiments.plan.site import Machine, Site
-from experiments.support.errors import InputError, nearest, quoted
+from support.errors import InputError, nearest, quoted
 
 SEED = 1
 
@@ -120,10 +120,13 @@ def _known(question: Question, number: int, series: Series, around: Surroundings
             f"{nearest(series.program, names)}"
         )
     program = around.programs[series.program]
-    if program.sha256 is not None and series.variant not in (*SHORT_NAMES, *variants(program)):
+    if program.sha256 is None:
+        return series
+    names = [*SHORT_NAMES, *variants(program)]
+    if series.variant not in names:
         raise InputError(
-            f'{key}.variant: found "{series.variant}", expected a name out of `carom list --names`, or one of '
-            f"{', '.join(SHORT_NAMES)}{nearest(str(series.variant), [*SHORT_NAMES, *variants(program)])}"
+            f'{key}.variant: found "{series.variant}", expected a name out of `carom list --names`, or '
+            f"one of {', '.join(SHORT_NAMES)}{nearest(str(series.variant), names)}"
         )
     return series
 

@@ -11,7 +11,7 @@ from experiments.plan.scenes import AnyScene, sha256_of
 from experiments.plan.site import Site
 from experiments.support import process
 from experiments.support.digest import digest_of_hashes
-from experiments.support.errors import InputError
+from support.errors import InputError
 
 CHECK_FAILED = 2
 NOT_BUILT_IN = 3

@@ -10,8 +10,8 @@ from experiments.plan.kinds import kind_and_figure
 from experiments.plan.rules import require_valid
 from experiments.plan.scenes import AnyScene, HardCase, NoScene, Scene
 from experiments.plan.series import Series, read_series
-from experiments.support.errors import InputError, nearest, require_text
 from experiments.support.schema import read_toml
+from support.errors import InputError, nearest, require_text
 
 FOLDER = Path(__file__).parents[1] / "questions"
 CONTROL = "control"

@@ -7,7 +7,7 @@ from experiments.plan.claims import PUBLISHED_CLAIMS, require_claim
 from experiments.plan.kinds import require_what_kind_needs
 from experiments.plan.scenes import HardCase, NoScene
 from experiments.plan.series import Series, require_both_ways, require_replicated
-from experiments.support.errors import InputError, nearest, quoted
+from support.errors import InputError, nearest, quoted
 
 if TYPE_CHECKING:
     from experiments.plan.question import Question

@@ -6,7 +6,7 @@ from experiments.plan.kinds import COUNTS
 from experiments.plan.question import NamedScene, Question
 from experiments.plan.scenes import AnyScene, Scene
 from experiments.plan.series import Series
-from experiments.support.errors import InputError, nearest
+from support.errors import InputError, nearest
 
 
 @dataclass(frozen=True)

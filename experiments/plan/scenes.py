@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from experiments.support.errors import InputError
-from experiments.support.files import write_text
+from support.errors import InputError
+from support.files import write_text
 
 CHECKED_STEPS = 20
 """How many steps of a generated scene are checked before it is timed; of a hard case all are."""

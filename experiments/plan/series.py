@@ -10,7 +10,7 @@ from typing import Any
 
 from experiments.plan.benchmark_cases import cases
 from experiments.plan.pattern import PatternError, groups_of
-from experiments.support.errors import InputError, quoted
+from support.errors import InputError, quoted
 
 SECONDS_OF_UNIT = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from experiments.plan.cluster import Cluster, read_cluster
 from experiments.plan.cpu_quota import read_cpu_quota
-from experiments.support.errors import InputError, nearest
 from experiments.support.schema import read_toml
+from support.errors import InputError, nearest
 
 FOLDER = Path(__file__).parents[1] / "sites"
 

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from experiments.results.store import Store, new_session
-from experiments.support.errors import InputError
-from experiments.support.files import locked, read_json, write_json
-from experiments.support.schema import RECORD_SCHEMA, is_record
+from support.errors import InputError
+from support.files import locked, read_json, write_json
+from support.record_schema import SCHEMA_FILE, is_record
 
 COLLECTED = "collected"
 """The folder below `records/` and `failures/`; what a run here measures or retires stands beside it."""
@@ -63,14 +63,14 @@ def _read(source: Path, results: Path) -> Iterator[_Found]:
 def _require_schema(file: Path, content: Any) -> None:  # noqa: ANN401 - read from a file
     if not isinstance(content, dict):
         raise InputError(f"{file}: is not a record; nothing was collected")
-    expected = json.loads(RECORD_SCHEMA.read_text(encoding="utf-8"))["properties"]["schema_version"]["const"]
+    expected = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))["properties"]["schema_version"]["const"]
     version = content.get("schema_version")
     if version != expected:
         raise InputError(
             f"{file}: schema_version: found {json.dumps(version)}, expected {expected}; nothing was collected"
         )
     if not is_record(content):
-        raise InputError(f"{file}: does not match {RECORD_SCHEMA.name}; nothing was collected")
+        raise InputError(f"{file}: does not match {SCHEMA_FILE.name}; nothing was collected")
 
 
 def _owner(content: dict[str, Any]) -> str:

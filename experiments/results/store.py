@@ -13,9 +13,9 @@ from typing import Any
 
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point, Tags
-from experiments.support.files import locked, move, read_json, write_json
 from experiments.support.process import Completed
-from experiments.support.schema import is_record
+from support.files import locked, move, read_json, write_json
+from support.record_schema import is_record
 
 Key = tuple[str, int]
 """A point's id and a block's number: one process, one record."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from experiments.plan.point import Point
 from experiments.plan.scenes import AnyScene, HardCase, Scene
 from experiments.run.host_lock import run_alone
-from experiments.support.files import read_json
+from support.files import read_json
 
 PROBE = Scene(particles=10000, side=3162, radius=16, steps=10, min_velocity=2, max_velocity=5)
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from experiments.plan.site import clean_environment
 from experiments.support import process
-from experiments.support.errors import InputError
 from experiments.support.process import Completed
+from support.errors import InputError
 
 
 def run_alone(

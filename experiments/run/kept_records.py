@@ -8,9 +8,9 @@ from experiments.plan.program import tag_arguments
 from experiments.results.store import Store
 from experiments.run.host_lock import run_alone
 from experiments.support.digest import digest
-from experiments.support.files import move, read_json
 from experiments.support.process import Completed
-from experiments.support.schema import is_record
+from support.files import move, read_json
+from support.record_schema import is_record
 
 
 class KeptRecords:

@@ -16,8 +16,8 @@ from experiments.run.behaviour import Behaviours
 from experiments.run.host_lock import run_alone
 from experiments.run.progress import warn
 from experiments.run.written import Written, touch_of
-from experiments.support.files import read_json
 from experiments.support.process import Completed
+from support.files import read_json
 
 MARGIN_SECONDS = 60.0
 """What measuring takes beside the processes, before it is given up."""

@@ -22,10 +22,10 @@ from experiments.run.promises import keep_promises
 from experiments.run.verify import Verifier, representative, scope_of
 from experiments.run.written import Written, built_anew
 from experiments.support.digest import digest
-from experiments.support.errors import InputError
-from experiments.support.files import move, read_json
 from experiments.support.process import NOT_FOUND, Completed
-from experiments.support.schema import is_record
+from support.errors import InputError
+from support.files import move, read_json
+from support.record_schema import is_record
 
 SUSPENDED = "while it was measured; measure it again"
 """What the program says at last where it, or the machine, stood still: nothing of that run counts."""

@@ -18,9 +18,10 @@ from experiments.run.progress import about
 from experiments.run.runner import Runner
 from experiments.run.schedule import Schedule
 from experiments.run.written import first_seen
-from experiments.support.errors import InputError
-from experiments.support.files import write_text
-from experiments.support.home import BUILDS, ROOT, analysis
+from experiments.support.places import BUILDS, analysis
+from support.errors import InputError
+from support.files import write_text
+from support.home import ROOT
 
 COSTS = "costs.json"
 FINISHED = "finished.json"
@@ -57,7 +58,9 @@ class Study:
         self.scale = find_scale(settings.scale)
         self.budget_seconds = settings.budget_seconds or self.scale.budget_seconds
         if self.site.cluster is not None and machine is None:
-            raise InputError(f"site {self.site.name}: is a cluster; use `carom study submit --site {settings.site}`")
+            raise InputError(
+                f"site {self.site.name}: is a cluster; use `carom study submit --site {settings.site}`"
+            )
         programs = find_programs(self.site, settings.build)
         self.generator: Program = programs[GENERATOR]
         if self.generator.sha256 is None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from experiments.plan.program import Program
 from experiments.plan.scenes import sha256_of
 from experiments.results.store import Store
-from experiments.support.errors import InputError
+from support.errors import InputError
 
 NOTE = "written.json"
 

@@ -22,8 +22,8 @@ from experiments.run.given import Given
 from experiments.run.study import Settings, Study
 from experiments.run.whole_blocks import WholeBlocks
 from experiments.support.digest import digest
-from experiments.support.errors import InputError
-from experiments.support.files import read_json
+from support.errors import InputError
+from support.files import read_json
 
 Unit = tuple[str, int]
 """An experiment and one of its blocks: what is measured within one allocation."""

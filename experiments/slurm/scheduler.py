@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from experiments.support import process
-from experiments.support.errors import InputError
+from support.errors import InputError
 
 TIME_LIMIT_SECONDS = 30.0
 DEFAULT_MAX_ARRAY_SIZE = 1001

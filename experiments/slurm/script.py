@@ -8,8 +8,8 @@ from pathlib import Path
 import jinja2
 
 from experiments.plan.cluster import Partition
-from experiments.support.errors import InputError
-from experiments.support.home import ROOT
+from support.errors import InputError
+from support.home import ROOT
 
 COMPILERS = {"gcc": "g++", "clang": "clang++"}
 

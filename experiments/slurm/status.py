@@ -11,7 +11,7 @@ from experiments.slurm import scheduler
 from experiments.slurm.jobs import PartitionFolder, Unit, blocks_of, folders, submitted, units
 from experiments.slurm.scheduler import Queue, TaskState
 from experiments.slurm.submit import is_active, of_scale, said, too_long
-from experiments.support.errors import InputError
+from support.errors import InputError
 
 _STATES = ("done", "running", "waiting", "failed", "missing")
 

@@ -20,8 +20,8 @@ from experiments.slurm.jobs import (
 )
 from experiments.slurm.scheduler import DEFAULT_MAX_ARRAY_SIZE, Queue
 from experiments.slurm.script import render
-from experiments.support.errors import InputError
-from experiments.support.files import locked, write_json, write_text
+from support.errors import InputError
+from support.files import locked, write_json, write_text
 
 MOST_CUT_OFF = 2
 """Blocks of an experiment that allocations may cut off, in those that the question asks for."""
@@ -51,7 +51,7 @@ def resume(settings: Settings, *, dry_run: bool = False) -> int:
     """Submit what is missing of all that has been submitted before, at the scale of the last time."""
     chosen = submitted(settings)
     if chosen is None:
-        raise InputError(f"site {settings.site}: nothing has been submitted yet; `carom study submit` does it")
+        raise InputError(f"site {settings.site}: nothing was submitted yet; `carom study submit` does it")
     return submit(chosen, dry_run=dry_run)
 
 

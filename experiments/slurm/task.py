@@ -14,7 +14,7 @@ from experiments.run.runner import Outcome, Runner, Task
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import Position, together
 from experiments.slurm.jobs import PartitionFolder, Unit, blocks_of, folders, read_job
-from experiments.support.errors import InputError
+from support.errors import InputError
 
 
 def work(manifest: Path, index: int) -> int:

@@ -1,7 +1,6 @@
 """TOML files checked against a JSON Schema, with one line for the first thing that is wrong."""
 
 import json
-import math
 import tomllib
 from collections.abc import Mapping
 from functools import cache
@@ -9,12 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import jsonschema
-import jsonschema_rs
 from jsonschema.exceptions import ValidationError
 
-from experiments.support.errors import InputError, nearest
-
-RECORD_SCHEMA = Path(__file__).parents[2] / "harness" / "record.schema.json"
+from support.errors import InputError, nearest
+from support.files import finite
 
 _TYPES = {
     "object": "a table",
@@ -38,7 +35,7 @@ def read_toml(path: Path, schema: Path) -> dict[str, Any]:
     Raises InputError with one line: file, key, what was found, what was expected, the nearest valid name.
     """
     try:
-        document = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=_finite)
+        document = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=finite)
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -52,28 +49,6 @@ def read_toml(path: Path, schema: Path) -> dict[str, Any]:
     if first is not None:
         raise InputError(f"{path}: {_line(first)}")
     return document
-
-
-def is_record(content: object) -> bool:
-    """Whether the content of a file is a record of any kind."""
-    try:
-        return _record_validator().is_valid(content)
-    except (ValueError, RecursionError):
-        return False  # nested too deeply, or nothing that JSON can hold
-
-
-@cache
-def _record_validator() -> jsonschema_rs.Draft202012Validator:
-    """Of thousands of records, so that it only says yes or no, a hundred times as fast."""
-    return jsonschema_rs.Draft202012Validator(json.loads(RECORD_SCHEMA.read_text(encoding="utf-8")))
-
-
-def _finite(text: str) -> float:
-    """The number; TOML has nan and infinities, no question has."""
-    number = float(text)
-    if not math.isfinite(number):
-        raise ValueError(f"found {text}, expected a finite number")
-    return number
 
 
 def _line(error: ValidationError) -> str:

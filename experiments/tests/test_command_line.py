@@ -62,7 +62,7 @@ def test_a_new_question_needs_a_place_for_its_folder(
 ) -> None:
     (tmp_path / "file").write_text("")
     assert main(["new", "mine", "--questions", str(tmp_path / "file" / "questions")]) == 1
-    told = f"questions: found {tmp_path}/file, which is no folder, expected one or a place for one\n"
+    told = f"carom: questions: found {tmp_path}/file, which is no folder, expected one or a place for one\n"
     assert capsys.readouterr().err == told
 
 
@@ -73,6 +73,14 @@ def test_a_new_question_tells_a_command_that_a_shell_understands(
     assert main(["new", "mine", "--questions", str(folder)]) == 0
     assert f"`carom study run --questions '{folder}' --results '{folder}/results'`" in capsys.readouterr().out
     assert f"--questions '{folder}' --results '{folder}'/results\n" in (folder / "mine.toml").read_text()
+
+
+def test_folders_are_compared_by_the_analysis_whose_exit_code_counts(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["compare", str(tmp_path / "absent"), str(tmp_path)]) == 1
+    told = f"carom: {tmp_path}/absent: no such folder (records are made by `make experiments`)\n"
+    assert capfd.readouterr().err == told
 
 
 MISTAKES = {
@@ -118,7 +126,7 @@ MISTAKES = {
 def test_wrong_usage_is_one_line_and_exit_code_one(workplace: Workplace, words: list[str], line: str) -> None:
     code, output, error = finish(workplace.start(*words))
     assert code == 1
-    assert re.fullmatch(line + "\n", error)
+    assert re.fullmatch(f"carom: {line}\n", error)
     assert output == ""
     assert not workplace.results.exists()
 

@@ -12,7 +12,7 @@
 #include "harness/support/process_clock.hpp"
 #include "harness/verify/rounding.hpp"
 #include "kernels/exact/event_driven.hpp"
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 #include "variants/fastest.hpp"
 #include "variants/table.hpp"
 

@@ -4,14 +4,14 @@ namespace carom {
 namespace {
 
 /// Prints the verbs and options that the help on standard input tells of.
-constexpr const char* reading_help = R"(_carom_words() {
+constexpr const char* reading_help = R"script(_carom_words() {
     "$@" --help 2>/dev/null | awk '
-        /^ ? ? ? ? *-/ { for (i = 1; i <= 3; ++i) if (match($i, /^--[a-z][a-z-]*/)) print substr($i, 1, RLENGTH) }
+        /^ *-/ { for (i = 1; i <= 3; ++i) if (match($i, /^--[a-z][a-z-]*/)) print substr($i, 1, RLENGTH) }
         /^  (  )?[a-z][a-z_-]*  / { print $1 }'
 }
-)";
+)script";
 
-constexpr const char* for_bash = R"(
+constexpr const char* for_bash = R"script(
 _carom() {
     local command=("$1") candidates
     ((COMP_CWORD > 1)) && command+=("${COMP_WORDS[1]}")
@@ -24,9 +24,9 @@ _carom() {
     mapfile -t COMPREPLY < <(compgen -W "$candidates" -- "$2")
 }
 complete -o default -F _carom carom
-)";
+)script";
 
-constexpr const char* for_zsh = R"(
+constexpr const char* for_zsh = R"script(
 _carom() {
     local -a command=($words[1])
     ((CURRENT > 2)) && command+=($words[2])
@@ -39,7 +39,7 @@ _carom() {
     fi
 }
 compdef _carom carom
-)";
+)script";
 
 } // namespace
 

@@ -45,7 +45,8 @@ std::string verb_section(const CLI::App& verb) {
 
 std::string man_page(const CLI::App& program, const std::string& version) {
     std::string text = ".TH CAROM 1 \"\" \"carom " + escaped(version) + "\"\n.SH NAME\ncarom \\- " +
-                       escaped(program.get_description()) + "\n.SH SYNOPSIS\n.B carom\nVERB [OPTIONS]\n.SH VERBS\n";
+                       escaped(program.get_description()) +
+                       "\n.SH SYNOPSIS\n.B carom\nVERB [OPTIONS]\n.SH VERBS\n";
     std::string details = ".SH EACH VERB\n";
     for (const char* group : {groups::simulate, groups::study, groups::machine}) {
         text += ".SS " + escaped(group) + "\n";

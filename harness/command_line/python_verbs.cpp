@@ -25,9 +25,8 @@ struct PythonVerb {
     const char* told;
 };
 
-constexpr PythonVerb movie{"movie", "analysis", true, "Draw a run as an animation, or one step of it"};
-
-constexpr std::array of_study{
+constexpr std::array python_verbs{
+    PythonVerb{"movie", "analysis", true, "Draw a run as an animation, or one step of it"},
     PythonVerb{"study", "experiments", false,
                "Plan, run and look after a study, here or on a cluster; has verbs of its own"},
     PythonVerb{"report", "analysis", true, "Write the report of whatever was measured"},
@@ -35,9 +34,12 @@ constexpr std::array of_study{
     PythonVerb{"figures", "analysis", true, "Draw the figures of whatever was measured"},
 };
 
+constexpr const PythonVerb& movie = python_verbs[0];
+
 const PythonVerb* find_verb(std::string_view name) {
-    const auto* const found = std::ranges::find(of_study, name, &PythonVerb::name);
-    return found != of_study.end() ? found : name == movie.name ? &movie : nullptr;
+    const auto* const found =
+        std::ranges::find_if(python_verbs, [name](const PythonVerb& verb) { return name == verb.name; });
+    return found == python_verbs.end() ? nullptr : found;
 }
 
 void add_verb(CLI::App& program, const PythonVerb& verb) {
@@ -57,7 +59,8 @@ std::vector<std::string> python_words(const PythonVerb& verb, const std::vector<
     const std::filesystem::path python = root / ".venv" / "bin" / "python";
     if (access(python.c_str(), X_OK) != 0 || !std::filesystem::is_directory(root / verb.package)) {
         throw InputError(std::string(verb.name) + ": needs Carom's Python parts, which are not in " +
-                         root.string() + ", expected there as in a checkout after `make setup`, or installed");
+                         root.string() +
+                         ", expected there as in a checkout after `make setup`, or installed");
     }
     std::vector<std::string> all{python.string(), "-P", "-m", verb.package};
     all.insert(all.end(), words.begin() + (verb.is_word ? 0 : 1), words.end());
@@ -72,8 +75,10 @@ std::vector<std::string> python_words(const PythonVerb& verb, const std::vector<
 void add_movie_command(CLI::App& program) { add_verb(program, movie); }
 
 void add_study_commands(CLI::App& program) {
-    for (const PythonVerb& verb : of_study) {
-        add_verb(program, verb);
+    for (const PythonVerb& verb : python_verbs) {
+        if (&verb != &movie) {
+            add_verb(program, verb);
+        }
     }
 }
 
@@ -91,8 +96,8 @@ void hand_over(const std::vector<std::string>& words) {
     }
     pointers.push_back(nullptr);
     execv(pointers.front(), pointers.data());
-    throw InputError(std::string(verb->name) + ": " + all.front() + " cannot be started: " +
-                     std::strerror(errno));
+    throw InputError(std::string(verb->name) + ": " + all.front() +
+                     " cannot be started: " + std::strerror(errno));
 }
 
 } // namespace carom

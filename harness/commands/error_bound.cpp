@@ -15,7 +15,7 @@
 #include "harness/support/input_file.hpp"
 #include "harness/support/json.hpp"
 #include "harness/support/text.hpp"
-#include "harness/verify/event_driven.hpp"
+#include "harness/verify/event_driven_violation.hpp"
 
 namespace carom {
 namespace {

@@ -14,9 +14,9 @@
 #include "harness/support/nearest.hpp"
 #include "harness/support/note.hpp"
 #include "harness/support/text.hpp"
-#include "harness/verify/event_driven.hpp"
+#include "harness/verify/event_driven_violation.hpp"
 #include "harness/verify/rounding.hpp"
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 #include "variants/fastest.hpp"
 
 namespace carom {

@@ -13,13 +13,6 @@
 #include "harness/counters/access.hpp"
 #include "harness/support/silence.hpp"
 
-// LeakSanitizer, where it is built in, asks for these: PAPI 7.0 leaves texts of its last unknown event
-// behind, with or without PAPI_shutdown.
-// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
-extern "C" const char* __lsan_default_suppressions() { return "leak:libpapi"; }
-extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
-// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
-
 namespace carom {
 namespace {
 

@@ -126,7 +126,8 @@ void show_openmp(const Json& openmp, Screen& screen) {
     for (const auto& [name, value] : openmp["environment"].items()) {
         environment += " " + name + "=" + value.get<std::string>();
     }
-    screen.line("", environment.empty() ? "no OMP_*, GOMP_* or KMP_* variable is set" : environment.substr(1));
+    screen.line("",
+                environment.empty() ? "no OMP_*, GOMP_* or KMP_* variable is set" : environment.substr(1));
 }
 
 /// The events that are missing for one reason together, in the order in which the reasons come up.

@@ -65,8 +65,8 @@ inline std::string on_one_line(std::string_view text, std::size_t longest = 200)
     return shown + (text.size() > longest ? "..." : "");
 }
 
-/// Breaks one line at its spaces so that it fits a terminal of 80 columns; what follows a break is indented by so
-/// many of them. The end of the last line is in it.
+/// Breaks one line at its spaces so that it fits a terminal of 80 columns; what follows a break is indented
+/// by so many of them. The end of the last line is in it.
 inline std::string wrapped(std::string line, std::size_t indent) {
     constexpr std::size_t columns = 80;
     std::string text;

@@ -8,7 +8,7 @@
 #include "harness/support/format.hpp"
 #include "harness/verify/at_contact.hpp"
 #include "harness/verify/conservation.hpp"
-#include "harness/verify/event_driven.hpp"
+#include "harness/verify/event_driven_violation.hpp"
 
 namespace carom {
 

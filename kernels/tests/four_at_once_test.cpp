@@ -48,11 +48,11 @@ TEST(FourAtOnce, KnowsEverySet) {
                 members.push_back(disc);
             }
         }
-        EXPECT_EQ(set_of(truths), set);
-        EXPECT_EQ(fast_set_of(truths), set);
-        ASSERT_EQ(sets_of_four.count[set], std::ssize(members));
+        EXPECT_EQ(to_bitmask_portably(truths), set);
+        EXPECT_EQ(to_bitmask(truths), set);
+        ASSERT_EQ(compress_table.count[set], std::ssize(members));
         for (std::size_t k = 0; k < members.size(); ++k) {
-            EXPECT_EQ(members_from(7, set)[k], 7 + members[k]);
+            EXPECT_EQ(compressed_indices(7, set)[k], 7 + members[k]);
         }
     }
 }

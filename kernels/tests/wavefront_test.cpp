@@ -24,7 +24,7 @@ TEST(TurnsOf, AreEachOnceAndAfterThoseThatTheyWaitFor) {
                                                 << pairs_at_once << " pairs at once");
                 Wavefront wavefront(strips);
                 std::set<std::pair<int, int>> taken;
-                for (const auto [strip, sweep] : turns_of(strips, sweeps, pairs_at_once)) {
+                for (const auto [strip, sweep] : sweep_order(strips, sweeps, pairs_at_once)) {
                     ASSERT_TRUE(wavefront.can_begin(strip, sweep)) << strip << ", " << sweep;
                     wavefront.ends(strip, sweep);
                     EXPECT_TRUE(taken.emplace(strip, sweep).second);
@@ -37,7 +37,7 @@ TEST(TurnsOf, AreEachOnceAndAfterThoseThatTheyWaitFor) {
 
 TEST(TurnsOf, AreSweepBySweepIfAllPairsAreAtOnce) {
     int last = 0;
-    for (const auto [strip, sweep] : turns_of(9, 4, 9)) {
+    for (const auto [strip, sweep] : sweep_order(9, 4, 9)) {
         const int place = 2 * sweep + strip % 2;
         EXPECT_GE(place, last);
         last = place;
@@ -50,7 +50,7 @@ TEST(TurnsOf, ComeBackToAStripBeforeOthersAreFarOff) {
     constexpr int sweeps = 8;
     int furthest = 0;
     std::vector<int> swept(strips);
-    for (const auto [strip, sweep] : turns_of(strips, sweeps, 1)) {
+    for (const auto [strip, sweep] : sweep_order(strips, sweeps, 1)) {
         swept[static_cast<std::size_t>(strip)] = sweep + 1;
         const auto first_not_done =
             std::find_if(swept.begin(), swept.end(), [](int n) { return n < sweeps; });

@@ -6,7 +6,7 @@
 
 #include "kernels/tests/scenes.hpp"
 #include "kernels/tests/simulate.hpp"
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 #include "variants/name.hpp"
 #include "variants/registry.hpp"
 #include "variants/table.hpp"

@@ -22,8 +22,8 @@ from analysis.calibration.studies import (
 )
 from analysis.calibration.tables import OURS, errors, ours_and_theirs, power
 from analysis.calibration.usual_ways import WAYS, all_ways
-from analysis.records.reading import InputError
 from analysis.tests.statistics.unkind_noise import dependent
+from support.errors import InputError
 
 Floats = NDArray[np.float64]
 

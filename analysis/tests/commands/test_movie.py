@@ -18,8 +18,8 @@ from analysis.commands.frames import Canvas
 from analysis.commands.movie import FRAMES, MOVIE_DOTS, PICTURE_DOTS, moments
 from analysis.commands.picture import ORDER, Moment, Picture, boxes_per_side
 from analysis.figures.style import SETTINGS
-from analysis.records.reading import InputError
 from analysis.records.trajectory import Box, read_box, read_trajectory
+from support.errors import InputError
 
 ROOT = Path(__file__).parents[3]
 STEPS = 4
@@ -141,7 +141,7 @@ def test_what_cannot_be_drawn_is_one_line(
     for run in ([str(trajectory)], []):
         assert main(["movie", str(scene), *run, *arguments]) == 1, "also before the run is there"
         (line,) = capsys.readouterr().err.splitlines()
-        assert line.startswith(said)
+        assert line.startswith(f"carom: {said}")
     assert sorted(scene.parent.iterdir()) == there
 
 
@@ -171,7 +171,7 @@ def test_what_the_program_refuses_is_the_exit_code_of_the_movie(
 
 def test_a_movie_needs_a_run_or_the_program(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["movie", str(scene)]) == 1
-    assert capsys.readouterr().err.startswith("TRAJECTORY: missing, expected")
+    assert capsys.readouterr().err.startswith("carom: TRAJECTORY: missing, expected")
 
 
 def test_a_disc_of_a_movie_is_where_the_picture_has_it(scene: Path, trajectory: Path) -> None:
@@ -246,7 +246,7 @@ def test_an_ffmpeg_that_fails_is_one_line(
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 1
-    assert done.stderr == "ffmpeg: Unknown encoder h264; a name *.gif needs no ffmpeg\n"
+    assert done.stderr == "carom: ffmpeg: Unknown encoder h264; a name *.gif needs no ffmpeg\n"
     assert not list(folder.glob("*run*"))
 
 

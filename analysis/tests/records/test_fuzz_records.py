@@ -11,11 +11,12 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from analysis.records.reading import _quick_validator, _validator, load
+from analysis.records.reading import load
 from analysis.records.studies import split
 from analysis.tests.fuzzing import for_a_while
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_study import failures, study
+from support.record_schema import definition, is_record
 
 VALID: list[dict[str, Any]] = [*study(["neighbourhood", "phases"], blocks=1), *failures()]
 
@@ -95,7 +96,7 @@ def test_whatever_lies_there_is_counted_or_named(content: bytes, folder: str) ->
 def is_judged_as_the_schema_says(content: bytes) -> None:
     record = json.loads(content)
     assume(finite(record))
-    assert _quick_validator().is_valid(record) == _validator().is_valid(record)
+    assert is_record(record) == definition().is_valid(record)
 
 
 def finite(value: object) -> bool:

@@ -4,10 +4,11 @@ from typing import Any
 
 import pytest
 
-from analysis.records.reading import InputError, load
+from analysis.records.reading import load
 from analysis.records.studies import split
 from analysis.tests.synthetic import Machine, Point, bench, failure, write
 from analysis.tests.synthetic_study import failures, study
+from support.errors import InputError
 
 
 def record(**tags: str | float) -> dict[str, Any]:

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.records.reading import InputError
 from analysis.records.trajectory import Trajectory, read_box, read_trajectory
 from analysis.tests.fuzzing import for_a_while, in_a_file
+from support.errors import InputError
 
 GOOD = "0 0 1 2 0.5 0\n0 1 3 4 0 -1e-3\n1 0 1.5 2 0.5 0\n1 1 3 3.999 0 -1e-3\n"
 

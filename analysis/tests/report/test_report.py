@@ -10,13 +10,14 @@ import pytest
 from analysis import claims, report
 from analysis.cli import main
 from analysis.figures.style import Data
-from analysis.records.reading import InputError, load
+from analysis.records.reading import load
 from analysis.report.provenance import commands, in_the_clock
 from analysis.support.wording import number, share
 from analysis.tests.figures.test_figures import DRAWN
 from analysis.tests.synthetic import Machine, failure, write
 from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_study import study
+from support.errors import InputError
 
 
 class Page(HTMLParser):

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from experiments.plan import question, site
 from experiments.plan.question import load_question
 from experiments.plan.site import load_site
-from experiments.support.errors import InputError
 from experiments.tests.conftest import CHUNKS, PAIR
+from support.errors import InputError
 
 QUESTIONS = [CHUNKS, PAIR, *(path.read_text() for path in sorted(question.FOLDER.glob("*.toml")))]
 SITES = [path.read_text() for path in sorted(site.FOLDER.glob("*.toml"))]

@@ -17,8 +17,8 @@ from experiments.plan.scale import SCALES
 from experiments.plan.scenes import HardCase, Scene, SceneFile
 from experiments.plan.site import Machine, load_site
 from experiments.run.verify import note_of
-from experiments.support.errors import InputError
 from experiments.tests.conftest import CHUNKS, ERRORS, PAIR, Workplace, generated
+from support.errors import InputError
 
 CONTENT: dict[str, st.SearchStrategy[Any]] = {
     "label": st.sampled_from([None, "A", "A-again"]),
@@ -289,8 +289,8 @@ def test_what_cannot_be_judged_by_is_one_line(workplace: Workplace, line: str, m
 MISTAKES = {
     "variant": (
         PAIR.replace('variant = "nine"', 'variant = "nien"'),
-        'series[2].variant: found "nien", expected a name out of `carom list --names`, or one of auto, fastest; '
-        'did you mean "nine"?',
+        'series[2].variant: found "nien", expected a name out of `carom list --names`, or one of auto, '
+        'fastest; did you mean "nine"?',
     ),
     "program": (
         PAIR.replace('variant = "nine"', 'variant = "nine"\nprogram = "clan"'),

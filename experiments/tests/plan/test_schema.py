@@ -6,8 +6,8 @@ import pytest
 
 from experiments.plan.question import load_question, load_questions
 from experiments.plan.site import load_site
-from experiments.support.errors import InputError
 from experiments.tests.conftest import CHUNKS, ERRORS, PAIR, SCENE, Workplace
+from support.errors import InputError
 
 MISTAKES = {
     "unknown key": (

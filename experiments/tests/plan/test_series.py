@@ -9,8 +9,8 @@ from experiments.plan.point import Point
 from experiments.plan.question import load_question
 from experiments.plan.scenes import CHECKED_STEPS
 from experiments.run.study import Study
-from experiments.support.errors import InputError
 from experiments.tests.conftest import SCENE, Workplace
+from support.errors import InputError
 
 BLOCKS = "[blocks]\nminimum = 2\nwanted = 2\n"
 HEAD = 'title = "Programs"\nfigure = "comparison"\n'

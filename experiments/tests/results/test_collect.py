@@ -10,8 +10,8 @@ import pytest
 
 from experiments.results.collect import collect
 from experiments.run.session import run
-from experiments.support.errors import InputError
 from experiments.tests.conftest import PAIR, Workplace
+from support.errors import InputError
 
 HOST = os.uname().nodename
 

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from experiments.run.session import run
 from experiments.run.status import rows
 from experiments.run.study import Study
-from experiments.support.schema import is_record
 from experiments.tests.conftest import PAIR, Workplace
+from support.record_schema import is_record
 
 NAMES = st.one_of(
     st.sampled_from(["x.json", "x-b0.json", "x-b².json", f"x-b{'9' * 5000}"[:200] + ".json", "-b1.json"]),

@@ -9,10 +9,10 @@ import pytest
 
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED
-from experiments.support.schema import RECORD_SCHEMA
 from experiments.tests.conftest import PAIR, Workplace
+from support.record_schema import SCHEMA_FILE
 
-SCHEMA = json.loads(RECORD_SCHEMA.read_text(encoding="utf-8"))
+SCHEMA = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
 
 FAILURES = {
     "check": ("FAKE_CHECK_FAILS", "check of each step: step 3: discs 1 and 2 left colliding", 2),

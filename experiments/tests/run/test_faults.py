@@ -96,9 +96,9 @@ def test_a_results_folder_that_cannot_be_written_is_one_line(
     (line,) = error.splitlines()
     if where.endswith("a file"):
         found = f"results: found {workplace.root / 'file'}, which is no folder, expected one or a place for "
-        assert line.startswith(found)
+        assert line.startswith(f"carom: {found}")
     else:
-        assert line.startswith(str(results))
+        assert line.startswith(f"carom: {results}")
         assert "expected a writable place" in line
 
 

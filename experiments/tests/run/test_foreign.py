@@ -7,9 +7,9 @@ import pytest
 from experiments.run.behaviour import LEFT_ALONE
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Study
-from experiments.support.errors import InputError
 from experiments.tests.conftest import Workplace
 from experiments.tests.foreign import BLOCKS, HEAD, described, ids, script, series
+from support.errors import InputError
 
 SURROUNDED = 'command = ["./sim", "{x}"]\nprepare = ["./before", "{folder}"]\nconclude = ["true"]\n'
 

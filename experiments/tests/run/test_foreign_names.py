@@ -7,9 +7,9 @@ import pytest
 
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Study
-from experiments.support.errors import InputError
 from experiments.tests.conftest import SCENE, Workplace
 from experiments.tests.foreign import BLOCKS, HEAD, described, script, series
+from support.errors import InputError
 
 
 def test_a_trajectory_command_is_run_by_no_shell(empty_workplace: Workplace) -> None:

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from experiments.run.host_lock import host_lock
-from experiments.support.errors import InputError
 from experiments.tests.conftest import ERRORS, Workplace
 from experiments.tests.run.test_limits import LIMITS
+from support.errors import InputError
 
 ANOTHER = """
 import sys, time

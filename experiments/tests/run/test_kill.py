@@ -9,8 +9,8 @@ import time
 import jsonschema
 
 from experiments.run.session import run
-from experiments.support.schema import RECORD_SCHEMA
 from experiments.tests.conftest import CHUNKS, CONTROL, PAIR, Workplace, no_child_is_left
+from support.record_schema import SCHEMA_FILE
 
 KILLS = 10
 BLOCKS = 6
@@ -34,7 +34,7 @@ def test_ten_kills_lose_at_most_one_process_each(empty_workplace: Workplace) -> 
         records = workplace.records()
         assert before.items() <= records.items(), "what was finished is there, unchanged"
         for record in records.values():
-            jsonschema.validate(record, json.loads(RECORD_SCHEMA.read_text(encoding="utf-8")))
+            jsonschema.validate(record, json.loads(SCHEMA_FILE.read_text(encoding="utf-8")))
         before = records
     assert before, "something was finished"
     assert not workplace.is_whole(), "the kills came while there was something to do"

@@ -15,8 +15,8 @@ from experiments.__main__ import main
 from experiments.run import status
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Settings, Study
-from experiments.support.schema import is_record
 from experiments.tests.conftest import ROOT, SCENE, Workplace, finish
+from support.record_schema import is_record
 
 BUILD = ROOT / "build"
 

@@ -11,8 +11,8 @@ from experiments.plan.question import FOLDER, load_question
 from experiments.run.session import run
 from experiments.run.study import Settings, Study
 from experiments.support import process
-from experiments.support.schema import RECORD_SCHEMA
 from experiments.tests.conftest import CHUNKS, CONTROL, ERRORS, PAIR, ROOT, Workplace
+from support.record_schema import SCHEMA_FILE
 
 BUILD = ROOT / "build"
 
@@ -42,7 +42,7 @@ def test_a_small_study_end_to_end(workplace: Workplace) -> None:
     workplace.question("phases", PHASES)
     workplace.question("errors", ERRORS)
     assert run(replace(workplace.settings, build=BUILD)) == 0
-    schema = json.loads(RECORD_SCHEMA.read_text(encoding="utf-8"))
+    schema = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
     for record in workplace.records().values():
         jsonschema.validate(record, schema)
         assert record["check"]["verdict"] == "passed"

@@ -9,11 +9,11 @@ import pytest
 
 from experiments.run.session import run
 from experiments.run.study import Study
-from experiments.support.errors import InputError
-from experiments.support.schema import RECORD_SCHEMA
 from experiments.tests.conftest import ERRORS, PAIR, Workplace
+from support.errors import InputError
+from support.record_schema import SCHEMA_FILE
 
-SCHEMA = json.loads(RECORD_SCHEMA.read_text(encoding="utf-8"))
+SCHEMA = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
 
 
 def test_a_study_leaves_a_record_for_every_point_and_block(workplace: Workplace) -> None:

@@ -9,8 +9,8 @@ from experiments.plan.point import Point
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import _bytes, together
-from experiments.support.errors import InputError
 from experiments.tests.conftest import CHUNKS, ERRORS, FOUR_AND_NINE, PAIR, SCENE, Workplace
+from support.errors import InputError
 
 THREADS = f"""
 title = "Threads"

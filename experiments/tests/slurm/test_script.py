@@ -13,8 +13,8 @@ from experiments.plan.site import load_site
 from experiments.run.study import Study
 from experiments.slurm.script import render
 from experiments.slurm.submit import pack
-from experiments.support.errors import InputError
 from experiments.tests.conftest import SLURM_SITE, Workplace
+from support.errors import InputError
 
 OWNED = "x; touch owned"
 PARTITION = Partition(name="xs", cpus=2, hardware_threads=4)

@@ -16,11 +16,11 @@ from experiments.slurm import scheduler
 from experiments.slurm.jobs import PartitionFolder, Unit, folders, units
 from experiments.slurm.submit import too_long
 from experiments.slurm.task import work
-from experiments.support.errors import InputError
-from experiments.support.files import write_json
-from experiments.support.schema import RECORD_SCHEMA
 from experiments.tests.conftest import PAIR, ROOT, Workplace, hear_every_signal
 from experiments.tests.slurm.test_script import site
+from support.errors import InputError
+from support.files import write_json
+from support.record_schema import SCHEMA_FILE
 
 CAROM = ROOT / "build" / "gcc" / "carom"
 
@@ -75,7 +75,7 @@ def test_two_copies_of_one_task_tear_nothing(workplace: Workplace) -> None:
         assert (process.returncode, error) == (0, "")
     assert len(records(workplace)) == 16
     for content in records(workplace).values():
-        jsonschema.validate(json.loads(content), json.loads(RECORD_SCHEMA.read_text()))
+        jsonschema.validate(json.loads(content), json.loads(SCHEMA_FILE.read_text()))
 
 
 def test_what_is_measured_is_not_measured_again(workplace: Workplace) -> None:

@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 from experiments.slurm.jobs import folders
-from experiments.support.files import write_json, write_text
 from experiments.tests.conftest import ROOT, Workplace
 from experiments.tests.slurm.test_script import site
+from support.files import write_json, write_text
 
 KILLED_WHILE_WRITING = """
 import os, signal, sys
 from pathlib import Path
-from experiments.support.files import write_json
+from support.files import write_json
 os.fsync = lambda file: os.kill(os.getpid(), signal.SIGKILL)
 path = Path(sys.argv[1])
 path.parent.mkdir(parents=True, exist_ok=True)

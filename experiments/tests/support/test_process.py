@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from experiments.support import process
-from experiments.support.errors import Interrupted
 from experiments.support.pipes import KEPT_BYTES
 from experiments.support.process import NOT_FOUND, TIMED_OUT, UNKNOWN_END, Coprocess, run
 from experiments.tests.conftest import ROOT
+from support.errors import Interrupted
 
 
 def python(code: str) -> list[str]:

@@ -15,8 +15,8 @@
 #include "harness/accuracy/trial.hpp"
 #include "harness/scenes/generate.hpp"
 #include "harness/scenes/piece.hpp"
-#include "harness/verify/event_driven.hpp"
-#include "variants/event_driven.hpp"
+#include "harness/verify/event_driven_violation.hpp"
+#include "variants/event_driven_variant.hpp"
 
 namespace carom {
 namespace {

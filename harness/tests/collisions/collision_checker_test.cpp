@@ -8,7 +8,7 @@
 #include "harness/collisions/path_checker.hpp"
 #include "harness/scenes/generate.hpp"
 #include "kernels/tests/simulate.hpp"
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 #include "variants/registry.hpp"
 
 // What goes through the collisions that a run tells. Bugs planted into the kernel itself: mutants/.

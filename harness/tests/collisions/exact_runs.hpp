@@ -7,7 +7,7 @@
 
 #include "harness/collisions/path_checker.hpp"
 #include "kernels/scene.hpp"
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 
 namespace carom::tests {
 

@@ -61,7 +61,8 @@ TEST_F(CommandLine, HelpsWithTheProgramAndEveryVerb) {
 TEST_F(CommandLine, TellsItsVersion) {
     const std::string version = run_carom({"--version"}).output;
     EXPECT_TRUE(std::regex_match(
-        version, std::regex("carom " CAROM_VERSION " \\((commit [0-9a-f]{12}( with changes)?|unknown commit)\\)\n")))
+        version,
+        std::regex("carom " CAROM_VERSION " \\((commit [0-9a-f]{12}( with changes)?|unknown commit)\\)\n")))
         << version;
 }
 

@@ -8,7 +8,7 @@
 
 #include "harness/tests/program.hpp"
 #include "harness/verify/determinism.hpp"
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {

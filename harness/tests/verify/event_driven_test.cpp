@@ -7,10 +7,10 @@
 #include "harness/accuracy/error_measures.hpp"
 #include "harness/measure/measure.hpp"
 #include "harness/scenes/generate.hpp"
-#include "harness/verify/event_driven.hpp"
+#include "harness/verify/event_driven_violation.hpp"
 #include "kernels/exact/event_driven.hpp"
 #include "kernels/tests/scenes.hpp"
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 
 namespace carom {
 namespace {

@@ -8,10 +8,11 @@ import subprocess
 
 import pytest
 
-from experiments.support.schema import RECORD_SCHEMA, validator
+from experiments.support.schema import validator
 from experiments.tests.conftest import ROOT
 from experiments.tests.slurm.real_cluster.cluster import PARTITIONS, node_of
 from experiments.tests.slurm.real_cluster.conftest import MACHINE, ClusterWorkplace
+from support.record_schema import SCHEMA_FILE
 
 PROGRAM = ROOT / "build" / "gcc" / "carom"
 
@@ -34,7 +35,7 @@ def test_a_small_study_comes_back_from_two_partitions(place: ClusterWorkplace) -
     records = [json.loads(path.read_text(encoding="utf-8")) for path in place.records()]
     assert len(records) == 10
     for record in records:
-        assert validator(RECORD_SCHEMA).is_valid(record)
+        assert validator(SCHEMA_FILE).is_valid(record)
         assert record["check"]["verdict"] == "passed"
         assert record["axes"]["threads"] == 16
         slurm = record["provenance"]["slurm"]

@@ -1,5 +1,3 @@
-#include "harness/measure/turns.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <deque>
@@ -19,6 +17,7 @@
 #include "harness/commands/simulation_options.hpp"
 #include "harness/machine/suspensions.hpp"
 #include "harness/machine/threads.hpp"
+#include "harness/measure/turns.hpp"
 #include "harness/measure/variant_contender.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/errors.hpp"

@@ -1,4 +1,4 @@
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 
 #include "variants/event_driven_simulation.hpp"
 #include "variants/name.hpp"

@@ -1,4 +1,4 @@
-#include "harness/verify/event_driven.hpp"
+#include "harness/verify/event_driven_violation.hpp"
 
 #include <algorithm>
 #include <cmath>

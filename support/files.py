@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from experiments.support.errors import InputError, require_text
+from support.errors import InputError, require_text
 
 
 def require_room_for_folder(what: str, folder: Path) -> None:
@@ -25,15 +25,18 @@ def require_room_for_folder(what: str, folder: Path) -> None:
 def read_json(path: Path) -> Any:  # noqa: ANN401 - JSON is any value
     """The content of a JSON file, or None if it is missing or not JSON, which has no NaN and no infinity."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"), parse_float=_finite, parse_constant=_finite)
+        return json.loads(path.read_text(encoding="utf-8"), parse_float=finite, parse_constant=finite)
     except (OSError, ValueError, RecursionError):
         return None
 
 
-def _finite(text: str) -> float:
+def finite(text: str) -> float:
+    """The number that a text of JSON or TOML is. Raises ValueError for NaN and infinity, whatever a parser
+    makes of them.
+    """
     number = float(text)
     if not math.isfinite(number):
-        raise ValueError(text)
+        raise ValueError(f"found {text}, expected a finite number")
     return number
 
 
@@ -91,3 +94,25 @@ def locked(folder: Path) -> Iterator[None]:
         file.write(f"process {os.getpid()} on {os.uname().nodename}\n")
         file.flush()
         yield
+
+
+@contextlib.contextmanager
+def replacing(target: Path) -> Iterator[Path]:
+    """Give a path to write to, which becomes the target once all of it is on the disk.
+
+    Meanwhile it is `.NAME.part.SUFFIX` beside the target; if writing fails it is gone, and an earlier target
+    as it was. Makes the folder. Raises OSError that names the target.
+    """
+    part = target.with_name(f".{target.stem}.part{target.suffix}")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        yield part
+        with part.open("rb") as file:
+            os.fsync(file.fileno())
+        part.replace(target)
+    except BaseException as error:
+        with contextlib.suppress(OSError):
+            part.unlink()
+        if isinstance(error, OSError) and error.filename in (None, os.fspath(part)):
+            raise OSError(error.errno, error.strerror or str(error), os.fspath(target)) from error
+        raise

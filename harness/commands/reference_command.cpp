@@ -12,7 +12,7 @@
 #include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 
 namespace carom {
 namespace {

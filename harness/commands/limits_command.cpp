@@ -1,5 +1,3 @@
-#include "harness/machine/limits.hpp"
-
 #include <cstdint>
 #include <iostream>
 #include <memory>
@@ -9,6 +7,7 @@
 
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
+#include "harness/machine/limits.hpp"
 #include "harness/machine/machine.hpp"
 #include "harness/machine/provenance.hpp"
 #include "harness/machine/suspensions.hpp"

@@ -1,9 +1,8 @@
-"""Where Carom itself is: a checkout, or the folder that it is installed in."""
+"""Where the other parts of Carom are: its programs, and the package that analyses."""
 
 import sys
-from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from support.home import ROOT
 
 BUILDS = ROOT / "build"
 """The folder of its programs, one folder a compiler."""

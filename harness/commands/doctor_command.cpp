@@ -1,9 +1,8 @@
-#include "harness/doctor/doctor.hpp"
-
 #include <iostream>
 #include <memory>
 
 #include "harness/commands/commands.hpp"
+#include "harness/doctor/doctor.hpp"
 
 namespace carom {
 

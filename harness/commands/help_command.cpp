@@ -1,10 +1,9 @@
-#include "harness/command_line/help.hpp"
-
 #include <iostream>
 #include <memory>
 #include <string>
 
 #include "harness/command_line/completion.hpp"
+#include "harness/command_line/help.hpp"
 #include "harness/command_line/man_page.hpp"
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"

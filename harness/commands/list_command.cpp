@@ -8,7 +8,7 @@
 #include "harness/commands/commands.hpp"
 #include "harness/records/policies_json.hpp"
 #include "harness/verify/determinism.hpp"
-#include "variants/event_driven.hpp"
+#include "variants/event_driven_variant.hpp"
 #include "variants/name.hpp"
 #include "variants/registry.hpp"
 

@@ -1,5 +1,3 @@
-#include "harness/scenes/generate.hpp"
-
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
@@ -12,6 +10,7 @@
 
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
+#include "harness/scenes/generate.hpp"
 #include "harness/scenes/hard_cases.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"

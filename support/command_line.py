@@ -1,0 +1,50 @@
+"""What the command lines of both packages have in common: one line for a mistake, and exit codes."""
+
+import argparse
+import io
+import os
+import sys
+from collections.abc import Callable
+from typing import NoReturn
+
+from support.errors import InputError, Interrupted, cannot
+
+
+class Parser(argparse.ArgumentParser):
+    """Wrong usage is one line and exit code 1, as for every other bad input."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what is wrong and leave."""
+        print(f"carom: {message} (see `{self.prog} --help`)", file=sys.stderr)
+        raise SystemExit(1)
+
+
+def print_anything() -> None:
+    """Tell what a locale has no letters for in another way."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def exit_code_of(verb: Callable[[], int], kept: str = "") -> int:
+    """Run a verb; return its exit code, 1 for what a user is to mend, told in one line, and 128 and the
+    number of a signal that stopped it. `kept` says what becomes of what is finished then.
+    """
+    try:
+        code = verb()
+        sys.stdout.flush()  # here, so that what cannot be written is told below
+        return code
+    except InputError as error:
+        print(f"carom: {error}", file=sys.stderr)
+        return 1
+    except BrokenPipeError:
+        # Whoever read the output, say `head`, has seen enough; Python would complain once more at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except OSError as error:
+        # The disk is full, or a folder cannot be written: nothing that is finished suffers from it.
+        print(f"carom: {cannot(error)}{f'; {kept}' if kept else ''}", file=sys.stderr)
+        return 1
+    except Interrupted as stopped:
+        print(f"\nstopped: {kept}", file=sys.stderr)
+        return 128 + stopped.signal_number

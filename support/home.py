@@ -1,0 +1,5 @@
+"""Where Carom itself is: a checkout, or the folder that it is installed in."""
+
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
