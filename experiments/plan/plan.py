@@ -120,10 +120,10 @@ def _known(question: Question, number: int, series: Series, around: Surroundings
             f"{nearest(series.program, names)}"
         )
     program = around.programs[series.program]
-    if program.sha256 is None:
+    if program.sha256 is None or series.variant in SHORT_NAMES:
         return series
-    names = [*SHORT_NAMES, *variants(program)]
-    if series.variant not in names:
+    if series.variant not in variants(program):
+        names = [*SHORT_NAMES, *variants(program)]
         raise InputError(
             f'{key}.variant: found "{series.variant}", expected a name out of `carom list --names`, or '
             f"one of {', '.join(SHORT_NAMES)}{nearest(str(series.variant), names)}"

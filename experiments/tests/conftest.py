@@ -191,7 +191,7 @@ class Workplace:
         return subprocess.Popen(
             command,
             cwd=self.root,
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            env={**os.environ, "PYTHONPATH": f"{self.root}{os.pathsep}{ROOT}"},
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

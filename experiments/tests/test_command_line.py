@@ -161,7 +161,8 @@ def test_two_runners_in_one_folder_are_refused(workplace: Workplace) -> None:
     code, _, error = finish(workplace.start("run", "--no-figures"))
     assert code == 1
     assert re.fullmatch(
-        rf"results: is in use by process {first.pid} on \S+; wait for it, or give --results FOLDER\n", error
+        rf"carom: results: is in use by process {first.pid} on \S+; wait for it, or give --results FOLDER\n",
+        error,
     )
     first.send_signal(signal.SIGTERM)
     assert finish(first)[0] == 128 + signal.SIGTERM

@@ -64,7 +64,7 @@ def test_a_disk_that_is_full_while_drawing_keeps_the_figures_of_before(
     code, line, kept = said.splitlines()[-3:]
     assert code == "code 1", said
     assert re.fullmatch(
-        r"said: results/\S+: No space left on device, expected a writable place with room", line
+        r"said: carom: results/\S+: No space left on device, expected a writable place with room", line
     )
     assert kept == "as it was"
 

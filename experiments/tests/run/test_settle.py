@@ -51,6 +51,7 @@ def needing(workplace: Workplace) -> Workplace:
     """A workplace whose analysis wants as many blocks as the file `needed` says."""
     folder = workplace.root / "analysis"
     folder.mkdir()
+    workplace.monkeypatch.setenv("PYTHONPATH", str(workplace.root))
     (folder / "__init__.py").touch()
     program = ANALYSIS
     for word, name in (("NEEDED", "needed"), ("LOG", "looks"), ("REPORTS", "reports")):

@@ -246,7 +246,7 @@ def test_a_refused_job_leaves_nothing_to_wait_for(workplace: Workplace) -> None:
     process = workplace.start("submit", "--site", site(workplace.root))
     _, error = process.communicate(timeout=60)
     assert process.returncode == 1
-    assert error == "sbatch: error: invalid partition specified: xs\n"
+    assert error == "carom: sbatch: error: invalid partition specified: xs\n"
     assert not list(workplace.results.rglob("jobs/*.*"))
 
 
