@@ -50,7 +50,7 @@ def test_a_figures_folder_that_cannot_be_written_is_one_line(results: Path) -> N
     done = analyse("figures", "--results", results)
     assert done.returncode == 1
     assert done.stderr.splitlines() == [
-        f"{results}/figures: File exists, expected a writable place with room"
+        f"carom: {results}/figures: File exists, expected a writable place with room"
     ]
 
 
