@@ -104,7 +104,8 @@ uninstall: ## remove what was installed (PREFIX= DESTDIR=)
 
 package: environment build-gcc build-clang ## make a Debian package of it, for the distribution at hand (needs dpkg-dev)
 	command -v dpkg-shlibdeps >/dev/null || { echo "package: needs dpkg-shlibdeps (Debian: the package dpkg-dev)" >&2; exit 1; }
-	cd build/gcc && cpack -B ../package >/dev/null && rm -rf ../package/_CPack_Packages
+	cd build/gcc && cpack -B ../package >../package.log 2>&1 || { tail -n 3 ../package.log >&2; exit 1; }; \
+	rm -rf ../package/_CPack_Packages
 	ls build/package/*.deb
 
 test: settings lint-quick tests-gcc tests-clang ## build with both compilers and run every quick test

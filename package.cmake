@@ -13,3 +13,14 @@ list(GET python 0 major)
 list(GET python 1 minor)
 list(GET python 2 next)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= ${major}.${minor}), python3 (<< ${major}.${next})")
+
+# Debian's own tool says which packages the programs need. It wants a source package around it; the libraries that come
+# with the Python environment it would not find, and need not.
+set(around ${CMAKE_CURRENT_LIST_DIR}/build/package/around)
+file(WRITE ${around}/debian/control "Source: carom\n\nPackage: carom\nArchitecture: any\n")
+file(GLOB programs ${CMAKE_CURRENT_LIST_DIR}/build/gcc/carom ${CMAKE_CURRENT_LIST_DIR}/build/clang/carom)
+execute_process(COMMAND dpkg-shlibdeps -O ${programs} WORKING_DIRECTORY ${around}
+  OUTPUT_VARIABLE libraries OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+file(REMOVE_RECURSE ${around})
+string(REGEX REPLACE "^shlibs:Depends=" "" libraries "${libraries}")
+string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", ${libraries}")
