@@ -170,7 +170,6 @@ calibration-gcc: calibration-%: settings
 
 calibrate: environment settings calibration-gcc ## measure how often verdicts are wrong on this machine (TIME=60 RESULTS=results/calibration)
 	$(python) experiments calibrate $(results) $${TIME:+--seconds "$$TIME"}
-	$(python) analysis calibration $(results)
 
 lint: settings lint-quick ## every static check of C++ and Python (clang-tidy from the package of that name)
 	CXX=clang++ $(generator) cmake --preset release -B build/lint -DCAROM_UNITY=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON

@@ -38,7 +38,7 @@ def test_a_folder_of_the_users_is_not_taken_for_a_part_of_carom(tmp_path: Path) 
         (tmp_path / name / "__init__.py").write_text("raise SystemExit('the wrong one')\n")
         (tmp_path / name / "__main__.py").write_text("")
     for words in (("study", "builds", "--study", "threads"), ("claims", "--help")):
-        done = say(*words, folder=tmp_path)
+        done = say(*words, folder=tmp_path, more={"PYTHONPATH": str(tmp_path)})
         assert (done.returncode, done.stderr) == (0, ""), words
 
 

@@ -9,5 +9,7 @@ BUILDS = ROOT / "build"
 
 
 def analysis(*words: str) -> list[str]:
-    """The command that starts the analysis package, whatever stands in the working folder."""
-    return [sys.executable, "-P", "-m", "analysis", *words]
+    """The command that starts the analysis package, whatever stands in the working folder, and as far from
+    the user's own Python settings as this process.
+    """
+    return [sys.executable, "-I" if sys.flags.isolated else "-P", "-m", "analysis", *words]

@@ -49,11 +49,15 @@ void add_verb(CLI::App& program, const PythonVerb& verb) {
 /// The program's own file, all links followed.
 std::filesystem::path own_file() {
     std::error_code error;
-    return std::filesystem::read_symlink("/proc/self/exe", error);
+    std::filesystem::path file = std::filesystem::read_symlink("/proc/self/exe", error);
+    if (error) {
+        throw InputError("/proc/self/exe: " + error.message() + ", expected the program's own file");
+    }
+    return file;
 }
 
-/// What becomes of `words`. The packages are found by the environment that they are installed in, and a
-/// folder of the user's that has the name of one is left alone (-P).
+/// What becomes of `words`. The packages are found by the environment that they are installed in; what the user
+/// has for Python, a folder of that name or PYTHONPATH, is left alone (-I).
 std::vector<std::string> python_words(const PythonVerb& verb, const std::vector<std::string>& words) {
     const std::filesystem::path root = own_file().parent_path().parent_path().parent_path();
     const std::filesystem::path python = root / ".venv" / "bin" / "python";
@@ -62,7 +66,7 @@ std::vector<std::string> python_words(const PythonVerb& verb, const std::vector<
                          root.string() +
                          ", expected there as in a checkout after `make setup`, or installed");
     }
-    std::vector<std::string> all{python.string(), "-P", "-m", verb.package};
+    std::vector<std::string> all{python.string(), "-I", "-m", verb.package};
     all.insert(all.end(), words.begin() + (verb.is_word ? 0 : 1), words.end());
     if (&verb == &movie) {
         all.insert(all.end(), {"--program", own_file().string()});
