@@ -56,8 +56,8 @@ std::filesystem::path own_file() {
     return file;
 }
 
-/// What becomes of `words`. The packages are found by the environment that they are installed in; what the user
-/// has for Python, a folder of that name or PYTHONPATH, is left alone (-I).
+/// What becomes of `words`. The packages are found by the environment that they are installed in; what the
+/// user has for Python, a folder of that name or PYTHONPATH, is left alone (-I).
 std::vector<std::string> python_words(const PythonVerb& verb, const std::vector<std::string>& words) {
     const std::filesystem::path root = own_file().parent_path().parent_path().parent_path();
     const std::filesystem::path python = root / ".venv" / "bin" / "python";
