@@ -45,10 +45,10 @@ def spread(processes: Sequence[Process]) -> Spread | None:
     ratios = [_ratios(one) for one in processes if len(one) > 1 and min(map(len, one)) > 1]
     if len(ratios) < FEWEST_PROCESSES:
         return None
-    within = statistics.fmean(statistics.variance(runs) for process in ratios for runs in process)
+    within = statistics.fmean(_variance(runs) for process in ratios for runs in process)
     of_runs = within * statistics.fmean(1 / len(process[0]) for process in ratios)
     means = [[statistics.fmean(runs) for runs in process] for process in ratios]
-    of_means = statistics.fmean(statistics.variance(column) for column in zip(*means, strict=True))
+    of_means = statistics.fmean(_variance(column) for column in zip(*means, strict=True))
     return Spread(within, max(0.0, of_means - of_runs))
 
 
@@ -105,6 +105,12 @@ class Repeated:
 
 def _by_contender(processes: Sequence[Process]) -> list[Sequence[float]]:
     return [runs for process in processes for runs in process]
+
+
+def _variance(values: Sequence[float]) -> float:
+    """The sample variance, in floating point: exact fractions would take seconds of a short study."""
+    centre = statistics.fmean(values)
+    return math.fsum((value - centre) ** 2 for value in values) / (len(values) - 1)
 
 
 def _ratios(process: Process) -> list[list[float]]:
