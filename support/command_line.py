@@ -1,7 +1,9 @@
 """What the command lines of both packages have in common: one line for a mistake, and exit codes."""
 
 import argparse
+import contextlib
 import io
+import math
 import os
 import sys
 from collections.abc import Callable
@@ -17,6 +19,14 @@ class Parser(argparse.ArgumentParser):
         """Say what is wrong and leave."""
         print(f"carom: {message} (see `{self.prog} --help`)", file=sys.stderr)
         raise SystemExit(1)
+
+
+def number_above_zero(text: str, unit: str) -> float:
+    """The number of a word that says how many units. Raises what the parser makes a line of."""
+    with contextlib.suppress(ValueError):
+        if 0 < (number := float(text)) < math.inf:
+            return number
+    raise argparse.ArgumentTypeError(f"found {text}, expected a number of {unit} above 0")
 
 
 def print_anything() -> None:

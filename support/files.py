@@ -50,17 +50,8 @@ def write_text(path: Path, text: str, temporary: Path) -> None:
 
     Meanwhile it is `.*.part` in `temporary`, a folder on the same disk.
     """
-    scratch = temporary / f".{path.parent.name}-{path.name}.part"
-    try:
-        with scratch.open("w", encoding="utf-8") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        move(scratch, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            scratch.unlink()
-        raise
+    with _becoming(path, temporary / f".{path.parent.name}-{path.name}.part") as part:
+        part.write_text(text, encoding="utf-8")
 
 
 def move(source: Path, target: Path) -> None:
@@ -103,13 +94,18 @@ def replacing(target: Path) -> Iterator[Path]:
     Meanwhile it is `.NAME.part.SUFFIX` beside the target; if writing fails it is gone, and an earlier target
     as it was. Makes the folder. Raises OSError that names the target.
     """
-    part = target.with_name(f".{target.stem}.part{target.suffix}")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with _becoming(target, target.with_name(f".{target.stem}.part{target.suffix}")) as part:
+        yield part
+
+
+@contextlib.contextmanager
+def _becoming(target: Path, part: Path) -> Iterator[Path]:
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
         yield part
         with part.open("rb") as file:
             os.fsync(file.fileno())
-        part.replace(target)
+        move(part, target)
     except BaseException as error:
         with contextlib.suppress(OSError):
             part.unlink()

@@ -34,11 +34,6 @@ def orders(points: int, blocks: int, seed: str) -> tuple[tuple[int, ...], ...]:
     return tuple(rows[:blocks])
 
 
-def cycle(points: int) -> int:
-    """The number of blocks after which positions and neighbours are balanced exactly."""
-    return 2 * points if points % 2 else points
-
-
 def _zigzag(points: int) -> list[int]:
     """0, n - 1, 1, n - 2, ...: neighbours differ by every number once."""
     return [number // 2 if number % 2 == 0 else points - 1 - number // 2 for number in range(points)]

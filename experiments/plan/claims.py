@@ -3,7 +3,7 @@
 import tomllib
 from pathlib import Path
 
-from support.errors import InputError, nearest
+from support.errors import InputError
 
 CLAIMS = "claims.toml"
 """Beside questions: what is claimed of them. It is no question."""
@@ -16,18 +16,13 @@ PUBLISHED_CLAIMS = (
 """Those of analysis/claims/claims.toml, in its order: a test there compares them."""
 
 
-def require_claim(file: Path, claim: str) -> None:
-    """Raises InputError unless the claim is a published one, or stands beside the question's file."""
+def known_claims(file: Path) -> list[str]:
+    """The published claims, and those that stand beside a question's file. Raises InputError for a list of
+    claims that is none.
+    """
     own = file.with_name(CLAIMS)
-    known = [*PUBLISHED_CLAIMS, *(_claims_in(own) if own.exists() else ())]
-    if claim not in known:
-        expected = f"one of {', '.join(known)}{nearest(claim, known)}"
-        raise InputError(f'{file}: claim: found "{claim}", expected {expected}')
-
-
-def _claims_in(path: Path) -> list[str]:
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-        return [str(claim["id"]) for claim in content.get("claim", [])]
+        content = tomllib.loads(own.read_text(encoding="utf-8")) if own.exists() else {}
+        return [*PUBLISHED_CLAIMS, *(str(claim["id"]) for claim in content.get("claim", []))]
     except (OSError, ValueError, TypeError, KeyError) as error:
-        raise InputError(f"{path}: is not a list of claims, each with an id: {error}") from error
+        raise InputError(f"{own}: is not a list of claims, each with an id: {error}") from error

@@ -5,6 +5,7 @@ import string
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from experiments.plan.benchmark_cases import filter_of
 from experiments.plan.executable import UnfitError, found, program_of, require_executable
@@ -64,21 +65,13 @@ class Command:
         """What of it is part of an id: not where it is, and nothing that a later field does not say, so that
         other ids are what they were before there was that field.
         """
-        later = {
-            "prepare": (),
-            "conclude": (),
-            "fresh_folder": False,
-            "exit_codes": (),
-            "turns": None,
-            "kept_by": None,
-        }
-        told = {name: value for name, value in vars(self).items() if name not in _NO_CONTENT}
-        return {name: value for name, value in told.items() if name not in later or value != later[name]} | {
-            "folder": None
-        }
+        unsaid = {name for name in _LATER if getattr(self, name) == getattr(Command, name)}
+        told = vars(self) | {"folder": None}
+        return {name: value for name, value in told.items() if name not in _NO_CONTENT | unsaid}
 
 
-_NO_CONTENT = ("refused", "checker", "another")
+_NO_CONTENT = frozenset(("refused", "checker", "another"))
+_LATER = ("prepare", "conclude", "fresh_folder", "exit_codes", "turns", "kept_by")
 
 
 @dataclass(frozen=True)
@@ -104,12 +97,12 @@ def command_of(
     if series.refused:
         return _refused(series.name, series.refused, place)
     of_run, of_check = (_known(one, place) for one in values)
-    words, prepare, conclude = (
-        _filled(getattr(series, name), f"{key}.{name}", of_run) for name in ("command", "prepare", "conclude")
-    )
     if series.trajectory and SCENE not in values[1]:
         raise InputError(f"{key}.trajectory: found without a scene, expected a table scene beside it")
-    trajectory = _filled(series.trajectory, f"{key}.trajectory", of_check)
+    words, prepare, conclude, trajectory = (
+        _filled(getattr(series, name), f"{key}.{name}", of_check if name == "trajectory" else of_run)
+        for name in ("command", "prepare", "conclude", "trajectory")
+    )
     name = None
     if series.benchmark is not None:
         [name] = placed(_filled((str(series.benchmark.name),), f"{key}.benchmark.name", of_run))
@@ -126,10 +119,9 @@ def command_of(
 
 def _resolved(command: Command, series: Series, key: str, place: Place) -> tuple[Command, Program]:
     """The command with its first words found, and the program."""
-    resolved: dict[str, tuple[str, ...]] = {}
+    resolved: dict[str, Any] = {}
     for name in ("words", "prepare", "conclude", "trajectory"):
-        words = getattr(command, name)
-        if not words:
+        if not (words := getattr(command, name)):
             continue
         [first] = placed(words[:1])
         try:
@@ -140,34 +132,24 @@ def _resolved(command: Command, series: Series, key: str, place: Place) -> tuple
             told = "command" if name == "words" else name
             raise InputError(f'{key}.{told}: found "{first}", which {unfit.told(first)}') from unfit
         resolved[name] = (_literal(os.fspath(found(first, place.folder))), *words[1:])
-    folder = None if command.fresh_folder else place.folder
-    others = [placed(resolved[name]) for name in ("prepare", "conclude") if name in resolved]
+    made_of = {name: placed(words) for name, words in resolved.items()}
+    trajectory, folder = made_of.pop("trajectory", ()), None if command.fresh_folder else place.folder
     try:
-        program = program_of(placed(resolved["words"]), others, place.folder, folder, place.first_seen)
-        trajectory = placed(resolved.get("trajectory", ()))
-        checker = program_of(trajectory, [], place.folder, folder, place.first_seen) if trajectory else None
+        program = program_of([*made_of.values()], place.folder, folder, place.first_seen)
+        if trajectory:
+            resolved["checker"] = program_of([trajectory], place.folder, folder, place.first_seen)
+            resolved["another"] = _another(placed(command.words), trajectory, place.folder)
     except InputError as error:
         if series.is_one_of_many:
             return _refused(series.name, str(error), place)
         raise
-    another = _another(placed(command.words), trajectory, place.folder) if checker else ""
-    return replace(
-        command,
-        words=resolved["words"],
-        prepare=resolved.get("prepare", ()),
-        conclude=resolved.get("conclude", ()),
-        trajectory=resolved.get("trajectory", ()),
-        checker=checker,
-        another=another,
-    ), program
+    return replace(command, **resolved), program
 
 
 def _refused(name: str, reason: str, place: Place) -> tuple[Command, Program]:
     """What stands for a program that is not run: a point of its own, which fails."""
-    return (
-        Command((name,), place.folder, place.instrument, refused=reason),
-        Program(name, place.folder, digest(reason)),
-    )
+    command = Command((name,), place.folder, place.instrument, refused=reason)
+    return command, Program(name, place.folder, digest(reason))
 
 
 def _another(words: Sequence[str], trajectory: Sequence[str], folder: Path) -> str:
@@ -206,40 +188,33 @@ def _literal(text: str) -> str:
 
 def _known(values: Mapping[str, object], place: Place) -> dict[str, str]:
     """Placeholders with their values; those of files come later."""
-    known = {name: _text(value) for name, value in values.items() if name != SCENE}
+    told = ((name, f"{one:.12g}" if isinstance(one, float) else str(one)) for name, one in values.items())
     files = {name: f"{{{name}}}" for name in (SCENE, OUTPUT) if SCENE in values}
-    return known | files | {FOLDER: os.fspath(place.folder)}
-
-
-def _text(value: object) -> str:
-    return f"{value:.12g}" if isinstance(value, float) else str(value)
+    return {name: one for name, one in told if name != SCENE} | files | {FOLDER: os.fspath(place.folder)}
 
 
 def _filled(words: Sequence[str], key: str, known: Mapping[str, str]) -> tuple[str, ...]:
     """The words with the placeholders in the place of their values, but for those of files, of which only
     these are left.
     """
-    filled = []
-    for word in words:
-        try:
-            parts = list(string.Formatter().parse(word))
-        except ValueError as error:
-            raise InputError(f'{key}: found "{word}": {error}; {{{{ stands for a brace') from error
-        texts = [""]  # between the files
-        files = [""]
-        for literal, name, form, conversion in parts:
-            texts[-1] += literal
-            if name is None:
-                continue
-            if name not in known or form or conversion:
-                raise InputError(
-                    f'{key}: found "{{{name}}}", expected one of {", ".join(f"{{{one}}}" for one in known)}'
-                    f"{nearest(name, known)}"
-                )
-            if name in (SCENE, OUTPUT):
-                files.append(known[name])
-                texts.append("")
-            else:
-                texts[-1] += known[name]
-        filled.append("".join(file + _literal(text) for file, text in zip(files, texts, strict=True)))
-    return tuple(filled)
+    return tuple(_filled_word(word, key, known) for word in words)
+
+
+def _filled_word(word: str, key: str, known: Mapping[str, str]) -> str:
+    try:
+        parts = list(string.Formatter().parse(word))
+    except ValueError as error:
+        raise InputError(f'{key}: found "{word}": {error}; {{{{ stands for a brace') from error
+    filled, text = "", ""  # up to the last file, and since
+    for literal, name, form, conversion in parts:
+        text += literal
+        if name is None:
+            continue
+        if name not in known or form or conversion:
+            expected = f"one of {', '.join(f'{{{one}}}' for one in known)}{nearest(name, known)}"
+            raise InputError(f'{key}: found "{{{name}}}", expected {expected}')
+        if name in (SCENE, OUTPUT):
+            filled, text = filled + _literal(text) + known[name], ""
+        else:
+            text += known[name]
+    return filled + _literal(text)

@@ -48,42 +48,35 @@ def require_executable(word: str, folder: Path) -> None:
 
 
 def program_of(
-    words: Sequence[str],
-    beside: Sequence[Sequence[str]],
+    commands: Sequence[Sequence[str]],
     folder: Path,
     where: Path | None,
     first_seen: Mapping[str, str | None],
 ) -> Program:
-    """The program that these words run, and everything that decides what it does: commands `beside` it
-    included, each found in `folder`.
+    """The program that the first of these commands runs, and everything that decides what it does: the other
+    commands included, each found in `folder`.
 
     Words name files of the folder `where`; without one only those that begin with / do. Of a file that is
     known to be written it is what it was when it was `first_seen`. Raises InputError for one that cannot be
     read.
     """
-    path = found(words[0], folder)
-    parts = [path, *_found_interpreter(path)]
-    inputs: list[Path] = []
-    absent: list[Path] = []
-    for command in (words, *beside):
-        if command is not words:
-            own = found(command[0], folder)
-            parts += [own, *_found_interpreter(own)]
-        for file in _named(command[1:], where):
-            # What was not there before it was run is no part of it.
-            is_part = first_seen.get(os.fspath(file)) if os.fspath(file) in first_seen else _is_file(file)
-            (inputs if is_part else absent).append(file)
+    own = [found(words[0], folder) for words in commands]
+    parts = [part for path in own for part in (path, *_found_interpreter(path))]
+    named = [file for words in commands for file in _named(words[1:], where)]
+    written = {file for file in named if os.fspath(file) in first_seen}
+    # What was not there before it was run is no part of it.
+    inputs = [one for one in named if (first_seen[os.fspath(one)] if one in written else is_file(one))]
     files = (*parts, *inputs)
     hashes = tuple(first_seen.get(os.fspath(file)) or sha256_of(file) for file in files)
     return Program(
-        name=path.name,
-        path=path,
+        name=own[0].name,
+        path=own[0],
         sha256=digest_of_hashes(hashes),
         files=files,
         hashes=hashes,
         inputs=tuple(file for file in inputs if file not in parts),
-        absent=tuple(absent),
-        written=frozenset(file for file in inputs if os.fspath(file) in first_seen and file not in parts),
+        absent=tuple(file for file in named if file not in inputs),
+        written=frozenset(file for file in inputs if file in written and file not in parts),
     )
 
 
@@ -94,7 +87,8 @@ def _named(words: Sequence[str], where: Path | None) -> list[Path]:
     return [(where or Path("/")) / word for word in named if where is not None or word.startswith("/")]
 
 
-def _is_file(path: Path) -> bool:
+def is_file(path: Path) -> bool:
+    """Whether it is one, as far as that can be seen."""
     try:
         return path.is_file()
     except (OSError, ValueError):

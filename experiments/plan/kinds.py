@@ -1,10 +1,11 @@
 """The kinds of questions: what is measured of each point, how that is judged, and how it can be drawn."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from support.errors import InputError
+from support.vocabulary import COUNTS
 
 _OF_TIMES = ("comparison", "trend", "scaling", "schedule")
 
@@ -27,9 +28,6 @@ class Kind:
 
 _EACH = "each difference from the reference has a verdict"
 _LARGE = "how the time changes over the sweep; small differences have no verdict"
-
-COUNTS = "counts"
-"""The kind of which nothing is timed for comparison: one process counts the work of many points."""
 
 KINDS = {
     "comparison": Kind("times", _EACH, _OF_TIMES),
@@ -59,8 +57,6 @@ KINDS = {
 }  # fmt: skip
 """By the name that a question and its records give."""
 
-SEVERAL_SCENES = tuple(sorted(name for name, kind in KINDS.items() if kind.scenes))
-
 
 def kind_and_figure(file: Path, kind: str | None, figure: str | None) -> tuple[str, str]:
     """The kind of a question and its figure, of which a file may leave out either: a figure alone stands for
@@ -75,18 +71,16 @@ def kind_and_figure(file: Path, kind: str | None, figure: str | None) -> tuple[s
     return name, drawn
 
 
-def require_what_kind_needs(file: Path, kind: str, figure: str, has: Mapping[str, object]) -> None:
-    """`has`: whether the question asks for `errors`, the `sweep`'s parameter, and the number of `scenes`.
-    Raises InputError with one line.
+def what_kind_lacks(kind: str, figure: str, errors: bool, sweep: str | None, scenes: int) -> Iterator[str]:
+    """What a question of the kind must not be: it asks for `errors` or not, sweeps a parameter or none, and
+    has so many scenes.
     """
     of = KINDS[kind]
-    if of.errors and not has["errors"]:
-        raise InputError(f"{file}: errors: missing; expected true for kind {kind}")
-    if of.sweep not in (None, has["sweep"]):
-        raise InputError(f"{file}: sweep.parameter: expected {of.sweep} for kind {kind}")
+    if of.errors and not errors:
+        yield f"errors: missing; expected true for kind {kind}"
+    if of.sweep not in (None, sweep):
+        yield f"sweep.parameter: expected {of.sweep} for kind {kind}"
     for key, name in (("kind", kind), ("figure", figure)):
-        if has["scenes"] != 1 and not KINDS[name].scenes:
-            others = ", ".join(SEVERAL_SCENES)
-            raise InputError(
-                f"{file}: scenes: found several for {key} {name}, expected one, or one of the kinds {others}"
-            )
+        if scenes != 1 and not KINDS[name].scenes:
+            several = ", ".join(sorted(name for name, kind in KINDS.items() if kind.scenes))
+            yield f"scenes: found several for {key} {name}, expected one, or one of the kinds {several}"

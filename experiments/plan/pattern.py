@@ -4,6 +4,7 @@ Here they are only looked at; the program `carom` matches them, by the ECMAScrip
 rules accept more, and mean something else by parts of it. What is allowed is what both understand alike.
 """
 
+import re
 from dataclasses import dataclass
 
 _CLASSES = "dDwWsS"
@@ -29,6 +30,10 @@ _ESCAPES = {
     "b": "write what stands there", "B": "write what stands there",
 }  # fmt: skip
 
+_QUANTIFIER = re.compile(r"[*+?]|\{(?P<least>[0-9]{1,4})(,(?P<most>[0-9]{0,4}))?\}")
+_SET = re.compile(r"\[\^?(?P<members>(?:\\.|[^\]\\])*)\]", re.DOTALL)
+_ESCAPE = re.compile(r"\\(.)", re.DOTALL)
+
 
 class PatternError(Exception):
     """What is wrong with a pattern, and what to write instead, in one line."""
@@ -42,7 +47,7 @@ def groups_of(pattern: str) -> int:
     """
     scanner = _Scanner(pattern)
     scanner.alternatives(0)
-    if scanner.rest:
+    if scanner.at < len(pattern):
         raise PatternError("a ) without its (; a bracket itself is \\)")
     return scanner.groups
 
@@ -57,22 +62,21 @@ class _Scanner:
     choices: int = 0
     """Alternatives and quantifiers so far."""
 
-    @property
-    def rest(self) -> str:
-        return self.pattern[self.at :]
+    def _is_at(self, *words: str) -> bool:
+        return self.pattern.startswith(words, self.at)
 
-    def _next(self) -> str:
-        if not self.rest:
-            raise PatternError("an end too early; a backslash itself is \\\\, a bracket itself \\( or \\[")
-        self.at += 1
-        return self.pattern[self.at - 1]
+    def _found(self, expression: re.Pattern[str]) -> re.Match[str] | None:
+        """What stands next, which is behind us then."""
+        found = expression.match(self.pattern, self.at)
+        self.at = found.end() if found else self.at
+        return found
 
     def alternatives(self, depth: int) -> int:
         if depth > _MOST_DEPTH:
             raise PatternError(f"more than {_MOST_DEPTH} brackets in each other")
         states = 1
-        while self.rest and not self.rest.startswith(")"):
-            if self.rest.startswith("|"):
+        while self.at < len(self.pattern) and not self._is_at(")"):
+            if self._is_at("|"):
                 self.at += 1
                 self.choices += 1
             else:
@@ -83,123 +87,106 @@ class _Scanner:
 
     def _quantified(self, depth: int) -> int:
         begin, choices = self.at, self.choices
-        first = self._next()
-        states = self._part(first, depth)
-        is_anchor = first in "^$"
+        states = self._part(depth)
         part = self.pattern[begin : self.at]
-        quantifier = self.rest[:1]
-        times = self._times()
+        is_open, at_most = self._is_at("{"), self._is_at("{,")
+        times = self._found(_QUANTIFIER)
+        least, most = (int(times[name] or 0) for name in ("least", "most")) if times else (0, 0)
+        if is_open and (times is None or (times["most"] and most < least)):
+            told = "write {0,m} for at most m" if at_most else "the character itself is \\{"
+            raise PatternError(f"{{ that begins no number of times; {told}")
         if times is None:
             return states
-        if self.choices > choices and quantifier != "?":
+        if self.choices > choices and times[0] != "?":
             # The matcher would try all ways to divide a line among the two, which may take for ever.
-            raise PatternError(
-                f"{quantifier} behind a group with | or a quantifier in it; repeat one of them"
-            )
+            told = "behind a group with | or a quantifier in it; repeat one of them"
+            raise PatternError(f"{times[0][0]} {told}")
         self.choices += 1
-        if is_anchor:
+        if part in "^$":
             raise PatternError(f"a quantifier behind {part}, which has no length; leave it out")
         if not part.isascii() and len(part) == 1:
             raise PatternError(f"a quantifier behind {part}, which is several bytes; write (?:{part})")
-        if self.rest.startswith("?"):
-            self.at += 1
-        if self.rest[:1] in ("*", "+", "?", "{"):
-            raise PatternError(f"{self.rest[0]} behind a quantifier; write one quantifier")
-        return states * max(1, times) + 2
+        self.at += self._is_at("?")
+        if self._is_at("*", "+", "?", "{"):
+            raise PatternError(f"{self.pattern[self.at]} behind a quantifier; write one quantifier")
+        return states * max(1, least, most) + 2
 
-    def _part(self, first: str, depth: int) -> int:
+    def _part(self, depth: int) -> int:
+        first = self.pattern[self.at]
         if first == "(":
             return self._group(depth)
-        if first == "[":
-            return self._set()
-        if first == "\\":
-            return self._escape(in_set=False)
+        if found := self._found(_SET):
+            _require_set(re.findall(r"\\.|.", found["members"], re.DOTALL))
+            return 1
+        if found := self._found(_ESCAPE):
+            _require_escape(found[1], in_set=False)
+            return 1
+        if first in "[\\":
+            raise PatternError("an end too early; a backslash itself is \\\\, a bracket itself \\( or \\[")
         if first in "*+?":
             raise PatternError(f"{first} with nothing before it; the character itself is \\{first}")
         if first in "{}]":
             raise PatternError(f"{first} by itself; the character itself is \\{first}")
-        return self._plain(first)
-
-    def _plain(self, character: str) -> int:
-        if not character.isprintable() and character != "\t":
-            raise PatternError("a character that is not printed; a pattern matches one line of text")
-        return len(character.encode())
+        _require_printed(first)
+        self.at += 1
+        return len(first.encode())
 
     def _group(self, depth: int) -> int:
-        if self.rest.startswith("?:"):
+        self.at += 1
+        if self._is_at("?:"):
             self.at += 2
-        elif self.rest.startswith("?"):
-            known = next((begin for begin in _INSTEAD if self.rest.startswith(begin)), None)
+        elif self._is_at("?"):
+            known = next((begin for begin in _INSTEAD if self._is_at(begin)), None)
             instead = _INSTEAD[known] if known else "write both letters, as in [Tt]ook, where either will do"
-            raise PatternError(f"({known or self.rest[:2]}; {instead}")
+            raise PatternError(f"({known or self.pattern[self.at : self.at + 2]}; {instead}")
         else:
             self.groups += 1
         states = self.alternatives(depth + 1)
-        if not self.rest:
+        if self.at == len(self.pattern):
             raise PatternError("a ( without its ); a bracket itself is \\(")
         self.at += 1
         return states + 2
 
-    def _times(self) -> int | None:
-        """How often at most what stands before is there, as far as it is counted; None without quantifier."""
-        if self.rest[:1] in ("*", "+", "?") and self.rest:
-            self.at += 1
-            return 1
-        if not self.rest.startswith("{"):
-            return None
-        end = self.rest.find("}")
-        least, comma, most = self.rest[1:end].partition(",") if end > 0 else ("", "", "")
-        if not _is_count(least) or not (most == "" or _is_count(most)) or (most and int(most) < int(least)):
-            told = "write {0,m} for at most m" if comma and not least else "the character itself is \\{"
-            raise PatternError(f"{{ that begins no number of times; {told}")
-        self.at += end + 1
-        return max(int(least), int(most or 0))
 
-    def _escape(self, *, in_set: bool) -> int:
-        character = self._next()
-        if character in _CLASSES or character in _CONTROLS:
-            return 1
-        if character.isascii() and not character.isalnum() and character.isprintable():
-            return 1
-        if in_set and character in "bB":
-            raise PatternError(f"\\{character} between [ and ]; write the characters themselves")
-        instead = _ESCAPES.get(character, "write the character itself")
-        raise PatternError(f"\\{character}; {instead}")
-
-    def _set(self) -> int:
-        if self.rest.startswith("^"):
-            self.at += 1
-        if self.rest.startswith("]"):
-            raise PatternError("[] or [^]; the character itself is \\]")
-        is_first = True
-        while not self.rest.startswith("]"):
-            low = self._member(is_first=is_first)
-            is_first = False
-            if self.rest.startswith("-") and not self.rest.startswith("-]"):
-                self.at += 1
-                high = self._member(is_first=True)
-                if len(low) != 1 or len(high) != 1 or low > high:
-                    raise PatternError(f"{low}-{high} between [ and ]; write \\- for the character itself")
-        self.at += 1
-        return 1
-
-    def _member(self, *, is_first: bool) -> str:
-        """A character of a set, or a class such as \\d."""
-        begin = self.at
-        character = self._next()
-        if character == "\\":
-            self._escape(in_set=True)
-            escaped = self.pattern[begin + 1 : self.at]
-            return escaped if not escaped.isalpha() else f"\\{escaped}"
-        if character == "[":
-            raise PatternError("[ between [ and ]; the character itself is \\[, a digit \\d")
-        if character == "-" and not is_first and not self.rest.startswith("]"):
-            raise PatternError("- between [ and ]; the character itself is \\-")
-        if not character.isascii():
-            raise PatternError(f"{character} between [ and ]; write (?:{character}|...)")
-        self._plain(character)
-        return character
+def _require_printed(character: str) -> None:
+    if not character.isprintable() and character != "\t":
+        raise PatternError("a character that is not printed; a pattern matches one line of text")
 
 
-def _is_count(text: str) -> bool:
-    return text.isascii() and text.isdigit() and len(text) <= 4
+def _require_escape(character: str, *, in_set: bool) -> None:
+    is_itself = character.isascii() and not character.isalnum() and character.isprintable()
+    if character in _CLASSES or character in _CONTROLS or is_itself:
+        return
+    if in_set and character in "bB":
+        raise PatternError(f"\\{character} between [ and ]; write the characters themselves")
+    raise PatternError(f"\\{character}; {_ESCAPES.get(character, 'write the character itself')}")
+
+
+def _require_set(members: list[str]) -> None:
+    """Characters, or classes such as \\d, and - between two that are a range."""
+    if not members:
+        raise PatternError("[] or [^]; the character itself is \\]")
+    at = 0
+    while at < len(members):
+        low = _member(members[at], may_be_minus=at in (0, len(members) - 1))
+        if members[at + 1 : at + 2] == ["-"] and at + 2 < len(members):
+            at += 2
+            high = _member(members[at], may_be_minus=True)
+            if len(low) != 1 or len(high) != 1 or low > high:
+                raise PatternError(f"{low}-{high} between [ and ]; write \\- for the character itself")
+        at += 1
+
+
+def _member(member: str, *, may_be_minus: bool) -> str:
+    """The character that it is, or a class."""
+    if member.startswith("\\"):
+        _require_escape(member[1], in_set=True)
+        return member if member[1].isalpha() else member[1]
+    if member == "[":
+        raise PatternError("[ between [ and ]; the character itself is \\[, a digit \\d")
+    if member == "-" and not may_be_minus:
+        raise PatternError("- between [ and ]; the character itself is \\-")
+    if not member.isascii():
+        raise PatternError(f"{member} between [ and ]; write (?:{member}|...)")
+    _require_printed(member)
+    return member

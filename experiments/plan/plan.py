@@ -114,34 +114,24 @@ def _known(question: Question, number: int, series: Series, around: Surroundings
     if series.is_foreign:
         return series
     if series.program not in around.programs:
-        names = list(around.programs)
-        raise InputError(
-            f"{key}.program: found {quoted(series.program)}, expected one of {', '.join(names)}"
-            f"{nearest(series.program, names)}"
-        )
+        expected = f"one of {', '.join(around.programs)}{nearest(series.program, around.programs)}"
+        raise InputError(f"{key}.program: found {quoted(series.program)}, expected {expected}")
     program = around.programs[series.program]
     if program.sha256 is None or series.variant in SHORT_NAMES:
         return series
     if series.variant not in variants(program):
-        names = [*SHORT_NAMES, *variants(program)]
-        raise InputError(
-            f'{key}.variant: found "{series.variant}", expected a name out of `carom list --names`, or '
-            f"one of {', '.join(SHORT_NAMES)}{nearest(str(series.variant), names)}"
-        )
+        like = nearest(str(series.variant), [*SHORT_NAMES, *variants(program)])
+        expected = f"a name out of `carom list --names`, or one of {', '.join(SHORT_NAMES)}{like}"
+        raise InputError(f'{key}.variant: found "{series.variant}", expected {expected}')
     return series
 
 
 def _values(question: Question, series: Series, around: Surroundings) -> Sequence[float | None]:
-    sweep = question.sweep
+    sweep, threads = question.sweep, around.machine.hardware_threads
     if sweep.parameter is None:
         return [None]
-    values = around.scale.values(series)
-    if sweep.unit:
-        values = tuple(value * around.machine.hardware_threads for value in values)
-    if sweep.limit is not None:
-        most = sweep.limit * around.machine.hardware_threads
-        values = tuple(value for value in values if value <= most)
-    return values
+    values = [value * threads if sweep.unit else value for value in around.scale.values(series)]
+    return [value for value in values if sweep.limit is None or value <= sweep.limit * threads]
 
 
 def _point(
@@ -169,14 +159,9 @@ def _point(
         of_run = {"threads": run["threads"], "substeps": run["substeps"]}
         command, program = _command(question, number, series, (scene, of_run, x), around)
     assert program is not None
+    variables = around.site.binding.environment(run["threads"], around.machine, bound=question.bound)
     return Point(
         experiment=question.name,
-        kind=question.kind,
-        figure=question.figure,
-        claim=question.claim,
-        margin=question.margin,
-        error=question.error,
-        reference=question.reference,
         series=series.name,
         series_number=number,
         label=series.label,
@@ -187,20 +172,23 @@ def _point(
         scale=around.scale.name,
         site=around.site.name,
         machine=around.machine,
-        verb=question.verb,
         program=program,
         scene=scene,
         variant=series.variant,
         command=command,
-        tolerance=question.tolerance,
-        warm_up=question.warm_up,
-        repetitions=question.repetitions,
-        errors=question.errors,
         simulated=around.scale.simulated(question),
-        openmp=_openmp(question, run["threads"], around),
+        openmp=tuple(sorted(variables.items())),
         apart=series.apart,
+        **{name: getattr(question, name) for name in _OF_QUESTION},
         **run,
     )
+
+
+_OF_QUESTION = (
+    "kind", "figure", "claim", "margin", "error", "reference", "verb", "tolerance", "warm_up", "repetitions",
+    "errors",
+)  # fmt: skip
+"""What all points of a question have in common with it."""
 
 
 def _command(
@@ -238,11 +226,6 @@ def _plain(value: float) -> float | int:
     return int(value) if value == int(value) else value
 
 
-def _openmp(question: Question, threads: int, around: Surroundings) -> tuple[tuple[str, str], ...]:
-    variables = around.site.binding.environment(threads, around.machine, bound=question.bound)
-    return tuple(sorted(variables.items()))
-
-
 def _swept(question: Question, scene: Scene, parameter: str, value: float) -> Scene:
     """The scene with one parameter changed; the side follows where the question keeps the area fraction."""
     if parameter == "area_fraction":
@@ -262,8 +245,6 @@ def _swept(question: Question, scene: Scene, parameter: str, value: float) -> Sc
 
 def _threads(threads: Threads, machine: Machine) -> int:
     """A number asked for is cut to what the machine has: only a sweep of threads goes beyond."""
-    if threads == "cores":
-        return machine.cores
-    if threads == "hardware_threads":
-        return machine.hardware_threads
-    return min(threads, machine.hardware_threads)
+    if isinstance(threads, int):
+        return min(threads, machine.hardware_threads)
+    return machine.cores if threads == "cores" else machine.hardware_threads

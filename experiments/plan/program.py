@@ -19,7 +19,6 @@ NOT_BUILT_IN = 3
 GENERATOR = "gcc"
 """The build that makes the scenes, whichever is measured."""
 
-
 SHORT_NAMES = ("auto", "fastest")
 """What the program understands beside the names of its variants: the fastest for the scene at hand, and the
 one that is the fastest for all but the smallest scenes.
@@ -45,11 +44,16 @@ class Program:
     """Files that it, or a program beside it, is known to write: what they hold now says nothing of it."""
 
     @property
+    def hash_of(self) -> dict[Path, str]:
+        """The hash of each file that it is made of, where that is more than the one file."""
+        return dict(zip(self.files, self.hashes, strict=False))
+
+    @property
     def is_unchanged(self) -> bool:
         """Whether its files are what they were, but for those that are written. Raises InputError if one
         cannot be read.
         """
-        known = dict(zip(self.files, self.hashes, strict=False))
+        known = self.hash_of
         hashes = [known[file] if file in self.written else sha256_of(file) for file in self.sources]
         return digest_of_hashes(hashes) == self.sha256
 
@@ -91,12 +95,10 @@ def build_of(program: Program) -> dict[str, Any]:
     """How a build of Carom was made, as in a record's provenance. Raises InputError if it does not say."""
     done = process.run([str(program.path), "doctor", "--build"], time_limit=60)
     try:
-        told = json.loads(done.output)
-        return dict(told)
+        return dict(json.loads(done.output))
     except (ValueError, TypeError) as error:
-        raise InputError(
-            f"{program.path}: `doctor --build` does not say how it was built: {done.reason}"
-        ) from error
+        told = f"`doctor --build` does not say how it was built: {done.reason}"
+        raise InputError(f"{program.path}: {told}") from error
 
 
 def generate(program: Program, scene: AnyScene, path: Path) -> None:

@@ -12,9 +12,9 @@ from experiments.plan.scenes import AnyScene, HardCase, NoScene, Scene
 from experiments.plan.series import Series, read_series
 from experiments.support.schema import read_toml
 from support.errors import InputError, nearest, require_text
+from support.vocabulary import CONTROL
 
 FOLDER = Path(__file__).parents[1] / "questions"
-CONTROL = "control"
 
 Threads = int | Literal["cores", "hardware_threads"]
 
@@ -140,10 +140,8 @@ def _scenes(
 ) -> tuple[NamedScene, ...]:
     if one is not None and several is not None:
         raise InputError(f"{path}: scene: found beside scenes, expected either")
-    if one is not None:
-        return (_named_scene(one),)
     if several is None:
-        return (NamedScene(NoScene()),)
+        return (_named_scene(one) if one is not None else NamedScene(NoScene()),)
     named: dict[str, NamedScene] = {}
     for number, table in enumerate(several, start=1):
         key = f"scenes[{number}]"

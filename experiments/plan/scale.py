@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass, replace
 
-from experiments.plan.kinds import COUNTS
 from experiments.plan.question import NamedScene, Question
 from experiments.plan.scenes import AnyScene, Scene
 from experiments.plan.series import Series
+from support import vocabulary
 from support.errors import InputError, nearest
+from support.vocabulary import COUNTS
 
 
 @dataclass(frozen=True)
@@ -60,26 +61,26 @@ class Scale:
         return replace(scene.shrunk(self.divisor), steps=max(1, scene.steps // self.steps_divisor))
 
 
-SCALES = {
-    "paper": Scale(
-        "paper",
-        divisor=1,
-        steps_divisor=1,
-        blocks_divisor=1,
-        budget_seconds=45 * 60,
-        report_seconds=40.0,
-        pdf=True,
-    ),
-    "quick": Scale(
-        "quick",
-        divisor=10,
-        steps_divisor=2,
-        blocks_divisor=4,
-        budget_seconds=2.5 * 60,
-        report_seconds=15.0,
-        pdf=False,
-    ),
-}
+_PAPER = Scale(
+    "paper",
+    divisor=1,
+    steps_divisor=1,
+    blocks_divisor=1,
+    budget_seconds=45 * 60,
+    report_seconds=40.0,
+    pdf=True,
+)
+_QUICK = Scale(
+    "quick",
+    divisor=10,
+    steps_divisor=2,
+    blocks_divisor=4,
+    budget_seconds=150.0,
+    report_seconds=15.0,
+    pdf=False,
+)
+
+SCALES = dict(zip(vocabulary.SCALES, (_PAPER, _QUICK), strict=True))
 
 
 def find_scale(name: str) -> Scale:

@@ -18,8 +18,20 @@ _DIGITS = 12
 """How many of a scene's SHA-256 stand in the name of its file."""
 
 
+class _Named:
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """What `carom generate` is given."""
+        return ()
+
+    @property
+    def name(self) -> str:
+        """The arguments in one word."""
+        return "-".join(argument.lstrip("-") for argument in self.arguments)
+
+
 @dataclass(frozen=True)
-class Scene:
+class Scene(_Named):
     """The arguments of `carom generate`: discs at random in a square box."""
 
     particles: int
@@ -46,11 +58,6 @@ class Scene:
             words += ("--placement", self.placement)
         return (*words, "--isotropic") if self.isotropic else words
 
-    @property
-    def name(self) -> str:
-        """The arguments in one word."""
-        return "-".join(argument.lstrip("-") for argument in self.arguments)
-
     def with_area_fraction(self, fraction: float) -> "Scene":
         """The same discs in the box, of whole-numbered side, that they fill to about `fraction`."""
         side = self.radius * math.sqrt(self.particles * math.pi / fraction)
@@ -71,7 +78,7 @@ class Scene:
 
 
 @dataclass(frozen=True)
-class HardCase:
+class HardCase(_Named):
     """A scene that the program knows by name, of one size only; `carom generate --cases` lists them."""
 
     case: str
@@ -81,25 +88,10 @@ class HardCase:
         """--case NAME, as the program reads it."""
         return ("--case", self.case)
 
-    @property
-    def name(self) -> str:
-        """The arguments in one word."""
-        return f"case-{self.case}"
-
 
 @dataclass(frozen=True)
-class NoScene:
+class NoScene(_Named):
     """What a question has that is not about discs."""
-
-    @property
-    def arguments(self) -> tuple[str, ...]:
-        """None."""
-        return ()
-
-    @property
-    def name(self) -> str:
-        """None."""
-        return ""
 
 
 AnyScene = Scene | HardCase | NoScene

@@ -80,100 +80,72 @@ class Series:
         """Whether it is somebody else's program."""
         return self.variant is None
 
-    @property
-    def times_itself(self) -> bool:
-        """Whether the time that counts is one that the program says."""
-        return self.time is not None or self.benchmark is not None
-
 
 def read_series(
     path: Path, tables: Sequence[Mapping[str, Any]], of_sweep: Mapping[str, tuple[float, ...]]
 ) -> tuple[Series, ...]:
     """The series of a question's file, those of patterns included. Raises InputError with one line."""
+    keys = [f"{path}: series[{number}]" for number, _ in enumerate(tables, start=1)]
     found = [
         series
-        for number, table in enumerate(tables, start=1)
-        for series in _of_table(path, f"series[{number}]", _with_values(table, of_sweep))
+        for key, table in zip(keys, tables, strict=True)
+        for series in _of_table(path, key, _with_values(table, of_sweep))
     ]
-    _require_kinds(path, tables)
+    for key, table in zip(keys, tables, strict=True):
+        _require_kind(key, table)
     return tuple(found)
-
-
-def require_both_ways(path: Path, series: Sequence[Series]) -> None:
-    """Each of the kind ways is measured by turns and apart. Raises InputError with one line."""
-    for number, one in enumerate(series, start=1):
-        if not any(other.name == one.name and other.apart != one.apart for other in series):
-            missing = "without" if one.apart else "with"
-            raise InputError(
-                f'{path}: series[{number}]: found "{one.name}" once, expected another one {missing} '
-                "apart = true for kind ways"
-            )
-
-
-def require_replicated(path: Path, key: str, series: Series, figure: str, unit: str | None) -> None:
-    """What has replicates is measured at either scale, and only one figure draws those of a block as one
-    sample. Raises InputError with one line.
-    """
-    if series.replicated and figure != "schedule":
-        raise InputError(f"{path}: {key}.replicated: found for figure {figure}, expected for schedule only")
-    if series.replicated and unit is not None:
-        raise InputError(f"{path}: {key}.replicated: found beside sweep.unit, expected either")
-    for name, values in (("values", series.values), ("quick_values", series.quick_values)):
-        for value in series.replicated:
-            if value not in values:
-                raise InputError(f"{path}: {key}.replicated: found {value:g}, expected one of its {name}")
 
 
 def _with_values(table: Mapping[str, Any], of_sweep: Mapping[str, tuple[float, ...]]) -> dict[str, Any]:
     """A series has the sweep's values unless it has its own; quick values default to the values."""
-    replicated = {"replicated": tuple(table.get("replicated", ()))}
-    if "values" not in table:
-        quick = of_sweep["quick_values"] or of_sweep["values"]
-        return {**of_sweep, "quick_values": quick, **table, **replicated}
-    own = {key: tuple(table.get(key, table["values"])) for key in ("values", "quick_values")}
-    return {**table, **own, **replicated}
+    values = table if "values" in table else {**of_sweep, **table}
+    quick = values.get("quick_values") or values["values"]
+    return {
+        **table,
+        "values": tuple(values["values"]),
+        "quick_values": tuple(quick),
+        "replicated": tuple(table.get("replicated", ())),
+    }
 
 
-def _require_kinds(path: Path, tables: Sequence[Mapping[str, Any]]) -> None:
-    """Each series is of one kind, and has nothing that only another kind can have."""
-    only_for = {
-        "variant": ("program", "find_chunk", "resolve_chunk", "optional"),
-        "command": (
-            "trajectory", "time", "commands", "prepare", "conclude", "fresh_folder", "exit_codes", "turns",
-            "kept_by",
-        ),
-        "benchmark": (),
-    }  # fmt: skip
-    for number, table in enumerate(tables, start=1):
-        key = f"{path}: series[{number}]"
-        kinds = [kind for kind in only_for if kind in table]
-        if len(kinds) != 1:
-            found = " and ".join(kinds) or "none of them"
-            raise InputError(f"{key}: found {found}, expected one of {', '.join(only_for)}")
-        for kind, names in only_for.items():
-            wrong = next((name for name in names if name in table and kind not in kinds), None)
-            if wrong is not None:
-                raise InputError(f"{key}.{wrong}: found for a {kinds[0]}, expected for a {kind} only")
-        if "name" not in table and "commands" not in table and "filter" not in table.get("benchmark", {}):
-            raise InputError(f"{key}.name: missing; expected a text that is not empty")
+def _require_kind(key: str, table: Mapping[str, Any]) -> None:
+    """It is of one kind, and has nothing that only another kind can have."""
+    kinds = [kind for kind in _ONLY_FOR if kind in table]
+    if len(kinds) != 1:
+        found = " and ".join(kinds) or "none of them"
+        raise InputError(f"{key}: found {found}, expected one of {', '.join(_ONLY_FOR)}")
+    for kind, names in _ONLY_FOR.items():
+        wrong = next((name for name in names if name in table and kind not in kinds), None)
+        if wrong is not None:
+            raise InputError(f"{key}.{wrong}: found for a {kinds[0]}, expected for a {kind} only")
+    if "name" not in table and "commands" not in table and "filter" not in table.get("benchmark", {}):
+        raise InputError(f"{key}.name: missing; expected a text that is not empty")
+
+
+_ONLY_FOR = {
+    "variant": ("program", "find_chunk", "resolve_chunk", "optional"),
+    "command": (
+        "trajectory", "time", "commands", "prepare", "conclude", "fresh_folder", "exit_codes", "turns",
+        "kept_by",
+    ),
+    "benchmark": (),
+}  # fmt: skip
 
 
 def _of_table(path: Path, key: str, table: dict[str, Any]) -> Iterator[Series]:
-    _require_no_zero_byte(f"{path}: {key}", table)
+    _require_no_zero_byte(key, table)
     pattern = table.pop("commands", None)
     words = {name: tuple(table.pop(name, ())) for name in WORDS}
     time = PrintedTime(**table.pop("time")) if "time" in table else None
     benchmark = Benchmark(**table.pop("benchmark")) if "benchmark" in table else None
-    exit_codes = tuple(sorted(table.pop("exit_codes", [0])))
-    series = Series(
-        **{"name": "", **table, **words}, time=time, benchmark=benchmark,
-        exit_codes=() if exit_codes == (0,) else exit_codes,
-    )  # fmt: skip
+    codes = tuple(sorted(table.pop("exit_codes", [0])))
+    fine = () if codes == (0,) else codes
+    series = Series(**{"name": "", **table, **words}, time=time, benchmark=benchmark, exit_codes=fine)
     if time is not None:
-        _require_one_group(f"{path}: {key}.time.stdout", time.stdout)
+        _require_one_group(f"{key}.time.stdout", time.stdout)
     if time is not None and series.turns:
         told = "found true for a program that times itself, which would count its pauses; expected false"
-        raise InputError(f"{path}: {key}.turns: {told}")
+        raise InputError(f"{key}.turns: {told}")
     if pattern is not None:
         yield from _of_pattern(path, key, series, pattern)
     elif benchmark is not None:
@@ -184,26 +156,26 @@ def _of_table(path: Path, key: str, table: dict[str, Any]) -> Iterator[Series]:
 
 def _require_no_zero_byte(key: str, value: object) -> None:
     """No word of a command can have one."""
-    if isinstance(value, str) and "\0" in value:
-        raise InputError(f"{key}: found {quoted(value)}, expected a text without a zero byte")
-    inner = value.items() if isinstance(value, dict) else ()
-    for name, one in inner:
-        _require_no_zero_byte(f"{key}.{name}", one)
-    for one in value if isinstance(value, list) else ():
-        _require_no_zero_byte(key, one)
+    match value:
+        case str() if "\0" in value:
+            raise InputError(f"{key}: found {quoted(value)}, expected a text without a zero byte")
+        case dict():
+            for name, one in value.items():
+                _require_no_zero_byte(f"{key}.{name}", one)
+        case list():
+            for one in value:
+                _require_no_zero_byte(key, one)
 
 
 def _require_one_group(key: str, pattern: str) -> None:
     try:
         groups = groups_of(pattern)
     except PatternError as error:
-        raise InputError(
-            f"{key}: found {quoted(pattern)}, expected a regular expression that is allowed: found {error}"
-        ) from error
+        told = f"expected a regular expression that is allowed: found {error}"
+        raise InputError(f"{key}: found {quoted(pattern)}, {told}") from error
     if groups != 1:
-        raise InputError(
-            f"{key}: found {quoted(pattern)} with {groups} groups, expected one around the number"
-        )
+        told = f"with {groups} groups, expected one around the number"
+        raise InputError(f"{key}: found {quoted(pattern)} {told}")
 
 
 def _of_pattern(path: Path, key: str, series: Series, pattern: str) -> Iterator[Series]:
@@ -215,18 +187,14 @@ def _of_pattern(path: Path, key: str, series: Series, pattern: str) -> Iterator[
     found = glob.glob(pattern.lstrip("/"), root_dir=base, recursive=True, include_hidden=True)  # noqa: PTH207
     files = sorted(file for file in (base / one for one in found) if not file.is_dir())
     if not files:
-        raise InputError(f'{path}: {key}.commands: found "{pattern}", which no file matches')
+        raise InputError(f'{key}.commands: found "{pattern}", which no file matches')
     names = _differing([file.relative_to(base).parts for file in files])
     for file, name_of in zip(files, names, strict=True):
         there = {"program": os.fspath(file), "folder": os.fspath(file.parent)}
-        command, trajectory, prepare, conclude = (
-            tuple(_placed(word, there) for word in getattr(series, name)) for name in WORDS
-        )
-        prefix = f"{series.name} " if series.name else ""
-        yield replace(
-            series, command=command, trajectory=trajectory, prepare=prepare, conclude=conclude,
-            name=prefix + _shown(name_of), is_one_of_many=True, refused=_unfit(file),
-        )  # fmt: skip
+        words = {name: tuple(_placed(word, there) for word in getattr(series, name)) for name in WORDS}
+        name = f"{series.name} {_shown(name_of)}" if series.name else _shown(name_of)
+        changed: dict[str, Any] = {**words, "name": name, "is_one_of_many": True, "refused": _unfit(file)}
+        yield replace(series, **changed)
 
 
 def _unfit(file: Path) -> str:
@@ -247,8 +215,13 @@ def _shown(name: str) -> str:
 def _placed(word: str, values: Mapping[str, str]) -> str:
     """The word with these placeholders filled in, braces in the values kept from being others."""
     for name, value in values.items():
-        word = word.replace(f"{{{name}}}", value.replace("{", "{{").replace("}", "}}"))
+        word = word.replace(f"{{{name}}}", _without_placeholders(value))
     return word
+
+
+def _without_placeholders(text: str) -> str:
+    """The text as words of a command have it, where a brace alone begins a placeholder."""
+    return text.replace("{", "{{").replace("}", "}}")
 
 
 def _differing(paths: Sequence[tuple[str, ...]]) -> list[str]:
@@ -268,12 +241,12 @@ def _common(paths: Sequence[tuple[str, ...]]) -> int:
 def _of_benchmark(path: Path, key: str, series: Series, benchmark: Benchmark) -> Iterator[Series]:
     """The one that is named, or one for each that the program lists."""
     if (benchmark.name is None) == (benchmark.filter is None):
-        raise InputError(f"{path}: {key}.benchmark: expected either name or filter")
+        raise InputError(f"{key}.benchmark: expected either name or filter")
+    series = replace(series, command=(benchmark.program,))
     if benchmark.filter is None:
-        yield replace(series, command=(benchmark.program,))
+        yield series
         return
-    for name in cases(path.parent / benchmark.program, benchmark.filter, f"{path}: {key}.benchmark"):
+    for name in cases(path.parent / benchmark.program, benchmark.filter, f"{key}.benchmark"):
         # What is listed has no placeholders.
-        text = name.replace("{", "{{").replace("}", "}}")
-        own = replace(benchmark, name=text)
-        yield replace(series, name=series.name or _shown(name), command=(benchmark.program,), benchmark=own)
+        own = replace(benchmark, name=_without_placeholders(name))
+        yield replace(series, name=series.name or _shown(name), benchmark=own)

@@ -2,6 +2,7 @@
 
 import os
 import platform
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -84,14 +85,12 @@ def _cluster(path: Path, document: Mapping[str, Any]) -> Cluster | None:
     if document["kind"] != "slurm":
         return None
     cluster = read_cluster(document["slurm"])
-    names = [partition.name for partition in cluster.partitions]
-    for name in names:
-        if names.count(name) > 1:
-            raise InputError(f'{path}: slurm.partitions: found "{name}" twice, expected each name once')
+    (name, times), *_ = Counter(partition.name for partition in cluster.partitions).most_common()
+    if times > 1:
+        raise InputError(f'{path}: slurm.partitions: found "{name}" twice, expected each name once')
     if cluster.results is not None and not cluster.results.is_absolute():
-        raise InputError(
-            f'{path}: slurm.results: found "{cluster.results}", expected a path that begins with /'
-        )
+        told = f'found "{cluster.results}", expected a path that begins with /'
+        raise InputError(f"{path}: slurm.results: {told}")
     return cluster
 
 

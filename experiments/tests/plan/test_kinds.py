@@ -6,11 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from experiments.plan.kinds import COUNTS, KINDS
+from experiments.plan.kinds import KINDS
 from experiments.plan.plan import plan
 from experiments.plan.question import FOLDER, load_question
 from experiments.tests.conftest import CHUNKS, ERRORS, Workplace
 from experiments.tests.plan.test_plan import surroundings
+from support.vocabulary import COUNTS
 
 README = Path(__file__).parents[2] / "README.md"
 

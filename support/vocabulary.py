@@ -1,0 +1,13 @@
+"""The words that pass between the runner and the analysis, in records and in results folders."""
+
+SCALES = ("paper", "quick")
+"""The sizes of a study, the larger first."""
+
+CONTROL = "control"
+"""The question that measures the same under two labels."""
+
+COUNTS = "counts"
+"""The kind of which nothing is timed for comparison: one process counts the work of many points."""
+
+PLAN = "plan.json"
+"""The file of a results folder that tells how many blocks each experiment was given."""
