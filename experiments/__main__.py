@@ -5,9 +5,11 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 from experiments.calibration.command import add_options as add_calibrate_options
 from experiments.calibration.command import calibrate
@@ -28,9 +30,12 @@ from experiments.slurm.submit import resume, submit
 from experiments.slurm.task import work
 from experiments.support.descendants import hear_of_ends
 from experiments.support.places import analysis
-from support.command_line import Parser, exit_code_of, print_anything
+from support.command_line import Parser, exit_code_of, number_above_zero, print_anything
 from support.errors import InputError, Interrupted
 from support.files import require_room_for_folder
+
+Run = Callable[[argparse.Namespace], int]
+Options = Callable[[argparse.ArgumentParser], None]
 
 # Slurm sends SIGUSR1 ahead of a task's time limit.
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)
@@ -46,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             signal.signal(number, _interrupt)
     options = _parser().parse_args(arguments)
     kept = "what is finished is kept; the same command goes on with the rest"
-    return exit_code_of(lambda: _VERBS[options.verb].run(options), kept)
+    return exit_code_of(lambda: options.run(options), kept)
 
 
 def _check(options: argparse.Namespace) -> int:
@@ -97,6 +102,14 @@ def _collect(options: argparse.Namespace) -> int:
     return code
 
 
+def _submit(hand: Callable[..., int], options: argparse.Namespace) -> int:
+    return hand(_settings(options), dry_run=options.dry_run)
+
+
+def _compare(options: argparse.Namespace) -> int:
+    return subprocess.call(analysis("compare", str(options.first), str(options.second)))
+
+
 def _calibrate(options: argparse.Namespace) -> int:
     """Measure, then tell."""
     return calibrate(options) or subprocess.call(analysis("calibration", "--results", str(options.results)))
@@ -111,12 +124,34 @@ def _settings(options: argparse.Namespace) -> Settings:
 def _parser() -> argparse.ArgumentParser:
     parser = Parser(prog="carom study", description="Plan, run and look after a study.")
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
-    for name, verb in _VERBS.items():
+
+    def add(name: str, run: Run, told: str, options: Options = _add_options, *, listed: bool = True) -> None:
         # What only the runner and batch scripts call is not listed.
-        if name in _CALLED_BY_PROGRAMS:
-            verb.add_options(verbs.add_parser(name, description=verb.told))
-        else:
-            verb.add_options(verbs.add_parser(name, help=verb.told, description=verb.told))
+        shown: dict[str, Any] = {"help": told} if listed else {}
+        verb = verbs.add_parser(name, description=told, **shown)
+        options(verb)
+        verb.set_defaults(run=run)
+
+    add("run", lambda options: run(_settings(options)), "measure what is missing, then write the report")
+    told = "say what a run would do and about how long it would take"
+    add("plan", lambda options: show_plan(_settings(options)), told)
+    add("status", _status, "say what is done, missing and failed")
+    add("check", _check, "read every question and site file")
+    new = "write a commented question to start from"
+    add("new", lambda options: new_question(options.name, options.questions), new, _add_new_options)
+    add("builds", _builds, "say which builds of the program the questions need", listed=False)
+    for name, hand, told in (
+        ("submit", submit, "hand what is missing to a Slurm cluster"),
+        ("resume", resume, "hand to a Slurm cluster what is missing of all that was submitted"),
+    ):
+        add(name, partial(_submit, hand), told, _add_submit_options)
+    told = "measure one task of a job array; batch scripts call it"
+    add("work", lambda options: work(options.job, options.task), told, _add_work_options, listed=False)
+    told = "measure contenders whose true ratios are known, and tell how often verdicts are wrong here"
+    add("calibrate", _calibrate, told, add_calibrate_options)
+    add("collect", _collect, "merge other results folders into this one", _add_collect_options)
+    told = "compare results folder B with A; exit code 3: something is slower; 4: something is undecided"
+    add("compare", _compare, told, _add_compare_options)
     return parser
 
 
@@ -166,58 +201,6 @@ def _add_work_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("task", type=int, help="the task's index in the array")
 
 
-@dataclass(frozen=True)
-class _Verb:
-    told: str
-    run: Callable[[argparse.Namespace], int]
-    add_options: Callable[[argparse.ArgumentParser], None] = _add_options
-
-
-_VERBS = {
-    "run": _Verb("measure what is missing, then write the report", lambda options: run(_settings(options))),
-    "plan": _Verb(
-        "say what a run would do and about how long it would take",
-        lambda options: show_plan(_settings(options)),
-    ),
-    "status": _Verb("say what is done, missing and failed", _status),
-    "check": _Verb("read every question and site file", _check),
-    "new": _Verb(
-        "write a commented question to start from",
-        lambda options: new_question(options.name, options.questions),
-        _add_new_options,
-    ),
-    "builds": _Verb("say which builds of the program the questions need", _builds),
-    "submit": _Verb(
-        "hand what is missing to a Slurm cluster",
-        lambda options: submit(_settings(options), dry_run=options.dry_run),
-        _add_submit_options,
-    ),
-    "resume": _Verb(
-        "hand to a Slurm cluster what is missing of all that was submitted",
-        lambda options: resume(_settings(options), dry_run=options.dry_run),
-        _add_submit_options,
-    ),
-    "work": _Verb(
-        "measure one task of a job array; batch scripts call it",
-        lambda options: work(options.job, options.task),
-        _add_work_options,
-    ),
-    "calibrate": _Verb(
-        "measure contenders whose true ratios are known, and tell how often verdicts are wrong here",
-        _calibrate,
-        add_calibrate_options,
-    ),
-    "collect": _Verb("merge other results folders into this one", _collect, _add_collect_options),
-    "compare": _Verb(
-        "compare results folder B with A; exit code 3: something is slower; 4: something is undecided",
-        lambda options: subprocess.call(analysis("compare", str(options.first), str(options.second))),
-        _add_compare_options,
-    ),
-}
-
-_CALLED_BY_PROGRAMS = ("builds", "work")
-
-
 def names(text: str) -> tuple[str, ...]:
     """The names between commas. Raises what the parser makes a line of."""
     found = tuple(name.strip() for name in text.split(",") if name.strip())
@@ -235,13 +218,7 @@ def positive_number(text: str) -> int:
 
 def minutes(text: str) -> float:
     """A number of minutes above 0, in seconds. Raises what the parser makes a line of."""
-    try:
-        number = float(text)
-    except ValueError:
-        number = 0.0
-    if not 0 < number < float("inf"):
-        raise argparse.ArgumentTypeError(f"found {text}, expected a number of minutes above 0")
-    return number * 60
+    return 60 * number_above_zero(text, "minutes")
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

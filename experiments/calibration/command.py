@@ -1,9 +1,8 @@
 """The verb `calibrate`: six streams, three kinds of contenders quiet and beside busy loops, into one file."""
 
 import argparse
-import contextlib
-import math
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +11,9 @@ from experiments.calibration.kinds import KINDS
 from experiments.calibration.stream import measure
 from experiments.plan.program import GENERATOR, Program, find_programs
 from experiments.plan.site import load_site, this_machine
-from experiments.run.progress import Report
+from experiments.run.progress import ProgressDisplay
 from experiments.support.places import BUILDS
+from support.command_line import number_above_zero
 from support.errors import InputError
 from support.files import locked, read_json, require_room_for_folder, write_json
 
@@ -31,7 +31,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--results", type=Path, default=Path("results/calibration"), help="folder (default: %(default)s)"
     )
     told = "how long each of the six streams is measured (default: %(default)g)"
-    parser.add_argument("--seconds", type=_seconds, default=60.0, help=told)
+    parser.add_argument("--seconds", type=partial(number_above_zero, unit="seconds"), default=60.0, help=told)
     told = "folder of the programs (default: %(default)s)"
     parser.add_argument("--build", type=Path, default=BUILDS, help=told)
 
@@ -49,21 +49,25 @@ def calibrate(options: argparse.Namespace) -> int:
     if program.sha256 is None:
         raise InputError(program.remedy)
     openmp = where.binding.environment(1, this_machine())
-    with locked(results), Report() as report, tempfile.TemporaryDirectory(prefix="carom-") as folder:
+    with (
+        locked(results),
+        ProgressDisplay() as display,
+        tempfile.TemporaryDirectory(prefix="carom-") as folder,
+    ):
         content = _begun(results / UNFINISHED, program, options.seconds)
         known = {(one["kind"], one["condition"]) for one in content["streams"]}
         for make in KINDS:
-            report.now(f"{make.__name__}: making ready")
+            display.now(f"{make.__name__}: making ready")
             kind = make(program, openmp, Path(folder))
             for condition, loops in CONDITIONS.items():
                 if (kind.name, condition) in known:
                     continue
-                report.now(f"{kind.name}, {condition}: {options.seconds:g} s")
+                display.now(f"{kind.name}, {condition}: {options.seconds:g} s")
                 with busy(loops):
                     stream = measure(kind, condition, options.seconds)
                 content["streams"].append(stream)
                 write_json(results / UNFINISHED, content, results)
-                report.line(f"{kind.name}, {condition}: {len(stream['blocks'])} blocks")
+                display.line(f"{kind.name}, {condition}: {len(stream['blocks'])} blocks")
         write_json(results / FILE, content, results)
         (results / UNFINISHED).unlink()
     return 0
@@ -76,11 +80,3 @@ def _begun(path: Path, program: Program, seconds: float) -> dict[str, Any]:
     if isinstance(found, dict) and all(found.get(key) == value for key, value in asked.items()):
         return found
     return {**asked, "streams": []}
-
-
-def _seconds(text: str) -> float:
-    with contextlib.suppress(ValueError):
-        number = float(text)
-        if 0 < number < math.inf:
-            return number
-    raise argparse.ArgumentTypeError(f"found {text}, expected a number of seconds above 0")

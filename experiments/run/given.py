@@ -1,25 +1,16 @@
 """How many blocks each experiment was given so far."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from experiments.plan.plan import Experiment
 from experiments.results.store import Found, Store
-
-PLAN = "plan.json"
-
-
-@dataclass
-class Given:
-    """A number of blocks."""
-
-    blocks: int
+from support.vocabulary import PLAN
 
 
 def given_before(
     store: Store, experiments: Sequence[Experiment], found: Mapping[str, Found]
-) -> dict[str, Given]:
-    """What an earlier session gave to the experiments that it began.
+) -> dict[str, int]:
+    """The blocks that an earlier session gave to the experiments that it began.
 
     A question that now asks for more blocks than that has changed, and is decided anew. In older folders
     points could stop before others: what all of them have counts, since later blocks lack a point.
@@ -31,15 +22,15 @@ def given_before(
         minimum = experiment.question.blocks.minimum
         if kept and found[experiment.name].seconds and minimum <= kept["blocks"]:
             whole = min([kept["blocks"], *kept.get("stopped", {}).values()])
-            given[experiment.name] = Given(max(minimum, int(whole)))
+            given[experiment.name] = max(minimum, int(whole))
     return given
 
 
-def keep(store: Store, experiment: Experiment, given: Given, runs: int) -> None:
+def keep(store: Store, experiment: Experiment, given: int, runs: int) -> None:
     """Write down what an experiment was given, and how many runs there are once it has that."""
     plan = store.note(PLAN) or {}
     entry = {
-        "blocks": given.blocks,
+        "blocks": given,
         "runs": runs,
         "order_seed": experiment.order_seed,
         "points": [point.id for point in experiment.points],

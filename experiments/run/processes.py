@@ -85,10 +85,8 @@ class Processes:
             asked = provisional
         self._written.learn_created([one.point.program for one in asked])
         for one, there in zip(asked, left, strict=True):
-            said = self._behaviours.learn(
-                one.point, read_json(there.record), found_out=self._turns(one) is None
-            )
-            if said:
+            is_open = self._turns(one) is None
+            if said := self._behaviours.learn(one.point, read_json(there.record), found_out=is_open):
                 warn(f"{one.point.experiment}, {one.point.series}: measured without a pause: {said}")
         return done, left
 
@@ -150,61 +148,46 @@ class Processes:
         return self._behaviours.of(one.point).turns
 
     def _described(self, one: Asked, left: Left) -> dict[str, Any]:
-        point, path = one.point, one.scene.path.absolute() if one.scene is not None else None
-        turns, seconds = self._turns(one), self._behaviours.of(point).expected_seconds
-        described: dict[str, Any] = {
+        point, command = one.point, one.point.command
+        program, path = point.program, one.scene.path.absolute() if one.scene is not None else None
+        is_benchmark = command is not None and command.benchmark is not None
+        is_other_build = command is None and program.sha256 != self._instrument.sha256
+        told: dict[str, Any] = {
             "command": point.process_words(path, left.output),
             "environment": dict(point.openmp),
             "most_seconds": self._time_limit,
             "record": str(left.record),
             "tags": [f"{key}={value}" for key, value in one.tags.items()],
-            "sources": [str(file) for file in point.program.sources],
+            "sources": [str(file) for file in program.sources],
             "threads": point.threads,
             "axes": {key: value for key, value in point.axes.items() if value is not None},
             "warm_ups": point.warm_up,
             "checked": one.checked,
+            "scene": str(path) if path is not None else None,
+            "written": {str(file): program.hash_of[file] for file in program.written} or None,
+            "expected_seconds": self._behaviours.of(point).expected_seconds,
+            "build": build_of(program) if is_other_build else None,
+            "output": str(left.output) if is_benchmark else None,
+            "turns": None if is_benchmark else self._turns(one),
         }
-        if path is not None:
-            described["scene"] = str(path)
-        if point.program.written:
-            hashes = zip(point.program.files, point.program.hashes, strict=False)
-            written = {str(file): sha256 for file, sha256 in hashes if file in point.program.written}
-            described["written"] = written
-        if seconds is not None:
-            described["expected_seconds"] = seconds
-        if point.command is None:
-            if point.program.sha256 != self._instrument.sha256:
-                described["build"] = build_of(point.program)
-        else:
-            described |= self._surroundings(point.command, path, left.output) | _time_of(point.command)
-        is_benchmark = point.command is not None and point.command.benchmark is not None
-        if is_benchmark:
-            described["output"] = str(left.output)
-        elif turns is not None:
-            described["turns"] = turns
-        return described
+        if command is not None:
+            told |= self._surroundings(command, path, left.output)
+            told |= {name: getattr(command, name) for name in ("unit_seconds", "pattern", "benchmark")}
+        return {key: value for key, value in told.items() if value is not None}
 
     def _surroundings(
         self, command: Command, scene: Path | None = None, output: Path | None = None
     ) -> dict[str, Any]:
         """Where a command is run, with what before and after it, and how it may end."""
-        around: dict[str, Any] = {"folder": str(command.folder), "most_seconds": self._time_limit}
-        for name in ("prepare", "conclude"):
-            if words := getattr(command, name):
-                around[name] = placed(words, scene, output)
-        if command.kept_by:
-            around["kept_by"] = command.kept_by
-        if command.fresh_folder:
-            around["fresh_folder"] = True
-        if command.exit_codes:
-            around["exit_codes"] = list(command.exit_codes)
-        return around
-
-
-def _time_of(command: Command) -> dict[str, Any]:
-    """Where the time of a command comes from."""
-    told = {"unit_seconds": command.unit_seconds, "pattern": command.pattern, "benchmark": command.benchmark}
-    return {key: value for key, value in told.items() if value is not None}
+        around = {
+            "prepare": placed(command.prepare, scene, output),
+            "conclude": placed(command.conclude, scene, output),
+            "kept_by": command.kept_by,
+            "fresh_folder": command.fresh_folder,
+            "exit_codes": command.exit_codes,
+        }
+        where = {"folder": str(command.folder), "most_seconds": self._time_limit}
+        return where | {key: value for key, value in around.items() if value}
 
 
 def _commands(command: Command | None) -> int:

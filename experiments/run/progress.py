@@ -22,7 +22,7 @@ class Status:
         return f"{self.done} of {self.planned} processes done, {about(self.seconds_left)} left"
 
 
-class Report:
+class ProgressDisplay:
     """What the user sees while a study runs; a context manager.
 
     The bar is drawn between processes only: a thread that redrew it would take time from what is measured.
@@ -34,7 +34,7 @@ class Report:
         self._bar = Progress(*columns, console=self._console, auto_refresh=False, transient=True)
         self._task = self._bar.add_task("", total=None, status="")
 
-    def __enter__(self) -> "Report":
+    def __enter__(self) -> "ProgressDisplay":
         if self._console.is_terminal:
             self._bar.start()
         return self

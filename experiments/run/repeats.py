@@ -9,8 +9,13 @@ root. Least is therefore the variance times the square of what a process costs.
 
 import math
 import statistics
-from collections.abc import Hashable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+
+from experiments.plan.point import PROCESS, Point
+from experiments.results.store import Key
+from experiments.run.costs import Costs
+from support.vocabulary import COUNTS
 
 MOST_RUNS = 30
 """In a process: more would tell of one process alone."""
@@ -81,30 +86,22 @@ def choose_runs(fixed_seconds: float, run_seconds: float, known: Spread | None, 
     return max(1, round(min(wanted, most)))
 
 
-class Repeated:
-    """The runs of the processes that whoever measures has seen itself, by what they measured."""
-
-    def __init__(self) -> None:
-        self._processes: dict[Hashable, list[Process]] = {}
-        self._fixed: dict[Hashable, list[float]] = {}
-
-    def runs(self, group: Hashable) -> int:
-        """How many runs the next process of a group makes; one before anything of it was seen."""
-        seen = self._processes.get(group)
-        if not seen:
-            return 1
-        run = statistics.median(sum(runs) / len(runs) for runs in _by_contender(seen)) * len(seen[-1])
-        return choose_runs(statistics.median(self._fixed[group]), run, spread(seen), len(seen[-1][0]))
-
-    def learn(self, group: Hashable, seconds: float, process: Process) -> None:
-        """A process took so long, its runs of several contenders included."""
-        if len(process) > 1 and all(process):
-            self._processes.setdefault(group, []).append(process)
-            self._fixed.setdefault(group, []).append(max(0.0, seconds - sum(map(sum, process))))
-
-
-def _by_contender(processes: Sequence[Process]) -> list[Sequence[float]]:
-    return [runs for process in processes for runs in process]
+def process_runs(group: Sequence[Point], seen: Mapping[Key, Sequence[float]], costs: Costs) -> int:
+    """How many timed runs the next process of these points makes, by what is known of their times: `seen` are
+    the runs of earlier processes, by point and block. One where nothing is known of a point.
+    """
+    if (
+        len(group) < 2
+        or group[0].verb == PROCESS
+        or group[0].kind == COUNTS
+        or not all(map(costs.knows, group))
+    ):
+        return 1
+    blocks = sorted(block for point, block in seen if point == group[0].id)
+    processes = [[seen.get((point.id, block), ()) for point in group] for block in blocks]
+    whole = [process for process in processes if all(process)]
+    fixed, run = (sum(map(cost, group)) for cost in (costs.fixed, costs.run))
+    return choose_runs(fixed, run, spread(whole), len(whole[-1][0]) if whole else 0)
 
 
 def _variance(values: Sequence[float]) -> float:

@@ -2,23 +2,18 @@
 
 import json
 import shutil
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from experiments.plan.kinds import COUNTS
 from experiments.plan.plan import Experiment
 from experiments.plan.point import PROCESS, Point, Tags
 from experiments.plan.program import CHECK_FAILED, Program, generate
 from experiments.plan.scenes import AnyScene, NoScene, SceneFile, SceneFolder
 from experiments.results.store import Store, timed_runs, unusable
+from experiments.run.beside import BesideRecords
 from experiments.run.host_lock import run_alone
-from experiments.run.kept_records import KeptRecords
-from experiments.run.limits import measure_limits
-from experiments.run.outside import Outside
 from experiments.run.processes import Asked, Left, Processes
-from experiments.run.promises import keep_promises
 from experiments.run.verify import Verifier, representative, scope_of
 from experiments.run.written import Written, built_anew
 from experiments.support.digest import digest
@@ -26,6 +21,7 @@ from experiments.support.process import NOT_FOUND, Completed
 from support.errors import InputError
 from support.files import move, read_json
 from support.record_schema import is_record
+from support.vocabulary import COUNTS
 
 SUSPENDED = "while it was measured; measure it again"
 """What the program says at last where it, or the machine, stood still: nothing of that run counts."""
@@ -62,7 +58,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class ProcessResult:
     """Seconds of the whole process and of its timed runs, or the reason of its failure with the exit code."""
 
     seconds: float | None
@@ -86,10 +82,9 @@ class Runner:
         self._processes = Processes(store, generator, time_limit)
         self._verifier = Verifier(store, generator, self._processes, time_limit)
         self._written = Written(store)
-        self._records = KeptRecords(store, time_limit)
-        self._outside = Outside(self._records)
+        self._beside = BesideRecords(store, time_limit)
 
-    def run(self, tasks: Sequence[Task]) -> list[Outcome]:
+    def run(self, tasks: Sequence[Task]) -> list[ProcessResult]:
         """Verify the points' variants as far as that is still to be done, then measure the points: several of
         them in turns, in one process.
 
@@ -99,29 +94,29 @@ class Runner:
         ready = [
             (task, scene)
             for task, scene in zip(tasks, prepared, strict=True)
-            if not isinstance(scene, Outcome)
+            if not isinstance(scene, ProcessResult)
         ]
         measured = iter(self._measure_undisturbed(ready))
-        return [one if isinstance(one, Outcome) else next(measured) for one in prepared]
+        return [one if isinstance(one, ProcessResult) else next(measured) for one in prepared]
 
-    def _measure_undisturbed(self, ready: Sequence[Ready]) -> list[Outcome]:
+    def _measure_undisturbed(self, ready: Sequence[Ready]) -> list[ProcessResult]:
         """All of them, and all of them again if one was suspended: alone it would be no pair."""
         for attempt in range(1, _MOST_SUSPENSIONS + 1):
-            outcomes = self._measure_all(ready)
-            if attempt == _MOST_SUSPENSIONS or not any(SUSPENDED in one.reason for one in outcomes):
+            ended = self._measure_all(ready)
+            if attempt == _MOST_SUSPENSIONS or not any(SUSPENDED in one.reason for one in ended):
                 break
-        return outcomes
+        return ended
 
-    def _measure_all(self, ready: Sequence[Ready]) -> list[Outcome]:
+    def _measure_all(self, ready: Sequence[Ready]) -> list[ProcessResult]:
         if ready and ready[0][0].point.verb == PROCESS:
             return self._measure_processes(ready)
         if len(ready) > 1:
-            outcomes = self._measure_in_turns(ready)
-            if outcomes is not None:
-                return outcomes
+            ended = self._measure_in_turns(ready)
+            if ended is not None:
+                return ended
         return [self._measure(task, scene) for task, scene in ready]
 
-    def _prepare(self, task: Task) -> SceneFile | Outcome | None:
+    def _prepare(self, task: Task) -> SceneFile | ProcessResult | None:
         """The point's scene, if it has one, once what runs is verified; or why it cannot be measured."""
         point = task.point
         if point.refused:
@@ -141,22 +136,14 @@ class Runner:
             verdict = self._verifier.check(representative(task.experiment, point), checked)
             if verdict.exit_code != 0:
                 return self._fail(task, verdict)
-        for beside in (
-            measure_limits(point, self._records),
-            keep_promises(point, scene, task.tags(self._store.session), self._records),
-        ):
-            if beside is not None and beside.exit_code != 0:
-                return self._fail(task, beside)
-        failed = self._outside.measure(point, task.block, scene, task.tags(self._store.session))
-        if failed is not None and failed.exit_code != 0:
-            print(f"outside engine: not measured: {failed.reason}", file=sys.stderr)
-        return scene
+        failed = self._beside.ensure(point, task.block, scene, task.tags(self._store.session))
+        return self._fail(task, failed) if failed is not None else scene
 
     def scene(self, scene: AnyScene) -> SceneFile:
         """The scene's file, generated if need be."""
         return self._scenes.get(scene, lambda wanted, path: generate(self._generator, wanted, path))
 
-    def _measure_processes(self, ready: Sequence[Ready]) -> list[Outcome]:
+    def _measure_processes(self, ready: Sequence[Ready]) -> list[ProcessResult]:
         """Whole processes, side by side in slices of time."""
         asked = [
             Asked(
@@ -174,7 +161,9 @@ class Runner:
             for (task, scene), there in zip(ready, left, strict=True)
         ]
 
-    def _keep_process(self, task: Task, scene: SceneFile | None, left: Left, done: Completed) -> Outcome:
+    def _keep_process(
+        self, task: Task, scene: SceneFile | None, left: Left, done: Completed
+    ) -> ProcessResult:
         """Take in the record of a process; of one that wrote a trajectory only if that is right."""
         record, command = read_json(left.record), task.point.command
         is_measured = is_record(record) and record["kind"] == PROCESS
@@ -185,7 +174,7 @@ class Runner:
                 return self._fail(task, wrong)
         return self._keep(task, left.record, Completed(done.command, done.exit_code, "", done.error))
 
-    def _measure_in_turns(self, ready: Sequence[Ready]) -> list[Outcome] | None:
+    def _measure_in_turns(self, ready: Sequence[Ready]) -> list[ProcessResult] | None:
         """All of them in one process; None if it broke off: each must show alone what is wrong with it.
 
         Nothing is wrong with those that stood still: they have failed, and are measured together again by the
@@ -213,7 +202,7 @@ class Runner:
             for number, ((task, _), words) in enumerate(zip(ready, commands, strict=True))
         ]
 
-    def _measure(self, task: Task, scene: SceneFile | None) -> Outcome:
+    def _measure(self, task: Task, scene: SceneFile | None) -> ProcessResult:
         point = task.point
         scratch = self._store.temporary / "record.json"
         scratch.unlink(missing_ok=True)
@@ -222,12 +211,12 @@ class Runner:
         timeline = self._store.temporary / "timeline.json" if drawn else None
         command = point.bench_words(_path(scene), scratch, tags, timeline, point.besides(task.block))
         done = run_alone(command, point.openmp, self._time_limit)
-        outcome = self._keep(task, scratch, done)
-        if outcome.seconds is not None and timeline is not None and timeline.exists():
+        result = self._keep(task, scratch, done)
+        if result.seconds is not None and timeline is not None and timeline.exists():
             move(timeline, self._store.root / "timelines" / point.timeline)
-        return outcome
+        return result
 
-    def _keep(self, task: Task, scratch: Path, done: Completed) -> Outcome:
+    def _keep(self, task: Task, scratch: Path, done: Completed) -> ProcessResult:
         """Take in the record that a process left of a point, or the reason why there is none."""
         record = read_json(scratch)
         if is_record(record) and record["kind"] == "failure":
@@ -239,18 +228,19 @@ class Runner:
         wrong = unusable(record, task.point, task.block)
         if wrong is None:
             self._store.keep_record(task.point, task.block, scratch)
-            return Outcome(float(record["process_seconds"]), runs=timed_runs(record))
+            return ProcessResult(float(record["process_seconds"]), runs=timed_runs(record))
         violation = _violation(record)
         if done.exit_code == CHECK_FAILED and (violation or record is None):
             return self._fail(task, Completed(done.command, CHECK_FAILED, "", violation or done.reason))
         said = "left no record" if record is None else f"left a record that cannot be used: {wrong}"
         return self._fail(task, Completed(done.command, 1, "", said))
 
-    def _fail(self, task: Task, done: Completed) -> Outcome:
-        if task.point.program.sha256 is not None and not task.point.refused:
-            _require_unchanged(self._written.known(task.point.program))
+    def _fail(self, task: Task, done: Completed) -> ProcessResult:
+        program = self._written.known(task.point.program)
+        if program.sha256 is not None and not task.point.refused and not program.is_unchanged:
+            raise built_anew(program.path)
         self._store.keep_failure(task.point, task.block, done, task.tags(self._store.session))
-        return Outcome(None, done.reason, done.exit_code)
+        return ProcessResult(None, done.reason, done.exit_code)
 
 
 def _path(scene: SceneFile | None) -> Path:
@@ -274,8 +264,3 @@ def _violation(record: object) -> str | None:
     """The first violation that a record of a failed check names."""
     check = record.get("check") if isinstance(record, dict) else None
     return check.get("reason") if isinstance(check, dict) else None
-
-
-def _require_unchanged(program: Program) -> None:
-    if not program.is_unchanged:
-        raise built_anew(program.path)

@@ -10,9 +10,9 @@ from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.plan.site import what_limits
 from experiments.run.next_blocks import in_turns, next_blocks
-from experiments.run.progress import Report, warn
-from experiments.run.runner import Outcome, Runner, Task
-from experiments.run.schedule import Schedule, split
+from experiments.run.progress import ProgressDisplay, warn
+from experiments.run.runner import ProcessResult, Runner, Task
+from experiments.run.schedule import Schedule, control_apart
 from experiments.run.study import POINTS_FAILED, REPORT_FAILED, Settings, Study, keep_claims, summary
 from experiments.run.together import together
 from experiments.run.verdicts import Verdicts, ask
@@ -36,18 +36,18 @@ def run(settings: Settings) -> int:
     failed, or 1 where the report could not be written.
     """
     study = Study(settings)
-    with study.store.opened(), Report() as report:
-        report.now("planning")
+    with study.store.opened(), ProgressDisplay() as display:
+        display.now("planning")
         keep_claims(settings.questions, settings.results)
         runner = study.runner()
         schedule = study.schedule(runner, settle=True)
         for line in schedule.measured_again():
-            report.line(line)
-        report.line(summary(schedule, study.budget_seconds))
+            display.line(line)
+        display.line(summary(schedule, study.budget_seconds))
         if limits := what_limits():
-            report.line(limits)
+            display.line(limits)
         with Coprocess(study.analysis_command()) as analysis:
-            return Session(study, runner, schedule, report, analysis).run()
+            return Session(study, runner, schedule, display, analysis).run()
 
 
 class Session:
@@ -56,18 +56,18 @@ class Session:
     """
 
     def __init__(
-        self, study: Study, runner: Runner, schedule: Schedule, report: Report, analysis: Coprocess
+        self, study: Study, runner: Runner, schedule: Schedule, display: ProgressDisplay, analysis: Coprocess
     ) -> None:
         self._began = time.monotonic()
         self._study = study
         self._runner = runner
         self._schedule = schedule
-        self._report = report
+        self._display = display
         self._analysis = analysis
         self._failures: Counter[str] = Counter()
         self._report_due = time.monotonic() + REPORT_PAUSE
         self._said: set[str] = set()
-        self._others, self._control = split(study.experiments)
+        self._others, self._control = control_apart(study.experiments)
         self._incomplete = [one for one in self._others if not schedule.is_complete(one)]
         self._has_more = bool(self._incomplete) or not study.is_finished
         self._until = self._end()
@@ -99,7 +99,8 @@ class Session:
                 self._schedule.begin(experiment)  # it may have fewer points than when it was completed
         for experiment in self._incomplete:
             self._run_control(everything=False)
-            self._first_block(experiment)
+            for block in self._schedule.blocks(experiment, most=1):
+                self._block(experiment, block)
             if experiment.question.blocks.wanted == 1:
                 self._measure([experiment])
         self._measure([one for one in self._incomplete if one.question.blocks.wanted > 1])
@@ -112,8 +113,8 @@ class Session:
             verdicts = self._settle() if looks else Verdicts()
             if not settings.until_decided:
                 # What is still open has no time for its next look: more blocks of it come last of all.
-                self._share({*verdicts.settled, *verdicts.open})
-                self._share(verdicts.settled)
+                self._share_out({*verdicts.settled, *verdicts.open})
+                self._share_out(verdicts.settled)
         self._run_control(everything=True)
         self._study.finish()
         failed = self._failed()
@@ -125,13 +126,16 @@ class Session:
         """
         self._keep_time_to_decide()
         while True:
-            self._report.now("looking at what is decided", self._schedule.status)
+            self._display.now("looking at what is decided", self._schedule.status)
             began = time.monotonic()
             verdicts = ask(self._analysis)
             if isinstance(verdicts, str):
                 warn(f"what is open is not known, so that nothing is measured to settle it: {verdicts}")
                 return Verdicts()
-            self._tell_decisions(verdicts)
+            for name, said in verdicts.said.items():
+                if name not in self._said:
+                    self._display.line(f"decided: {name} {said}")
+            self._said.update(verdicts.said)
             looked = time.monotonic()
             if not self._measure_next(verdicts, least_seconds=MEASURED_A_LOOK * (looked - began)):
                 return verdicts
@@ -146,18 +150,12 @@ class Session:
         self._measure(chosen)
         return bool(chosen)
 
-    def _tell_decisions(self, verdicts: Verdicts) -> None:
-        for name, said in verdicts.said.items():
-            if name not in self._said:
-                self._report.line(f"decided: {name} {said}")
-        self._said.update(verdicts.said)
-
-    def _share(self, enough: Collection[str]) -> None:
+    def _share_out(self, enough: Collection[str]) -> None:
         """Give the rest of the time to whatever has not enough, up to the blocks that it wants."""
-        self._schedule.share(self._until - time.monotonic(), enough)
+        self._schedule.share_out_time(self._until - time.monotonic(), enough)
         for experiment in self._others:
             if not self._schedule.is_complete(experiment):
-                self._schedule.share(self._until - time.monotonic(), enough)
+                self._schedule.share_out_time(self._until - time.monotonic(), enough)
                 self._measure([experiment])
 
     def _measure(self, experiments: Sequence[Experiment]) -> None:
@@ -165,8 +163,7 @@ class Session:
         lacking = {}
         for one in experiments:
             self._schedule.begin(one)
-            blocks = self._schedule.blocks_of(one)
-            lacking[one.name] = [block for block in range(blocks.end()) if blocks.missing(block)]
+            lacking[one.name] = list(self._schedule.blocks_of(one).lacking)
         of_name = {one.name: one for one in experiments}
         for name in in_turns({name: len(blocks) for name, blocks in lacking.items()}):
             self._run_control(everything=False)
@@ -176,10 +173,6 @@ class Session:
             for block in self._schedule.blocks(one):
                 self._block(one, block)
             self._schedule.begin(one)
-
-    def _first_block(self, experiment: Experiment) -> None:
-        for block in self._schedule.blocks(experiment, most=1):
-            self._block(experiment, block)
 
     def _run_control(self, *, everything: bool) -> None:
         """The same thing under two labels, measured all along the study, must come out equal."""
@@ -196,23 +189,22 @@ class Session:
         missing, size = laid_out.missing(block), laid_out.size(block)
         what = f"{experiment.name}, block {laid_out.ordinal(block)} of {blocks}"
         for group in together(experiment, block, missing):
-            self._report.now(what, self._schedule.status)
+            self._display.now(what, self._schedule.status)
             runs = self._schedule.runs(experiment, [point for _, point in group])
             tasks = [Task(experiment, point, block, at, blocks, size, runs) for at, point in group]
             began = time.monotonic()
-            outcomes = self._runner.run(tasks)
-            self._schedule.learn_beside(experiment, time.monotonic() - began, outcomes)
-            for (_, point), outcome in zip(group, outcomes, strict=True):
-                self._schedule.finish(experiment, point, block, outcome)
-                if outcome.seconds is None:
-                    self._tell(point, outcome)
+            ended = self._runner.run(tasks)
+            self._schedule.finish(tasks, ended, time.monotonic() - began)
+            for (_, point), result in zip(group, ended, strict=True):
+                if result.seconds is None:
+                    self._tell(point, result)
         if missing:
-            self._report.block(what, self._schedule.status)
+            self._display.block(what, self._schedule.status)
             self._report_meanwhile()
 
-    def _tell(self, point: Point, failed: Outcome) -> None:
+    def _tell(self, point: Point, failed: ProcessResult) -> None:
         where = f"{point.experiment}, {point.series}, {point.x_name} {point.x:g}"
-        self._report.line(f"{where}: failed: {failed.reason}")
+        self._display.line(f"{where}: failed: {failed.reason}")
         # A build that is not there is a gap with a remedy, not a wrong result.
         if point.program.sha256 is not None:
             self._failures[point.experiment] += 1
@@ -222,12 +214,12 @@ class Session:
         began = time.monotonic()
         if not self._study.settings.figures or began < self._report_due:
             return
-        self._report.now("writing the report of what is there")
+        self._display.now("writing the report of what is there")
         done = self._analysis.ask(f"report {self._schedule.status()}", REPORT_LIMIT)
         now = time.monotonic()
         self._report_due = now + max(REPORT_PAUSE, (now - began) / REPORT_SHARE)
         if done.exit_code == 0:
-            self._report.line(f"report of what is there: {json.loads(done.output)[0]}")
+            self._display.line(f"report of what is there: {json.loads(done.output)[0]}")
         else:
             warn(f"the report of what is there could not be written: {done.reason}")
 
@@ -235,7 +227,7 @@ class Session:
         """Write the report with all its figures. Returns the exit code."""
         if not self._study.settings.figures:
             return 0
-        self._report.now("writing the report")
+        self._display.now("writing the report")
         done = self._analysis.ask("report" if self._study.scale.pdf else "page", REPORT_LIMIT)
         if done.exit_code != 0:
             warn(f"the report could not be written: {done.reason}")
@@ -243,7 +235,7 @@ class Session:
         for line in done.error.splitlines():
             warn(line)
         for path in json.loads(done.output):
-            self._report.line(path)
+            self._display.line(path)
         return 0
 
     def _failed(self) -> int:
@@ -251,7 +243,7 @@ class Session:
         root = self._study.store.root
         if not self._failures:
             if self._study.is_whole and not self._study.settings.builds:
-                self._report.line(f"the study is complete: {root / 'records'}")
+                self._display.line(f"the study is complete: {root / 'records'}")
             return 0
         points = ", ".join(f"{name} ({number})" for name, number in self._failures.items())
         warn(f"points failed: {points}; the reasons are in {root / 'failures'} and in the report")

@@ -10,7 +10,7 @@ from rich.table import Table
 from experiments.plan.plan import Experiment
 from experiments.plan.site import what_limits
 from experiments.results.store import Store
-from experiments.run.given import Given, given_before
+from experiments.run.given import given_before
 from experiments.run.study import Settings, Study, summary
 from experiments.run.whole_blocks import WholeBlocks
 
@@ -51,18 +51,16 @@ def rows(store: Store, experiments: Sequence[Experiment]) -> list[Row]:
     result = []
     for experiment in experiments:
         one = found[experiment.name]
-        given = decided.get(experiment.name, Given(experiment.question.blocks.minimum))
+        given = decided.get(experiment.name, experiment.question.blocks.minimum)
         # A run that was told how many blocks to make may have made more than the question asks for.
-        begun = WholeBlocks(experiment, given, one, store.session).whole
-        given.blocks = max(begun, given.blocks)
-        blocks = WholeBlocks(experiment, given, one, store.session)
+        given = max(WholeBlocks(experiment, given, one, store.session).whole, given)
+        keys = WholeBlocks(experiment, given, one, store.session).keys
         failed_points = {point for point, _ in one.failures}
-        keys = blocks.keys
         result.append(
             Row(
                 name=experiment.name,
                 points=len(experiment.points),
-                blocks=given.blocks,
+                blocks=given,
                 planned=len(keys),
                 decided=experiment.name in decided,
                 done=sum(key in one.seconds for key in keys),
@@ -86,28 +84,24 @@ def show_status(settings: Settings) -> int:
     state = rows(study.store, study.experiments)
     for row in state:
         blocks = str(row.blocks) if row.decided else f"{row.blocks} or more"
-        counts = (row.points, blocks, row.done, row.failed, row.missing, row.stale)
-        table.add_row(
-            row.name, *map(str, counts), f"{row.seconds:.1f}", _share(row.in_the_clock, row.seconds)
-        )
-    totals = (sum(getattr(row, name) for row in state) for name in ("done", "failed", "missing", "stale"))
-    spent, timed = (sum(getattr(row, name) for row in state) for name in ("seconds", "in_the_clock"))
-    last = (f"{spent:.1f}", _share(timed, spent))
-    table.add_row("all", str(sum(row.points for row in state)), "", *map(str, totals), *last)
+        table.add_row(row.name, str(row.points), blocks, *_in_columns([row]))
+    table.add_row("all", str(sum(row.points for row in state)), "", *_in_columns(state))
     console = new_console()
     console.print(table)
     for row in state:
         if row.failed:
             console.print(f"{row.name}: failed: {row.reason}")
         if row.alone:
-            console.print(
-                f"{row.name}: {row.alone} more records are in blocks that no session measured whole"
-            )
+            said = "more records are in blocks that no session measured whole"
+            console.print(f"{row.name}: {row.alone} {said}")
     return 0
 
 
-def _share(part: float, whole: float) -> str:
-    return f"{100 * part / whole:.0f} %" if whole else "-"
+def _in_columns(state: Sequence[Row]) -> list[str]:
+    """What some experiments have together, from `done` on."""
+    names = ("done", "failed", "missing", "stale", "seconds", "in_the_clock")
+    *counts, spent, timed = (sum(getattr(row, name) for row in state) for name in names)
+    return [*map(str, counts), f"{spent:.1f}", f"{100 * timed / spent:.0f} %" if spent else "-"]
 
 
 def show_plan(settings: Settings) -> int:
@@ -118,7 +112,7 @@ def show_plan(settings: Settings) -> int:
         schedule = study.schedule(study.runner(), settle=False)
     table = new_table("experiment", "points", "blocks", "to be run", "figure", "claim", "title")
     for experiment in study.experiments:
-        blocks = schedule.given[experiment.name].blocks
+        blocks = schedule.given[experiment.name]
         missing = len(schedule.left(experiment))
         question = experiment.question
         counts = (len(experiment.points), blocks, missing)

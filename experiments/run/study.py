@@ -66,18 +66,10 @@ class Study:
         if self.generator.sha256 is None:
             raise InputError(self.generator.remedy)
         self.store = Store(settings.results, new_session())
-        around = Surroundings(
-            self.site,
-            machine or site.this_machine(),
-            programs,
-            self.scale,
-            settings.seed,
-            first_seen(self.store),
-        )
-        all_questions = load_questions(settings.questions, settings.study)
-        questions = [
-            one for one in all_questions if not settings.builds or one.programs <= {*settings.builds}
-        ]
+        machine, seen = machine or site.this_machine(), first_seen(self.store)
+        around = Surroundings(self.site, machine, programs, self.scale, settings.seed, seen)
+        all_questions, builds = load_questions(settings.questions, settings.study), {*settings.builds}
+        questions = [one for one in all_questions if not builds or one.programs <= builds]
         report_seconds = self.scale.report_seconds if settings.figures else 0.0
         self.is_whole = len(questions) == len(all_questions)
         self.measuring_seconds = (self.budget_seconds - report_seconds) * len(questions) / len(all_questions)

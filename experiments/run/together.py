@@ -10,10 +10,10 @@ import os
 from collections import Counter
 from collections.abc import Sequence
 
-from experiments.plan.kinds import COUNTS
 from experiments.plan.plan import Experiment
 from experiments.plan.point import PROCESS, Point
 from experiments.plan.scenes import Scene
+from support.vocabulary import COUNTS
 
 Position = tuple[int, Point]
 

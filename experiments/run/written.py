@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from experiments.plan.executable import is_file
 from experiments.plan.program import Program
 from experiments.plan.scenes import sha256_of
 from experiments.results.store import Store
@@ -43,8 +44,8 @@ class Written:
         """Those of its files that are not what they were: as the record of a run tells, or without one as
         they are found. Raises InputError if the program itself was built anew.
         """
-        hashes = dict(zip(program.files, program.hashes, strict=False))
-        if not hashes:
+        hash_of = program.hash_of
+        if not hash_of:
             return frozenset()
         match record:
             case {"kind": "process", "process": {"sources": [*sources], "changed": [*during]}}:
@@ -52,7 +53,7 @@ class Written:
                 changed = {Path(one) for one in during}
             case _:
                 found, changed = {file: _sha256_if_any(file) for file in program.sources}, set()
-        changed |= {file for file, sha256 in found.items() if file in hashes and sha256 != hashes[file]}
+        changed |= {file for file, sha256 in found.items() if sha256 != hash_of.get(file, sha256)}
         changed -= program.written
         if not changed <= {*program.inputs}:
             raise built_anew(program.path)
@@ -65,17 +66,12 @@ class Written:
         for file, touched in suspected.items():
             if touch_of(file) == touched is not None:
                 raise built_anew(file)
-        hashes = {
-            file: sha256
-            for program in programs
-            for file, sha256 in zip(program.files, program.hashes, strict=False)
-        }
-        self._keep({os.fspath(file): hashes[file] for file in suspected})
+        hash_of = {file: sha256 for program in programs for file, sha256 in program.hash_of.items()}
+        self._keep({os.fspath(file): hash_of[file] for file in suspected})
 
     def learn_created(self, programs: Iterable[Program]) -> None:
         """Keep which files are there that were not: they are no part of what made them."""
-        made = {os.fspath(file) for program in programs for file in program.absent if _is_file(file)}
-        self._keep(dict.fromkeys(made))
+        self._keep({os.fspath(file): None for one in programs for file in one.absent if is_file(file)})
 
     def _keep(self, more: Mapping[str, str | None]) -> None:
         kept = first_seen(self._store)
@@ -102,10 +98,3 @@ def _sha256_if_any(file: Path) -> str | None:
         return sha256_of(file)
     except InputError:
         return None
-
-
-def _is_file(file: Path) -> bool:
-    try:
-        return file.is_file()
-    except OSError:
-        return False

@@ -18,7 +18,6 @@ from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.site import Machine, Site, load_site
-from experiments.run.given import Given
 from experiments.run.study import Settings, Study
 from experiments.run.whole_blocks import WholeBlocks
 from experiments.support.digest import digest
@@ -166,8 +165,8 @@ def results_of(settings: Settings, site: Site) -> Path:
 
 def blocks_of(study: Study, experiment: Experiment, busy: Collection[int] = ()) -> WholeBlocks:
     """The experiment's blocks as the records stand; those that are `busy` wait in a queue or run."""
-    given = Given(experiment.question.blocks.minimum)
-    return WholeBlocks(experiment, given, study.store.find(experiment), study.store.session, busy=busy)
+    given, found = experiment.question.blocks.minimum, study.store.find(experiment)
+    return WholeBlocks(experiment, given, found, study.store.session, busy=busy)
 
 
 def units(

@@ -8,7 +8,7 @@ from experiments.run.progress import warn
 from experiments.run.status import new_console, new_table
 from experiments.run.study import Settings, Study
 from experiments.slurm import scheduler
-from experiments.slurm.jobs import PartitionFolder, Unit, blocks_of, folders, submitted, units
+from experiments.slurm.jobs import PartitionFolder, blocks_of, folders, submitted, units
 from experiments.slurm.scheduler import Queue, TaskState
 from experiments.slurm.submit import is_active, of_scale, said, too_long
 from support.errors import InputError
@@ -65,28 +65,20 @@ def show_cluster_status(settings: Settings) -> int:
 def rows(folder: PartitionFolder, study: Study, queue: Queue) -> list[Row]:
     """The state of each experiment on one partition."""
     active = is_active(folder, queue)
-    by_name = {one.name: one for one in study.experiments}
-    counts: dict[str, Counter[str]] = {name: Counter() for name in by_name}
-    missing: dict[Unit, list[str]] = {}
-    for experiment in study.experiments:
-        blocks, measured = blocks_of(study, experiment), study.store.find(experiment).seconds
-        counts[experiment.name]["done"] = sum(key in measured for key in blocks.keys)
-    for unit, _, points in units(study, of_scale(study, active)):
-        missing[unit] = [point.id for _, point in points]
-    result = []
-    for name, experiment in by_name.items():
-        failures = study.store.find(experiment).failures
-        reasons: Counter[str] = Counter()
-        for (unit_name, block), points_missing in missing.items():
-            for point in points_missing if unit_name == name else ():
-                state = active.get((study.scale.name, (name, block)))
-                reason = failures.get((point, block))
-                if state is None and reason is not None:
-                    state = "failed"
-                    reasons[reason] += 1
-                counts[name][state or "missing"] += 1
-        result.append(Row(folder.partition.name, name, counts[name], reasons))
-    return result
+    found = {one.name: study.store.find(one) for one in study.experiments}
+    result = {name: Row(folder.partition.name, name, Counter(), Counter()) for name in found}
+    for one in study.experiments:
+        keys = blocks_of(study, one).keys
+        result[one.name].counts["done"] = sum(key in found[one.name].seconds for key in keys)
+    for (name, block), _, points in units(study, of_scale(study, active)):
+        for _, point in points:
+            state = active.get((study.scale.name, (name, block)))
+            reason = found[name].failures.get((point.id, block))
+            if state is None and reason is not None:
+                state = "failed"
+                result[name].reasons[reason] += 1
+            result[name].counts[state or "missing"] += 1
+    return list(result.values())
 
 
 def _explain(folder: PartitionFolder, study: Study, queue: Queue) -> list[str]:

@@ -1,18 +1,18 @@
 """One task of a job array: measures the blocks that are its own, within its allocation."""
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
-from experiments.plan.kinds import COUNTS
 from experiments.plan.plan import Experiment
-from experiments.plan.point import PROCESS, Point
 from experiments.plan.scenes import SceneFolder
-from experiments.run.progress import Report
-from experiments.run.repeats import Repeated
-from experiments.run.runner import Outcome, Runner, Task
+from experiments.results.store import Key
+from experiments.run.costs import Costs
+from experiments.run.progress import ProgressDisplay
+from experiments.run.repeats import process_runs
+from experiments.run.runner import ProcessResult, Runner, Task
 from experiments.run.study import POINTS_FAILED, Study
-from experiments.run.together import Position, together
+from experiments.run.together import together
 from experiments.slurm.jobs import PartitionFolder, Unit, blocks_of, folders, read_job
 from support.errors import InputError
 
@@ -32,22 +32,24 @@ def work(manifest: Path, index: int) -> int:
     if job.partition not in partitions:
         raise InputError(f'{job.settings.site}: has no partition "{job.partition}" any more')
     study = partitions[job.partition].study()
-    with study.store.shared(), Report() as report:
-        return _Worker(study, report).run(job.tasks[index])
+    with study.store.shared(), ProgressDisplay() as display:
+        return _Worker(study, display).run(job.tasks[index])
 
 
 class _Worker:
     """What one task knows while it runs."""
 
-    def __init__(self, study: Study, report: Report) -> None:
+    def __init__(self, study: Study, display: ProgressDisplay) -> None:
         self._study = study
-        self._report = report
+        self._display = display
         store = study.store
         # Scenes of its own, since a task with another program would empty a common folder.
         scenes = SceneFolder(store.temporary / "scenes", store.temporary, str(study.generator.sha256))
         self._runner = Runner(store, scenes, study.generator, study.site.time_limit_seconds)
         self._failed: set[tuple[str, str]] = set()
-        self._repeated = Repeated()
+        # What this task has seen itself: others may measure elsewhere.
+        self._costs = Costs({}, {})
+        self._runs: dict[Key, tuple[float, ...]] = {}
 
     def run(self, own: Sequence[Unit]) -> int:
         experiments = {one.name: one for one in self._study.experiments}
@@ -59,40 +61,25 @@ class _Worker:
     def _block(self, experiment: Experiment, block: int) -> None:
         missing = blocks_of(self._study, experiment).missing_if_given(block)
         hopeful = [one for one in missing if (experiment.name, one[1].id) not in self._failed]
+        blocks, size = experiment.question.blocks.minimum, len(experiment.points)
         for group in together(experiment, block, hopeful):
-            size, runs = len(experiment.points), self._runs(experiment, group)
-            tasks = [
-                Task(experiment, point, block, at, _blocks(experiment), size, runs) for at, point in group
-            ]
+            runs = process_runs([point for _, point in group], self._runs, self._costs)
+            tasks = [Task(experiment, point, block, at, blocks, size, runs) for at, point in group]
             self._measure([one for one in tasks if not self._study.store.has(one.point, block)])
-
-    def _runs(self, experiment: Experiment, group: Sequence[Position]) -> int:
-        """As many as pay, by what this task has seen of the same points: others may measure elsewhere."""
-        may_repeat = experiment.question.kind != COUNTS and group[0][1].verb != PROCESS
-        return self._repeated.runs(_key(point for _, point in group)) if may_repeat else 1
 
     def _measure(self, tasks: Sequence[Task]) -> None:
         began = time.monotonic()
-        outcomes = self._runner.run(tasks)
-        self._repeated.learn(
-            _key(task.point for task in tasks), time.monotonic() - began, [one.runs for one in outcomes]
-        )
-        for task, outcome in zip(tasks, outcomes, strict=True):
-            self._tell(task, outcome)
+        ended = self._runner.run(tasks)
+        self._costs.learn_group([one.point for one in tasks], ended, time.monotonic() - began)
+        for task, result in zip(tasks, ended, strict=True):
+            self._runs[task.point.id, task.block] = result.runs
+            self._tell(task, result)
 
-    def _tell(self, task: Task, outcome: Outcome) -> None:
+    def _tell(self, task: Task, result: ProcessResult) -> None:
         point = task.point
         where = f"{point.experiment}, block {task.block + 1}, {point.series}, {point.x_name} {point.x:g}"
-        if outcome.seconds is None:
+        if result.seconds is None:
             self._failed.add((point.experiment, point.id))
-            self._report.line(f"{where}: failed: {outcome.reason}")
+            self._display.line(f"{where}: failed: {result.reason}")
         else:
-            self._report.line(f"{where}: measured in {outcome.seconds:.3g} s")
-
-
-def _key(points: Iterable[Point]) -> frozenset[str]:
-    return frozenset(point.id for point in points)
-
-
-def _blocks(experiment: Experiment) -> int:
-    return experiment.question.blocks.minimum
+            self._display.line(f"{where}: measured in {result.seconds:.3g} s")

@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from experiments.run.outside import FOLDER
+from experiments.run.beside import BESIDE
 from experiments.run.session import run
 from experiments.tests.conftest import DAMAGES, ERRORS, PAIR, Workplace, damage
+
+FOLDER = BESIDE["speed_against_error"].folder
 
 
 @pytest.fixture

@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from experiments.run.promises import FOLDER
+from experiments.run.beside import BESIDE
 from experiments.run.session import run
 from experiments.tests.conftest import PAIR, Workplace
 
+FOLDER = BESIDE["promises"].folder
 PROMISES = PAIR.replace('figure = "comparison"\nclaim = "four_boxes"', 'figure = "promises"\nthreads = 1')
 
 

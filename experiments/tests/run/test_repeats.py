@@ -7,17 +7,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from experiments.results.store import Key
+from experiments.run.costs import Costs
 from experiments.run.repeats import (
     FEWEST_PROCESSES,
     MOST_RUNS,
     MOST_SECONDS,
     Process,
-    Repeated,
     Spread,
     best_runs,
     choose_runs,
+    process_runs,
     spread,
 )
+from experiments.run.runner import ProcessResult
+from experiments.run.study import Study
+from experiments.tests.conftest import Workplace
 
 
 def processes(
@@ -108,18 +113,25 @@ def test_it_keeps_its_bounds(fixed: float, run: float, known: Spread | None, las
     assert runs == 1 or runs * run <= 1.5 * MOST_SECONDS
 
 
-def test_who_has_seen_nothing_of_a_group_makes_one_run_then_what_pays() -> None:
-    seen = Repeated()
-    assert seen.runs("group") == 1
-    for made in processes(FEWEST_PROCESSES + 2, 1, within=0.001, between=0.02):
-        process = [[seconds / 100 for seconds in runs] for runs in made]
-        seen.learn("group", 10 * sum(map(sum, process)), process)
-    assert seen.runs("group") > 1, "a process costs more than its run"
-    assert seen.runs("another") == 1
+def test_who_has_seen_nothing_of_a_group_makes_one_run_then_what_pays(workplace: Workplace) -> None:
+    points = {one.name: one.points for one in Study(workplace.settings).experiments}
+    costs = Costs({}, {})
+    seen: dict[Key, tuple[float, ...]] = {}
+    assert process_runs(points["pair"], seen, costs) == 1
+    for block, made in enumerate(
+        processes(FEWEST_PROCESSES + 2, 1, within=0.001, between=0.02, contenders=2)
+    ):
+        process = [tuple(seconds / 100 for seconds in runs) for runs in made]
+        ended = [ProcessResult(sum(runs), runs=runs) for runs in process]
+        costs.learn_group(points["pair"], ended, 10 * sum(map(sum, process)))
+        seen |= {(one.id, block): runs for one, runs in zip(points["pair"], process, strict=True)}
+    assert process_runs(points["pair"], seen, costs) > 1, "a process costs more than its run"
+    assert process_runs(points["chunks"], seen, costs) == 1
 
 
-def test_a_process_of_one_contender_or_that_failed_tells_nothing() -> None:
-    seen = Repeated()
-    seen.learn("group", 9.0, [(1.0, 1.1)])
-    seen.learn("group", 9.0, [(1.0,), ()])
-    assert seen.runs("group") == 1
+def test_a_process_of_one_contender_or_that_failed_tells_nothing(workplace: Workplace) -> None:
+    [points] = [one.points for one in Study(workplace.settings).experiments if one.name == "pair"]
+    costs = Costs({}, {})
+    costs.learn_group(points[:1], [ProcessResult(9.0, runs=(1.0, 1.1))], 9.0)
+    costs.learn_group(points, [ProcessResult(9.0, runs=(1.0,)), ProcessResult(None, "crashed")], 9.0)
+    assert process_runs(points, {(points[0].id, 1): (1.0,), (points[1].id, 1): ()}, costs) == 1

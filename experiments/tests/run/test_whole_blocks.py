@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from experiments.plan.plan import Experiment
 from experiments.results.store import Found, Key
-from experiments.run.given import Given
 from experiments.run.study import Study
 from experiments.run.whole_blocks import WholeBlocks
 from experiments.tests.conftest import ERRORS, Workplace
@@ -39,7 +38,7 @@ def earlier(draw: st.DrawFn, experiment: Experiment) -> Found:
 
 
 def finish(
-    experiment: Experiment, blocks: Given, found: Found, session: str, hopeless: Collection[str] = ()
+    experiment: Experiment, blocks: int, found: Found, session: str, hopeless: Collection[str] = ()
 ) -> tuple[WholeBlocks, list[Key]]:
     """Run what is missing as the runner does; the blocks as they are then, and what was run."""
     given_up: set[str] = set()
@@ -71,7 +70,7 @@ def test_a_block_counts_in_the_place_of_an_earlier_one_whose_failures_are_mended
     found.seconds[own[0], 0], found.sessions[own[0], 0] = 1.0, "monday"
     for block in (0, 1):
         found.failures |= {(point, block): "crashed" for point in own[1:]}
-    now, _ = finish(experiment, Given(1), found, "now")
+    now, _ = finish(experiment, 1, found, "now")
     assert now.numbers[experiment.points[0].scene_name or ""] == [1]
 
 
@@ -83,7 +82,7 @@ def test_a_run_ends_with_as_many_whole_blocks_as_were_given(
     found = data.draw(earlier(experiment))
     ids = [point.id for point in experiment.points]
     hopeless = data.draw(st.sets(st.sampled_from(ids), max_size=2))
-    blocks = Given(data.draw(st.integers(1, 4)))
+    blocks = data.draw(st.integers(1, 4))
     before = dict(found.sessions)
     now, ran = finish(experiment, blocks, found, "now", hopeless)
     assert before.items() <= found.sessions.items(), "nothing is measured over"
@@ -91,7 +90,7 @@ def test_a_run_ends_with_as_many_whole_blocks_as_were_given(
     assert all(sum(point == one for one, _ in ran) <= 1 for point in hopeless), "it fails once a session"
     for scene, numbers in now.numbers.items():
         own = [point for point in experiment.points if point.scene_name == scene]
-        assert len(numbers) == blocks.blocks
+        assert len(numbers) == blocks
         for block in numbers:
             hopeful = [point for point in own if point.id not in hopeless]
             assert len({found.sessions[point.id, block] for point in hopeful}) == 1
