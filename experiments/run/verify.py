@@ -64,15 +64,16 @@ class Verifier:
 
     def check(self, point: Point, scene: SceneFile) -> Completed:
         """The verdict on the point's variant on that scene: exit code 0 if each of its steps passed."""
-        note = note_of(point, scene)
-        if (kept := _verdict(self._store.note(note))) is not None:
+        kept = _verdict(self._store.note(note_of(point, scene)))
+        if kept is not None:
             return kept
         done = self._run(point, scene) if point.command is None else self._check_trajectory(point, scene)
-        verdict = _told("check of each step", done)
+        reason = "" if done.exit_code == 0 else f"check of each step: {done.reason}"
         if done.exit_code in (0, CHECK_FAILED):
-            content = {"command": verdict.command, "exit_code": verdict.exit_code, "reason": verdict.error}
-            self._store.keep_note(note, content)
-        return verdict
+            verdict = {"command": list(done.command), "exit_code": done.exit_code, "reason": reason}
+            self._store.keep_note(note_of(point, scene), verdict)
+        said = reason if done.exit_code != TIMED_OUT else done.error
+        return Completed(done.command, done.exit_code, "", said)
 
     def check_own_output(self, point: Point, scene: SceneFile, output: Path) -> Completed | None:
         """The verdict on the trajectory that the timed run itself wrote, once in a session; None for what was
@@ -84,7 +85,8 @@ class Verifier:
         if done.exit_code == 0:
             self._own_checked.add(point.id)
             return None
-        return _told("check of its own output", done)
+        said = done.error if done.exit_code == TIMED_OUT else f"check of its own output: {done.reason}"
+        return Completed(done.command, done.exit_code, "", said)
 
     def _run(self, point: Point, scene: SceneFile) -> Completed:
         command = check_command(point.program, scene.path, str(point.variant), point.threads, point.tolerance)
@@ -106,12 +108,6 @@ class Verifier:
         if not output.is_file():
             return Completed(command, CRASHED, "", f"left no trajectory in {output}")
         return run_alone(command, (), self._time_limit)
-
-
-def _told(what: str, done: Completed) -> Completed:
-    """The verdict of a check, with a reason that says which one it was, unless it took too long."""
-    said = done.error if done.exit_code == TIMED_OUT else f"{what}: {done.reason}"
-    return Completed(done.command, done.exit_code, "", said if done.exit_code != 0 else "")
 
 
 def _verdict(kept: object) -> Completed | None:

@@ -124,8 +124,9 @@ def _submit(folder: PartitionFolder, study: Study, queue: Queue, array_size: int
         rest = "waits or runs" if active else "was cut off" if without else ""
         print(f"{name}: nothing to submit; " + (f"the rest {rest}" if rest else "all is measured"))
         return
-    job, path, text = _job(folder, study, wanted, array_size)
+    job, path = folder.next_job(study, pack(wanted, folder.partition.blocks_per_task, array_size))
     script = path.with_suffix(".sbatch")
+    text = _script(folder, study, job, path)
     path.parent.mkdir(parents=True, exist_ok=True)
     write_text(script, text, path.parent)
     write_json(path, job.content(), path.parent)
@@ -157,17 +158,13 @@ def _print_script(folder: PartitionFolder, study: Study, array_size: int) -> Non
     if not wanted:
         print(f"# {folder.partition.name}: nothing to submit")
         return
-    job, _, text = _job(folder, study, wanted, array_size)
-    print(f"# {folder.partition.name}: {points} processes in {len(job.tasks)} tasks")
-    print(text)
-
-
-def _job(
-    folder: PartitionFolder, study: Study, wanted: Sequence[Unit], array_size: int
-) -> tuple[Job, Path, str]:
-    """A job for these blocks, the path that it is written to, and its script."""
     job, path = folder.next_job(study, pack(wanted, folder.partition.blocks_per_task, array_size))
-    return job, path, render(job.name, folder.partition, path, len(job.tasks), study.site.programs)
+    print(f"# {folder.partition.name}: {points} processes in {len(job.tasks)} tasks")
+    print(_script(folder, study, job, path))
+
+
+def _script(folder: PartitionFolder, study: Study, job: Job, manifest: Path) -> str:
+    return render(job.name, folder.partition, manifest, len(job.tasks), study.site.programs)
 
 
 def _array_size_or_default() -> int:
