@@ -3,10 +3,11 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 #include <string_view>
 
 #include <sys/resource.h>
+
+#include "harness/support/process_clock.hpp"
 
 namespace carom {
 namespace {
@@ -16,13 +17,9 @@ struct Field {
     double (*value)(const rusage&);
 };
 
-double seconds(const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
 constexpr std::array<Field, 6> fields{
-    {{"user_seconds", [](const rusage& usage) { return seconds(usage.ru_utime); }},
-     {"system_seconds", [](const rusage& usage) { return seconds(usage.ru_stime); }},
+    {{"user_seconds", [](const rusage& usage) { return seconds_of(usage.ru_utime); }},
+     {"system_seconds", [](const rusage& usage) { return seconds_of(usage.ru_stime); }},
      {"minor_page_faults", [](const rusage& usage) { return static_cast<double>(usage.ru_minflt); }},
      {"major_page_faults", [](const rusage& usage) { return static_cast<double>(usage.ru_majflt); }},
      {"voluntary_context_switches", [](const rusage& usage) { return static_cast<double>(usage.ru_nvcsw); }},
@@ -32,8 +29,7 @@ constexpr std::array<Field, 6> fields{
 /// Reading the thread's CPU clock first makes Linux bring up to date what getrusage tells, which would be as
 /// old as the last clock tick. The sum of user and system time is exact then; how it divides stays a sample.
 rusage usage_of(int who) {
-    timespec cpu_clock{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &cpu_clock);
+    seconds_on(CLOCK_THREAD_CPUTIME_ID);
     rusage usage{};
     if (getrusage(who, &usage) != 0) {
         throw CounterError(std::string("getrusage: ") + std::strerror(errno));

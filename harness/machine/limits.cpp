@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -14,13 +13,11 @@
 
 #include "harness/machine/threads.hpp"
 #include "harness/support/errors.hpp"
-#include "harness/support/stopwatch.hpp"
+#include "harness/support/process_clock.hpp"
 #include "kernels/parallel_for.hpp"
 
 namespace carom {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 #if defined(__AVX512F__)
 constexpr int native_lanes = 8;
@@ -65,9 +62,9 @@ template <class Number, std::size_t... k> void run_chains(std::int64_t turns, st
 
 /// Seconds in which every thread runs `work(thread, turns)`, from the first to begin to the last to end.
 template <class Work> double timed(int threads, std::int64_t turns, const Work& work) {
-    const auto start = Clock::now();
+    const double start = process_seconds();
     on_each_thread(threads, [&work, turns](int thread) { work(thread, turns); });
-    return seconds_since(start);
+    return process_seconds() - start;
 }
 
 /// So many turns that one thread alone works for two milliseconds at the fastest: below that, starting the
@@ -78,9 +75,9 @@ template <class Work> std::int64_t enough_turns(const Work& work) {
     for (std::int64_t turns = 1;; turns *= 2) {
         double fastest = shortest;
         for (int trial = 0; trial < trials && fastest >= shortest; ++trial) {
-            const auto start = Clock::now();
+            const double start = process_seconds();
             work(0, turns);
-            const double once = seconds_since(start);
+            const double once = process_seconds() - start;
             fastest = trial == 0 ? once : std::min(fastest, once);
         }
         if (fastest >= shortest) {

@@ -1,7 +1,6 @@
 #include "harness/machine/noise.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,12 +8,10 @@
 #include <string>
 
 #include "harness/machine/machine.hpp"
-#include "harness/support/stopwatch.hpp"
+#include "harness/support/process_clock.hpp"
 
 namespace carom {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// The same instructions every time, each waiting for the one before: xorshift64 (Marsaglia 2003).
 std::uint64_t spin(int turns) {
@@ -28,10 +25,10 @@ std::uint64_t spin(int turns) {
 }
 
 double timed_spin(int turns) {
-    const auto start = Clock::now();
+    const double start = process_seconds();
     volatile std::uint64_t result = spin(turns);
     static_cast<void>(result);
-    return seconds_since(start);
+    return process_seconds() - start;
 }
 
 /// As many turns as make a spin of about a millisecond: the fastest of a few trials, since noise only slows.
@@ -87,11 +84,11 @@ Noise spread(std::vector<double> durations) {
 Noise measure_noise(double seconds) {
     const int turns = turns_of_a_millisecond();
     const auto before = read_cpu_time();
-    const auto start = Clock::now();
+    const double start = process_seconds();
     std::vector<double> durations;
     do {
         durations.push_back(timed_spin(turns));
-    } while (seconds_since(start) < seconds);
+    } while (process_seconds() - start < seconds);
     Noise noise = spread(std::move(durations));
     noise.steal = stolen_share(before, read_cpu_time());
     return noise;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
-#include <ctime>
 #include <limits>
 
 #include "harness/support/errors.hpp"
+#include "harness/support/process_clock.hpp"
 
 namespace carom {
 namespace {
@@ -27,19 +27,13 @@ void handle_continuations() {
     pthread_sigmask(SIG_UNBLOCK, &continuation, nullptr);
 }
 
-double seconds_of(clockid_t clock) {
-    timespec now{};
-    clock_gettime(clock, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// How long the machine has slept since it was started.
 double asleep_seconds() {
     double least = std::numeric_limits<double>::infinity();
     // Whoever is put aside between two looks at a clock sees too much, never too little.
     for (int look = 0; look < 5; ++look) {
-        const double awake = seconds_of(CLOCK_MONOTONIC);
-        least = std::min(least, seconds_of(CLOCK_BOOTTIME) - awake);
+        const double awake = seconds_on(CLOCK_MONOTONIC);
+        least = std::min(least, seconds_on(CLOCK_BOOTTIME) - awake);
     }
     return least;
 }

@@ -1,6 +1,6 @@
 #include "harness/measure/profiler.hpp"
 
-#include "harness/support/stopwatch.hpp"
+#include "harness/support/process_clock.hpp"
 
 namespace carom {
 namespace {
@@ -21,14 +21,14 @@ std::optional<int> fixed_chunk(Schedule schedule, int chunk) {
 Profiler::Profiler(const Policies& policies, const Tuning& tuning, TimelineOptions timeline)
     : tracks_(static_cast<std::size_t>(tuning.threads)), timeline_(timeline),
       most_spans_per_thread_(timeline.most_spans / static_cast<std::size_t>(tuning.threads)),
-      start_(std::chrono::steady_clock::now()) {
+      start_(process_seconds()) {
     fixed_chunk_[static_cast<std::size_t>(Phase::find)] =
         fixed_chunk(policies.find_schedule, tuning.find_chunk);
     fixed_chunk_[static_cast<std::size_t>(Phase::resolve)] =
         fixed_chunk(policies.resolve_schedule, tuning.resolve_chunk);
 }
 
-double Profiler::now() const { return seconds_since(start_); }
+double Profiler::now() const { return process_seconds() - start_; }
 
 const ThreadWork& Profiler::work(Phase phase, int thread) const {
     return tracks_[static_cast<std::size_t>(thread)].work[static_cast<std::size_t>(phase)];

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -109,7 +108,7 @@ class Profiler final : public Probe {
     Phase phase_ = Phase::move;
     double phase_begin_ = 0;
     double sweep_begin_ = 0;
-    std::chrono::steady_clock::time_point start_;
+    double start_ = 0;
 };
 
 } // namespace carom

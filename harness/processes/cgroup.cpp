@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -16,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "harness/support/stopwatch.hpp"
+#include "harness/support/process_clock.hpp"
 #include "harness/support/text.hpp"
 
 namespace carom {
@@ -154,12 +153,12 @@ Cgroup::~Cgroup() {
 }
 
 bool Cgroup::freeze(double most_seconds) const {
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = process_seconds();
     if (!write_into(path_ + "/cgroup.freeze", "1")) {
         return false;
     }
     while (!is_frozen(events_)) {
-        const double left = most_seconds - seconds_since(begin);
+        const double left = begin + most_seconds - process_seconds();
         if (left <= 0) {
             return false;
         }

@@ -17,8 +17,8 @@
 
 #include "harness/processes/descendants.hpp"
 #include "harness/processes/keeping.hpp"
-#include "harness/processes/kept_program.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/process_clock.hpp"
 
 namespace carom {
 namespace {
@@ -102,17 +102,17 @@ Keeper::~Keeper() {
 void Keeper::tell(char word) const { [[maybe_unused]] const auto sent = send(line_, &word, 1, MSG_NOSIGNAL); }
 
 bool Keeper::await_end(double seconds) const {
-    const double until = steady_seconds() + std::min(seconds, 1e6);
+    const double until = process_seconds() + std::min(seconds, 1e6);
     pollfd waiting{.fd = line_, .events = POLLIN, .revents = 0};
     while (true) {
-        const double left = std::max(0.0, until - steady_seconds());
+        const double left = std::max(0.0, until - process_seconds());
         const auto whole = static_cast<std::time_t>(left);
         const timespec time{.tv_sec = whole,
                             .tv_nsec = static_cast<long>((left - static_cast<double>(whole)) * 1e9)};
         if (ppoll(&waiting, 1, &time, nullptr) > 0) {
             return true;
         }
-        if (steady_seconds() >= until) {
+        if (process_seconds() >= until) {
             return false;
         }
     }

@@ -24,6 +24,7 @@
 #include "harness/processes/kept_program.hpp"
 #include "harness/processes/output_tail.hpp"
 #include "harness/support/json.hpp"
+#include "harness/support/process_clock.hpp"
 
 namespace carom {
 namespace {
@@ -42,10 +43,6 @@ void close_all_but(std::vector<int> kept) {
         next = static_cast<unsigned int>(one) + 1;
     }
     syscall(SYS_close_range, next, ~0U, 0);
-}
-
-double seconds_of(const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
 /// The life of one program and of all that it starts.
@@ -144,7 +141,7 @@ class Keeping {
             rusage usage{};
             const pid_t ended = wait4(-1, &status, WNOHANG, &usage);
             if (ended < 0 && errno == ECHILD) {
-                ended_at_ = steady_seconds();
+                ended_at_ = process_seconds();
                 has_ended_ = true;
             }
             if (ended <= 0) {
@@ -163,13 +160,13 @@ class Keeping {
     /// Again and again, since some may be starting others. What cannot be ended, as it waits for a broken
     /// disk, is left after ten seconds.
     void end_all() {
-        const double until = steady_seconds() + 10;
+        const double until = process_seconds() + 10;
         if (program_has_ended_ && !has_ended_) {
             for (const pid_t one : descendants_of(getpid())) {
                 went_on_.push_back(name_of(one));
             }
         }
-        while (!has_ended_ && program_ > 0 && steady_seconds() < until) {
+        while (!has_ended_ && program_ > 0 && process_seconds() < until) {
             for (const pid_t one : descendants_of(getpid())) {
                 kill(one, SIGKILL);
             }

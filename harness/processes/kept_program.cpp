@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
-#include <ctime>
 #include <string>
 #include <vector>
 
@@ -13,6 +12,8 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "harness/support/process_clock.hpp"
 
 namespace carom {
 namespace {
@@ -92,7 +93,7 @@ void become(const Prepared& prepared, Beginning& beginning) {
     if (read(prepared.go, &word, 1) != 1) {
         return;
     }
-    beginning.at = steady_seconds();
+    beginning.at = process_seconds();
     execve(prepared.program.c_str(), prepared.words.data(), prepared.environment.data());
 }
 
@@ -109,12 +110,6 @@ bool make_pipe(int& read_end, int& write_end) {
 }
 
 } // namespace
-
-double steady_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 pid_t fork_program(const ProcessCommand& command, int entrance, Beginning& beginning, ProgramPipes& pipes) {
     constexpr int room = 1 << 20; // that a program that prints in bursts need not wait

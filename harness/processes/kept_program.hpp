@@ -9,7 +9,7 @@ namespace carom {
 /// What a keeper and the process that will become the program tell each other, in memory that both see.
 struct Beginning {
     long inherited_kilobytes = 0; ///< the mark of memory that the program inherits from who forked it
-    double at = 0;                ///< steady clock, in seconds
+    double at = 0;                ///< by `process_seconds` of the keeper, whose fork it is
     int error = 0;                ///< why it could not become the program
 };
 
@@ -24,8 +24,5 @@ struct ProgramPipes {
 /// Forks the process that waits to become the program; -1 if that cannot be. It enters the group whose file
 /// `entrance` is, if that is no -1, and dies with its keeper.
 pid_t fork_program(const ProcessCommand& command, int entrance, Beginning& beginning, ProgramPipes& pipes);
-
-/// Seconds on the steady clock.
-double steady_seconds();
 
 } // namespace carom

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/processes/kept_program.hpp"
 #include "harness/support/format.hpp"
+#include "harness/support/process_clock.hpp"
 
 namespace carom {
 namespace {
@@ -56,7 +56,7 @@ Process::Process(ProcessCommand command, KeptBy kept_by)
 }
 
 void Process::advance(double seconds) {
-    const double began = steady_seconds();
+    const double began = process_seconds();
     if (has_begun_) {
         tree_->go_on();
     } else {
@@ -68,10 +68,10 @@ void Process::advance(double seconds) {
     const double left = command_.most_seconds - end_.wall_seconds();
     double until = began + std::min(seconds, left);
     while (true) {
-        const double before = steady_seconds();
+        const double before = process_seconds();
         const double step = std::clamp(until - before, 0.0, look);
         const bool all_ended = keeper_->await_end(step);
-        const double overslept = steady_seconds() - before - step;
+        const double overslept = process_seconds() - before - step;
         if (overslept > late) {
             end_.suspended =
                 format("stood still for %.1f s while it was measured; measure it again", overslept);
@@ -80,20 +80,20 @@ void Process::advance(double seconds) {
             take_report(began);
             return;
         }
-        if (steady_seconds() - began >= left) {
+        if (process_seconds() - began >= left) {
             end_it();
             take_report(began);
             return;
         }
-        if (steady_seconds() >= until) {
+        if (process_seconds() >= until) {
             if (tree_->stop(most_seconds_to_stop)) {
                 break;
             }
             ++end_.ran_on;
-            until = steady_seconds() + std::min(seconds, left);
+            until = process_seconds() + std::min(seconds, left);
         }
     }
-    end_.seconds.push_back(steady_seconds() - began);
+    end_.seconds.push_back(process_seconds() - began);
 }
 
 void Process::end_it() {

@@ -1,7 +1,6 @@
 #include "harness/processes/tree.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <utility>
 #include <vector>
@@ -10,7 +9,7 @@
 
 #include "harness/processes/descendants.hpp"
 #include "harness/support/errors.hpp"
-#include "harness/support/stopwatch.hpp"
+#include "harness/support/process_clock.hpp"
 
 namespace carom {
 namespace {
@@ -45,7 +44,7 @@ class SignalledTree : public Tree {
     /// What is between vfork and exec cannot stop before its child has gone on, so that nothing is waited for
     /// without a limit. Whoever is found later may have been started before its parent stood still.
     bool stop(double most_seconds) override {
-        const auto begin = std::chrono::steady_clock::now();
+        const double begin = process_seconds();
         while (true) {
             const std::vector<pid_t> all = descendants_of(keeper_);
             const bool still = std::ranges::all_of(all, stands_still);
@@ -54,7 +53,7 @@ class SignalledTree : public Tree {
             }
             send(all, SIGSTOP);
             stopped_ = all;
-            if (seconds_since(begin) > most_seconds) {
+            if (process_seconds() - begin > most_seconds) {
                 go_on();
                 return false;
             }

@@ -1,16 +1,11 @@
 #pragma once
 
-#include <chrono>
-#include <ctime>
 #include <functional>
 #include <utility>
 
-namespace carom {
+#include "harness/support/process_clock.hpp"
 
-/// Wall time that has passed since then.
-inline double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+namespace carom {
 
 /// Adds up wall and process CPU time between starts and stops. Whoever keeps a clock of their own beside it
 /// is told of each, just outside the time that counts.
@@ -24,38 +19,29 @@ class Stopwatch {
         if (before_start_) {
             before_start_();
         }
-        cpu_start_ = cpu_now();
-        wall_start_ = std::chrono::steady_clock::now();
+        cpu_start_ = seconds_on(CLOCK_PROCESS_CPUTIME_ID);
+        wall_start_ = process_seconds();
     }
 
     void stop() {
-        wall_ += std::chrono::steady_clock::now() - wall_start_;
-        cpu_ += cpu_now() - cpu_start_;
+        wall_ = running_wall_seconds();
+        cpu_ += seconds_on(CLOCK_PROCESS_CPUTIME_ID) - cpu_start_;
         if (after_stop_) {
             after_stop_();
         }
     }
 
     /// While it runs: the wall time so far, at the cost of one look at the clock.
-    double running_wall_seconds() const {
-        return std::chrono::duration<double>(wall_ + (std::chrono::steady_clock::now() - wall_start_))
-            .count();
-    }
+    double running_wall_seconds() const { return wall_ + (process_seconds() - wall_start_); }
 
-    double wall_seconds() const { return std::chrono::duration<double>(wall_).count(); }
+    double wall_seconds() const { return wall_; }
     double cpu_seconds() const { return cpu_; }
 
   private:
-    static double cpu_now() {
-        timespec now{};
-        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-        return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-    }
-
     std::function<void()> before_start_;
     std::function<void()> after_stop_;
-    std::chrono::steady_clock::time_point wall_start_;
-    std::chrono::steady_clock::duration wall_{};
+    double wall_start_ = 0;
+    double wall_ = 0;
     double cpu_start_ = 0;
     double cpu_ = 0;
 };
