@@ -2,7 +2,8 @@
 #include <memory>
 
 #include "harness/commands/commands.hpp"
-#include "harness/doctor/doctor.hpp"
+#include "harness/doctor/findings.hpp"
+#include "harness/support/json.hpp"
 
 namespace carom {
 
@@ -15,14 +16,14 @@ void add_doctor_command(CLI::App& program) {
     command->add_flag("--build", *build, "Print only how this program was built, as one JSON object");
     command->callback([json, build] {
         if (*build) {
-            std::cout << build_json().dump(2) << '\n';
+            auto built = build_json();
+            built["openmp"] = {{"runtime", read_openmp().runtime}};
+            std::cout << json_text(built, 2) << '\n';
             return;
         }
         constexpr double noise_seconds = 2;
-        const auto findings = doctor_json(noise_seconds);
-        std::cout << (*json ? findings.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                                  "\n"
-                            : doctor_text(findings));
+        const Findings findings = examine_machine(noise_seconds);
+        std::cout << (*json ? json_text(doctor_json(findings), 2) + "\n" : doctor_text(findings));
     });
 }
 

@@ -31,22 +31,21 @@ struct LimitsOptions {
 };
 
 void limits(const LimitsOptions& options) {
-    using Json = nlohmann::ordered_json;
-    const Json tags = tags_json(options.tags);
+    const auto tags = tags_json(options.tags);
     require_writable(options.record);
     const std::int64_t most_bytes =
         options.memory_mebibytes ? *options.memory_mebibytes * mebibyte : read_machine().memory_bytes / 4;
     Suspensions suspensions;
     suspensions.start();
-    const Json found = limits_json(options.threads, options.seconds, most_bytes);
+    const Limits found = measure_limits(options.threads, options.seconds, most_bytes);
     suspensions.require_none("limits");
-    std::cout << (options.json ? json_text(found, 2) + "\n" : limits_text(found));
+    std::cout << (options.json ? json_text(limits_json(found), 2) + "\n" : limits_text(found));
     if (!options.record.empty()) {
         write_record(options.record, {{"schema_version", 1},
                                       {"kind", "limits"},
                                       {"recorded_at", utc_now()},
                                       {"tags", tags},
-                                      {"limits", found},
+                                      {"limits", limits_json(found)},
                                       {"provenance", provenance_json(options.threads)}});
     }
 }

@@ -1,42 +1,23 @@
 #include <algorithm>
-#include <array>
-#include <cstdio>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "harness/doctor/doctor.hpp"
+#include <CLI/StringTools.hpp>
+
+#include "harness/doctor/findings.hpp"
+#include "harness/support/format.hpp"
 #include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// Lines of a label and a text, which goes on under itself where the line is full.
-class Screen {
-  public:
-    void line(const std::string& label, const std::string& text) {
-        constexpr std::size_t indent = 12;
-        std::string begun = label;
-        begun.resize(std::max(label.size() + 1, indent), ' ');
-        text_ += wrapped(begun + text, indent);
-    }
-
-    const std::string& text() const { return text_; }
-
-  private:
-    std::string text_;
-};
-
-std::string number(const char* format, double value) {
-    std::array<char, 40> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
+/// A label and a text, which goes on under itself where the line is full.
+std::string line(std::string label, const std::string& text) {
+    constexpr std::size_t indent = 12;
+    label.resize(std::max(label.size() + 1, indent), ' ');
+    return wrapped(label + text, indent);
 }
 
-std::string bytes(const Json& value) {
-    double amount = value.get<double>();
+std::string bytes_text(std::int64_t bytes) {
+    auto amount = static_cast<double>(bytes);
     const char* unit = "B";
     for (const char* next : {"KiB", "MiB", "GiB", "TiB"}) {
         if (amount < 1024) {
@@ -45,171 +26,130 @@ std::string bytes(const Json& value) {
         amount /= 1024;
         unit = next;
     }
-    return number("%.4g ", amount) + unit;
+    return format("%.4g %s", amount, unit);
 }
 
-std::string plural(const Json& count, const std::string& one) {
-    return count.is_null() ? one + "s not told" : counted(count.get<int>(), one);
+std::string plural(const std::optional<int>& count, const std::string& one) {
+    return count ? counted(*count, one) : one + "s not told";
 }
 
-/// A text, or on and off for a yes or no; `unknown` for null.
-std::string word(const Json& value, const char* unknown) {
-    if (value.is_boolean()) {
-        return value.get<bool>() ? "on" : "off";
-    }
-    return value.is_null() ? unknown : value.get<std::string>();
+std::string on_or_off(const std::optional<bool>& value) {
+    return !value ? "not told" : *value ? "on" : "off";
 }
 
-std::string list(const Json& texts) {
-    std::string joined;
-    for (const Json& text : texts) {
-        joined += (joined.empty() ? "" : ", ") + text.get<std::string>();
-    }
-    return joined;
+std::string machine_lines(const Machine& machine, const std::optional<std::int64_t>& available) {
+    return line("host", machine.host + ", " + machine.operating_system +
+                            (machine.virtualised ? ", a virtual machine" : "")) +
+           line("memory", bytes_text(machine.memory_bytes) +
+                              (available ? ", " + bytes_text(*available) + " available" : ""));
 }
 
-void show_machine(const Json& machine, Screen& screen) {
-    screen.line("host", machine["host"].get<std::string>() + ", " +
-                            machine["operating_system"].get<std::string>() +
-                            (machine["virtualised"] ? ", a virtual machine" : ""));
-    const Json& available = machine["memory_available_bytes"];
-    screen.line("memory", bytes(machine["memory_bytes"]) +
-                              (available.is_null() ? "" : ", " + bytes(available) + " available"));
-}
-
-void show_cpu(const Json& findings, Screen& screen) {
-    const Json& topology = findings["topology"];
-    screen.line("CPU", findings["machine"]["cpu_model"].get<std::string>() + ": " +
-                           plural(topology["packages"], "package") + ", " +
-                           plural(topology["cores"], "core") + ", " +
-                           plural(topology["hardware_threads"], "hardware thread") + ", SMT " +
-                           word(topology["smt"], "not told"));
+std::string topology_lines(const std::string& cpu_model, const Topology& topology) {
+    const std::string untold = "not told by " + topology.source + "; remedy: build with libhwloc-dev";
     std::string caches;
-    for (const Json& cache : topology["caches"]) {
-        caches += std::to_string(cache["count"].get<int>()) + " " + cache["name"].get<std::string>() +
-                  " of " + bytes(cache["bytes"]) + ", ";
+    for (const CacheLevel& cache : topology.caches) {
+        caches += std::to_string(cache.count) + " " + cache.name + " of " + bytes_text(cache.bytes) + ", ";
     }
-    const std::string source = topology["source"].get<std::string>();
-    const std::string untold = "not told by " + source + "; remedy: build with libhwloc-dev";
-    screen.line("caches", caches.empty() ? untold : caches + "told by " + source);
-    screen.line("NUMA", topology["numa_nodes"].is_null() ? untold : plural(topology["numa_nodes"], "node"));
-    const Json& frequency = findings["frequency"];
-    const bool host_decides = frequency["governor"].is_null() && findings["machine"]["virtualised"];
-    screen.line("frequency", "governor " + word(frequency["governor"], "not told") + ", turbo " +
-                                 word(frequency["turbo"], "not told") +
-                                 (host_decides ? "; the host of this virtual machine decides" : ""));
-    const Json& affinity = findings["affinity"];
-    const bool is_part = affinity["affinity_count"] < affinity["hardware_threads"];
-    screen.line("affinity",
-                plural(affinity["affinity_count"], "CPU") + ": " + affinity["affinity"].get<std::string>() +
-                    (is_part ? ", of " + plural(affinity["hardware_threads"], "hardware thread") : ""));
-    const Json& quota = affinity["cpu_quota"];
-    if (!quota.is_null()) {
-        screen.line("CPU quota",
-                    "time of " + number("%.4g", quota) + (quota == 1 ? " processor" : " processors") +
-                        " in all (cgroup); on more threads than that each is halted for a part of "
-                        "the time");
-    }
-    screen.line("threads", "Carom takes " + plural(affinity["threads_by_default"], "thread") +
-                               " by default, on " +
-                               plural(affinity["usable_processors"], "usable processor"));
+    return line("CPU", cpu_model + ": " + plural(topology.packages, "package") + ", " +
+                           plural(topology.cores, "core") + ", " +
+                           plural(topology.hardware_threads, "hardware thread") + ", SMT " +
+                           on_or_off(topology.smt())) +
+           line("caches", caches.empty() ? untold : caches + "told by " + topology.source) +
+           line("NUMA", topology.numa_nodes ? plural(topology.numa_nodes, "node") : untold);
 }
 
-void show_openmp(const Json& openmp, Screen& screen) {
-    screen.line("OpenMP", openmp["runtime"].get<std::string>() + ", version " +
-                              std::to_string(openmp["version"].get<int>()) + ", " +
-                              plural(openmp["max_threads"], "thread") + " by default, dynamic " +
-                              word(openmp["dynamic"], "") + ", bind " +
-                              openmp["proc_bind"].get<std::string>() + ", " +
-                              plural(openmp["places"], "place"));
-    std::string environment;
-    for (const auto& [name, value] : openmp["environment"].items()) {
-        environment += " " + name + "=" + value.get<std::string>();
+std::string processor_lines(const Findings& findings) {
+    const Machine& machine = findings.machine;
+    const bool host_decides = !machine.governor && machine.virtualised;
+    const bool is_part = machine.affinity_count < machine.hardware_threads;
+    std::string text =
+        line("frequency", "governor " + machine.governor.value_or("not told") + ", turbo " +
+                              on_or_off(findings.turbo) +
+                              (host_decides ? "; the host of this virtual machine decides" : "")) +
+        line("affinity", counted(machine.affinity_count, "CPU") + ": " + machine.affinity +
+                             (is_part ? ", of " + counted(machine.hardware_threads, "hardware thread") : ""));
+    if (const auto quota = machine.cpu_quota) {
+        text +=
+            line("CPU quota", format("time of %.4g processor%s in all (cgroup); on more threads than that "
+                                     "each is halted for a part of the time",
+                                     *quota, *quota == 1 ? "" : "s"));
     }
-    screen.line("",
-                environment.empty() ? "no OMP_*, GOMP_* or KMP_* variable is set" : environment.substr(1));
+    return text +
+           line("threads", "Carom takes " + counted(findings.threads_by_default, "thread") +
+                               " by default, on " + counted(findings.usable_processors, "usable processor"));
 }
 
-/// The events that are missing for one reason together, in the order in which the reasons come up.
-void show_missing(const Json& source, Screen& screen) {
-    const std::string cannot_count = source["source"].get<std::string>() + " cannot count ";
-    std::vector<std::pair<std::string, std::string>> reasons;
-    for (const Json& missing : source["missing"]) {
-        const std::string why =
-            missing["reason"].get<std::string>() + "; remedy: " + missing["remedy"].get<std::string>();
-        const auto same = std::ranges::find(reasons, why, &std::pair<std::string, std::string>::first);
-        if (same == reasons.end()) {
-            reasons.emplace_back(why, cannot_count + missing["event"].get<std::string>());
-        } else {
-            same->second += ", " + missing["event"].get<std::string>();
-        }
+std::string openmp_lines(const OpenMp& openmp) {
+    const std::string environment = CLI::detail::join(
+        openmp.environment, [](const auto& variable) { return variable.first + "=" + variable.second; }, " ");
+    return line("OpenMP", openmp.runtime + ", version " + std::to_string(openmp.version) + ", " +
+                              counted(openmp.max_threads, "thread") + " by default, dynamic " +
+                              on_or_off(openmp.dynamic) + ", bind " + openmp.proc_bind + ", " +
+                              counted(openmp.places, "place")) +
+           line("", environment.empty() ? "no OMP_*, GOMP_* or KMP_* variable is set" : environment);
+}
+
+/// What is counted, and the events that are missing for one reason together.
+std::string source_lines(const CounterSource& source) {
+    const auto joined = [](const auto& events) { return CLI::detail::join(events, ", "); };
+    std::string text;
+    if (!source.events.empty()) {
+        const bool by_papi = source.name.starts_with("papi");
+        text = line("", source.name + " counts " +
+                            (by_papi ? joined(source.events) + ", in " + counted(source.runs, "run")
+                                     : counted(source.events.size(), "figure")));
     }
-    for (auto& [why, line] : reasons) {
-        screen.line("", line.append(": ").append(why));
+    nlohmann::ordered_map<std::string, std::vector<std::string>> missing;
+    for (const CounterValue& value : source.missing) {
+        missing[value.reason + "; remedy: " + value.remedy].push_back(value.name);
     }
-}
-
-void show_counters(const Json& findings, Screen& screen) {
-    const Json& perf = findings["perf_events"];
-    screen.line("counters", "PAPI " + perf["papi"].get<std::string>() + "; perf_event_paranoid " +
-                                (perf["paranoid"].is_null() ? "not told" : perf["paranoid"].dump()) +
-                                (perf["pmu"] ? "" : "; no performance-monitoring unit (PMU)"));
-    for (const Json& source : findings["counters"]) {
-        const std::string name = source["source"].get<std::string>();
-        if (!source["events"].empty()) {
-            const bool by_papi = name.starts_with("papi");
-            screen.line("", name + " counts " +
-                                (by_papi ? list(source["events"]) + ", in " + plural(source["runs"], "run")
-                                         : plural(source["events"].size(), "figure")));
-        }
-        show_missing(source, screen);
+    for (const auto& [why, events] : missing) {
+        text += line("", source.name + " cannot count " + joined(events) + ": " + why);
     }
+    return text;
 }
 
-/// A program's version, or how to get it.
-void show_tool(const std::string& name, const Json& version, const std::string& package, Screen& screen) {
-    screen.line(name, word(version, ("not on PATH; remedy: install the package " + package).c_str()));
+std::string counter_lines(const Findings& findings) {
+    const auto& paranoid = findings.perf.paranoid;
+    std::string text =
+        line("counters", "PAPI " + findings.papi + "; perf_event_paranoid " +
+                             (paranoid ? std::to_string(*paranoid) : "not told") +
+                             (lacks_pmu(findings.perf) ? "; no performance-monitoring unit (PMU)" : ""));
+    for (const CounterSource& source : findings.counters) {
+        text += source_lines(source);
+    }
+    return text;
 }
 
-void show_software(const Json& findings, Screen& screen) {
-    const Json& program = findings["program"];
-    screen.line("program", "built by " + program["compiler"].get<std::string>() + ", " +
-                               program["build_type"].get<std::string>() + ", commit " +
-                               word(program["commit"], "not known").substr(0, 12) +
-                               (program["dirty"] == true ? " with changes" : ""));
-    const Json& tools = findings["tools"];
-    show_tool("g++", tools["g++"], "g++", screen);
-    show_tool("clang++", tools["clang++"], "clang", screen);
-    show_tool("valgrind", tools["valgrind"], "valgrind", screen);
-    show_tool("perf", tools["perf"], "linux-perf", screen);
-    const Json& slurm = findings["slurm"];
-    screen.line("Slurm", word(slurm["version"], "srun not on PATH") +
-                             (slurm["job"].is_null()
-                                  ? ", not inside a job"
-                                  : ", inside job " + slurm["job"].value("SLURM_JOB_ID", "not named")));
+std::string software_lines(const Findings& findings) {
+    std::string text = line("program", "built by " + build_text());
+    for (const auto& [name, package, version] : findings.tools) {
+        text += line(name, version.empty() ? "not on PATH; remedy: install the package " + package : version);
+    }
+    const std::string& slurm = findings.slurm_version;
+    const auto& job = findings.slurm_job;
+    const auto id = job.find("SLURM_JOB_ID");
+    const bool is_named = id != job.end();
+    return text + line("Slurm", (slurm.empty() ? "srun not on PATH" : slurm) +
+                                    (job.empty() ? ", not inside a job"
+                                                 : ", inside job " + (is_named ? id->second : "not named")));
 }
 
-void show_noise(const Json& noise, Screen& screen) {
-    screen.line(
-        "noise",
-        std::to_string(noise["spins"].get<int>()) + " equal spins of " +
-            number("%.3g ms", 1e3 * noise["median_seconds"].get<double>()) + ": 95 % within " +
-            number("%.3f", noise["p95_over_median"]) + ", the slowest " +
-            number("%.2f", noise["max_over_median"]) + " times the median; steal time " +
-            (noise["steal"].is_null() ? "not told" : number("%.1f %%", 100 * noise["steal"].get<double>())));
+std::string noise_line(const Noise& noise) {
+    return line("noise", format("%d equal spins of %.3g ms: 95 %% within %.3f, the slowest %.2f times the "
+                                "median; steal time ",
+                                noise.spins, 1e3 * noise.median_seconds, noise.p95_over_median,
+                                noise.max_over_median) +
+                             (noise.steal ? format("%.1f %%", 100 * *noise.steal) : "not told"));
 }
 
 } // namespace
 
-std::string doctor_text(const Json& findings) {
-    Screen screen;
-    show_machine(findings["machine"], screen);
-    show_cpu(findings, screen);
-    show_openmp(findings["openmp"], screen);
-    show_counters(findings, screen);
-    show_software(findings, screen);
-    show_noise(findings["noise"], screen);
-    return screen.text();
+std::string doctor_text(const Findings& findings) {
+    return machine_lines(findings.machine, findings.memory_available_bytes) +
+           topology_lines(findings.machine.cpu_model, findings.topology) + processor_lines(findings) +
+           openmp_lines(findings.openmp) + counter_lines(findings) + software_lines(findings) +
+           noise_line(findings.noise);
 }
 
 } // namespace carom

@@ -67,23 +67,15 @@ template <class Work> double timed(int threads, std::int64_t turns, const Work& 
     return process_seconds() - start;
 }
 
-/// So many turns that one thread alone works for two milliseconds at the fastest: below that, starting the
-/// threads would count.
+/// So many turns that one thread alone works for two milliseconds each of three times: below that, starting
+/// the threads would count.
 template <class Work> std::int64_t enough_turns(const Work& work) {
-    constexpr double shortest = 2e-3;
-    constexpr int trials = 3;
-    for (std::int64_t turns = 1;; turns *= 2) {
-        double fastest = shortest;
-        for (int trial = 0; trial < trials && fastest >= shortest; ++trial) {
-            const double start = process_seconds();
-            work(0, turns);
-            const double once = process_seconds() - start;
-            fastest = trial == 0 ? once : std::min(fastest, once);
-        }
-        if (fastest >= shortest) {
-            return turns;
-        }
+    const auto takes_long = [&work](std::int64_t turns) { return timed(1, turns, work) >= 2e-3; };
+    std::int64_t turns = 1;
+    while (!takes_long(turns) || !takes_long(turns) || !takes_long(turns)) {
+        turns *= 2;
     }
+    return turns;
 }
 
 /// The rate of `amount` a turn.
@@ -100,13 +92,11 @@ template <class Work> Rate measure(int threads, double amount, double seconds, c
     std::ranges::sort(rates);
     return {.best = rates.back(),
             .median = rates[rates.size() / 2],
-            .repetitions = static_cast<int>(rates.size())};
+            .repetitions = static_cast<int>(rates.size()),
+            .threads = threads};
 }
 
-struct Free {
-    void operator()(double* numbers) const { std::free(numbers); }
-};
-using Array = std::unique_ptr<double[], Free>;
+using Array = std::unique_ptr<double[], decltype([](double* numbers) { std::free(numbers); })>;
 
 /// Not initialised, at the beginning of a page. The C library's copy is twenty times slower on some
 /// processors where the target begins a few bytes later in its page than the source, as from `new` it does.
@@ -190,14 +180,27 @@ Rate measure_arithmetic(Arithmetic arithmetic, int threads, double seconds) {
     require_threads(threads);
     constexpr std::int64_t turns_at_once = 1000;
     const double operations = 2.0 * chain_count * turns_at_once * lanes(arithmetic) * threads;
-    if (arithmetic == Arithmetic::scalar) {
+    const auto measure_chains_of = [&]<class Number>(Number /*type*/) {
         return measure(threads, operations, seconds, [](int, std::int64_t turns) {
-            run_chains<double>(turns * turns_at_once, std::make_index_sequence<chain_count>());
+            run_chains<Number>(turns * turns_at_once, std::make_index_sequence<chain_count>());
         });
+    };
+    return arithmetic == Arithmetic::scalar ? measure_chains_of(double{}) : measure_chains_of(Vector{});
+}
+
+Limits measure_limits(int threads, double seconds, std::int64_t most_bytes) {
+    require_threads(threads);
+    const Topology topology = read_topology();
+    Limits limits;
+    for (int count = 1; count <= threads; ++count) {
+        for (const WorkingSet& set : working_sets(topology, most_bytes, count)) {
+            limits.copy.emplace_back(set, measure_copy(set, count, seconds));
+        }
+        for (const Arithmetic kind : {Arithmetic::scalar, Arithmetic::vector}) {
+            limits.arithmetic.emplace_back(lanes(kind), measure_arithmetic(kind, count, seconds));
+        }
     }
-    return measure(threads, operations, seconds, [](int, std::int64_t turns) {
-        run_chains<Vector>(turns * turns_at_once, std::make_index_sequence<chain_count>());
-    });
+    return limits;
 }
 
 } // namespace carom

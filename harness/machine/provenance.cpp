@@ -1,7 +1,7 @@
 #include "harness/machine/provenance.hpp"
 
 #include <array>
-#include <string>
+#include <cstddef>
 
 #include <dlfcn.h>
 #include <omp.h>
@@ -25,66 +25,74 @@ std::string openmp_runtime() {
     return dlsym(RTLD_DEFAULT, "GOMP_parallel") != nullptr ? "libgomp" : "unknown";
 }
 
-Json openmp_json() {
-    constexpr std::array<const char*, 5> binds{"false", "true", "primary", "close", "spread"};
-    const auto bind = static_cast<std::size_t>(omp_get_proc_bind());
-    return {{"runtime", openmp_runtime()},
-            {"version", _OPENMP},
-            {"max_threads", omp_get_max_threads()},
-            {"dynamic", omp_get_dynamic() != 0},
-            {"proc_bind", bind < binds.size() ? binds[bind] : "unknown"},
-            {"places", omp_get_num_places()},
-            {"environment", environment_with_prefixes({"OMP_", "GOMP_", "KMP_"})}};
-}
-
-/// Of the program that runs, which stays the same: a process that leaves many records reads it once.
-const std::string& own_sha256() {
-    static const std::string digest = sha256(read_file("/proc/self/exe"));
-    return digest;
-}
-
-Json slurm_json() {
-    const auto variables = environment_with_prefixes(
-        {"SLURM_JOB_", "SLURM_ARRAY_", "SLURMD_NODENAME", "SLURM_RESTART_COUNT", "SLURM_CPUS_PER_TASK"});
-    return variables.empty() ? Json(nullptr) : Json(variables);
-}
-
 } // namespace
 
-std::string commit_text() {
+OpenMp read_openmp() {
+    constexpr std::array<const char*, 5> binds{"false", "true", "primary", "close", "spread"};
+    const auto bind = static_cast<std::size_t>(omp_get_proc_bind());
+    return {.runtime = openmp_runtime(),
+            .version = _OPENMP,
+            .max_threads = omp_get_max_threads(),
+            .dynamic = omp_get_dynamic() != 0,
+            .proc_bind = bind < binds.size() ? binds[bind] : "unknown",
+            .places = omp_get_num_places(),
+            .environment = environment_with_prefixes({"OMP_", "GOMP_", "KMP_"})};
+}
+
+std::map<std::string, std::string> slurm_variables() {
+    return environment_with_prefixes(
+        {"SLURM_JOB_", "SLURM_ARRAY_", "SLURMD_NODENAME", "SLURM_RESTART_COUNT", "SLURM_CPUS_PER_TASK"});
+}
+
+std::string commit_text(const std::string& unknown) {
     const std::string commit = build_info::commit;
-    if (commit.empty()) {
-        return "unknown commit";
-    }
-    const bool is_changed = std::string(build_info::dirty) == "true";
-    return "commit " + commit.substr(0, 12) + (is_changed ? " with changes" : "");
+    const bool is_changed = build_info::dirty == std::string_view("true");
+    return commit.empty() ? unknown : "commit " + commit.substr(0, 12) + (is_changed ? " with changes" : "");
+}
+
+std::string build_text() {
+    return std::string(build_info::compiler) + ", " + build_info::build_type + ", " +
+           commit_text("commit not known");
+}
+
+Json openmp_json(const OpenMp& openmp) {
+    return {{"runtime", openmp.runtime},         {"version", openmp.version},
+            {"max_threads", openmp.max_threads}, {"dynamic", openmp.dynamic},
+            {"proc_bind", openmp.proc_bind},     {"places", openmp.places},
+            {"environment", openmp.environment}};
+}
+
+Json build_json() {
+    const std::string dirty = build_info::dirty;
+    return {{"compiler", build_info::compiler},
+            {"compiler_flags", build_info::flags},
+            {"build_type", build_info::build_type},
+            {"commit", text_or_null(std::string(build_info::commit))},
+            {"dirty", dirty.empty() ? Json(nullptr) : Json(dirty == "true")}};
 }
 
 Json provenance_json(int threads) {
-    // It stays the same, too.
+    // A process that leaves many records reads once what stays the same.
     static const Machine machine = read_machine();
-    const std::string dirty = build_info::dirty;
-    return {{"host", machine.host},
-            {"cpu_model", machine.cpu_model},
-            {"cores", or_null(machine.cores)},
-            {"hardware_threads", machine.hardware_threads},
-            {"affinity", machine.affinity},
-            {"affinity_count", machine.affinity_count},
-            {"cpu_quota", or_null(machine.cpu_quota)},
-            {"oversubscribed", threads > machine.affinity_count},
-            {"memory_bytes", machine.memory_bytes},
-            {"virtualised", machine.virtualised},
-            {"governor", or_null(machine.governor)},
-            {"operating_system", machine.operating_system},
-            {"openmp", openmp_json()},
-            {"compiler", build_info::compiler},
-            {"compiler_flags", build_info::flags},
-            {"build_type", build_info::build_type},
-            {"commit", text_or_null(build_info::commit)},
-            {"dirty", dirty.empty() ? Json(nullptr) : Json(dirty == "true")},
-            {"diff_sha256", text_or_null(build_info::diff_sha256)},
-            {"binary_sha256", own_sha256()},
-            {"slurm", slurm_json()}};
+    static const std::string own_sha256 = sha256(read_file("/proc/self/exe"));
+    Json json{{"host", machine.host},
+              {"cpu_model", machine.cpu_model},
+              {"cores", or_null(machine.cores)},
+              {"hardware_threads", machine.hardware_threads},
+              {"affinity", machine.affinity},
+              {"affinity_count", machine.affinity_count},
+              {"cpu_quota", or_null(machine.cpu_quota)},
+              {"oversubscribed", threads > machine.affinity_count},
+              {"memory_bytes", machine.memory_bytes},
+              {"virtualised", machine.virtualised},
+              {"governor", or_null(machine.governor)},
+              {"operating_system", machine.operating_system},
+              {"openmp", openmp_json(read_openmp())}};
+    json.update(build_json());
+    json["diff_sha256"] = text_or_null(std::string(build_info::diff_sha256));
+    json["binary_sha256"] = own_sha256;
+    json["slurm"] = text_or_null(slurm_variables());
+    return json;
 }
 
 } // namespace carom

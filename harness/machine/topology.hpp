@@ -23,6 +23,11 @@ struct Topology {
     int hardware_threads = 1;
     std::optional<int> numa_nodes;
     std::vector<CacheLevel> caches; ///< from the first level on; empty if nobody tells
+
+    /// Has a core several hardware threads? Empty if nobody tells.
+    std::optional<bool> smt() const {
+        return cores ? std::optional(hardware_threads > *cores) : std::nullopt;
+    }
 };
 
 /// Asks hwloc where the program is built with it, and the operating system where not.

@@ -25,8 +25,8 @@ inline nlohmann::ordered_json number_or_null(const std::optional<double>& value)
     return value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-/// The text, or null if it is empty.
-inline nlohmann::ordered_json text_or_null(const std::string& text) {
+/// The text, or the texts by name, or null if there is none.
+template <class Text> nlohmann::ordered_json text_or_null(const Text& text) {
     return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
 }
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/doctor/doctor.hpp"
+#include "harness/doctor/findings.hpp"
 #include "harness/machine/noise.hpp"
 #include "harness/tests/program.hpp"
 
@@ -14,14 +14,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const Json& findings() {
-    static const Json json = doctor_json(0.05);
-    return json;
+const Findings& findings() {
+    static const Findings found = examine_machine(0.05);
+    return found;
 }
 
 /// The text of these findings with every line break and the blanks after it as one blank.
-std::string unwrapped(const Json& json) {
-    std::istringstream words(doctor_text(json));
+std::string unwrapped(const Findings& found) {
+    std::istringstream words(doctor_text(found));
     std::string text;
     for (std::string word; words >> word;) {
         text += word + " ";
@@ -40,7 +40,8 @@ TEST(Doctor, ThePageFitsOneScreen) {
 
 TEST(Doctor, EverySourceCountsOrSaysWhyNot) {
     std::vector<std::string> sources;
-    for (const Json& source : findings()["counters"]) {
+    const Json json = doctor_json(findings());
+    for (const Json& source : json["counters"]) {
         sources.push_back(source["source"]);
         EXPECT_GT(source["events"].size() + source["missing"].size(), 0U) << source;
         for (const Json& missing : source["missing"]) {
@@ -52,15 +53,17 @@ TEST(Doctor, EverySourceCountsOrSaysWhyNot) {
 }
 
 TEST(Doctor, WhatCannotBeCountedIsSaidOnceForEachReason) {
-    Json json = findings();
-    json["counters"] = {{{"source", "papi-hardware"},
-                         {"events", {"PAPI_TOT_CYC", "PAPI_TOT_INS"}},
-                         {"runs", 1},
-                         {"missing",
-                          {{{"event", "PAPI_A"}, {"reason", "unknown"}, {"remedy", "another PAPI"}},
-                           {{"event", "PAPI_B"}, {"reason", "refused"}, {"remedy", "ask"}},
-                           {{"event", "PAPI_C"}, {"reason", "unknown"}, {"remedy", "another PAPI"}}}}}};
-    const std::string text = unwrapped(json);
+    const auto missing = [](const char* event, const char* reason, const char* remedy) {
+        return CounterValue{event, {}, {}, "papi-hardware", reason, remedy};
+    };
+    Findings found = findings();
+    found.counters = {
+        {.name = "papi-hardware",
+         .events = {"PAPI_TOT_CYC", "PAPI_TOT_INS"},
+         .runs = 1,
+         .missing = {missing("PAPI_A", "unknown", "another PAPI"), missing("PAPI_B", "refused", "ask"),
+                     missing("PAPI_C", "unknown", "another PAPI")}}};
+    const std::string text = unwrapped(found);
     EXPECT_NE(text.find("papi-hardware counts PAPI_TOT_CYC, PAPI_TOT_INS, in 1 run "), std::string::npos)
         << text;
     EXPECT_NE(text.find("papi-hardware cannot count PAPI_A, PAPI_C: unknown; remedy: another PAPI "),
@@ -69,19 +72,20 @@ TEST(Doctor, WhatCannotBeCountedIsSaidOnceForEachReason) {
 }
 
 TEST(Doctor, WhatIsNotKnownIsSaid) {
-    Json json = findings();
-    json["topology"] = {{"source", "the operating system"},
-                        {"packages", nullptr},
-                        {"cores", nullptr},
-                        {"hardware_threads", 8},
-                        {"smt", nullptr},
-                        {"numa_nodes", nullptr},
-                        {"caches", Json::array()}};
-    json["frequency"] = {{"governor", nullptr}, {"turbo", nullptr}};
-    json["tools"]["valgrind"] = nullptr;
-    json["slurm"] = {{"version", nullptr}, {"job", nullptr}};
-    json["noise"]["steal"] = nullptr;
-    const std::string text = unwrapped(json);
+    Findings found = findings();
+    found.topology = {.source = "the operating system",
+                      .packages = {},
+                      .cores = {},
+                      .hardware_threads = 8,
+                      .numa_nodes = {},
+                      .caches = {}};
+    found.machine.governor = {};
+    found.turbo = {};
+    std::ranges::find(found.tools, "valgrind", &Tool::name)->version = {};
+    found.slurm_version = {};
+    found.slurm_job = {};
+    found.noise.steal = {};
+    const std::string text = unwrapped(found);
     EXPECT_NE(text.find("8 hardware threads, SMT not told"), std::string::npos) << text;
     EXPECT_NE(text.find("NUMA not told by the operating system; remedy: build with libhwloc-dev"),
               std::string::npos);
@@ -89,42 +93,60 @@ TEST(Doctor, WhatIsNotKnownIsSaid) {
     EXPECT_NE(text.find("valgrind not on PATH; remedy: install the package valgrind"), std::string::npos);
     EXPECT_NE(text.find("srun not on PATH, not inside a job"), std::string::npos);
     EXPECT_NE(text.find("steal time not told"), std::string::npos);
+    const Json json = doctor_json(found);
+    EXPECT_EQ(json["topology"]["smt"], nullptr);
+    EXPECT_EQ(json["topology"]["caches"], Json::array());
+    EXPECT_EQ(json["frequency"], (Json{{"governor", nullptr}, {"turbo", nullptr}}));
+    EXPECT_EQ(json["tools"]["valgrind"], nullptr);
+    EXPECT_EQ(json["slurm"], (Json{{"version", nullptr}, {"job", nullptr}}));
+    EXPECT_EQ(json["noise"]["steal"], nullptr);
 }
 
 TEST(Doctor, WhatTheSystemTellsIsShown) {
-    Json json = findings();
-    json["frequency"] = {{"governor", "performance"}, {"turbo", false}};
-    json["openmp"]["environment"] = {{"OMP_PLACES", "cores"}, {"OMP_SCHEDULE", "guided,4"}};
-    json["slurm"] = {{"version", "slurm 22.05.8"}, {"job", {{"SLURM_JOB_ID", "4711"}}}};
-    const std::string text = unwrapped(json);
+    Findings found = findings();
+    found.machine.governor = "performance";
+    found.turbo = false;
+    found.openmp.environment = {{"OMP_PLACES", "cores"}, {"OMP_SCHEDULE", "guided,4"}};
+    found.slurm_version = "slurm 22.05.8";
+    found.slurm_job = {{"SLURM_JOB_ID", "4711"}};
+    const std::string text = unwrapped(found);
     EXPECT_NE(text.find("governor performance, turbo off"), std::string::npos) << text;
     EXPECT_NE(text.find("OMP_PLACES=cores OMP_SCHEDULE=guided,4"), std::string::npos);
     EXPECT_NE(text.find("slurm 22.05.8, inside job 4711"), std::string::npos);
+    const Json json = doctor_json(found);
+    EXPECT_EQ(json["frequency"], (Json{{"governor", "performance"}, {"turbo", false}}));
+    EXPECT_EQ(json["slurm"]["job"], (Json{{"SLURM_JOB_ID", "4711"}}));
 }
 
 TEST(Doctor, ALimitOfProcessorsIsShownWithTheThreadsThatFollow) {
-    Json json = findings();
-    json["affinity"] = {{"affinity", "2-4"}, {"affinity_count", 3},    {"hardware_threads", 8},
-                        {"cpu_quota", 1.5},  {"usable_processors", 1}, {"threads_by_default", 1}};
-    const std::string text = unwrapped(json);
+    Findings found = findings();
+    Machine& machine = found.machine;
+    machine.affinity = "2-4";
+    machine.affinity_count = 3;
+    machine.hardware_threads = 8;
+    machine.cpu_quota = 1.5;
+    found.usable_processors = 1;
+    found.threads_by_default = 1;
+    const std::string text = unwrapped(found);
     EXPECT_NE(text.find("affinity 3 CPUs: 2-4, of 8 hardware threads "), std::string::npos) << text;
     EXPECT_NE(text.find("CPU quota time of 1.5 processors in all (cgroup)"), std::string::npos) << text;
     EXPECT_NE(text.find("threads Carom takes 1 thread by default, on 1 usable processor "), std::string::npos)
         << text;
-    json["affinity"]["cpu_quota"] = nullptr;
-    json["affinity"]["hardware_threads"] = 3;
-    EXPECT_EQ(unwrapped(json).find("CPU quota"), std::string::npos);
-    EXPECT_EQ(unwrapped(json).find("2-4, of"), std::string::npos);
+    machine.cpu_quota = {};
+    machine.hardware_threads = 3;
+    EXPECT_EQ(unwrapped(found).find("CPU quota"), std::string::npos);
+    EXPECT_EQ(unwrapped(found).find("2-4, of"), std::string::npos);
 }
 
 TEST(Doctor, TellsAloneHowTheProgramWasBuilt) {
     const auto result = tests::run_carom({"doctor", "--build"});
     EXPECT_EQ(result.exit_code, 0);
     const Json told = Json::parse(result.output);
-    for (const auto& [field, value] : findings()["program"].items()) {
+    const Json json = doctor_json(findings());
+    for (const auto& [field, value] : json["program"].items()) {
         EXPECT_EQ(told[field], value) << field;
     }
-    EXPECT_EQ(told["openmp"]["runtime"], findings()["openmp"]["runtime"]);
+    EXPECT_EQ(told["openmp"]["runtime"], json["openmp"]["runtime"]);
 }
 
 TEST(Doctor, TheProgramPrintsNothingElse) {
@@ -133,7 +155,8 @@ TEST(Doctor, TheProgramPrintsNothingElse) {
     EXPECT_EQ(result.error, "");
     const Json json = Json::parse(result.output, nullptr, false);
     ASSERT_TRUE(json.is_object()) << result.output;
-    for (const auto& [key, value] : findings().items()) {
+    const Json found = doctor_json(findings());
+    for (const auto& [key, value] : found.items()) {
         EXPECT_TRUE(json.contains(key)) << key;
     }
     EXPECT_GT(json["noise"]["spins"], 10);

@@ -110,14 +110,11 @@ TEST(Arithmetic, OfAWholeRegisterIsFasterThanOfOneDouble) {
 }
 
 /// The rates as an example that needs no measuring.
-nlohmann::ordered_json example() {
-    const nlohmann::ordered_json rate{{"best", 12.5e9}, {"median", 12e9}, {"repetitions", 7}};
-    return {{"copy",
-             {{{"level", "memory"},
-               {"working_set_bytes", 256 * mebi},
-               {"threads", 2},
-               {"bytes_per_second", rate}}}},
-            {"arithmetic", {{{"lanes", 2}, {"threads", 1}, {"operations_per_second", rate}}}}};
+Limits example() {
+    const auto rate = [](int threads) {
+        return Rate{.best = 12.5e9, .median = 12e9, .repetitions = 7, .threads = threads};
+    };
+    return {.copy = {{{"memory", 256 * mebi}, rate(2)}}, .arithmetic = {{2, rate(1)}}};
 }
 
 TEST(LimitsText, SaysWhatWasMeasuredAndInWhichUnits) {
