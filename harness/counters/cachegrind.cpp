@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
-#include <future>
 #include <string>
 #include <utility>
 
 #include "harness/counters/cachegrind_output.hpp"
+#include "harness/processes/process.hpp"
 #include "harness/scenes/scene_file.hpp"
-#include "harness/support/child_process.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -51,11 +51,11 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
-void require_success(const ChildEnd& end) {
-    if (!end.started) {
+void require_success(const ProcessEnd& end) {
+    if (!end.not_started.empty()) {
         throw Obstacle(no_valgrind());
     }
-    if (!end.is_known) {
+    if (!end.unknown.empty()) {
         throw Obstacle({"how cachegrind ended is not known", "run it again"});
     }
     if (end.signal == SIGILL) {
@@ -68,46 +68,62 @@ void require_success(const ChildEnd& end) {
     }
     if (end.exit_code != 0) {
         throw Obstacle({"cachegrind ended with exit code " + std::to_string(end.exit_code) + ": " +
-                            last_line(end.output),
+                            last_line(end.output.end + end.error.end),
                         "`valgrind --tool=cachegrind carom run` shows more"});
     }
 }
 
-/// What cachegrind counts in the whole of a run.
-std::map<std::string_view, double> simulate_run(const Scene& scene, std::string_view variant,
-                                                const Tuning& tuning, const std::filesystem::path& program) {
-    const TemporaryFolder folder;
-    OutputFile file(folder.file("scene.in"));
-    file.write(scene_text(scene));
-    file.finish();
-    require_success(run_child({"valgrind",
-                               "--quiet",
-                               "--tool=cachegrind",
-                               "--cache-sim=yes",
-                               "--branch-sim=yes",
-                               "--cachegrind-out-file=" + folder.file("cachegrind.out"),
-                               program.string(),
-                               "run",
-                               folder.file("scene.in"),
-                               "1",
-                               "--variant",
-                               std::string(variant),
-                               "--find-chunk",
-                               std::to_string(tuning.find_chunk),
-                               "--resolve-chunk",
-                               std::to_string(tuning.resolve_chunk),
-                               "--substeps",
-                               std::to_string(tuning.substeps),
-                               "--sweep-limit",
-                               std::to_string(tuning.sweep_limit),
-                               "--tolerance",
-                               tuning.tolerance == Tolerance::relative ? "relative" : "published"}));
-    try {
-        return parse_cachegrind(read_file(folder.file("cachegrind.out")));
-    } catch (const CounterError& error) {
-        throw Obstacle({error.what(), "a valgrind whose output carom reads, such as 3.19"});
+/// A whole run under cachegrind, which has begun.
+class SimulatedRun {
+  public:
+    SimulatedRun(const Scene& scene, std::string_view variant, const Tuning& tuning,
+                 const std::filesystem::path& program)
+        : process_({.words = {"valgrind",
+                              "--quiet",
+                              "--tool=cachegrind",
+                              "--cache-sim=yes",
+                              "--branch-sim=yes",
+                              "--cachegrind-out-file=" + folder_.file("cachegrind.out"),
+                              program.string(),
+                              "run",
+                              folder_.file("scene.in"),
+                              "1",
+                              "--variant",
+                              std::string(variant),
+                              "--find-chunk",
+                              std::to_string(tuning.find_chunk),
+                              "--resolve-chunk",
+                              std::to_string(tuning.resolve_chunk),
+                              "--substeps",
+                              std::to_string(tuning.substeps),
+                              "--sweep-limit",
+                              std::to_string(tuning.sweep_limit),
+                              "--tolerance",
+                              tuning.tolerance == Tolerance::relative ? "relative" : "published"},
+                    .folder = "",
+                    .most_seconds = without_limit,
+                    .pattern = ""},
+                   KeptBy::subreaper) {
+        write_text(folder_.file("scene.in"), scene_text(scene));
+        process_.begin();
     }
-}
+
+    /// What cachegrind has counted, once the run has ended. Throws Obstacle.
+    std::map<std::string_view, double> counts() {
+        process_.advance(without_limit);
+        require_success(process_.end());
+        try {
+            return parse_cachegrind(read_file(folder_.file("cachegrind.out")));
+        } catch (const CounterError& error) {
+            throw Obstacle({error.what(), "a valgrind whose output carom reads, such as 3.19"});
+        }
+    }
+
+  private:
+    static constexpr double without_limit = 1e9;
+    TemporaryFolder folder_;
+    Process process_;
+};
 
 CounterValue row(std::string_view name, std::optional<double> value) {
     return {.name = std::string(name),
@@ -131,10 +147,9 @@ std::vector<CounterValue> simulate_counters(const Scene& scene, std::string_view
     shortened.steps = std::min(units, scene.steps);
     try {
         // At once: counts do not depend on what else runs, and valgrind takes long to start.
-        auto other =
-            std::async(std::launch::async, [&] { return simulate_run(beginning, variant, tuning, carom); });
-        auto with_steps = simulate_run(shortened, variant, tuning, carom);
-        auto without_steps = other.get();
+        SimulatedRun none(beginning, variant, tuning, carom);
+        auto with_steps = SimulatedRun(shortened, variant, tuning, carom).counts();
+        auto without_steps = none.counts();
         for (const SimulatedName& name : simulated_counts()) {
             rows.push_back(row(name.counter, with_steps[name.counter] - without_steps[name.counter]));
         }
@@ -153,10 +168,9 @@ std::vector<CounterValue> simulate_counters(const Scene& scene, std::string_view
 }
 
 std::string valgrind_version() {
-    const ChildEnd end = run_child({"valgrind", "--version"});
-    const std::string line = last_line(end.output);
+    const std::string line = version_line("valgrind");
     constexpr std::string_view prefix = "valgrind-";
-    return end.succeeded() && line.starts_with(prefix) ? line.substr(prefix.size()) : "";
+    return line.starts_with(prefix) ? line.substr(prefix.size()) : "";
 }
 
 Explanation no_valgrind() { return {"valgrind is not on PATH", "install the package valgrind"}; }

@@ -8,7 +8,7 @@
 #include "harness/counters/papi.hpp"
 #include "harness/counters/rusage.hpp"
 #include "harness/machine/threads.hpp"
-#include "harness/support/child_process.hpp"
+#include "harness/processes/process.hpp"
 #include "harness/support/silence.hpp"
 
 namespace carom {
@@ -61,12 +61,6 @@ std::vector<CounterSource> counter_sources() {
     return sources;
 }
 
-/// The first line of what a program says of its version; empty if it is not on PATH.
-std::string version_of(const std::string& program) {
-    const ChildEnd end = run_child({program, "--version"});
-    return end.succeeded() ? end.output.substr(0, end.output.find('\n')) : "";
-}
-
 } // namespace
 
 Findings examine_machine(double noise_seconds) {
@@ -83,11 +77,11 @@ Findings examine_machine(double noise_seconds) {
             .papi = papi_version(),
             .perf = read_perf_access(),
             .counters = counter_sources(),
-            .tools = {{"g++", "g++", version_of("g++")},
-                      {"clang++", "clang", version_of("clang++")},
-                      {"valgrind", "valgrind", version_of("valgrind")},
-                      {"perf", "linux-perf", version_of("perf")}},
-            .slurm_version = version_of("srun"),
+            .tools = {{"g++", "g++", version_line("g++")},
+                      {"clang++", "clang", version_line("clang++")},
+                      {"valgrind", "valgrind", version_line("valgrind")},
+                      {"perf", "linux-perf", version_line("perf")}},
+            .slurm_version = version_line("srun"),
             .slurm_job = slurm_variables(),
             .noise = noise};
 }

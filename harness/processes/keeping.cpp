@@ -74,7 +74,8 @@ class Keeping {
             }
         }
         end_all();
-        drain();
+        read_from(pipes_.output, output_);
+        read_from(pipes_.error, error_);
         tell(json_text(report(), -1));
         if (parent_is_gone_ && group_ != nullptr) {
             rmdir(group_->path().c_str());
@@ -163,7 +164,7 @@ class Keeping {
         const double until = process_seconds() + 10;
         if (program_has_ended_ && !has_ended_) {
             for (const pid_t one : descendants_of(getpid())) {
-                went_on_.push_back(name_of(one));
+                went_on_ += (went_on_.empty() ? "" : ", ") + name_of(one);
             }
         }
         while (!has_ended_ && program_ > 0 && process_seconds() < until) {
@@ -176,11 +177,6 @@ class Keeping {
             reap();
             usleep(has_ended_ ? 0 : 1000);
         }
-    }
-
-    void drain() {
-        read_from(pipes_.output, output_);
-        read_from(pipes_.error, error_);
     }
 
     /// What is there by now. At its end the pipe is closed, so that nobody waits for more.
@@ -236,7 +232,7 @@ class Keeping {
     double user_seconds_ = 0;
     double system_seconds_ = 0;
     long most_kilobytes_ = 0;
-    std::vector<std::string> went_on_;
+    std::string went_on_; ///< the names of what did so after the program's own end
 };
 
 } // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "harness/support/format.hpp"
 #include "harness/support/process_clock.hpp"
@@ -21,14 +22,6 @@ constexpr double late = 1;
 
 Printed printed_of(const nlohmann::ordered_json& json) {
     return {.bytes = json["bytes"], .end = json["end"], .matched = json["matched"]};
-}
-
-std::string joined(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) {
-        text += (text.empty() ? "" : ", ") + name;
-    }
-    return text;
 }
 
 /// A process begins with the mark of memory of whoever forked it (setrlimit's ru_maxrss survives execve), so
@@ -48,6 +41,14 @@ void set_memory(ProcessEnd& end, const nlohmann::ordered_json& report) {
 
 } // namespace
 
+std::vector<std::string> own_environment() {
+    std::vector<std::string> variables;
+    for (char** variable = environ; *variable != nullptr; ++variable) {
+        variables.emplace_back(*variable);
+    }
+    return variables;
+}
+
 Process::Process(ProcessCommand command, KeptBy kept_by)
     : command_(std::move(command)), tree_(make_tree(kept_by)),
       keeper_(std::make_unique<Keeper>(command_, tree_->group())) {
@@ -55,15 +56,20 @@ Process::Process(ProcessCommand command, KeptBy kept_by)
     end_.kept_by = tree_->name();
 }
 
+void Process::begin() {
+    has_begun_ = true;
+    suspensions_.start();
+    first_slice_began_ = process_seconds();
+    keeper_->begin();
+}
+
 void Process::advance(double seconds) {
     const double began = process_seconds();
     if (has_begun_) {
         tree_->go_on();
     } else {
-        has_begun_ = true;
-        suspensions_.start();
+        begin();
         first_slice_began_ = began;
-        keeper_->begin();
     }
     const double left = command_.most_seconds - end_.wall_seconds();
     double until = began + std::min(seconds, left);
@@ -127,7 +133,7 @@ void Process::take_report(double slice_began) {
     }
     end_.exit_code = report["exit_code"];
     end_.signal = report["signal"];
-    end_.went_on = joined(report["went_on"]);
+    end_.went_on = report["went_on"];
     end_.user_seconds = report["user_seconds"];
     end_.system_seconds = report["system_seconds"];
     end_.output = printed_of(report["output"]);
@@ -154,6 +160,12 @@ ProcessEnd run_undisturbed(const ProcessCommand& command, KeptBy kept_by) {
     Process process(command, kept_by);
     process.advance(1e9);
     return process.end();
+}
+
+std::string version_line(const std::string& program) {
+    const ProcessCommand command{.words = {program, "--version"}, .folder = "", .pattern = ".*"};
+    const ProcessEnd end = run_undisturbed(command, KeptBy::subreaper);
+    return end.succeeded() && !end.output.matched.empty() ? end.output.matched.front() : "";
 }
 
 } // namespace carom

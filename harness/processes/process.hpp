@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "harness/machine/suspensions.hpp"
 #include "harness/processes/keeper.hpp"
@@ -17,6 +18,9 @@ class Process {
   public:
     /// Nothing of it runs yet. Throws InputError if there is no room for it, or `kept_by` cannot be had.
     explicit Process(ProcessCommand command, KeptBy kept_by = KeptBy::whatever_works);
+
+    /// Lets it begin and waits for nothing. What it does before it is first advanced is not timed.
+    void begin();
 
     /// Lets it begin or go on for so many seconds or to its end; then it stands still. What does not stand
     /// still within a tenth of a second goes on for as long again. What has used up its time is ended.
@@ -43,5 +47,9 @@ class Process {
 
 /// Runs it to its end without a pause.
 ProcessEnd run_undisturbed(const ProcessCommand& command, KeptBy kept_by = KeptBy::whatever_works);
+
+/// The first line that a program prints of its version; empty if it is not on PATH, or fails. Throws
+/// InputError if there is no room for a process.
+std::string version_line(const std::string& program);
 
 } // namespace carom

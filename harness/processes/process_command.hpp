@@ -5,12 +5,15 @@
 
 namespace carom {
 
+/// NAME=VALUE, all that this process sees.
+std::vector<std::string> own_environment();
+
 /// A program to be run as it is: no shell sees its words.
 struct ProcessCommand {
-    std::vector<std::string> words;       ///< the program, with a slash or to be found on PATH; its arguments
-    std::string folder;                   ///< that it runs in; empty: this process's own
-    std::vector<std::string> environment; ///< NAME=VALUE, all that it sees
-    double most_seconds = 600;            ///< of its own running time; what takes longer is killed
+    std::vector<std::string> words; ///< the program, with a slash or to be found on PATH; its arguments
+    std::string folder;             ///< that it runs in; empty: this process's own
+    std::vector<std::string> environment = own_environment(); ///< NAME=VALUE, all that it sees
+    double most_seconds = 600; ///< of its own running time; what takes longer is killed
     std::string pattern; ///< lines of its standard output that this ECMAScript expression matches are kept
 };
 

@@ -37,6 +37,11 @@ struct ProcessEnd {
 
     double wall_seconds() const { return std::accumulate(seconds.begin(), seconds.end(), 0.0); }
     double cpu_seconds() const { return user_seconds + system_seconds; }
+
+    /// Whether it is known to have ended by itself, with exit code 0.
+    bool succeeded() const {
+        return not_started.empty() && unknown.empty() && !out_of_time && signal == 0 && exit_code == 0;
+    }
 };
 
 } // namespace carom

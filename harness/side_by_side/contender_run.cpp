@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <system_error>
 
-#include "harness/support/child_process.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/format.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -55,6 +55,16 @@ std::string why_failed(const ProcessCommand& command, const ProcessEnd& end, con
         return format("exit code %d%s", end.exit_code, said.empty() ? " without a word" : after.c_str());
     }
     return "";
+}
+
+int exit_code_of_failure(const ProcessEnd& end) {
+    if (end.out_of_time) {
+        return 124;
+    }
+    if (end.signal != 0) {
+        return -end.signal;
+    }
+    return end.not_started.empty() ? std::max(end.exit_code, 1) : 127;
 }
 
 ContenderRun::ContenderRun(const ProgramContender& contender) : contender_(contender) {

@@ -43,4 +43,8 @@ class ContenderRun {
 /// too long, ended with an exit code that is none of `fine`, or nobody knows. Empty if it does count.
 std::string why_failed(const ProcessCommand& command, const ProcessEnd& end, const std::vector<int>& fine);
 
+/// The exit code of a run that failed, never 0: its own, 1 where that is 0, 124 where it took too long (as of
+/// timeout(1)), 127 where it cannot be run (as of a shell), the signal that killed it below 0.
+int exit_code_of_failure(const ProcessEnd& end);
+
 } // namespace carom

@@ -84,6 +84,13 @@ inline std::string wrapped(std::string line, std::size_t indent) {
     return text + line + '\n';
 }
 
+/// The last line of a text that is not blank.
+inline std::string last_line(std::string_view text) {
+    const std::size_t end = text.find_last_not_of(" \t\r\n");
+    const std::size_t begin = text.rfind('\n', end) + 1;
+    return end == std::string_view::npos ? "" : std::string(text.substr(begin, text.find('\n', end) - begin));
+}
+
 /// "1 disc", "2 discs".
 template <class Count> std::string counted(Count count, const std::string& one) {
     return number_text(count) + " " + one + (count == 1 ? "" : "s");

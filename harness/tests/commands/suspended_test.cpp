@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/processes/process.hpp"
 #include "harness/scenes/scene_file.hpp"
-#include "harness/support/child_process.hpp"
 #include "harness/tests/program.hpp"
 #include "harness/tests/temporary_directory.hpp"
 #include "kernels/tests/scenes.hpp"
@@ -22,15 +22,15 @@ constexpr const char* reason = "was suspended for some time while it was measure
 /// its time, and be that milliseconds, some stop comes.
 class Suspended : public testing::Test {
   protected:
-    /// What the program says, on both of its outputs, and how it ends.
-    static ChildEnd suspended(std::vector<std::string> words) {
+    /// What the program says, and how it ends.
+    static ProcessEnd suspended(std::vector<std::string> words) {
         const std::string script = R"("$0" "$@" & child=$!
             while kill -STOP $child 2>/dev/null; do
                 kill -CONT $child; sleep 0.005
             done
             wait $child)";
         words.insert(words.begin(), {"sh", "-c", script, CAROM_PROGRAM});
-        return run_child(words);
+        return run_undisturbed({.words = words, .folder = "", .pattern = ""});
     }
 
     tests::TemporaryDirectory directory;
@@ -40,10 +40,10 @@ class Suspended : public testing::Test {
 };
 
 TEST_F(Suspended, ABenchHasNoRecord) {
-    const ChildEnd end = suspended({"bench", scene, "--threads", "1", "--record", record});
-    EXPECT_EQ(end.exit_code, 1) << end.output;
-    EXPECT_TRUE(end.output.ends_with("carom: published/scene.in/threads:1: " + std::string(reason)))
-        << end.output;
+    const ProcessEnd end = suspended({"bench", scene, "--threads", "1", "--record", record});
+    EXPECT_EQ(end.exit_code, 1) << end.error.end;
+    EXPECT_TRUE(end.error.end.ends_with("carom: published/scene.in/threads:1: " + std::string(reason)))
+        << end.error.end;
     EXPECT_FALSE(std::filesystem::exists(record));
 }
 
@@ -60,26 +60,26 @@ TEST_F(Suspended, ContendersHaveNoRecords) {
     const nlohmann::json contenders{{scene, "--threads", "1", "--record", record},
                                     {scene, "--threads", "1", "--variant", "nine", "--record", record + "2"}};
     const std::string file = directory.write("contenders.json", contenders.dump());
-    const ChildEnd end = suspended({"turns", file});
-    EXPECT_EQ(end.exit_code, 1) << end.output;
-    EXPECT_EQ(end.output, std::string("carom: turns of 2 contenders: ") + reason);
+    const ProcessEnd end = suspended({"turns", file});
+    EXPECT_EQ(end.exit_code, 1) << end.error.end;
+    EXPECT_EQ(end.output.end + end.error.end, std::string("carom: turns of 2 contenders: ") + reason);
     EXPECT_FALSE(std::filesystem::exists(record));
     EXPECT_FALSE(std::filesystem::exists(record + "2"));
 }
 
 TEST_F(Suspended, AProfileHasNoRecord) {
-    const ChildEnd end = suspended({"profile", scene, "--threads", "1", "--record", record});
-    EXPECT_EQ(end.exit_code, 1) << end.output;
-    EXPECT_EQ(end.output, std::string("carom: scene.in, variant published: ") + reason);
+    const ProcessEnd end = suspended({"profile", scene, "--threads", "1", "--record", record});
+    EXPECT_EQ(end.exit_code, 1) << end.error.end;
+    EXPECT_EQ(end.output.end + end.error.end, std::string("carom: scene.in, variant published: ") + reason);
     EXPECT_FALSE(std::filesystem::exists(record));
 }
 
 TEST_F(Suspended, ProgramsOfOthersFail) {
     const nlohmann::json one{{"command", {"sleep", "0.5"}}, {"record", record}};
     const std::string file = directory.write("processes.json", nlohmann::json::array({one}).dump());
-    const ChildEnd end = suspended({"processes", file});
-    EXPECT_EQ(end.exit_code, 1) << end.output;
-    EXPECT_EQ(end.output, std::string("carom: sleep: ") + reason);
+    const ProcessEnd end = suspended({"processes", file});
+    EXPECT_EQ(end.exit_code, 1) << end.error.end;
+    EXPECT_EQ(end.output.end + end.error.end, std::string("carom: sleep: ") + reason);
     const auto failure = nlohmann::json::parse(tests::content_of(record));
     EXPECT_EQ(failure["kind"], "failure");
     EXPECT_EQ(failure["reason"].get<std::string>() + "\n", reason);

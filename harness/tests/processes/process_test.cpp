@@ -250,6 +250,7 @@ TEST_P(ProcessKept, IfItsKeeperIsKilledNobodyTakesThatForAnEnd) {
     // The parent of the program is what keeps it.
     const ProcessEnd end = run(shell("sleep 600 & echo $! >&2; kill -9 $PPID; sleep 600"));
     EXPECT_NE(end.unknown, "");
+    EXPECT_FALSE(end.succeeded());
     for (const pid_t left : descendants_of(getpid())) {
         EXPECT_TRUE(is_gone(left)) << name_of(left);
     }
