@@ -16,13 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A hierarchy of control groups that can limit processors, at one place where it is mounted.
-struct Mount {
-    fs::path place;
-    fs::path top; ///< the group that is seen there
-    bool is_version_2 = false;
-};
-
 std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts;
     std::istringstream stream(text);
@@ -52,8 +45,10 @@ std::string unescaped(const std::string& text) {
     return result;
 }
 
-std::vector<Mount> read_mounts(const fs::path& root) {
-    std::vector<Mount> mounts;
+} // namespace
+
+std::vector<CgroupMount> cgroup_mounts(const fs::path& root) {
+    std::vector<CgroupMount> mounts;
     std::ifstream file(root / "proc/self/mountinfo");
     for (std::string line; std::getline(file, line);) {
         const std::size_t dash = line.find(" - ");
@@ -73,8 +68,7 @@ std::vector<Mount> read_mounts(const fs::path& root) {
     return mounts;
 }
 
-/// The path of this process's group in a hierarchy; empty if it is in none.
-std::optional<fs::path> own_group(const fs::path& root, bool is_version_2) {
+std::optional<fs::path> own_cgroup(const fs::path& root, bool is_version_2) {
     std::ifstream file(root / "proc/self/cgroup");
     for (std::string line; std::getline(file, line);) {
         const std::size_t first = line.find(':');
@@ -92,9 +86,11 @@ std::optional<fs::path> own_group(const fs::path& root, bool is_version_2) {
     return std::nullopt;
 }
 
+namespace {
+
 /// The groups that are seen at a mount: its top, and those from there down to this process's own. Empty if
 /// that one is not below the top.
-std::vector<fs::path> groups_at(const fs::path& root, const Mount& mount, const fs::path& own) {
+std::vector<fs::path> groups_at(const fs::path& root, const CgroupMount& mount, const fs::path& own) {
     const fs::path inside = own.lexically_relative(mount.top);
     if (inside.empty() || *inside.begin() == "..") {
         return {};
@@ -108,10 +104,10 @@ std::vector<fs::path> groups_at(const fs::path& root, const Mount& mount, const 
 
 /// The groups that limit this process in one version's hierarchy, as far as it sees them.
 std::vector<fs::path> limiting_groups(const fs::path& root, bool is_version_2) {
-    const auto own = own_group(root, is_version_2);
+    const auto own = own_cgroup(root, is_version_2);
     std::vector<fs::path> groups;
     std::vector<fs::path> tops;
-    for (const Mount& mount : read_mounts(root)) {
+    for (const CgroupMount& mount : cgroup_mounts(root)) {
         if (own && mount.is_version_2 == is_version_2) {
             const auto more = groups_at(root, mount, *own);
             groups.insert(groups.end(), more.begin(), more.end());

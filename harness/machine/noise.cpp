@@ -53,6 +53,7 @@ std::optional<CpuTime> parse_cpu_time(std::string_view line) {
     for (double ticks = 0; count < 8 && fields >> ticks; ++count) {
         time.total += ticks;
         time.stolen = ticks;
+        time.idle += count == 3 || count == 4 ? ticks : 0;
     }
     return name == "cpu" && count == 8 ? std::optional(time) : std::nullopt;
 }

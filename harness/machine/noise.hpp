@@ -26,6 +26,7 @@ Noise spread(std::vector<double> durations);
 struct CpuTime {
     double total = 0;
     double stolen = 0;
+    double idle = 0; ///< with nothing to do, or waiting for disks
 };
 
 /// From the first line of /proc/stat (man proc_stat); empty if it is no such line.

@@ -1,11 +1,11 @@
 #include "harness/processes/cgroup.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <utility>
 
 #include <fcntl.h>
@@ -15,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "harness/machine/cpu_quota.hpp"
 #include "harness/support/process_clock.hpp"
 #include "harness/support/text.hpp"
 
@@ -25,31 +26,9 @@ namespace fs = std::filesystem;
 
 /// Where the hierarchy of version 2 is mounted, alone or beside those of version 1; empty if it is not.
 std::string hierarchy() {
-    std::ifstream mounts("/proc/self/mountinfo");
-    for (std::string line; std::getline(mounts, line);) {
-        const auto separator = line.find(" - ");
-        if (separator == std::string::npos || !line.substr(separator).starts_with(" - cgroup2 ")) {
-            continue;
-        }
-        std::istringstream fields(line);
-        std::string field;
-        for (int k = 0; k < 5; ++k) {
-            fields >> field;
-        }
-        return field;
-    }
-    return "";
-}
-
-/// This process's own group, below the hierarchy's root.
-std::string own_group() {
-    std::ifstream groups("/proc/self/cgroup");
-    for (std::string line; std::getline(groups, line);) {
-        if (line.starts_with("0::")) {
-            return line.substr(3);
-        }
-    }
-    return "/";
+    const auto mounts = cgroup_mounts();
+    const auto found = std::ranges::find_if(mounts, &CgroupMount::is_version_2);
+    return found == mounts.end() ? "" : found->place.string();
 }
 
 /// What tells the processes of one name space from those of others, which have the same numbers.
@@ -119,7 +98,7 @@ std::unique_ptr<Cgroup> Cgroup::make() {
     if (root.empty()) {
         return nullptr;
     }
-    const std::string own = own_group();
+    const std::string own = own_cgroup("/", true).value_or("/").string();
     for (const std::string& folder : {root + (own == "/" ? "" : own), root}) {
         if (number == 0) {
             remove_abandoned(folder);
@@ -152,25 +131,29 @@ Cgroup::~Cgroup() {
     remove_group(path_);
 }
 
-bool Cgroup::freeze(double most_seconds) const {
-    const double begin = process_seconds();
-    if (!write_into(path_ + "/cgroup.freeze", "1")) {
-        return false;
-    }
-    while (!is_frozen(events_)) {
-        const double left = begin + most_seconds - process_seconds();
-        if (left <= 0) {
-            return false;
+bool Cgroup::stop(double most_seconds) {
+    const double until = process_seconds() + most_seconds;
+    bool is_in_time = write_into(path_ + "/cgroup.freeze", "1");
+    while (is_in_time && !is_frozen(events_)) {
+        const double left = until - process_seconds();
+        is_in_time = left > 0;
+        if (is_in_time) {
+            pollfd waiting{.fd = events_, .events = POLLPRI, .revents = 0};
+            poll(&waiting, 1, std::max(1, static_cast<int>(left * 1e3)));
         }
-        pollfd waiting{.fd = events_, .events = POLLPRI, .revents = 0};
-        poll(&waiting, 1, std::max(1, static_cast<int>(left * 1e3)));
     }
-    return true;
+    if (!is_in_time) {
+        go_on();
+    }
+    return is_in_time;
 }
 
-void Cgroup::thaw() const { write_into(path_ + "/cgroup.freeze", "0"); }
+void Cgroup::go_on() { write_into(path_ + "/cgroup.freeze", "0"); }
 
-void Cgroup::kill() const { write_into(path_ + "/cgroup.kill", "1"); }
+void Cgroup::kill() const {
+    write_into(path_ + "/cgroup.kill", "1");
+    write_into(path_ + "/cgroup.freeze", "0");
+}
 
 std::optional<UserAndSystem> Cgroup::cpu_time() const {
     std::ifstream file(path_ + "/cpu.stat");

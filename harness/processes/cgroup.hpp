@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "harness/processes/tree.hpp"
+
 namespace carom {
 
 /// CPU time in seconds.
@@ -16,14 +18,14 @@ struct UserAndSystem {
 /// A control group (cgroups v2) of its own for a program and all that it starts, whatever group or session
 /// that belongs to: it can be stopped, also in the middle of a vfork, and ended as one (the Linux kernel's
 /// Documentation/admin-guide/cgroup-v2.rst: cgroup.freeze, cgroup.kill).
-class Cgroup {
+class Cgroup : public Tree {
   public:
     /// A new and empty one; none where there is no such hierarchy, or no right to make a group in it: it
     /// takes root, or a folder that was delegated, as systemd does to users.
     static std::unique_ptr<Cgroup> make();
 
     /// Ends all that is left in it.
-    ~Cgroup();
+    ~Cgroup() override;
     Cgroup(const Cgroup&) = delete;
     Cgroup& operator=(const Cgroup&) = delete;
 
@@ -32,10 +34,11 @@ class Cgroup {
 
     const std::string& path() const { return path_; }
 
-    /// Whether all of it stands still within so many seconds; if not, it may or may not go on.
-    bool freeze(double most_seconds) const;
-    void thaw() const;
-    void kill() const;
+    bool stop(double most_seconds) override;
+    void go_on() override;
+    void kill() const override;
+    const Cgroup* group() const override { return this; }
+    std::string name() const override { return "cgroup"; }
 
     /// Of all that was ever in it, also of what nobody waited for.
     std::optional<UserAndSystem> cpu_time() const;

@@ -1,9 +1,8 @@
 #include "harness/processes/descendants.hpp"
 
 #include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
+#include <sstream>
 #include <string_view>
 
 #include <dirent.h>
@@ -15,14 +14,11 @@
 namespace carom {
 namespace {
 
-/// The beginning of a file of /proc, which is short; empty if the process is gone.
-std::string beginning_of(const std::string& path) {
+/// What a file of /proc holds; empty if the process is gone.
+std::string text_of(const std::string& path) {
     std::array<char, 4096> buffer;
-    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) {
-        return "";
-    }
     std::string text;
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
     for (ssize_t count = 0; (count = read(file, buffer.data(), buffer.size())) > 0;) {
         text.append(buffer.data(), static_cast<std::size_t>(count));
     }
@@ -32,74 +28,72 @@ std::string beginning_of(const std::string& path) {
 
 std::string folder_of(pid_t process) { return "/proc/" + std::to_string(process); }
 
-/// What follows a process's name in its `stat`, which may hold any letters itself: state, parent ...
+/// What follows a process's name in its `stat`, which may hold any letters itself: state, parent ...; empty
+/// if the process is gone.
 std::string after_name(pid_t process) {
-    const std::string stat = beginning_of(folder_of(process) + "/stat");
+    const std::string stat = text_of(folder_of(process) + "/stat");
     const auto end = stat.rfind(')');
     return end == std::string::npos || end + 2 > stat.size() ? "" : stat.substr(end + 2);
 }
 
-bool has_ended(pid_t process) {
+/// Whether the letter of a process's state is one of these, or the process is gone.
+bool is_gone_or(std::string_view states, pid_t process) {
     const std::string state = after_name(process);
-    return state.empty() || state.front() == 'Z' || state.front() == 'X';
+    return state.empty() || states.find(state.front()) != std::string_view::npos;
 }
 
-std::vector<std::string> numbers_in(const std::string& folder) {
-    std::vector<std::string> names;
+/// Appends the numbers that stand in a row, each with a blank behind it.
+void append_numbers(std::string_view text, std::vector<pid_t>& numbers) {
+    for (std::size_t end = 0; (end = text.find(' ')) != std::string_view::npos; text.remove_prefix(end + 1)) {
+        numbers.push_back(parse_number<pid_t>(text.substr(0, end)).value_or(0));
+    }
+}
+
+/// What the names of a folder's entries are numbers of; none if the folder is gone.
+std::vector<pid_t> numbers_in(const std::string& folder) {
+    std::vector<pid_t> numbers;
     DIR* const listing = opendir(folder.c_str());
     if (listing == nullptr) {
-        return names;
+        return numbers;
     }
     while (const dirent* const entry = readdir(listing)) {
-        if (entry->d_name[0] >= '0' && entry->d_name[0] <= '9') {
-            names.emplace_back(entry->d_name);
+        if (const auto number = parse_number<pid_t>(entry->d_name)) {
+            numbers.push_back(*number);
         }
     }
     closedir(listing);
-    return names;
-}
-
-void append_numbers(const std::string& text, std::vector<pid_t>& numbers) {
-    const char* place = text.c_str();
-    for (char* end = nullptr; *place != '\0'; place = end) {
-        const long number = std::strtol(place, &end, 10);
-        if (end == place) {
-            return;
-        }
-        numbers.push_back(static_cast<pid_t>(number));
-    }
+    return numbers;
 }
 
 /// Where the kernel tells the children of each thread (CONFIG_PROC_CHILDREN).
 bool tells_children() {
-    static const bool tells =
-        access((folder_of(getpid()) + "/task/" + std::to_string(getpid()) + "/children").c_str(), R_OK) == 0;
+    static const bool tells = access("/proc/thread-self/children", R_OK) == 0;
     return tells;
 }
 
 std::vector<pid_t> children_of(pid_t process) {
     std::vector<pid_t> children;
-    const std::string threads = folder_of(process) + "/task";
-    for (const std::string& thread : numbers_in(threads)) {
-        append_numbers(beginning_of(threads + "/" + thread + "/children"), children);
+    const std::string threads = folder_of(process) + "/task/";
+    for (const pid_t thread : numbers_in(threads)) {
+        append_numbers(text_of(threads + std::to_string(thread) + "/children"), children);
     }
     return children;
 }
 
 std::multimap<pid_t, pid_t> all_by_parent() {
     std::multimap<pid_t, pid_t> by_parent;
-    for (const std::string& name : numbers_in("/proc")) {
-        const auto process = static_cast<pid_t>(std::atol(name.c_str()));
-        const std::string rest = after_name(process);
-        if (rest.size() > 2) {
-            by_parent.emplace(static_cast<pid_t>(std::atol(rest.c_str() + 2)), process);
+    for (const pid_t process : numbers_in("/proc")) {
+        std::istringstream rest(after_name(process));
+        char state = 0;
+        pid_t parent = 0;
+        if (rest >> state >> parent) {
+            by_parent.emplace(parent, process);
         }
     }
     return by_parent;
 }
 
 } // namespace
-
 std::vector<pid_t> descendants_of(pid_t root) {
     std::vector<pid_t> found;
     const auto by_parent = tells_children() ? std::multimap<pid_t, pid_t>() : all_by_parent();
@@ -114,7 +108,7 @@ std::vector<pid_t> descendants_of(pid_t root) {
         }
         for (const pid_t child : children) {
             open_ends.push_back(child);
-            if (!has_ended(child)) {
+            if (!is_gone_or("ZX", child)) {
                 found.push_back(child);
             }
         }
@@ -122,16 +116,11 @@ std::vector<pid_t> descendants_of(pid_t root) {
     return found;
 }
 
-bool stands_still(pid_t process) {
-    const std::string state = after_name(process);
-    return state.empty() || std::string_view("TtZX").find(state.front()) != std::string_view::npos;
-}
+bool stands_still(pid_t process) { return is_gone_or("TtZX", process); }
 
 std::string name_of(pid_t process) {
-    std::string name = beginning_of(folder_of(process) + "/comm");
-    while (!name.empty() && name.back() == '\n') {
-        name.pop_back();
-    }
+    const std::string text = text_of(folder_of(process) + "/comm");
+    const std::string name = text.substr(0, text.find('\n'));
     return name.empty() ? number_text(process) : name;
 }
 

@@ -32,13 +32,12 @@ std::set<pid_t>& keepers() {
     return all;
 }
 
-std::set<pid_t> as_set(const std::vector<pid_t>& processes) { return {processes.begin(), processes.end()}; }
-
 /// The descendants of this process that no keeper has.
 std::vector<pid_t> orphans() {
     std::set<pid_t> kept = keepers();
     for (const pid_t keeper : keepers()) {
-        kept.merge(as_set(descendants_of(keeper)));
+        const std::vector<pid_t> its = descendants_of(keeper);
+        kept.insert(its.begin(), its.end());
     }
     std::vector<pid_t> found = descendants_of(getpid());
     std::erase_if(found, [&kept](pid_t one) { return kept.contains(one); });

@@ -1,5 +1,6 @@
 #include "harness/processes/kept_program.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -97,31 +98,20 @@ void become(const Prepared& prepared, Beginning& beginning) {
     execve(prepared.program.c_str(), prepared.words.data(), prepared.environment.data());
 }
 
-/// A pipe that the program does not inherit, but for what is put in place of its standard streams. False if
-/// none can be made.
-bool make_pipe(int& read_end, int& write_end) {
-    std::array<int, 2> ends{};
-    if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-        return false;
-    }
-    read_end = ends[0];
-    write_end = ends[1];
-    return true;
-}
-
 } // namespace
 
 pid_t fork_program(const ProcessCommand& command, int entrance, Beginning& beginning, ProgramPipes& pipes) {
     constexpr int room = 1 << 20; // that a program that prints in bursts need not wait
-    int go = -1;
-    int begun = -1;
-    int output = -1;
-    int error = -1;
+    std::array<std::array<int, 2>, 4> made{};
+    // The program inherits none of them, but for what is put in place of its standard streams.
+    const bool all_made =
+        std::ranges::all_of(made, [](auto& pipe) { return pipe2(pipe.data(), O_CLOEXEC) == 0; });
     const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
-    if (nothing < 0 || !make_pipe(go, pipes.go) || !make_pipe(pipes.begun, begun) ||
-        !make_pipe(pipes.output, output) || !make_pipe(pipes.error, error)) {
+    if (!all_made || nothing < 0) {
         return -1;
     }
+    const auto [go, begun, output, error] = made;
+    pipes = {.go = go[1], .begun = begun[0], .output = output[0], .error = error[0]};
     fcntl(pipes.output, F_SETPIPE_SZ, room);
     for (const int read_end : {pipes.output, pipes.error}) {
         fcntl(read_end, F_SETFL, O_NONBLOCK);
@@ -131,8 +121,8 @@ pid_t fork_program(const ProcessCommand& command, int entrance, Beginning& begin
                             .environment = pointers_to(command.environment),
                             .folder = command.folder.c_str(),
                             .entrance = entrance,
-                            .streams = {nothing, output, error},
-                            .go = go,
+                            .streams = {nothing, output[1], error[1]},
+                            .go = go[0],
                             .keeper = getpid()};
     const pid_t child = fork();
     if (child == 0) {
@@ -140,7 +130,7 @@ pid_t fork_program(const ProcessCommand& command, int entrance, Beginning& begin
         beginning.error = errno != 0 ? errno : ECHILD;
         _exit(127);
     }
-    for (const int its_own : {nothing, go, begun, output, error}) {
+    for (const int its_own : {nothing, go[0], begun[1], output[1], error[1]}) {
         close(its_own);
     }
     return child;

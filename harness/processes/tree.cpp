@@ -2,40 +2,17 @@
 
 #include <algorithm>
 #include <csignal>
-#include <utility>
 #include <vector>
 
 #include <unistd.h>
 
+#include "harness/processes/cgroup.hpp"
 #include "harness/processes/descendants.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/process_clock.hpp"
 
 namespace carom {
 namespace {
-
-class CgroupTree : public Tree {
-  public:
-    explicit CgroupTree(std::unique_ptr<Cgroup> group) : group_(std::move(group)) {}
-
-    bool stop(double most_seconds) override {
-        const bool stopped = group_->freeze(most_seconds);
-        if (!stopped) {
-            group_->thaw();
-        }
-        return stopped;
-    }
-    void go_on() override { group_->thaw(); }
-    void kill() override {
-        group_->kill();
-        group_->thaw();
-    }
-    const Cgroup* group() const override { return group_.get(); }
-    std::string name() const override { return "cgroup"; }
-
-  private:
-    std::unique_ptr<Cgroup> group_;
-};
 
 class SignalledTree : public Tree {
   public:
@@ -66,7 +43,7 @@ class SignalledTree : public Tree {
         stopped_.clear();
     }
 
-    void kill() override { send(descendants_of(keeper_), SIGKILL); }
+    void kill() const override { send(descendants_of(keeper_), SIGKILL); }
 
     std::string name() const override { return "subreaper"; }
 
@@ -86,7 +63,7 @@ class SignalledTree : public Tree {
 std::unique_ptr<Tree> make_tree(KeptBy kept_by) {
     if (kept_by != KeptBy::subreaper) {
         if (auto group = Cgroup::make()) {
-            return std::make_unique<CgroupTree>(std::move(group));
+            return group;
         }
         if (kept_by == KeptBy::cgroup) {
             throw InputError("kept_by: found cgroup, expected subreaper: no group of cgroups v2 can be "

@@ -5,9 +5,9 @@
 
 #include <sys/types.h>
 
-#include "harness/processes/cgroup.hpp"
-
 namespace carom {
+
+class Cgroup;
 
 /// What is to keep together all that a program starts.
 enum class KeptBy {
@@ -29,7 +29,7 @@ class Tree {
     virtual void go_on() = 0;
 
     /// Ends all of it that can be ended at once.
-    virtual void kill() = 0;
+    virtual void kill() const = 0;
 
     /// The group that a new process is to enter; none where there is no group.
     virtual const Cgroup* group() const { return nullptr; }

@@ -25,12 +25,8 @@ std::vector<double> lengths_of_slices(const std::vector<Sliced>& all, double sli
 /// Runs all of them to their ends in turn: in each round, in an order that is drawn anew, each of those that
 /// have not ended runs for a slice of time, while the others stand still.
 ///
-/// The slices of the one that takes longest are `slice_seconds`, those of the others shorter in proportion,
-/// so that all end together: what ran alone would be compared with another time of the machine. Where the
-/// shortest would have less than two milliseconds of each round there are fewer rounds, with longer slices.
-/// Where nobody knows how long one takes all have slices alike. The last one left is not stopped any more.
-///
-/// What disturbs the machine for longer than a round disturbs all alike (as in turns.hpp). A process notices
+/// Slices are as long as `lengths_of_slices` has them; the last one left is not stopped any more. What
+/// disturbs the machine for longer than a round disturbs all alike (as in turns.hpp). A process notices
 /// nothing but that the clock on the wall runs faster than its own work.
 void take_slices(std::vector<Sliced>& all, double slice_seconds, std::uint64_t seed);
 

@@ -1,14 +1,12 @@
 #include "harness/side_by_side/stopping.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <fstream>
 #include <functional>
 #include <string>
-#include <thread>
 
 #include <unistd.h>
 
+#include "harness/machine/noise.hpp"
 #include "harness/support/format.hpp"
 
 namespace carom {
@@ -41,15 +39,8 @@ bool apart(const std::vector<ProcessEnd>& ones, const std::vector<ProcessEnd>& o
 } // namespace
 
 double idle_seconds_of_machine() {
-    std::ifstream file("/proc/stat");
-    std::string name;
-    double user = 0;
-    double nice = 0;
-    double system = 0;
-    double idle = 0;
-    double waiting_for_disks = 0;
-    file >> name >> user >> nice >> system >> idle >> waiting_for_disks;
-    return file ? (idle + waiting_for_disks) / static_cast<double>(sysconf(_SC_CLK_TCK)) : 0;
+    const auto cpu = read_cpu_time();
+    return cpu ? cpu->idle / static_cast<double>(sysconf(_SC_CLK_TCK)) : 0;
 }
 
 std::string why_idle(const ProcessEnd& undisturbed, double idle_processors) {
@@ -83,7 +74,5 @@ std::string hint_of_slices(const ProcessEnd& end) {
     }
     return " (it was stopped now and then; if it minds that, turns = false gives it a stretch of its own)";
 }
-
-void pause(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
 } // namespace carom

@@ -33,7 +33,4 @@ std::string how_they_disagree(const std::vector<ProcessEnd>& undisturbed,
 /// What to add to the reason of a failure of a program that was stopped now and then; empty if it was not.
 std::string hint_of_slices(const ProcessEnd& end);
 
-/// Waits.
-void pause(double seconds);
-
 } // namespace carom

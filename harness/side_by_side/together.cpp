@@ -1,11 +1,13 @@
 #include "harness/side_by_side/together.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <deque>
 #include <functional>
 #include <numeric>
 #include <random>
+#include <thread>
 #include <utility>
 
 #include "harness/side_by_side/contender_run.hpp"
@@ -239,7 +241,8 @@ class Contest {
         ContenderRun one(contenders_[k]);
         while (one.can_run() && !one.process().has_ended()) {
             one.process().advance(slice_seconds);
-            pause(one.process().has_ended() ? 0 : how_.slice_seconds);
+            std::this_thread::sleep_for(
+                std::chrono::duration<double>(one.process().has_ended() ? 0 : how_.slice_seconds));
         }
         const std::string failure = one.conclude();
         if (!failure.empty()) {
