@@ -31,7 +31,7 @@ struct LimitsOptions {
 };
 
 void limits(const LimitsOptions& options) {
-    const auto tags = tags_json(options.tags);
+    tags_json(options.tags);
     require_writable(options.record);
     const std::int64_t most_bytes =
         options.memory_mebibytes ? *options.memory_mebibytes * mebibyte : read_machine().memory_bytes / 4;
@@ -41,12 +41,9 @@ void limits(const LimitsOptions& options) {
     suspensions.require_none("limits");
     std::cout << (options.json ? json_text(limits_json(found), 2) + "\n" : limits_text(found));
     if (!options.record.empty()) {
-        write_record(options.record, {{"schema_version", 1},
-                                      {"kind", "limits"},
-                                      {"recorded_at", utc_now()},
-                                      {"tags", tags},
-                                      {"limits", limits_json(found)},
-                                      {"provenance", provenance_json(options.threads)}});
+        write_record(options.record, record_of("limits", options.tags,
+                                               {{"limits", limits_json(found)},
+                                                {"provenance", provenance_json(options.threads)}}));
     }
 }
 

@@ -31,18 +31,16 @@ struct OutsideOptions {
 nlohmann::ordered_json outside_json(const OutsideOptions& options, const LoadedScene& loaded,
                                     const ChipmunkRun& run) {
     const auto drift = energy_drift(loaded.scene, run.discs);
-    return {{"schema_version", 1},
-            {"kind", "outside"},
-            {"recorded_at", utc_now()},
-            {"tags", tags_json(options.tags)},
-            {"engine", {{"name", "Chipmunk"}, {"version", run.version}, {"iterations", options.iterations}}},
-            {"axes", {{"threads", 1}, {"substeps", options.substeps}}},
-            {"scene", scene_json(loaded.scene, loaded.name, loaded.sha256)},
-            {"repetitions", {{{"steps_seconds", run.steps_seconds}, {"cpu_seconds", run.cpu_seconds}}}},
-            {"errors",
-             {{"energy_drift", number_or_null(drift)},
-              {"discs_outside", discs_outside(loaded.scene, run.discs)}}},
-            {"provenance", provenance_json(1)}};
+    return record_of(
+        "outside", options.tags,
+        {{"engine", {{"name", "Chipmunk"}, {"version", run.version}, {"iterations", options.iterations}}},
+         {"axes", {{"threads", 1}, {"substeps", options.substeps}}},
+         {"scene", scene_json(loaded.scene, loaded.name, loaded.sha256)},
+         {"repetitions", {{{"steps_seconds", run.steps_seconds}, {"cpu_seconds", run.cpu_seconds}}}},
+         {"errors",
+          {{"energy_drift", number_or_null(drift)},
+           {"discs_outside", discs_outside(loaded.scene, run.discs)}}},
+         {"provenance", provenance_json(1)}});
 }
 
 void outside(const OutsideOptions& options) {

@@ -1,10 +1,14 @@
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/command_line/described_process.hpp"
@@ -31,29 +35,6 @@ struct ProcessesOptions {
     Together how;
 };
 
-/// One of them, with what is known of it before it runs and what it says of itself when it has.
-struct AskedProcess {
-    DescribedProcess described;
-    Sources sources;
-    std::vector<StatedTime> stated;
-    int exit_code = 0; ///< of the last failure
-
-    explicit AskedProcess(DescribedProcess its)
-        : described(std::move(its)), sources(described.sources, described.written) {}
-};
-
-int exit_code_of(const ProcessEnd& end) {
-    constexpr int out_of_time = 124;
-    constexpr int cannot_be_run = 127;
-    if (end.out_of_time) {
-        return out_of_time;
-    }
-    if (end.signal != 0) {
-        return -end.signal;
-    }
-    return end.not_started.empty() ? std::max(end.exit_code, 1) : cannot_be_run;
-}
-
 std::optional<StatedTime> stated_time(const DescribedProcess& one, const ProcessEnd& end) {
     if (!one.benchmark.empty()) {
         const std::string json = read_file(one.output);
@@ -72,9 +53,9 @@ std::optional<StatedTime> stated_time(const DescribedProcess& one, const Process
 }
 
 /// Takes the time that a run says, if it says one.
-std::string take(AskedProcess& one, const ProcessEnd& end) {
+std::string take(ProcessMeasurement& one, const ProcessEnd& end) {
     try {
-        if (auto stated = stated_time(one.described, end)) {
+        if (auto stated = stated_time(one.its, end)) {
             one.stated.push_back(*std::move(stated));
         }
     } catch (const InputError& error) {
@@ -84,61 +65,43 @@ std::string take(AskedProcess& one, const ProcessEnd& end) {
     return "";
 }
 
-ProgramContender contender_of(AskedProcess& one) {
-    ProgramContender contender = one.described.contender;
+ProgramContender contender_of(ProcessMeasurement& one) {
+    ProgramContender contender = one.its.contender;
     contender.failure = [&one](const ProcessEnd& end) {
-        std::string why = why_failed(one.described.contender.command, end, one.described.exit_codes);
-        one.exit_code = exit_code_of(end);
-        return why;
+        one.exit_code = exit_code_of_failure(end);
+        return why_failed(one.its.contender.command, end, one.its.exit_codes);
     };
     contender.take = [&one](const ProcessEnd& end) { return take(one, end); };
     return contender;
 }
 
-std::optional<ProcessTurns> turns_of(const Measured& measured, int contenders, std::uint64_t seed) {
-    const bool took_turns = contenders > 1 && (measured.sliced || measured.runs.size() > 1);
-    if (!took_turns) {
-        return std::nullopt;
+/// Times of unlike versions of a library are none of one kind: none of them counts.
+void refuse_unlike_times(std::deque<ProcessMeasurement>& all) {
+    for (auto one = all.begin(); one != all.end(); ++one) {
+        for (auto other = one + 1; other != all.end(); ++other) {
+            if (one->stated.empty() || other->stated.empty()) {
+                continue;
+            }
+            if (const auto why = unlike_times(one->stated.back(), other->stated.back())) {
+                one->measured.failure = other->measured.failure = *why;
+            }
+        }
     }
-    ProcessTurns turns{.contenders = contenders, .seed = seed, .seconds = {}};
-    for (const ProcessEnd& run : measured.runs) {
-        turns.seconds.insert(turns.seconds.end(), run.seconds.begin(), run.seconds.end());
-    }
-    return turns;
 }
 
-void write_record_of(const AskedProcess& one, const Measured& measured,
-                     const std::optional<ProcessTurns>& turns) {
-    const DescribedProcess& described = one.described;
-    Json scene = nullptr;
-    if (!described.scene.empty()) {
-        const LoadedScene loaded = load_scene(described.scene);
-        scene = scene_json(loaded.scene, loaded.name, loaded.sha256);
+std::deque<ProcessMeasurement> measure(const ProcessesOptions& options) {
+    std::deque<ProcessMeasurement> all;
+    for (DescribedProcess& one : read_processes(options.file)) {
+        all.emplace_back(std::move(one));
     }
-    write_record(described.record, process_json({.command = described.contender.command,
-                                                 .measured = measured,
-                                                 .stated = one.stated,
-                                                 .turns = turns,
-                                                 .axes = described.axes,
-                                                 .scene = scene,
-                                                 .sources = one.sources,
-                                                 .build = described.build,
-                                                 .checked = described.checked,
-                                                 .tags = described.tags,
-                                                 .threads = described.threads,
-                                                 .warm_ups = described.contender.warm_ups}));
-}
-
-/// In the place of the record of a process that failed.
-void write_failure(const AskedProcess& one, const std::string& reason) {
-    write_record(one.described.record, {{"schema_version", 1},
-                                        {"kind", "failure"},
-                                        {"tags", tags_json(one.described.tags)},
-                                        {"axes", one.described.axes},
-                                        {"command", one.described.contender.command.words},
-                                        {"exit_code", one.exit_code == 0 ? 1 : one.exit_code},
-                                        {"reason", reason},
-                                        {"recorded_at", utc_now()}});
+    std::vector<ProgramContender> contenders;
+    std::ranges::transform(all, std::back_inserter(contenders), contender_of);
+    std::vector<Measured> measured = measure_together(contenders, options.how);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        all[k].measured = std::move(measured[k]);
+    }
+    refuse_unlike_times(all);
+    return all;
 }
 
 /// Says what was not as one may think, of a program that was measured.
@@ -160,56 +123,38 @@ void tell(const std::string& name, const Measured& measured) {
     }
 }
 
+Json scene_of(const std::string& path) {
+    if (path.empty()) {
+        return nullptr;
+    }
+    const LoadedScene loaded = load_scene(path);
+    return scene_json(loaded.scene, loaded.name, loaded.sha256);
+}
+
 /// Leaves the record of a process that ended, or of its failure; returns why it failed, or nothing.
-std::string keep(const AskedProcess& one, const Measured& measured,
-                 const std::optional<ProcessTurns>& turns) {
-    std::string reason = measured.failure;
+std::string keep(const ProcessMeasurement& one, int contenders, std::uint64_t seed) {
+    std::string reason = one.measured.failure;
     if (reason.empty()) {
         try {
-            write_record_of(one, measured, turns);
-            tell(one.described.contender.command.words.front(), measured);
+            write_record(one.its.record, process_json(one, scene_of(one.its.scene), contenders, seed));
+            tell(one.its.contender.command.words.front(), one.measured);
         } catch (const InputError& error) {
             reason = error.what();
         }
     }
     if (!reason.empty()) {
-        write_failure(one, reason);
+        write_record(one.its.record, failure_json(one, reason));
     }
     return reason;
 }
 
-/// Times of unlike versions of a library are none of one kind: none of them counts.
-void refuse_unlike_times(const std::vector<std::unique_ptr<AskedProcess>>& all,
-                         std::vector<Measured>& measured) {
-    for (std::size_t one = 0; one < all.size(); ++one) {
-        for (std::size_t other = one + 1; other < all.size(); ++other) {
-            if (all[one]->stated.empty() || all[other]->stated.empty()) {
-                continue;
-            }
-            if (const auto why = unlike_times(all[one]->stated.back(), all[other]->stated.back())) {
-                measured[one].failure = measured[other].failure = *why;
-            }
-        }
-    }
-}
-
 void processes(const ProcessesOptions& options) {
-    std::vector<std::unique_ptr<AskedProcess>> all;
-    for (DescribedProcess& one : read_processes(options.file)) {
-        all.push_back(std::make_unique<AskedProcess>(std::move(one)));
-    }
-    std::vector<ProgramContender> contenders;
-    for (const auto& one : all) {
-        contenders.push_back(contender_of(*one));
-    }
-    std::vector<Measured> measured = measure_together(contenders, options.how);
-    refuse_unlike_times(all, measured);
+    const std::deque<ProcessMeasurement> all = measure(options);
     std::string first_reason;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        const auto turns = turns_of(measured[k], static_cast<int>(all.size()), options.how.seed);
-        const std::string reason = keep(*all[k], measured[k], turns);
+    for (const ProcessMeasurement& one : all) {
+        const std::string reason = keep(one, static_cast<int>(all.size()), options.how.seed);
         if (first_reason.empty() && !reason.empty()) {
-            first_reason = all[k]->described.contender.command.words.front() + ": " + reason;
+            first_reason = one.its.contender.command.words.front() + ": " + reason;
         }
     }
     if (!first_reason.empty()) {

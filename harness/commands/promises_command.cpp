@@ -66,19 +66,16 @@ nlohmann::ordered_json asked_json(const Asked& asked) {
     return json;
 }
 
-nlohmann::ordered_json record_of(const PromisesOptions& options, const LoadedScene& loaded,
-                                 const std::vector<Asked>& asked) {
+nlohmann::ordered_json promises_json(const PromisesOptions& options, const LoadedScene& loaded,
+                                     const std::vector<Asked>& asked) {
     auto promises = nlohmann::ordered_json::array();
     std::ranges::transform(asked, std::back_inserter(promises), asked_json);
-    return {{"schema_version", 1},
-            {"kind", "promises"},
-            {"recorded_at", utc_now()},
-            {"tags", tags_json(options.tags)},
-            {"axes", {{"threads", options.tuning.threads}}},
-            {"scene", scene_json(loaded.scene, loaded.name, loaded.sha256)},
-            {"promises", promises},
-            {"process_seconds", process_seconds()},
-            {"provenance", provenance_json(options.tuning.threads)}};
+    return record_of("promises", options.tags,
+                     {{"axes", {{"threads", options.tuning.threads}}},
+                      {"scene", scene_json(loaded.scene, loaded.name, loaded.sha256)},
+                      {"promises", promises},
+                      {"process_seconds", process_seconds()},
+                      {"provenance", provenance_json(options.tuning.threads)}});
 }
 
 void print_asked(const Asked& asked) {
@@ -131,7 +128,7 @@ void keep_promises(const PromisesOptions& options) {
     std::cout << format("  kept %d of %d\n", static_cast<int>(std::ranges::count_if(asked, &Asked::is_kept)),
                         static_cast<int>(asked.size()));
     if (!options.record.empty()) {
-        write_record(options.record, record_of(options, loaded, asked));
+        write_record(options.record, promises_json(options, loaded, asked));
     }
 }
 

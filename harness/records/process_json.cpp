@@ -1,6 +1,8 @@
 #include "harness/records/process_json.hpp"
 
+#include <functional>
 #include <map>
+#include <optional>
 #include <string_view>
 
 #include "harness/machine/provenance.hpp"
@@ -26,21 +28,26 @@ Json openmp_variables(const std::vector<std::string>& environment) {
 }
 
 Json provenance_of(const ProcessMeasurement& measurement) {
-    Json provenance = provenance_json(measurement.threads);
-    provenance.merge_patch(measurement.build);
-    provenance["openmp"]["environment"] = openmp_variables(measurement.command.environment);
+    Json provenance = provenance_json(measurement.its.threads);
+    provenance.merge_patch(measurement.its.build);
+    provenance["openmp"]["environment"] = openmp_variables(measurement.its.contender.command.environment);
     provenance["binary_sha256"] = measurement.sources.hash();
     return provenance;
 }
 
-Json turns_json(const ProcessMeasurement& measurement) {
-    if (!measurement.turns) {
+/// Null if no other took turns with it.
+Json turns_json(const Measured& measured, int contenders, std::uint64_t seed) {
+    if (contenders == 1 || (!measured.sliced && measured.runs.size() == 1)) {
         return nullptr;
     }
-    return {{"contenders", measurement.turns->contenders},
-            {"seed", measurement.turns->seed},
-            {"seconds", measurement.turns->seconds},
-            {"seconds_alone", measurement.measured.seconds_alone}};
+    std::vector<double> seconds;
+    for (const ProcessEnd& run : measured.runs) {
+        seconds.insert(seconds.end(), run.seconds.begin(), run.seconds.end());
+    }
+    return {{"contenders", contenders},
+            {"seed", seed},
+            {"seconds", seconds},
+            {"seconds_alone", measured.seconds_alone}};
 }
 
 /// The mean of each over the runs; null where one of them has no finite number.
@@ -73,58 +80,66 @@ Json repetitions_json(const ProcessMeasurement& measurement) {
 }
 
 /// Of the last run; what adds up is that of all runs.
-Json ends_json(const ProcessMeasurement& measurement) {
-    const std::vector<ProcessEnd>& runs = measurement.measured.runs;
-    const ProcessEnd& last = runs.back();
-    const auto sum = [&runs](auto value) {
+Json ends_json(const Measured& measured) {
+    const ProcessEnd& last = measured.runs.back();
+    const auto sum = [&measured](auto value) {
         double all = 0;
-        for (const ProcessEnd& run : runs) {
-            all += value(run);
+        for (const ProcessEnd& run : measured.runs) {
+            all += std::invoke(value, run);
         }
         return all;
     };
     return {{"exit_code", last.exit_code},
-            {"wall_seconds", sum([](const ProcessEnd& end) { return end.wall_seconds(); })},
-            {"user_seconds", sum([](const ProcessEnd& end) { return end.user_seconds; })},
-            {"system_seconds", sum([](const ProcessEnd& end) { return end.system_seconds; })},
-            {"runs", runs.size()},
+            {"wall_seconds", sum(&ProcessEnd::wall_seconds)},
+            {"user_seconds", sum(&ProcessEnd::user_seconds)},
+            {"system_seconds", sum(&ProcessEnd::system_seconds)},
+            {"runs", measured.runs.size()},
             {"peak_memory_bytes", or_null(last.peak_memory_bytes)},
             {"peak_memory_reason", last.memory_of},
             {"output_bytes", last.output.bytes + last.error.bytes},
             {"tree", last.kept_by},
             {"ran_on", last.ran_on},
-            {"undisturbed", text_or_null(measurement.measured.undisturbed)}};
+            {"undisturbed", text_or_null(measured.undisturbed)}};
 }
 
 } // namespace
 
-Json process_json(const ProcessMeasurement& measurement) {
-    Json process{{"command", measurement.command.words},
-                 {"folder", measurement.command.folder},
+Json process_json(const ProcessMeasurement& measurement, const Json& scene, int contenders,
+                  std::uint64_t seed) {
+    const DescribedProcess& its = measurement.its;
+    const bool says = !measurement.stated.empty();
+    Json process{{"command", its.contender.command.words},
+                 {"folder", its.contender.command.folder},
                  {"sources", measurement.sources.json()},
                  {"changed", measurement.sources.changed()},
-                 {"time_from", measurement.stated.empty() ? "outside" : "the program"},
+                 {"time_from", says ? "the program" : "outside"},
                  {"counters", counters_json(measurement.stated)},
-                 {"library_version", measurement.stated.empty()
-                                         ? Json(nullptr)
-                                         : or_null(measurement.stated.back().library_version)}};
-    process.update(ends_json(measurement));
+                 {"library_version", says ? or_null(measurement.stated.back().library_version) : nullptr}};
+    process.update(ends_json(measurement.measured));
+    return record_of("process", its.tags,
+                     {{"axes", its.axes},
+                      {"scene", scene},
+                      {"warm_ups", its.contender.warm_ups},
+                      {"repetitions", repetitions_json(measurement)},
+                      {"process_seconds", process["wall_seconds"]},
+                      {"process", process},
+                      {"turns", turns_json(measurement.measured, contenders, seed)},
+                      {"check",
+                       {{"verdict", its.checked.empty() ? "unchecked" : "passed"},
+                        {"scope", its.checked.empty() ? "nothing" : its.checked},
+                        {"reason", nullptr}}},
+                      {"provenance", provenance_of(measurement)}});
+}
+
+Json failure_json(const ProcessMeasurement& measurement, const std::string& reason) {
     return {{"schema_version", 1},
-            {"kind", "process"},
-            {"recorded_at", utc_now()},
-            {"tags", tags_json(measurement.tags)},
-            {"axes", measurement.axes},
-            {"scene", measurement.scene},
-            {"warm_ups", measurement.warm_ups},
-            {"repetitions", repetitions_json(measurement)},
-            {"process_seconds", process["wall_seconds"]},
-            {"process", process},
-            {"turns", turns_json(measurement)},
-            {"check",
-             {{"verdict", measurement.checked.empty() ? "unchecked" : "passed"},
-              {"scope", measurement.checked.empty() ? Json("nothing") : Json(measurement.checked)},
-              {"reason", nullptr}}},
-            {"provenance", provenance_of(measurement)}};
+            {"kind", "failure"},
+            {"tags", tags_json(measurement.its.tags)},
+            {"axes", measurement.its.axes},
+            {"command", measurement.its.contender.command.words},
+            {"exit_code", measurement.exit_code},
+            {"reason", reason},
+            {"recorded_at", utc_now()}};
 }
 
 } // namespace carom

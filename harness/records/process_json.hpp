@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -13,31 +14,46 @@
 
 namespace carom {
 
-/// How a process was timed that took turns with others.
-struct ProcessTurns {
-    int contenders = 0;          ///< that took turns, this one among them
-    std::uint64_t seed = 0;      ///< of the order of the turns
-    std::vector<double> seconds; ///< wall time of each turn
-};
-
-/// What of a whole process that was measured goes into its record (record.schema.json).
-struct ProcessMeasurement {
-    const ProcessCommand& command;
-    const Measured& measured;          ///< with at least one run
-    std::vector<StatedTime> stated;    ///< of each run; empty if the time from outside is the one that counts
-    std::optional<ProcessTurns> turns; ///< empty if no other took turns with it
-    nlohmann::ordered_json axes;       ///< what was chosen, by name
-    nlohmann::ordered_json scene;      ///< as scene_json, or null
-    const Sources& sources;            ///< the files that make up the program
-    nlohmann::ordered_json build;      ///< what is known of how it was built, as in a record's provenance
-    std::string checked;               ///< how its result was checked beforehand; empty if it was not
-    std::vector<std::string> tags;     ///< KEY=VALUE
+/// A program that is to be measured, as the file of `carom processes` describes it.
+struct DescribedProcess {
+    ProgramContender contender;                 ///< without what its ends are judged by
+    std::string record;                         ///< the file for its record
+    std::vector<std::string> tags;              ///< KEY=VALUE
+    std::vector<std::string> sources;           ///< the files that make it up
+    std::map<std::string, std::string> written; ///< those of the sources that it writes, each with its hash
+    std::vector<int> exit_codes{0};             ///< those that are fine
+    std::string scene;                          ///< the file of the scene that it simulates; may be empty
+    std::string checked; ///< how its result was checked beforehand; empty if it was not
     int threads = 1;
-    int warm_ups = 0; ///< untimed processes before it
+    nlohmann::ordered_json axes = nlohmann::ordered_json::object();  ///< what was chosen, by name
+    nlohmann::ordered_json build = nlohmann::ordered_json::object(); ///< of its record's provenance, what is
+                                                                     ///< not as this program's
+    double unit_seconds = 1; ///< of the time that it prints, if its command has a pattern
+    std::string benchmark;   ///< the case of a Google Benchmark; empty if it is none
+    std::string output;      ///< the file that the benchmark writes
 };
 
-/// The record of the process, of kind "process". Its provenance is that of this program, which measured it,
-/// but for `build`, for the environment, and for the hash of the program.
-nlohmann::ordered_json process_json(const ProcessMeasurement& measurement);
+/// What was found of it.
+struct ProcessMeasurement {
+    /// Reads what it is made of. Throws InputError.
+    explicit ProcessMeasurement(DescribedProcess one)
+        : its(std::move(one)), sources(its.sources, its.written) {}
+
+    DescribedProcess its;
+    Sources sources;                ///< the files that make it up, as they were before it ran
+    std::vector<StatedTime> stated; ///< of each run; empty if the time from outside is the one that counts
+    int exit_code = 1;              ///< of its last run, as one that failed
+    Measured measured;
+};
+
+/// The record of a process of which a run counts, of kind "process". `scene` is as scene_json, or null; so
+/// many `contenders` were measured beside each other, in an order that was drawn from `seed`. Its provenance
+/// is that of this program, which measured it, but for the build, for the environment, and for the hash of
+/// the program.
+nlohmann::ordered_json process_json(const ProcessMeasurement& measurement,
+                                    const nlohmann::ordered_json& scene, int contenders, std::uint64_t seed);
+
+/// What stands in the place of that record, of kind "failure", where no run counts for this reason.
+nlohmann::ordered_json failure_json(const ProcessMeasurement& measurement, const std::string& reason);
 
 } // namespace carom

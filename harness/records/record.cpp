@@ -107,6 +107,12 @@ Json scene_json(const Scene& scene, const std::string& name, const std::string& 
             {"area_fraction", area_fraction(scene)}};
 }
 
+Json record_of(const char* kind, const std::vector<std::string>& tags, const Json& fields) {
+    Json record{{"schema_version", 1}, {"kind", kind}, {"recorded_at", utc_now()}, {"tags", tags_json(tags)}};
+    record.update(fields);
+    return record;
+}
+
 Json record_json(const Measurement& measurement) {
     const Run& last = measurement.repetitions.back();
     Json repetitions = Json::array();
@@ -115,25 +121,23 @@ Json record_json(const Measurement& measurement) {
             repetitions.push_back({{"steps_seconds", run.steps_seconds}, {"cpu_seconds", run.cpu_seconds}});
         }
     }
-    return {{"schema_version", 1},
-            {"kind", "bench"},
-            {"recorded_at", utc_now()},
-            {"tags", tags_json(measurement.tags)},
-            {"axes", axes_json(measurement.variant, measurement.tuning)},
-            {"scene", scene_json(measurement.scene, measurement.scene_name, measurement.scene_sha256)},
-            {"warm_ups", measurement.warm_ups},
-            {"repetitions", repetitions},
-            {"parse_seconds", measurement.parse_seconds},
-            {"process_seconds", measurement.own_seconds.value_or(process_seconds())},
-            {"turns", turns_json(measurement.turns)},
-            {"work", work_json(measurement, last.work)},
-            {"errors", errors_json(measurement, last)},
-            {"check",
-             {{"verdict", measurement.violation ? "failed" : "passed"},
-              {"scope", word(measurement.scope)},
-              {"reason", or_null(measurement.violation)}}},
-            {"state_hash", state_hash(last.discs)},
-            {"provenance", provenance_json(measurement.tuning.threads)}};
+    return record_of(
+        "bench", measurement.tags,
+        {{"axes", axes_json(measurement.variant, measurement.tuning)},
+         {"scene", scene_json(measurement.scene, measurement.scene_name, measurement.scene_sha256)},
+         {"warm_ups", measurement.warm_ups},
+         {"repetitions", repetitions},
+         {"parse_seconds", measurement.parse_seconds},
+         {"process_seconds", measurement.own_seconds.value_or(process_seconds())},
+         {"turns", turns_json(measurement.turns)},
+         {"work", work_json(measurement, last.work)},
+         {"errors", errors_json(measurement, last)},
+         {"check",
+          {{"verdict", measurement.violation ? "failed" : "passed"},
+           {"scope", word(measurement.scope)},
+           {"reason", or_null(measurement.violation)}}},
+         {"state_hash", state_hash(last.discs)},
+         {"provenance", provenance_json(measurement.tuning.threads)}});
 }
 
 void write_record(const std::string& path, const Json& record) {

@@ -13,6 +13,11 @@ namespace carom {
 /// The record of a process, of kind "bench", without a profile. Where the check failed it holds no times.
 nlohmann::ordered_json record_json(const Measurement& measurement);
 
+/// A record of this kind: what every record begins with, the tags as `tags_json` has them, then these fields.
+/// Throws InputError.
+nlohmann::ordered_json record_of(const char* kind, const std::vector<std::string>& tags,
+                                 const nlohmann::ordered_json& fields);
+
 /// Writes a record under a temporary name, flushes and renames it. Throws InputError.
 void write_record(const std::string& path, const nlohmann::ordered_json& record);
 

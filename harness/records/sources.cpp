@@ -18,10 +18,6 @@ std::string hash_of_file(const std::string& path) {
     return sha256(read_file(path));
 }
 
-std::int64_t nanoseconds(const timespec& time) {
-    return std::int64_t{time.tv_sec} * 1'000'000'000 + std::int64_t{time.tv_nsec};
-}
-
 } // namespace
 
 Sources::Sources(const std::vector<std::string>& files, const std::map<std::string, std::string>& written) {
@@ -78,11 +74,8 @@ Sources::Stamp Sources::stamp_of(const std::string& path) {
     if (stat(path.c_str(), &status) != 0) {
         return {};
     }
-    return {.device = status.st_dev,
-            .inode = status.st_ino,
-            .bytes = status.st_size,
-            .modified = nanoseconds(status.st_mtim),
-            .changed = nanoseconds(status.st_ctim)};
+    return {status.st_dev,          status.st_ino,         status.st_size,        status.st_mtim.tv_sec,
+            status.st_mtim.tv_nsec, status.st_ctim.tv_sec, status.st_ctim.tv_nsec};
 }
 
 } // namespace carom

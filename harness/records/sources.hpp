@@ -1,12 +1,12 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <sys/types.h>
 
 namespace carom {
 
@@ -28,15 +28,9 @@ class Sources {
     std::vector<std::string> changed() const;
 
   private:
-    /// What of a file changes with its content.
-    struct Stamp {
-        std::uint64_t device = 0;
-        std::uint64_t inode = 0;
-        std::int64_t bytes = 0;
-        std::int64_t modified = 0; ///< in nanoseconds
-        std::int64_t changed = 0;
-        bool operator==(const Stamp&) const = default;
-    };
+    /// What of a file changes with its content: where it is, its bytes, seconds and nanoseconds of the last
+    /// changes of these and of its status; zeroes of what is not there.
+    using Stamp = std::tuple<dev_t, ino_t, off_t, time_t, long, time_t, long>;
     struct Source {
         std::string path;
         std::string sha256;
