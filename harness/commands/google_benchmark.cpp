@@ -1,13 +1,14 @@
 #include "harness/commands/google_benchmark.hpp"
 
 #include <algorithm>
-#include <array>
 #include <iostream>
+#include <map>
 #include <streambuf>
 #include <string_view>
 
 #include <benchmark/benchmark.h>
 
+#include "harness/command_line/values.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/note.hpp"
 #include "harness/support/text.hpp"
@@ -64,25 +65,19 @@ class Messages : public std::streambuf {
     std::string kept_;
 };
 
-struct Words {
-    std::string_view flag;
-    std::string_view expected;
-    std::array<std::string_view, 4> words;
-};
-
-/// The flags whose other values make Google Benchmark print how it is used.
-constexpr std::array<Words, 3> flags_of_words{
-    {{"--benchmark_format", "console, json or csv", {"console", "json", "csv", "console"}},
-     {"--benchmark_out_format", "console, json or csv", {"console", "json", "csv", "json"}},
-     {"--benchmark_time_unit", "ns, us, ms or s", {"ns", "us", "ms", "s"}}}};
-
 void require_words(const std::string& flag) {
+    const std::vector<std::string> formats{"console", "json", "csv"};
+    // The flags whose other values make Google Benchmark print how it is used.
+    const std::map<std::string, std::vector<std::string>> flags_of_words{
+        {"--benchmark_format", formats},
+        {"--benchmark_out_format", formats},
+        {"--benchmark_time_unit", {"ns", "us", "ms", "s"}}};
     const auto equals = std::min(flag.find('='), flag.size());
-    const std::string value = flag.substr(std::min(equals + 1, flag.size()));
-    for (const Words& one : flags_of_words) {
-        if (flag.substr(0, equals) == one.flag && std::ranges::find(one.words, value) == one.words.end()) {
-            throw InputError(std::string(one.flag) + ": found " + in_quotes(value) + ", expected " +
-                             std::string(one.expected));
+    const auto found = flags_of_words.find(flag.substr(0, equals));
+    if (found != flags_of_words.end()) {
+        std::string value = flag.substr(std::min(equals + 1, flag.size()));
+        if (const std::string why = one_of(found->second)(value); !why.empty()) {
+            throw InputError(found->first + ": " + why);
         }
     }
     if (flag == "--benchmark_color=" || flag == "--benchmark_help") {

@@ -33,10 +33,7 @@ std::string text_of(const Json& object, const char* key) {
     return found != object.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-bool is_true(const Json& object, const char* key) {
-    const auto found = object.find(key);
-    return found != object.end() && found->is_boolean() && found->get<bool>();
-}
+bool is_true(const Json& object, const char* key) { return object.value(key, Json()) == Json(true); }
 
 /// A number as it is, which may be none; empty if there is no such field.
 std::optional<double> number_of(const Json& object, const std::string& key) {
@@ -265,10 +262,8 @@ StatedTime time_of_benchmark(const std::string& json, const std::string& name) {
             }
         }
     }
-    if (const auto context = document.find("context"); context != document.end() && context->is_object()) {
-        if (context->contains("library_version")) {
-            time.library_version = text_of(*context, "library_version");
-        }
+    if (const Json context = document.value("context", Json()); context.contains("library_version")) {
+        time.library_version = text_of(context, "library_version");
     }
     return time;
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "harness/support/errors.hpp"
+#include "harness/support/format.hpp"
 #include "harness/support/text.hpp"
 
 namespace carom {
@@ -19,44 +20,10 @@ using Json = nlohmann::json;
 constexpr std::array<std::string_view, 7> words_of_numbers{"-Infinity", "Infinity", "NaN", "-nan",
                                                            "-inf",      "nan",      "inf"};
 
-/// How many bytes from here on are one character of UTF-8 (RFC 3629); 0 if these are none.
-std::size_t utf8_length(std::string_view text) {
-    const auto byte = [text](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-    const std::size_t length = byte(0) < 0x80   ? 1
-                               : byte(0) < 0xC2 ? 0
-                               : byte(0) < 0xE0 ? 2
-                               : byte(0) < 0xF0 ? 3
-                               : byte(0) < 0xF5 ? 4
-                                                : 0;
-    if (length > text.size()) {
-        return 0;
-    }
-    for (std::size_t k = 1; k < length; ++k) {
-        if ((byte(k) & 0xC0) != 0x80) {
-            return 0;
-        }
-    }
-    const bool overlong =
-        length > 2 && ((byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xF0 && byte(1) < 0x90));
-    const bool no_character =
-        length > 2 && ((byte(0) == 0xED && byte(1) > 0x9F) || (byte(0) == 0xF4 && byte(1) > 0x8F));
-    return overlong || no_character ? 0 : length;
-}
-
-/// Appends the character of a string that begins `rest`, as JSON wants it; returns its length.
-std::size_t append_character(std::string& json, std::string_view rest) {
-    constexpr std::string_view replacement = "\xEF\xBF\xBD"; // U+FFFD
-    const auto first = static_cast<unsigned char>(rest.front());
-    if (first < ' ') {
-        constexpr std::string_view digits = "0123456789abcdef";
-        json += "\\u00";
-        json += digits[first >> 4U];
-        json += digits[first & 0xFU];
-        return 1;
-    }
-    const std::size_t length = utf8_length(rest);
-    json += length == 0 ? replacement : rest.substr(0, length);
-    return std::max<std::size_t>(length, 1);
+/// The same, where bytes that are no UTF-8 stand as U+FFFD.
+std::string as_utf8(const std::string& text) {
+    const std::string quoted = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+    return Json::parse(quoted).get<std::string>();
 }
 
 /// The word of a number that begins `rest`, or nothing.
@@ -74,21 +41,23 @@ std::string as_json(std::string_view text) {
     std::string json;
     json.reserve(text.size());
     bool in_string = false;
+    bool is_escaped = false;
     for (std::size_t k = 0; k < text.size();) {
-        const std::string_view rest = text.substr(k);
-        if (in_string && rest.front() == '\\' && rest.size() > 1) {
-            json += '\\';
-            k += 1 + append_character(json, rest.substr(1));
-        } else if (in_string && rest.front() != '"') {
-            k += append_character(json, rest);
-        } else if (const auto word = word_at(rest); !in_string && !word.empty()) {
+        const char letter = text[k];
+        const std::string_view word = in_string ? std::string_view() : word_at(text.substr(k));
+        if (!word.empty()) {
             json.append("[\"").append(word).append("\"]");
             k += word.size();
-        } else {
-            in_string = in_string != (rest.front() == '"');
-            json += rest.front();
-            ++k;
+            continue;
         }
+        if (in_string && letter >= '\0' && letter < ' ') {
+            json += format("\\u%04x", static_cast<unsigned int>(letter));
+        } else {
+            json += letter;
+        }
+        in_string = in_string != (letter == '"' && !is_escaped);
+        is_escaped = in_string && letter == '\\' && !is_escaped;
+        ++k;
     }
     return json;
 }
@@ -143,7 +112,7 @@ Json parse_report(const std::string& json) {
 } // namespace
 
 Json read_benchmark_json(const std::string& text) {
-    Json document = parse_report(as_json(text));
+    Json document = parse_report(as_json(as_utf8(text)));
     if (!document.is_object() || !document.contains("benchmarks") || !document["benchmarks"].is_array()) {
         refuse_report("JSON without a list `benchmarks`");
     }
