@@ -50,10 +50,7 @@ inline int share(int part, int parts, int count) {
 /// Runs `body(part)` for each of as many parts as there are threads.
 template <class SomeProbe, class Body>
 void for_each_part(const Tuning& tuning, SomeProbe& probe, const Body& body) {
-    parallel_for<Schedule::static_>(tuning.threads, tuning.threads, 1, probe, [&](int part) {
-        body(part);
-        return Tally{};
-    });
+    parallel_for<Schedule::static_>(tuning.threads, tuning.threads, 1, probe, body);
 }
 
 /// The boxes from the first to the last of those of some discs.

@@ -10,6 +10,7 @@
 #include "policies.hpp"
 #include "resolve_lists.hpp"
 #include "state.hpp"
+#include "tally.hpp"
 
 namespace carom {
 
@@ -163,7 +164,7 @@ template <Policies policies, class SomeProbe>
 Tally find(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     const int boxes_per_side = state.grid.boxes_per_side();
-    Tally tally = parallel_for_boxes<policies.find_schedule>(
+    Tally tally = parallel_for_boxes<policies.find_schedule, Tally>(
         tuning.threads, boxes_per_side, boxes_per_side, tuning.find_chunk, probe,
         [&](int row, int column, Tally& sum) {
             look_ahead_to_find(state, row, column);

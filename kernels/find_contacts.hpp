@@ -15,6 +15,7 @@
 #include "policies.hpp"
 #include "state.hpp"
 #include "storage.hpp"
+#include "tally.hpp"
 
 namespace carom {
 

@@ -107,7 +107,7 @@ Tally find(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const auto back = way_back(state, tuning);
     const auto radius = state.search_radius(back.step);
     const int boxes_per_side = state.grid.boxes_per_side();
-    Tally tally = parallel_for_boxes<policies.find_schedule>(
+    Tally tally = parallel_for_boxes<policies.find_schedule, Tally>(
         tuning.threads, boxes_per_side, boxes_per_side, tuning.find_chunk, probe,
         [&](int row, int column, Tally& sum) {
             look_ahead_to_find(state, row, column);
@@ -215,7 +215,7 @@ template <Policies policies, class SomeProbe>
 Tally find_left(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     const int boxes_per_side = state.grid.boxes_per_side();
-    return parallel_for_boxes<policies.find_schedule>(
+    return parallel_for_boxes<policies.find_schedule, Tally>(
         tuning.threads, boxes_per_side, boxes_per_side, tuning.find_chunk, probe,
         [&](int row, int column, Tally& sum) {
             look_ahead_to_find_left(state, row, column);

@@ -38,7 +38,6 @@ void move(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
             state.box_of_disc[static_cast<std::size_t>(i)] =
                 state.grid.box_of(state.grid.coordinate(disc.y), state.grid.coordinate(disc.x));
         }
-        return Tally{};
     });
 }
 

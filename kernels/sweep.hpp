@@ -70,7 +70,7 @@ Swept sweep_checkered(State<policies>& state, const Tuning& tuning,
     const int side = state.grid.boxes_per_side();
     for (int first_row = 0; first_row < 2; ++first_row) {
         for (int first_column = 0; first_column < 2; ++first_column) {
-            tally += parallel_for_boxes<policies.resolve_schedule>(
+            tally += parallel_for_boxes<policies.resolve_schedule, Tally>(
                 tuning.threads, every_other(side, first_row), every_other(side, first_column),
                 tuning.resolve_chunk, probe, [&](int k, int l, Tally& sum) {
                     const int row = first_row + 2 * k;
