@@ -23,13 +23,24 @@ struct Always {
     constexpr bool operator()(int /*i*/) const { return true; }
 };
 
-/// How often a thread asks whether its iteration can begin before it lets others run in between.
-inline constexpr int patience = 10'000;
+/// Leaves what a core can do to its other thread for a moment.
+inline void relax() {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    asm volatile("yield");
+#endif
+}
+
+/// How often a thread asks whether its iteration can begin before it lets others run in between: with a pause
+/// a look takes 25 ns and without one 1 ns (EPYC, Zen 4), so that 400 of them take as long as 10 000 did.
+inline constexpr int patience = 400;
 
 /// Waits until `ready(i)`.
 template <class SomeProbe, class Ready> void await(int i, const Ready& ready, int thread, SomeProbe& probe) {
     probe.wait_begin(thread);
     for (int asked = 1; !ready(i); ++asked) {
+        relax();
         if (asked % patience == 0) {
             sched_yield();
         }
