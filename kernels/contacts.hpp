@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "grid.hpp"
@@ -65,7 +67,10 @@ class FoundPairs {
         return pairs_.data() + size_;
     }
 
-    void end_at(const OverlappingDiscs* end) { size_ = static_cast<std::size_t>(end - pairs_.data()); }
+    void end_at(const OverlappingDiscs* end) {
+        size_ = static_cast<std::size_t>(end - pairs_.data());
+        assert(size_ <= pairs_.size());
+    }
 
   private:
     std::vector<OverlappingDiscs> pairs_;
@@ -79,10 +84,24 @@ template <class Real> struct Strip {
     std::vector<int> block_begin;     ///< of each block of boxes, its first contact; at the end, their number
     FoundPairs found;                 ///< of one block, while it is searched
     std::vector<NearPair<Real>> near; ///< Impact::at_contact: what the search finds, before contacts are made
-    std::vector<int> pending; ///< ditto: near pairs that are to collide, in a sweep; room for one more
-    int pending_count = 0;
-    std::vector<int> blocks_to_look_at; ///< blocks of one row to look at, in a sweep; room for one more
-    std::vector<int> colliding;         ///< contacts that may collide, in a sweep; room for four more
+    std::vector<int> near_begin;      ///< ditto: of each block, its first near pair; at the end, their number
+    std::vector<int> pending;         ///< ditto: room for the numbers of all near pairs and one more
+    int pending_count = 0;            ///< ditto: how many of them are pending
+    std::vector<int> blocks;          ///< room to select blocks of one row in
+    std::vector<int> selected;        ///< room to select contacts or near pairs in
+
+    /// Impact::at_contact: the near pairs that have come into contact and have not collided yet.
+    std::span<const int> pending_pairs() const {
+        return {pending.data(), static_cast<std::size_t>(pending_count)};
+    }
+
+    /// Makes room for all that is selected in a sweep over so many near pairs or contacts.
+    void make_room(int count, int blocks_per_row) {
+        selected.resize(static_cast<std::size_t>(count) + 4);
+        blocks.resize(static_cast<std::size_t>(blocks_per_row) + 1);
+        pending.resize(near.size() + 1);
+        pending_count = 0;
+    }
 };
 
 /// Of a disc, the earliest of the collisions that are known of it in a sweep.

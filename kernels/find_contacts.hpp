@@ -214,21 +214,18 @@ Tally find_in_strip(State<policies>& state, int index, RealOf<policies.precision
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     strip.contacts.clear();
     strip.near.clear();
-    strip.block_begin.assign(1, 0);
+    std::vector<int>& block_begin =
+        policies.impact == Impact::at_contact ? strip.near_begin : strip.block_begin;
+    block_begin.assign(1, 0);
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
     for (int row = rows.first; row <= rows.last; ++row) {
         for (int column = 0; column < state.grid.boxes_per_side(); column += per_block) {
             const int last = std::min(column + per_block, state.grid.boxes_per_side()) - 1;
             search_block(state, candidates, radius, strip.found, row, {column, last});
-            strip.block_begin.push_back(add_found(state, candidates, strip, tally));
+            block_begin.push_back(add_found(state, candidates, strip, tally));
         }
     }
-    strip.blocks_to_look_at.resize(static_cast<std::size_t>(state.active.per_row()) + 1);
-    strip.colliding.resize(static_cast<std::size_t>(strip.block_begin.back()) + 4);
-    if constexpr (policies.impact == Impact::at_contact) {
-        strip.pending.resize(strip.near.size() + 1);
-        strip.pending_count = 0;
-    }
+    strip.make_room(block_begin.back(), state.active.per_row());
     for (int row = rows.first; row <= rows.last; ++row) {
         std::fill_n(state.active.row(row), state.active.per_row(), static_cast<unsigned char>(1));
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <iterator>
 #include <vector>
@@ -14,137 +15,161 @@
 #include "policies.hpp"
 #include "resolve_contacts.hpp"
 #include "state.hpp"
+#include "storage.hpp"
 #include "sweep.hpp"
 #include "tally.hpp"
 #include "wavefront.hpp"
 #include "way_back.hpp"
 
+// Impact::at_contact with contacts. Each near pair is known of one strip, in a list by blocks as contacts
+// are. A sweep has two halves. In the first a strip finds which of its near pairs are pending: of those of
+// which a disc has collided in the sweep before, those that have met; and each disc learns when the earliest
+// of its pending collisions was. In the second those collisions are made that are the earliest of both discs.
+// What then still overlaps becomes contacts, which are resolved in place.
+
 namespace carom {
 
-/// Writes those near pairs of one row's active blocks to `asked` of which a disc has collided in the sweep
-/// before; in the first sweep, all. Returns its end.
+/// The last sweep in which one of two discs has collided; -1 before the first.
+inline int last_change(OverlappingDiscs discs, const int* changed_in) {
+    return std::max(changed_in[discs.first], changed_in[discs.second]);
+}
+
+/// Keeps those pending of which no disc has collided in the sweep before.
 template <Policies policies>
-int* pairs_to_ask(State<policies>& state, Strip<RealOf<policies.precision>>& strip, int row,
-                  const int* first_pair, int sweep, int* asked, int& attempts) {
+Selection keep_pending(const State<policies>& state, Strip<RealOf<policies.precision>>& strip, int sweep) {
+    const auto* const near = strip.near.data();
+    const auto* const changed_in = state.changed_in.data();
+    Selection pending(strip.pending);
+    for (const int k : strip.pending_pairs()) {
+        pending.add_if(last_change(near[k].discs, changed_in) != sweep - 1, k);
+    }
+    return pending;
+}
+
+/// The near pairs of blocks that follow one another in memory, from `block` on, which is moved beyond the
+/// last of them: how many one block has, no processor can predict. The blocks are active no longer.
+inline Indices take_run(const int*& block, const int* end, const int* near_begin, unsigned char* marks) {
+    Indices run{near_begin[*block], near_begin[*block]};
+    for (; block != end && near_begin[*block] == run.last; ++block) {
+        marks[*block] = 0;
+        run.last = near_begin[*block + 1];
+    }
+    return run;
+}
+
+/// Adds those near pairs of one row's active blocks to `asked` of which a disc has collided in the sweep
+/// before; in the first sweep, all. Returns how many were looked at. `near_begin` is that of the row's first
+/// block.
+template <Policies policies>
+[[gnu::always_inline]] inline int add_to_ask(State<policies>& state, Strip<RealOf<policies.precision>>& strip,
+                                             int row, const int* near_begin, int sweep, Selection& asked) {
     const auto* const near = strip.near.data();
     const auto* const changed_in = state.changed_in.data();
     unsigned char* const marks = state.active.row(row);
-    const int* const last = active_blocks(marks, state.active.per_row(), strip.blocks_to_look_at.data());
-    for (const int* block = strip.blocks_to_look_at.data(); block != last;) {
-        int k = first_pair[*block];
-        int end = k; // of a run of blocks: how many pairs one of them has, no processor can predict
-        for (; block != last && first_pair[*block] == end; ++block) {
-            marks[*block] = 0;
-            end = first_pair[*block + 1];
+    const Selection active = active_blocks(marks, state.active.per_row(), strip.blocks);
+    int looked_at = 0;
+    for (const int* block = active.begin(); block != active.end();) {
+        const Indices run = take_run(block, active.end(), near_begin, marks);
+        looked_at += run.count();
+        if (sweep == 0) {
+            for (const int k : run) {
+                asked.add_if(1, k);
+            }
+        } else {
+            for (const int k : run) {
+                asked.add_if(last_change(near[k].discs, changed_in) == sweep - 1, k);
+            }
         }
-        attempts += end - k;
-        for (; sweep == 0 && k < end; ++k) {
-            *asked++ = k;
-        }
-        for (; k < end; ++k) {
-            const auto [first, second] = near[k].discs;
-            *asked = k;
-            asked += std::max(changed_in[first], changed_in[second]) == sweep - 1;
-        }
+    }
+    return looked_at;
+}
+
+/// The near pairs of a strip that are to be asked whether they have met. `attempts` is raised by how many
+/// were looked at.
+template <Policies policies>
+[[gnu::always_inline]] inline Selection pairs_to_ask(State<policies>& state, int index, int sweep,
+                                                     int& attempts) {
+    auto& strip = state.strips[static_cast<std::size_t>(index)];
+    const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
+    const int* near_begin = strip.near_begin.data();
+    Selection asked(strip.selected);
+    for (int row = rows.first; row <= rows.last; ++row, near_begin += state.active.per_row()) {
+        attempts += add_to_ask(state, strip, row, near_begin, sweep, asked);
     }
     return asked;
 }
 
-/// Of some near pairs, given by their numbers, keeps those that have come into contact; returns the new end.
-/// Disc and wall are asked later.
+/// Of those asked, the near pairs that have come into contact. Discs at a wall are asked later.
 template <Policies policies>
-int* keep_met(const State<policies>& state, const Strip<RealOf<policies.precision>>& strip, int* begin,
-              const int* end, const WayBack<RealOf<policies.precision>>& its_back) {
+Selection have_met(const State<policies>& state, const Strip<RealOf<policies.precision>>& strip,
+                   Selection asked, const WayBack<RealOf<policies.precision>>& its_back) {
     const auto back = its_back; // copies: what is written could alias them
     const auto reach_squared = state.reach_squared();
     const auto* const near = strip.near.data();
     const auto* const discs = state.discs.data();
-    int* met = begin;
-    for (const int* k = begin; k < end; k += 2) {
-        const bool are_two = k + 1 < end;
-        const std::array<int, 2> asked{k[0], k[are_two ? 1 : 0]};
-        const std::array<OverlappingDiscs, 2> pairs{near[asked[0]].discs, near[asked[1]].discs};
-        const auto have_met = motions_of_two(pairs, discs, reach_squared).met(back);
-        *met = asked[0];
-        met += (have_met[0] != 0) | pairs[0].at_wall();
-        *met = asked[1];
-        met += ((have_met[1] != 0) | pairs[1].at_wall()) & are_two;
+    Selection met = Selection::from(asked);
+    for (const int* k = asked.begin(); k < asked.end(); k += 2) {
+        const bool are_two = k + 1 < asked.end();
+        const std::array<int, 2> both{k[0], k[are_two ? 1 : 0]};
+        const std::array<OverlappingDiscs, 2> pairs{near[both[0]].discs, near[both[1]].discs};
+        const auto they_met = motions_of_two(pairs, discs, reach_squared).met(back);
+        met.add_if((they_met[0] != 0) | pairs[0].at_wall(), both[0]);
+        met.add_if(((they_met[1] != 0) | pairs[1].at_wall()) & are_two, both[1]);
     }
     return met;
 }
 
-/// Drops the pending collisions of a strip of which a disc has collided in the sweep before; returns the end
-/// of those that are left.
+/// Lets both discs of each pending pair know of it, if they know of none before it in this sweep. Times are
+/// counted back from the step's end: the earliest is the largest.
 template <Policies policies>
-int* keep_pending(const State<policies>& state, Strip<RealOf<policies.precision>>& strip, int sweep) {
-    const auto* const changed_in = state.changed_in.data();
-    int* kept = strip.pending.data();
-    for (int n = 0; n < strip.pending_count; ++n) {
-        const int k = strip.pending[static_cast<std::size_t>(n)];
-        const auto [first, second] = strip.near[static_cast<std::size_t>(k)].discs;
-        *kept = k;
-        kept += std::max(changed_in[first], changed_in[second]) != sweep - 1;
-    }
-    return kept;
-}
-
-/// Finds the collisions that are pending in a strip: those that were so far, if neither disc has collided
-/// since, and those that have become so. Then lets the discs know when they are.
-template <Policies policies>
-Changes look_back(State<policies>& state, int index, int sweep,
-                  const WayBack<RealOf<policies.precision>>& back) {
-    Changes changes;
-    auto& strip = state.strips[static_cast<std::size_t>(index)];
-    auto* const near = strip.near.data();
-    int* pending = keep_pending(state, strip, sweep);
-    int* found = strip.colliding.data();
-    const int* first_pair = strip.block_begin.data();
-    const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
-    for (int row = rows.first; row <= rows.last; ++row, first_pair += state.active.per_row()) {
-        found = pairs_to_ask(state, strip, row, first_pair, sweep, found, changes.attempts);
-    }
-    found = keep_met(state, strip, strip.colliding.data(), found, back);
-    for (const int* k = strip.colliding.data(); k != found; ++k) {
-        auto& pair = near[*k];
-        pair.time = time_of(pair.discs, state, back);
-        *pending = *k;
-        pending += (pair.time >= 0) & (pair.time < pair.last);
-    }
-    strip.pending_count = static_cast<int>(pending - strip.pending.data());
-    for (const int* k = strip.pending.data(); k != pending; ++k) {
-        for (const int disc : {near[*k].discs.first, near[*k].discs.second}) {
+void know_earliest(State<policies>& state, const Strip<RealOf<policies.precision>>& strip, int sweep) {
+    const auto* const near = strip.near.data();
+    for (const int k : strip.pending_pairs()) {
+        for (const int disc : {near[k].discs.first, near[k].discs.second}) {
             auto& known = state.earliest[static_cast<std::size_t>(disc)];
-            known.time = std::max(known.known_in == sweep ? known.time : 0, near[*k].time);
+            known.time = std::max(known.known_in == sweep ? known.time : 0, near[k].time);
             known.known_in = sweep;
         }
     }
+}
+
+/// The first half of a sweep.
+template <Policies policies>
+Changes find_pending(State<policies>& state, int index, int sweep,
+                     const WayBack<RealOf<policies.precision>>& back) {
+    Changes changes;
+    auto& strip = state.strips[static_cast<std::size_t>(index)];
+    Selection pending = keep_pending(state, strip, sweep);
+    const Selection asked = pairs_to_ask(state, index, sweep, changes.attempts);
+    for (const int k : have_met(state, strip, asked, back)) {
+        auto& pair = strip.near[static_cast<std::size_t>(k)];
+        pair.time = time_of(pair.discs, state, back);
+        pending.add_if((pair.time >= 0) & (pair.time < pair.last), k);
+    }
+    strip.pending_count = pending.count();
+    know_earliest(state, strip, sweep);
     return changes;
 }
 
-/// Moves those pending collisions of a strip that are the earliest known of both discs to `colliding`;
-/// returns its end.
+/// The pending collisions that are the earliest known of both discs. They are pending no longer.
 template <Policies policies>
-int* take_earliest(const State<policies>& state, Strip<RealOf<policies.precision>>& strip) {
+Selection take_earliest(const State<policies>& state, Strip<RealOf<policies.precision>>& strip) {
     const auto* const near = strip.near.data();
     const auto* const earliest = state.earliest.data();
-    int* const pending = strip.pending.data();
-    int* colliding = strip.colliding.data();
-    int left = 0;
-    for (int n = 0; n < strip.pending_count; ++n) {
-        const int k = pending[n];
+    Selection taken(strip.selected);
+    Selection left(strip.pending);
+    for (const int k : strip.pending_pairs()) {
         const auto [first, second] = near[k].discs;
         const bool is_earliest =
             (near[k].time >= earliest[first].time) & (near[k].time >= earliest[second].time);
-        *colliding = k;
-        pending[left] = k;
-        colliding += is_earliest;
-        left += !is_earliest;
+        taken.add_if(is_earliest, k);
+        left.add_if(!is_earliest, k);
     }
-    strip.pending_count = left;
-    return colliding;
+    strip.pending_count = left.count();
+    return taken;
 }
 
-/// Makes the collisions of a strip whose turn in time has come.
+/// The second half of a sweep. Of two collisions of a disc at one instant the second remains pending.
 template <Policies policies, class SomeProbe>
 Changes collide_earliest(State<policies>& state, int index, int sweep,
                          const WayBack<RealOf<policies.precision>>& back,
@@ -154,12 +179,12 @@ Changes collide_earliest(State<policies>& state, int index, int sweep,
     auto* const changed_in = state.changed_in.data();
     const auto* const blocks_of_disc = state.blocks_of_disc.data();
     const auto marker = state.active.marker();
-    const int* const end = take_earliest(state, strip);
-    for (const int* k = strip.colliding.data(); k != end; ++k) {
-        auto& pair = strip.near[static_cast<std::size_t>(*k)];
+    for (const int k : take_earliest(state, strip)) {
+        auto& pair = strip.near[static_cast<std::size_t>(k)];
         const auto [first, second] = pair.discs;
         if (changed_in[first] == sweep || changed_in[second] == sweep) [[unlikely]] {
-            strip.pending[static_cast<std::size_t>(strip.pending_count++)] = *k;
+            assert(strip.pending_count < std::ssize(strip.pending));
+            strip.pending[static_cast<std::size_t>(strip.pending_count++)] = k;
             continue;
         }
         const Changes made = collide_at(pair.time, state, pair.discs, back, approaching);
@@ -174,11 +199,10 @@ Changes collide_earliest(State<policies>& state, int index, int sweep,
     return changes;
 }
 
-/// Writes those of the near pairs [begin, end) that overlap now, or are a disc and a wall, to `found`, beyond
-/// whose end there must be room for one; returns that end.
+/// The near pairs of one block that overlap now, or are a disc and a wall.
 template <Policies policies>
-int* overlapping_now(const State<policies>& state, const Strip<RealOf<policies.precision>>& strip, int begin,
-                     int end, int* found) {
+Selection overlapping_now(const State<policies>& state, Strip<RealOf<policies.precision>>& strip,
+                          Indices of_block) {
     using Both = BothComponents<RealOf<policies.precision>>;
     const auto reach_squared = state.reach_squared();
     const auto* const near = strip.near.data();
@@ -187,51 +211,43 @@ int* overlapping_now(const State<policies>& state, const Strip<RealOf<policies.p
         return Both::load_position(discs[near[k].discs.second]) -
                Both::load_position(discs[near[k].discs.first]);
     };
-    for (int k = begin; k < end; k += 2) {
+    Selection overlapping(strip.selected);
+    for (int k = of_block.first; k < of_block.last; k += 2) {
         const auto one = distance(k);
-        const auto other = distance(std::min(k + 1, end - 1));
+        const auto other = distance(std::min(k + 1, of_block.last - 1));
         const auto apart = sums(one * one, other * other) > reach_squared;
-        *found = k;
-        found += apart[0] == 0;
-        *found = k + 1;
-        found += (apart[1] == 0) & (k + 1 < end);
+        overlapping.add_if(apart[0] == 0, k);
+        overlapping.add_if((apart[1] == 0) & (k + 1 < of_block.last), k + 1);
     }
-    return found;
+    return overlapping;
 }
 
 /// Makes contacts of the near pairs of a strip that overlap now, and marks the blocks that have some.
 template <Policies policies> void make_contacts(State<policies>& state, int index) {
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
-    int pair = 0;
-    int* begin = strip.block_begin.data();
+    const int* near_begin = strip.near_begin.data();
+    strip.block_begin.assign(1, 0);
     for (int row = rows.first; row <= rows.last; ++row) {
-        for (int block = 0; block < state.active.per_row(); ++block, ++begin) {
-            const int end = begin[1];
-            *begin = static_cast<int>(strip.contacts.size());
-            int* const overlapping = strip.colliding.data();
-            const int* const last = overlapping_now(state, strip, pair, end, overlapping);
-            for (const int* k = overlapping; k != last; ++k) {
-                add_contact(state, strip.near[static_cast<std::size_t>(*k)].discs, strip);
+        for (int block = 0; block < state.active.per_row(); ++block, ++near_begin) {
+            for (const int k : overlapping_now(state, strip, {near_begin[0], near_begin[1]})) {
+                add_contact(state, strip.near[static_cast<std::size_t>(k)].discs, strip);
             }
-            pair = end;
-            state.active.row(row)[block] = std::ssize(strip.contacts) > *begin;
+            const auto end = static_cast<int>(strip.contacts.size());
+            state.active.row(row)[block] = end > strip.block_begin.back();
+            strip.block_begin.push_back(end);
         }
     }
-    *begin = static_cast<int>(strip.contacts.size());
-    strip.colliding.resize(strip.contacts.size() + 4);
 }
 
 /// Makes contacts of what is still overlapping at the end of the step, a strip to an iteration.
 template <Policies policies, class SomeProbe>
     requires(policies.overlaps == Overlaps::contacts)
 Tally find_left(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
-    return parallel_for<policies.resolve_schedule>(tuning.threads,
-                                                   state.grid.strip_count(strip_height(policies.order)),
-                                                   tuning.resolve_chunk, probe, [&](int strip) {
-                                                       make_contacts(state, strip);
-                                                       return Tally{};
-                                                   });
+    parallel_for<policies.resolve_schedule>(
+        tuning.threads, state.grid.strip_count(strip_height(policies.order)), tuning.resolve_chunk, probe,
+        [&](int strip) { make_contacts(state, strip); });
+    return {};
 }
 
 /// Takes collisions back to their time of contact, the earliest first, until none is left. The discs' places
@@ -253,7 +269,7 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
             [&](int index) {
                 const auto [strip, half] = order[static_cast<std::size_t>(index)];
                 const Changes changes = half == 0
-                                            ? look_back(state, strip, sweep, back)
+                                            ? find_pending(state, strip, sweep, back)
                                             : collide_earliest(state, strip, sweep, back, approaching, probe);
                 wavefront.ends(strip, 2 * sweep + half);
                 return Tally(changes);

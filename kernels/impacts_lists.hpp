@@ -10,6 +10,7 @@
 #include "collide.hpp"
 #include "contacts.hpp"
 #include "find.hpp"
+#include "four_at_once.hpp"
 #include "look_ahead.hpp"
 #include "parallel_for.hpp"
 #include "policies.hpp"
@@ -133,15 +134,14 @@ Tally for_each_asked(const State<policies>& state, int threads, const Tuning& tu
             const int first = range * discs_at_once;
             const int last = std::min(first + discs_at_once, count);
             begin(first, last);
-            std::array<int, discs_at_once + 1> asked; // room for one more
-            int* end = asked.data();
+            std::array<int, discs_at_once + 1> room;
+            Selection asked(room);
             for (int i = first; i < last; ++i) {
-                *end = i;
-                end += state.asked[static_cast<std::size_t>(i)];
+                asked.add_if(state.asked[static_cast<std::size_t>(i)], i);
             }
             Changes changes;
-            for (const int* i = asked.data(); i != end; ++i) {
-                changes += body(*i);
+            for (const int i : asked) {
+                changes += body(i);
             }
             return Tally(changes);
         });

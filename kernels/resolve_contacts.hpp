@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
+#include <span>
 
 #include "collide.hpp"
 #include "contacts.hpp"
@@ -22,12 +22,11 @@
 
 namespace carom {
 
-/// Looks at contacts [begin, end) of a strip and writes those that may collide to `colliding`, in their
-/// order; returns its end, beyond which there must be room for four. No branch depends on the outcome, which
-/// no processor can predict.
+/// Adds those of the contacts [begin, end) of a strip that may collide to `colliding`.
 template <Policies policies>
-int* look_at_contacts(const State<policies>& state, const Strip<RealOf<policies.precision>>& strip, int begin,
-                      int end, int* colliding) {
+[[gnu::always_inline]] inline void look_at_contacts(const State<policies>& state,
+                                                    const Strip<RealOf<policies.precision>>& strip, int begin,
+                                                    int end, Selection& colliding) {
     const auto* const discs = state.discs.data();
     const auto* const contacts = strip.contacts.data();
     const auto approach = [&](int k) {
@@ -38,25 +37,21 @@ int* look_at_contacts(const State<policies>& state, const Strip<RealOf<policies.
     for (int k = begin; k < end; k += 4) {
         const FourInts approaching =
             sums_below_zero(approach(k), approach(k + 1), approach(k + 2), approach(k + 3));
-        const unsigned bitmask = to_bitmask(approaching & mask_of_first(end - k));
-        const FourInts indices = compressed_indices(k, bitmask);
-        std::memcpy(colliding, &indices, sizeof indices);
-        colliding += compress_table.count[bitmask];
+        colliding.add_four(to_bitmask(approaching & mask_of_first(end - k)), k);
     }
-    return colliding;
 }
 
 /// Resolves those of the contacts that still collide, in their order. `on_change(i)` is called for each disc
 /// changed.
 template <Policies policies, class OnChange>
 Changes resolve_contacts(State<policies>& state, const Strip<RealOf<policies.precision>>& strip,
-                         const int* begin, const int* end, const ApproachToleranceOf<policies>& approaching,
+                         Selection colliding, const ApproachToleranceOf<policies>& approaching,
                          const OnChange on_change) {
     Changes changes;
     auto* const discs = state.discs.data();
     const auto* const contacts = strip.contacts.data();
-    for (const int* k = begin; k != end; ++k) {
-        const auto& contact = contacts[*k];
+    for (const int k : colliding) {
+        const auto& contact = contacts[k];
         const auto [first, second] = contact.discs;
         if (contact.discs.at_wall()) [[unlikely]] {
             if (const int turned = resolve_walls(discs[first], state.side, state.radius)) {
@@ -72,13 +67,14 @@ Changes resolve_contacts(State<policies>& state, const Strip<RealOf<policies.pre
     return changes;
 }
 
-/// Writes which of a row's blocks are active to `found`, in their order; returns its end.
-inline int* active_blocks(const unsigned char* marks, int blocks, int* found) {
+/// Which of the blocks of a row are active, by their marks.
+[[gnu::always_inline]] inline Selection active_blocks(const unsigned char* marks, int blocks,
+                                                      std::span<int> room) {
+    Selection active(room);
     for (int block = 0; block < blocks; ++block) {
-        *found = block;
-        found += marks[block] != 0;
+        active.add_if(marks[block] != 0, block);
     }
-    return found;
+    return active;
 }
 
 /// Blocks whose contacts are all looked at before the first of them is resolved. With more of them fewer
@@ -93,20 +89,18 @@ Changes resolve_row(State<policies>& state, Strip<RealOf<policies.precision>>& s
                     const OnChange on_change) {
     Changes changes;
     unsigned char* const marks = state.active.row(row);
-    const int* block = strip.blocks_to_look_at.data();
-    const int* const last = active_blocks(marks, state.active.per_row(), strip.blocks_to_look_at.data());
-    while (block != last) {
-        int* const begin = strip.colliding.data();
-        int* end = begin;
-        for (const int* const stop = block + std::min<std::ptrdiff_t>(blocks_at_once, last - block);
+    const Selection active = active_blocks(marks, state.active.per_row(), strip.blocks);
+    for (const int* block = active.begin(); block != active.end();) {
+        Selection colliding(strip.selected);
+        for (const int* const stop = block + std::min<std::ptrdiff_t>(blocks_at_once, active.end() - block);
              block != stop; ++block) {
             if constexpr (policies.worklist == Worklist::active) {
                 marks[*block] = 0;
             }
             changes.attempts += first_contact[*block + 1] - first_contact[*block];
-            end = look_at_contacts(state, strip, first_contact[*block], first_contact[*block + 1], end);
+            look_at_contacts(state, strip, first_contact[*block], first_contact[*block + 1], colliding);
         }
-        changes += resolve_contacts(state, strip, begin, end, approaching, on_change);
+        changes += resolve_contacts(state, strip, colliding, approaching, on_change);
     }
     return changes;
 }
