@@ -163,6 +163,7 @@ class ActiveBlocks {
         /// second, in the box to the left or one of the three below. (The box to the right can hold none, but
         /// to leave it out would take longer.)
         void mark(Beside beside) const {
+            assert(beside.left >= stride && beside.right >= stride);
             unsigned char* const below = marks - stride;
             marks[beside.left] = 1;
             marks[beside.right] = 1;

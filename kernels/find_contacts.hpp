@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -28,7 +30,8 @@ template <Policies policies> struct Candidates {
     const float* y;
     Real reach_squared;
     float filter_reach_squared;
-    bool sparse; ///< most discs overlap none: then it pays to ask first
+    bool sparse;             ///< most discs overlap none: then it pays to ask first
+    std::ptrdiff_t readable; ///< so many of `x` and `y`, for assertions
 
     /// Of centres within twice `radius`.
     Candidates(const State<policies>& state, Real radius)
@@ -36,7 +39,8 @@ template <Policies policies> struct Candidates {
           reach_squared((2 * radius) * (2 * radius)),
           filter_reach_squared(carom::filter_reach_squared(state.side, radius)),
           sparse(static_cast<Real>(state.count()) * (state.radius * state.radius) <
-                 state.side * state.side / 32) {}
+                 state.side * state.side / 32),
+          readable(std::ssize(state.near_x)) {}
 
     /// Writes disc i with each disc that may overlap it, of `own` and of `next`, to `found`, which has room
     /// for all of them and twelve more; returns the end. Without a branch on the outcome or on how many they
@@ -78,6 +82,7 @@ template <Policies policies> struct Candidates {
 
     /// Of the four discs from j on those before `end` that may overlap disc i.
     unsigned may_overlap(int i, int j, int end) const {
+        assert(j + 4 <= readable);
         return carom::may_overlap(x + j, y + j, x[i], y[i], filter_reach_squared, end - j);
     }
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "collide.hpp"
@@ -113,7 +115,9 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
           OverlapsOf<policies.overlaps, Real>(its_grid, static_cast<int>(scene.discs.size())),
           side(static_cast<Real>(scene.side)), radius(static_cast<Real>(scene.radius)),
           speed(policies.impact == Impact::at_contact ? static_cast<Real>(usual_speed(scene)) : 0),
-          grid(its_grid) {}
+          grid(its_grid) {
+        assert(scene.discs.size() <= static_cast<std::size_t>(std::numeric_limits<int>::max()));
+    }
 };
 
 template <Policies policies> using ApproachToleranceOf = ApproachTolerance<RealOf<policies.precision>>;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -116,6 +117,7 @@ Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, in
                       SomeProbe& probe) {
     const int wanted = skewed ? most_sweeps_at_once : tuning.threads == 1 ? 1 : done + 1;
     const int count = std::min({wanted, most, most_sweeps_at_once});
+    assert(count > 0);
     const int strips = state.grid.strip_count(strip_height(policies.order));
     const std::vector<StripSweep> order =
         sweep_order(strips, count, skewed ? tuning.threads / 4 + 1 : strips);
