@@ -73,9 +73,8 @@ enum class Worklist {
 
 /// When a collision happens that is found at the end of a step.
 enum class Impact {
-    step_end,     ///< then: the discs are where they are, and only their velocities change
-    at_contact,   ///< when the discs came into contact: they have flown on with their new velocities since
-    event_driven, ///< when it does: no step, and none of the other policies (exact/event_driven.hpp)
+    step_end,   ///< then: the discs are where they are, and only their velocities change
+    at_contact, ///< when the discs came into contact: they have flown on with their new velocities since
 };
 
 /// The floating-point type of positions and velocities.
