@@ -26,7 +26,7 @@ template <> struct Look<Neighbourhood::nine> {
 
 template <> struct Look<Neighbourhood::four> {
     static BoxRange along(const Grid& grid, double position, int index) {
-        const int other = std::clamp(index + grid.reach(position), 0, grid.boxes_per_side() - 1);
+        const int other = std::clamp(index + grid.nearer_side(position), 0, grid.boxes_per_side() - 1);
         return {std::min(index, other), std::max(index, other)};
     }
 };

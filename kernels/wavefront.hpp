@@ -21,7 +21,7 @@
 // The sweeps of `strips` without its barriers. There a strip waits twice a sweep for all others, though it
 // shares discs and marks only with those beside it. Here it waits for these alone: an even strip until both
 // have been through the sweep before, an odd one until both have been through this one. So any two strips
-// beside each other take the same turns as in `strips`, others share nothing (sweep.hpp,
+// beside each other take the same order as in `strips`, others share nothing (sweep.hpp,
 // resolve_contacts.hpp), and the result is the same to the last bit.
 //
 // Whether a sweep was the last can be told only when all strips have been through it. Meanwhile some begin
@@ -123,7 +123,7 @@ Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, in
         sweep_order(strips, count, skewed ? tuning.threads / 4 + 1 : strips);
     std::array<std::atomic<int>, most_sweeps_at_once> changes{};
     std::array<std::atomic<int>, most_sweeps_at_once> attempts{};
-    const auto resolve_turn = [&](int index) {
+    const auto resolve_next = [&](int index) {
         const auto [strip, sweep] = order[static_cast<std::size_t>(index)];
         Changes made = resolve_strip(state, strip, approaching);
         attempts[static_cast<std::size_t>(sweep)].fetch_add(std::exchange(made.attempts, 0),
@@ -137,7 +137,7 @@ Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, in
     Swept swept;
     swept.work =
         parallel_for<policies.resolve_schedule>(tuning.threads, static_cast<int>(order.size()),
-                                                tuning.resolve_chunk, probe, resolve_turn, [&](int index) {
+                                                tuning.resolve_chunk, probe, resolve_next, [&](int index) {
                                                     const auto [strip, sweep] =
                                                         order[static_cast<std::size_t>(index)];
                                                     return wavefront.can_begin(strip, done + sweep);
