@@ -158,15 +158,15 @@ Tally add_near_pairs(const State<policies>& state, RealOf<policies.precision> se
     return tally;
 }
 
-/// Searches one block of boxes of a row for partners of its discs among the discs after them: in storage
-/// order the boxes of lower rows hold only discs before, and so does a disc's own box up to itself, so that
-/// half the neighbourhood is enough. Disc by disc, since most boxes hold one or none.
+/// Searches one segment of a row for partners of its discs among the discs after them: in storage order the
+/// boxes of lower rows hold only discs before, and so does a disc's own box up to itself, so that half the
+/// neighbourhood is enough. Disc by disc, since most boxes hold one or none.
 template <Policies policies>
-void search_block(State<policies>& state, const Candidates<policies>& candidates,
-                  RealOf<policies.precision> radius, FoundPairs& found, int row, BoxRange columns) {
+void search_segment(State<policies>& state, const Candidates<policies>& candidates,
+                    RealOf<policies.precision> radius, FoundPairs& found, int row, BoxRange columns) {
     found.clear();
     const Grid grid = state.grid; // a copy: its integers could alias those that are stored
-    [[maybe_unused]] const ActiveBlocks::Block block = state.active.block(row, columns);
+    [[maybe_unused]] const ActiveSegments::Segment segment = state.active.segment(row, columns);
     const int row_begin = grid.box_of(row, 0);
     const int boxes_per_side = grid.boxes_per_side();
     const int* const box_begin = state.box_begin.data();
@@ -175,7 +175,7 @@ void search_block(State<policies>& state, const Candidates<policies>& candidates
         const auto disc = static_cast<std::size_t>(i);
         const int column = state.box_of_disc[disc] - row_begin;
         if constexpr (policies.worklist == Worklist::active) {
-            state.blocks_of_disc[disc] = block.beside(column);
+            state.segments_of_disc[disc] = segment.beside(column);
         }
         if constexpr (policies.impact == Impact::at_contact) {
             state.earliest[disc] = {};
@@ -213,24 +213,24 @@ int add_found(const State<policies>& state, const Candidates<policies>& candidat
 
 template <Policies policies>
 Tally find_in_strip(State<policies>& state, int index, RealOf<policies.precision> radius) {
-    constexpr int per_block = ActiveBlocks::boxes_per_block;
+    constexpr int per_segment = ActiveSegments::boxes_per_segment;
     Tally tally;
     const Candidates<policies> candidates(state, radius);
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     strip.contacts.clear();
     strip.near.clear();
-    std::vector<int>& block_begin =
-        policies.impact == Impact::at_contact ? strip.near_begin : strip.block_begin;
-    block_begin.assign(1, 0);
+    std::vector<int>& segment_begin =
+        policies.impact == Impact::at_contact ? strip.near_begin : strip.contact_begin;
+    segment_begin.assign(1, 0);
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
     for (int row = rows.first; row <= rows.last; ++row) {
-        for (int column = 0; column < state.grid.boxes_per_side(); column += per_block) {
-            const int last = std::min(column + per_block, state.grid.boxes_per_side()) - 1;
-            search_block(state, candidates, radius, strip.found, row, {column, last});
-            block_begin.push_back(add_found(state, candidates, strip, tally));
+        for (int column = 0; column < state.grid.boxes_per_side(); column += per_segment) {
+            const int last = std::min(column + per_segment, state.grid.boxes_per_side()) - 1;
+            search_segment(state, candidates, radius, strip.found, row, {column, last});
+            segment_begin.push_back(add_found(state, candidates, strip, tally));
         }
     }
-    strip.make_room(block_begin.back(), state.active.per_row());
+    strip.make_room(segment_begin.back(), state.active.per_row());
     for (int row = rows.first; row <= rows.last; ++row) {
         std::fill_n(state.active.row(row), state.active.per_row(), static_cast<unsigned char>(1));
     }

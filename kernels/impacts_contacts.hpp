@@ -21,7 +21,7 @@
 #include "wavefront.hpp"
 #include "way_back.hpp"
 
-// Impact::at_contact with contacts. Each near pair is known of one strip, in a list by blocks as contacts
+// Impact::at_contact with contacts. Each near pair is known of one strip, in a list by segments as contacts
 // are. A sweep has two halves. In the first a strip finds which of its near pairs are pending: of those of
 // which a disc has collided in the sweep before, those that have met; and each disc learns when the earliest
 // of its pending collisions was. In the second those collisions are made that are the earliest of both discs.
@@ -46,30 +46,30 @@ Selection keep_pending(const State<policies>& state, Strip<RealOf<policies.preci
     return pending;
 }
 
-/// The near pairs of blocks that follow one another in memory, from `block` on, which is moved beyond the
-/// last of them: how many one block has, no processor can predict. The blocks are active no longer.
-inline Indices take_run(const int*& block, const int* end, const int* near_begin, unsigned char* marks) {
-    Indices run{near_begin[*block], near_begin[*block]};
-    for (; block != end && near_begin[*block] == run.last; ++block) {
-        marks[*block] = 0;
-        run.last = near_begin[*block + 1];
+/// The near pairs of segments that follow one another in memory, from `segment` on, which is moved beyond the
+/// last of them: how many one segment has, no processor can predict. The segments are active no longer.
+inline Indices take_run(const int*& segment, const int* end, const int* near_begin, unsigned char* marks) {
+    Indices run{near_begin[*segment], near_begin[*segment]};
+    for (; segment != end && near_begin[*segment] == run.last; ++segment) {
+        marks[*segment] = 0;
+        run.last = near_begin[*segment + 1];
     }
     return run;
 }
 
-/// Adds those near pairs of one row's active blocks to `asked` of which a disc has collided in the sweep
+/// Adds those near pairs of one row's active segments to `asked` of which a disc has collided in the sweep
 /// before; in the first sweep, all. Returns how many were looked at. `near_begin` is that of the row's first
-/// block.
+/// segment.
 template <Policies policies>
 [[gnu::always_inline]] inline int add_to_ask(State<policies>& state, Strip<RealOf<policies.precision>>& strip,
                                              int row, const int* near_begin, int sweep, Selection& asked) {
     const auto* const near = strip.near.data();
     const auto* const changed_in = state.changed_in.data();
     unsigned char* const marks = state.active.row(row);
-    const Selection active = active_blocks(marks, state.active.per_row(), strip.blocks);
+    const Selection active = active_segments(marks, state.active.per_row(), strip.segments);
     int looked_at = 0;
-    for (const int* block = active.begin(); block != active.end();) {
-        const Indices run = take_run(block, active.end(), near_begin, marks);
+    for (const int* segment = active.begin(); segment != active.end();) {
+        const Indices run = take_run(segment, active.end(), near_begin, marks);
         looked_at += run.count();
         if (sweep == 0) {
             for (const int k : run) {
@@ -177,7 +177,7 @@ Changes collide_earliest(State<policies>& state, int index, int sweep,
     Changes changes;
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     auto* const changed_in = state.changed_in.data();
-    const auto* const blocks_of_disc = state.blocks_of_disc.data();
+    const auto* const segments_of_disc = state.segments_of_disc.data();
     const auto marker = state.active.marker();
     for (const int k : take_earliest(state, strip)) {
         auto& pair = strip.near[static_cast<std::size_t>(k)];
@@ -192,17 +192,17 @@ Changes collide_earliest(State<policies>& state, int index, int sweep,
         changes += made;
         for (const int disc : {first, second}) {
             changed_in[disc] = sweep;
-            marker.mark(blocks_of_disc[disc]);
+            marker.mark(segments_of_disc[disc]);
         }
         pair.last = pair.time;
     }
     return changes;
 }
 
-/// The near pairs of one block that overlap now, or are a disc and a wall.
+/// The near pairs of one segment that overlap now, or are a disc and a wall.
 template <Policies policies>
 Selection overlapping_now(const State<policies>& state, Strip<RealOf<policies.precision>>& strip,
-                          Indices of_block) {
+                          Indices of_segment) {
     using Both = BothComponents<RealOf<policies.precision>>;
     const auto reach_squared = state.reach_squared();
     const auto* const near = strip.near.data();
@@ -212,30 +212,30 @@ Selection overlapping_now(const State<policies>& state, Strip<RealOf<policies.pr
                Both::load_position(discs[near[k].discs.first]);
     };
     Selection overlapping(strip.selected);
-    for (int k = of_block.first; k < of_block.last; k += 2) {
+    for (int k = of_segment.first; k < of_segment.last; k += 2) {
         const auto one = distance(k);
-        const auto other = distance(std::min(k + 1, of_block.last - 1));
+        const auto other = distance(std::min(k + 1, of_segment.last - 1));
         const auto apart = sums(one * one, other * other) > reach_squared;
         overlapping.add_if(apart[0] == 0, k);
-        overlapping.add_if((apart[1] == 0) & (k + 1 < of_block.last), k + 1);
+        overlapping.add_if((apart[1] == 0) & (k + 1 < of_segment.last), k + 1);
     }
     return overlapping;
 }
 
-/// Makes contacts of the near pairs of a strip that overlap now, and marks the blocks that have some.
+/// Makes contacts of the near pairs of a strip that overlap now, and marks the segments that have some.
 template <Policies policies> void make_contacts(State<policies>& state, int index) {
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
     const int* near_begin = strip.near_begin.data();
-    strip.block_begin.assign(1, 0);
+    strip.contact_begin.assign(1, 0);
     for (int row = rows.first; row <= rows.last; ++row) {
-        for (int block = 0; block < state.active.per_row(); ++block, ++near_begin) {
+        for (int segment = 0; segment < state.active.per_row(); ++segment, ++near_begin) {
             for (const int k : overlapping_now(state, strip, {near_begin[0], near_begin[1]})) {
                 add_contact(state, strip.near[static_cast<std::size_t>(k)].discs, strip);
             }
             const auto end = static_cast<int>(strip.contacts.size());
-            state.active.row(row)[block] = end > strip.block_begin.back();
-            strip.block_begin.push_back(end);
+            state.active.row(row)[segment] = end > strip.contact_begin.back();
+            strip.contact_begin.push_back(end);
         }
     }
 }

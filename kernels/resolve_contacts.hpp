@@ -15,8 +15,8 @@
 // or, in a wavefront, at least two strips lie between them, which is all the farther. The contacts of
 // a strip are between its own discs, and between its last row and the first row of the next strip; so a strip
 // touches discs of itself and of the next one's first row, and no other strip of its parity touches either.
-// It marks blocks of the rows of those discs and of the rows before: from the last row of the strip before to
-// the first row of the next. The next strip of the same parity begins to mark at the last row of the strip
+// It marks segments of the rows of those discs and of the rows before: from the last row of the strip before
+// to the first row of the next. The next strip of the same parity begins to mark at the last row of the strip
 // between, and that is another row, since a strip has two rows or more (but for the last, which none
 // follows). So the result does not depend, to the last bit, on the number of threads.
 
@@ -67,21 +67,21 @@ Changes resolve_contacts(State<policies>& state, const Strip<RealOf<policies.pre
     return changes;
 }
 
-/// Which of the blocks of a row are active, by their marks.
-[[gnu::always_inline]] inline Selection active_blocks(const unsigned char* marks, int blocks,
-                                                      std::span<int> room) {
+/// Which of the segments of a row are active, by their marks.
+[[gnu::always_inline]] inline Selection active_segments(const unsigned char* marks, int segments,
+                                                        std::span<int> room) {
     Selection active(room);
-    for (int block = 0; block < blocks; ++block) {
-        active.add_if(marks[block] != 0, block);
+    for (int segment = 0; segment < segments; ++segment) {
+        active.add_if(marks[segment] != 0, segment);
     }
     return active;
 }
 
-/// Blocks whose contacts are all looked at before the first of them is resolved. With more of them fewer
+/// Segments whose contacts are all looked at before the first of them is resolved. With more of them fewer
 /// predictions fail, but more contacts are looked at too early: it takes more sweeps.
-inline constexpr int blocks_at_once = 4;
+inline constexpr int segments_at_once = 4;
 
-/// What one row of a strip does in a sweep. `first_contact` is that of each block of the row, and of the
+/// What one row of a strip does in a sweep. `first_contact` is that of each segment of the row, and of the
 /// next row's first one.
 template <Policies policies, class OnChange>
 Changes resolve_row(State<policies>& state, Strip<RealOf<policies.precision>>& strip, int row,
@@ -89,37 +89,38 @@ Changes resolve_row(State<policies>& state, Strip<RealOf<policies.precision>>& s
                     const OnChange on_change) {
     Changes changes;
     unsigned char* const marks = state.active.row(row);
-    const Selection active = active_blocks(marks, state.active.per_row(), strip.blocks);
-    for (const int* block = active.begin(); block != active.end();) {
+    const Selection active = active_segments(marks, state.active.per_row(), strip.segments);
+    for (const int* segment = active.begin(); segment != active.end();) {
         Selection colliding(strip.selected);
-        for (const int* const stop = block + std::min<std::ptrdiff_t>(blocks_at_once, active.end() - block);
-             block != stop; ++block) {
+        for (const int* const stop =
+                 segment + std::min<std::ptrdiff_t>(segments_at_once, active.end() - segment);
+             segment != stop; ++segment) {
             if constexpr (policies.worklist == Worklist::active) {
-                marks[*block] = 0;
+                marks[*segment] = 0;
             }
-            changes.attempts += first_contact[*block + 1] - first_contact[*block];
-            look_at_contacts(state, strip, first_contact[*block], first_contact[*block + 1], colliding);
+            changes.attempts += first_contact[*segment + 1] - first_contact[*segment];
+            look_at_contacts(state, strip, first_contact[*segment], first_contact[*segment + 1], colliding);
         }
         changes += resolve_contacts(state, strip, colliding, approaching, on_change);
     }
     return changes;
 }
 
-/// What one strip does in a sweep. All of it, or the blocks with a disc that has changed since they were
+/// What one strip does in a sweep. All of it, or the segments with a disc that has changed since they were
 /// looked at, of each row those that are active when its turn comes: what is left out would change nothing.
 template <Policies policies>
     requires(policies.overlaps == Overlaps::contacts)
 Changes resolve_strip(State<policies>& state, int index, const ApproachToleranceOf<policies>& approaching) {
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     const auto marker = state.active.marker();
-    const auto* const blocks_of_disc = state.blocks_of_disc.data();
+    const auto* const segments_of_disc = state.segments_of_disc.data();
     const auto on_change = [=](int i) {
         if constexpr (policies.worklist == Worklist::active) {
-            marker.mark(blocks_of_disc[i]);
+            marker.mark(segments_of_disc[i]);
         }
     };
     Changes changes;
-    const int* first_contact = strip.block_begin.data();
+    const int* first_contact = strip.contact_begin.data();
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
     for (int row = rows.first; row <= rows.last; ++row, first_contact += state.active.per_row()) {
         changes += resolve_row(state, strip, row, first_contact, approaching, on_change);

@@ -36,14 +36,14 @@ template <class Real> struct OverlapsOf<Overlaps::lists, Real> {
 
 template <class Real> struct OverlapsOf<Overlaps::contacts, Real> {
     std::vector<Strip<Real>> strips;
-    std::vector<ActiveBlocks::Beside> blocks_of_disc;
-    ActiveBlocks active;
+    std::vector<ActiveSegments::Beside> segments_of_disc;
+    ActiveSegments active;
     std::vector<EarliestCollision<Real>> earliest; ///< Impact::at_contact: of each disc
     std::vector<int> changed_in; ///< ditto: of each disc the last sweep in which it collided; -1 before
 
     OverlapsOf(const Grid& grid, int count)
         : strips(static_cast<std::size_t>(grid.strip_count(strip_height(Order::strips)))),
-          blocks_of_disc(static_cast<std::size_t>(count)), active(grid.boxes_per_side()) {}
+          segments_of_disc(static_cast<std::size_t>(count)), active(grid.boxes_per_side()) {}
 };
 
 /// Root of the mean squared speed of the discs.

@@ -100,7 +100,7 @@ template <Policies policies> bool exceeds_cache(const State<policies>& state, co
         return false;
     } else {
         std::size_t bytes =
-            state.discs.size() * (sizeof state.discs.front() + sizeof state.blocks_of_disc.front());
+            state.discs.size() * (sizeof state.discs.front() + sizeof state.segments_of_disc.front());
         for (const auto& strip : state.strips) {
             bytes += strip.contacts.size() * sizeof strip.contacts.front();
         }
