@@ -32,7 +32,7 @@ template <class Real> struct Contact {
 template <class Real> struct NearPair {
     OverlappingDiscs discs;
     Real last; ///< how long before the end of the step they last collided; infinity if they did not
-    Real time; ///< how long before it they came into contact, as they fly now; see way_back.hpp
+    Real time; ///< how long before it they came into contact, as they fly now; see at_contact.hpp
 };
 
 /// A disc near another one, or near a wall, as itself, in the list of the other one.

@@ -129,7 +129,7 @@ inline constexpr int rounds_within_box = 1000;
 
 /// Impact::at_contact: so many sweeps at most take collisions back to their time of contact. What is left is
 /// resolved at the step's end. Dense scenes in steps of a fifth of a radius need six or seven.
-inline constexpr int most_impact_sweeps = 16;
+inline constexpr int most_sweeps_at_contact = 16;
 
 /// When an approaching pair counts as colliding.
 enum class Tolerance {

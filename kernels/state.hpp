@@ -27,7 +27,7 @@ template <class Real> struct OverlapsOf<Overlaps::lists, Real> {
     std::vector<std::vector<NearDisc<Real>>>
         near; ///< Impact::at_contact: for each disc those near it, and near a wall itself
     std::vector<NextCollision<Real>> next; ///< ditto: of each disc
-    std::vector<unsigned char> asked;      ///< ditto: of each disc, whether it looks back in this sweep
+    std::vector<unsigned char> asked;      ///< ditto: of each disc, whether it chooses anew in this sweep
     std::vector<unsigned char> asked_next; ///< ditto: in the next one
 
     OverlapsOf(const Grid& /*grid*/, int count)

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 
+#include "at_contact.hpp"
 #include "collide.hpp"
 #include "contacts.hpp"
 #include "find.hpp"
@@ -17,7 +18,6 @@
 #include "state.hpp"
 #include "sweep.hpp"
 #include "tally.hpp"
-#include "way_back.hpp"
 
 // Impact::at_contact with lists. Each near pair stands in two lists, and each disc chooses the earliest
 // collision of its own. Two discs that choose each other collide.
@@ -37,7 +37,7 @@ namespace carom {
 /// that can have left them, the earliest that comes after the last one of the same two discs. Of several at
 /// the same instant it is that with the disc of the lowest index.
 template <Policies policies>
-Changes look_back(State<policies>& state, int i, const WayBack<RealOf<policies.precision>>& back) {
+Changes choose_next(State<policies>& state, int i, const WayBack<RealOf<policies.precision>>& back) {
     const auto& near = state.near[static_cast<std::size_t>(i)];
     const auto disc = state.discs[static_cast<std::size_t>(i)];
     const auto reach_squared = state.reach_squared();
@@ -92,7 +92,7 @@ void find_near_in_box(State<policies>& state, int row, int column, RealOf<polici
         }
         state.asked[disc] = 1;
         state.asked_next[disc] = 0;
-        tally += look_back(state, i, back);
+        tally += choose_next(state, i, back);
     }
 }
 
@@ -232,7 +232,7 @@ template <Policies policies, class SomeProbe>
 Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const auto back = way_back(state, tuning);
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
-    return sweep_impacts(tuning, probe, [&](int sweep, int threads) {
+    return sweep_at_contact(tuning, probe, [&](int sweep, int threads) {
         Tally work;
         if (sweep > 0) { // `find` has asked them for the first
             state.asked.swap(state.asked_next);
@@ -240,7 +240,7 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
                 std::fill_n(state.asked_next.begin() + first, last - first, static_cast<unsigned char>(0));
             };
             work += for_each_asked(state, threads, tuning, probe, begin,
-                                   [&](int i) { return look_back(state, i, back); });
+                                   [&](int i) { return choose_next(state, i, back); });
         }
         work += for_each_asked(
             state, threads, tuning, probe, [](int, int) {},

@@ -18,7 +18,7 @@
 // each other the way back along its present motion is asked when it came into contact. Both discs then get
 // the velocities that the collision of that moment gives them, and the places to which they have flown with
 // these since. Discs at walls likewise. Here stands how one pair or disc collides so; in which sweeps all of
-// them do, in impacts_contacts.hpp and impacts_lists.hpp.
+// them do, in at_contact_strips.hpp and at_contact_lists.hpp.
 //
 // The order is that of time: a sweep makes those collisions that are the earliest known of both of their
 // discs. No two of these share a disc, so that they may be made in any order, and what a later one would do
@@ -28,9 +28,9 @@
 // disc at the same instant one is made, and the other one asked again: with contacts the first in the order
 // of the strips, with lists that with the disc of the lowest number.)
 //
-// Why it ends: after `most_impact_sweeps`. A pair collides again within a step only later than before, and
-// where the sweeps are not enough, what is left collides at the step's end, without being moved, as all do
-// with Impact::step_end. Why discs stay where they belong: a collision keeps the energy of the pair, and
+// Why it ends: after `most_sweeps_at_contact`. A pair collides again within a step only later than before,
+// and where the sweeps are not enough, what is left collides at the step's end, without being moved, as all
+// do with Impact::step_end. Why discs stay where they belong: a collision keeps the energy of the pair, and
 // moves neither disc farther than the pair flies, one relative to the other, in two steps. Discs that it
 // moves into others not near them, or into a wall, are found in the next step, by the same way back.
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <vector>
 
+#include "at_contact.hpp"
 #include "collide.hpp"
 #include "contacts.hpp"
 #include "find_contacts.hpp"
@@ -19,7 +20,6 @@
 #include "sweep.hpp"
 #include "tally.hpp"
 #include "wavefront.hpp"
-#include "way_back.hpp"
 
 // Impact::at_contact with contacts. Each near pair is known of one strip, in a list by segments as contacts
 // are. A sweep has two halves. In the first a strip finds which of its near pairs are pending: of those of
@@ -263,7 +263,7 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
     const int strips = state.grid.strip_count(strip_height(policies.order));
     const std::vector<StripSweep> order = sweep_order(strips, 2, strips);
     Wavefront wavefront(strips);
-    return sweep_impacts(tuning, probe, [&](int sweep, int threads) {
+    return sweep_at_contact(tuning, probe, [&](int sweep, int threads) {
         return parallel_for<policies.resolve_schedule>(
             threads, static_cast<int>(order.size()), tuning.resolve_chunk, probe,
             [&](int index) {
