@@ -14,7 +14,7 @@
 #include "harness/tests/scenes/random_scenes.hpp"
 #include "harness/verify/checker.hpp"
 #include "harness/verify/rounding.hpp"
-#include "kernels/exact/all_pairs.hpp"
+#include "kernels/tests/all_pairs.hpp"
 #include "kernels/tests/simulate.hpp"
 #include "variants/registry.hpp"
 
