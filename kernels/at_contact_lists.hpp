@@ -37,15 +37,15 @@ namespace carom {
 /// that can have left them, the earliest that comes after the last one of the same two discs. Of several at
 /// the same instant it is that with the disc of the lowest index.
 template <Policies policies>
-Changes choose_next(State<policies>& state, int i, const WayBack<RealOf<policies.precision>>& back) {
+Changes choose_next(State<policies>& state, int i, const WayBackOf<policies>& back) {
     const auto& near = state.near[static_cast<std::size_t>(i)];
-    const auto disc = state.discs[static_cast<std::size_t>(i)];
+    const auto disc = state.disc(i);
     const auto reach_squared = state.reach_squared();
     NextCollision<RealOf<policies.precision>> next;
     for (int entry = 0; entry < std::ssize(near); ++entry) {
         const auto& [other, in_own_box, last] = near[static_cast<std::size_t>(entry)];
         const OverlappingDiscs discs{i, other};
-        const auto& partner = state.discs[static_cast<std::size_t>(other)];
+        const auto& partner = state.disc(other);
         if (!discs.at_wall() && !motion_of(disc, partner, reach_squared).met(back)) {
             continue;
         }
@@ -66,15 +66,14 @@ Changes choose_next(State<policies>& state, int i, const WayBack<RealOf<policies
 /// nobody writes.
 template <Policies policies>
 void find_near_in_box(State<policies>& state, int row, int column, RealOf<policies.precision> radius,
-                      const WayBack<RealOf<policies.precision>>& back, Tally& tally) {
+                      const WayBackOf<policies>& back, Tally& tally) {
     using Real = RealOf<policies.precision>;
     const Real near_squared = (2 * radius) * (2 * radius);
     const bool at_wall = state.grid.at_wall(row, column);
     const auto add = [&](int i, int j, bool in_own_box) {
         constexpr Real never = std::numeric_limits<Real>::infinity();
         state.near[static_cast<std::size_t>(i)].push_back({j, in_own_box, never});
-        tally.overlaps += i != j && overlap(state.discs[static_cast<std::size_t>(i)],
-                                            state.discs[static_cast<std::size_t>(j)], state.reach_squared());
+        tally.overlaps += i != j && overlap(state.disc(i), state.disc(j), state.reach_squared());
     };
     for (const int i : state.discs_in(row, column)) {
         state.near[static_cast<std::size_t>(i)].clear();
@@ -161,8 +160,7 @@ template <Policies policies> void ask_again(State<policies>& state, int i) {
 /// Makes the collision that disc i, which was asked, has chosen, if the other disc has chosen the same one.
 /// If both were asked, it is made when the first of them comes up.
 template <Policies policies, class SomeProbe>
-Changes collide_if_both_choose(State<policies>& state, int i, int sweep,
-                               const WayBack<RealOf<policies.precision>>& back,
+Changes collide_if_both_choose(State<policies>& state, int i, int sweep, const WayBackOf<policies>& back,
                                const ApproachToleranceOf<policies>& approaching, SomeProbe& probe) {
     const auto [time, other, entry] = state.next[static_cast<std::size_t>(i)];
     if (other < 0) {
@@ -189,10 +187,10 @@ void find_left_in_box(State<policies>& state, int row, int column,
                       const ApproachToleranceOf<policies>& approaching, Tally& tally) {
     const auto reach_squared = state.reach_squared();
     const auto add_overlaps = [&](int i, bool in_own_box) {
-        const auto& disc = state.discs[static_cast<std::size_t>(i)];
+        const auto& disc = state.disc(i);
         for (const auto& near : state.near[static_cast<std::size_t>(i)]) {
             if (near.in_own_box == in_own_box && near.other != i &&
-                overlap(disc, state.discs[static_cast<std::size_t>(near.other)], reach_squared)) {
+                overlap(disc, state.disc(near.other), reach_squared)) {
                 state.overlaps[static_cast<std::size_t>(i)].push_back(near.other);
             }
         }

@@ -36,7 +36,7 @@ inline int last_change(OverlappingDiscs discs, const int* changed_in) {
 
 /// Keeps those pending of which no disc has collided in the sweep before.
 template <Policies policies>
-Selection keep_pending(const State<policies>& state, Strip<RealOf<policies.precision>>& strip, int sweep) {
+Selection keep_pending(const State<policies>& state, StripOf<policies>& strip, int sweep) {
     const auto* const near = strip.near.data();
     const auto* const changed_in = state.changed_in.data();
     Selection pending(strip.pending);
@@ -61,8 +61,8 @@ inline Indices take_run(const int*& segment, const int* end, const int* near_beg
 /// before; in the first sweep, all. Returns how many were looked at. `near_begin` is that of the row's first
 /// segment.
 template <Policies policies>
-[[gnu::always_inline]] inline int add_to_ask(State<policies>& state, Strip<RealOf<policies.precision>>& strip,
-                                             int row, const int* near_begin, int sweep, Selection& asked) {
+[[gnu::always_inline]] inline int add_to_ask(State<policies>& state, StripOf<policies>& strip, int row,
+                                             const int* near_begin, int sweep, Selection& asked) {
     const auto* const near = strip.near.data();
     const auto* const changed_in = state.changed_in.data();
     unsigned char* const marks = state.active.row(row);
@@ -101,8 +101,8 @@ template <Policies policies>
 
 /// Of those asked, the near pairs that have come into contact. Discs at a wall are asked later.
 template <Policies policies>
-Selection have_met(const State<policies>& state, const Strip<RealOf<policies.precision>>& strip,
-                   Selection asked, const WayBack<RealOf<policies.precision>>& its_back) {
+Selection have_met(const State<policies>& state, const StripOf<policies>& strip, Selection asked,
+                   const WayBackOf<policies>& its_back) {
     const auto back = its_back; // copies: what is written could alias them
     const auto reach_squared = state.reach_squared();
     const auto* const near = strip.near.data();
@@ -122,7 +122,7 @@ Selection have_met(const State<policies>& state, const Strip<RealOf<policies.pre
 /// Lets both discs of each pending pair know of it, if they know of none before it in this sweep. Times are
 /// counted back from the step's end: the earliest is the largest.
 template <Policies policies>
-void know_earliest(State<policies>& state, const Strip<RealOf<policies.precision>>& strip, int sweep) {
+void know_earliest(State<policies>& state, const StripOf<policies>& strip, int sweep) {
     const auto* const near = strip.near.data();
     for (const int k : strip.pending_pairs()) {
         for (const int disc : {near[k].discs.first, near[k].discs.second}) {
@@ -135,8 +135,7 @@ void know_earliest(State<policies>& state, const Strip<RealOf<policies.precision
 
 /// The first half of a sweep.
 template <Policies policies>
-Changes find_pending(State<policies>& state, int index, int sweep,
-                     const WayBack<RealOf<policies.precision>>& back) {
+Changes find_pending(State<policies>& state, int index, int sweep, const WayBackOf<policies>& back) {
     Changes changes;
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     Selection pending = keep_pending(state, strip, sweep);
@@ -152,8 +151,7 @@ Changes find_pending(State<policies>& state, int index, int sweep,
 }
 
 /// The pending collisions that are the earliest known of both discs. They are pending no longer.
-template <Policies policies>
-Selection take_earliest(const State<policies>& state, Strip<RealOf<policies.precision>>& strip) {
+template <Policies policies> Selection take_earliest(const State<policies>& state, StripOf<policies>& strip) {
     const auto* const near = strip.near.data();
     const auto* const earliest = state.earliest.data();
     Selection taken(strip.selected);
@@ -171,8 +169,7 @@ Selection take_earliest(const State<policies>& state, Strip<RealOf<policies.prec
 
 /// The second half of a sweep. Of two collisions of a disc at one instant the second remains pending.
 template <Policies policies, class SomeProbe>
-Changes collide_earliest(State<policies>& state, int index, int sweep,
-                         const WayBack<RealOf<policies.precision>>& back,
+Changes collide_earliest(State<policies>& state, int index, int sweep, const WayBackOf<policies>& back,
                          const ApproachToleranceOf<policies>& approaching, SomeProbe& probe) {
     Changes changes;
     auto& strip = state.strips[static_cast<std::size_t>(index)];
@@ -201,8 +198,7 @@ Changes collide_earliest(State<policies>& state, int index, int sweep,
 
 /// The near pairs of one segment that overlap now, or are a disc and a wall.
 template <Policies policies>
-Selection overlapping_now(const State<policies>& state, Strip<RealOf<policies.precision>>& strip,
-                          Indices of_segment) {
+Selection overlapping_now(const State<policies>& state, StripOf<policies>& strip, Indices of_segment) {
     using Both = BothComponents<RealOf<policies.precision>>;
     const auto reach_squared = state.reach_squared();
     const auto* const near = strip.near.data();

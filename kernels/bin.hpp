@@ -31,7 +31,7 @@ void bin(State<policies>& state, const Tuning& /*tuning*/, SomeProbe& /*probe*/)
     for (int first = 0; first < state.count(); first += at_once) {
         const int last = std::min(first + at_once, state.count());
         for (int i = first; i < last; ++i) {
-            const auto& disc = state.discs[static_cast<std::size_t>(i)];
+            const auto& disc = state.disc(i);
             const int box = state.grid.box_of(state.grid.coordinate(disc.y), state.grid.coordinate(disc.x));
             box_of_disc[static_cast<std::size_t>(i - first)] = &state.boxes[static_cast<std::size_t>(box)];
             __builtin_prefetch(&state.boxes[static_cast<std::size_t>(box)]);

@@ -103,7 +103,7 @@ template <Policies policies> struct Candidates {
 /// such a pair never collides, and is no contact.
 template <Policies policies>
 [[gnu::always_inline]] inline bool add_contact(const State<policies>& state, OverlappingDiscs pair,
-                                               Strip<typename State<policies>::Real>& strip) {
+                                               StripOf<policies>& strip) {
     using Real = typename State<policies>::Real;
     constexpr bool surely_overlap = policies.search == Search::exact && policies.impact == Impact::step_end;
     if (pair.at_wall()) {
@@ -111,8 +111,8 @@ template <Policies policies>
         strip.contacts.push_back({pair, {nan, nan}});
         return false;
     }
-    const auto& first = state.discs[static_cast<std::size_t>(pair.first)];
-    const auto& second = state.discs[static_cast<std::size_t>(pair.second)];
+    const auto& first = state.disc(pair.first);
+    const auto& second = state.disc(pair.second);
     const Real dx = second.x - first.x;
     const Real dy = second.y - first.y;
     const Real distance_squared = dx * dx + dy * dy;
@@ -127,8 +127,7 @@ template <Policies policies>
 }
 
 /// Turns the candidates that do overlap into contacts; returns the number of pairs.
-template <Policies policies>
-Tally add_contacts(const State<policies>& state, Strip<typename State<policies>::Real>& strip) {
+template <Policies policies> Tally add_contacts(const State<policies>& state, StripOf<policies>& strip) {
     Tally tally;
     for (const OverlappingDiscs pair : strip.found) {
         tally.overlaps += add_contact(state, pair, strip);
@@ -139,13 +138,13 @@ Tally add_contacts(const State<policies>& state, Strip<typename State<policies>:
 /// Turns the candidates into pairs that are near each other; returns how many of them overlap.
 template <Policies policies>
 Tally add_near_pairs(const State<policies>& state, RealOf<policies.precision> search_reach_squared,
-                     Strip<RealOf<policies.precision>>& strip) {
+                     StripOf<policies>& strip) {
     using Real = typename State<policies>::Real;
     constexpr Real never = std::numeric_limits<Real>::infinity();
     Tally tally;
     for (const OverlappingDiscs pair : strip.found) {
-        const auto& first = state.discs[static_cast<std::size_t>(pair.first)];
-        const auto& second = state.discs[static_cast<std::size_t>(pair.second)];
+        const auto& first = state.disc(pair.first);
+        const auto& second = state.disc(pair.second);
         const Real dx = second.x - first.x;
         const Real dy = second.y - first.y;
         const Real distance_squared = dx * dx + dy * dy;
@@ -200,8 +199,8 @@ void search_segment(State<policies>& state, const Candidates<policies>& candidat
 /// What the candidates become: contacts at once or, if collisions are taken back to their time of contact
 /// first, pairs that are near each other. Returns how many are known of the strip by now.
 template <Policies policies>
-int add_found(const State<policies>& state, const Candidates<policies>& candidates,
-              Strip<typename State<policies>::Real>& strip, Tally& tally) {
+int add_found(const State<policies>& state, const Candidates<policies>& candidates, StripOf<policies>& strip,
+              Tally& tally) {
     if constexpr (policies.impact == Impact::at_contact) {
         tally += add_near_pairs(state, candidates.reach_squared, strip);
         return static_cast<int>(strip.near.size());

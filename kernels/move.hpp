@@ -32,7 +32,7 @@ void move(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const int iterations = (count + discs_at_a_time - 1) / discs_at_a_time;
     parallel_for<Schedule::static_>(tuning.threads, iterations, 1, probe, [&](int k) {
         for (int i = k * discs_at_a_time; i < std::min((k + 1) * discs_at_a_time, count); ++i) {
-            BasicDisc<Real>& disc = state.discs[static_cast<std::size_t>(i)];
+            BasicDisc<Real>& disc = state.disc(i);
             disc.x += disc.vx * dt;
             disc.y += disc.vy * dt;
             state.box_of_disc[static_cast<std::size_t>(i)] =

@@ -25,8 +25,8 @@ namespace carom {
 /// Adds those of the contacts [begin, end) of a strip that may collide to `colliding`.
 template <Policies policies>
 [[gnu::always_inline]] inline void look_at_contacts(const State<policies>& state,
-                                                    const Strip<RealOf<policies.precision>>& strip, int begin,
-                                                    int end, Selection& colliding) {
+                                                    const StripOf<policies>& strip, int begin, int end,
+                                                    Selection& colliding) {
     const auto* const discs = state.discs.data();
     const auto* const contacts = strip.contacts.data();
     const auto approach = [&](int k) {
@@ -44,9 +44,8 @@ template <Policies policies>
 /// Resolves those of the contacts that still collide, in their order. `on_change(i)` is called for each disc
 /// changed.
 template <Policies policies, class OnChange>
-Changes resolve_contacts(State<policies>& state, const Strip<RealOf<policies.precision>>& strip,
-                         Selection colliding, const ApproachToleranceOf<policies>& approaching,
-                         const OnChange on_change) {
+Changes resolve_contacts(State<policies>& state, const StripOf<policies>& strip, Selection colliding,
+                         const ApproachToleranceOf<policies>& approaching, const OnChange on_change) {
     Changes changes;
     auto* const discs = state.discs.data();
     const auto* const contacts = strip.contacts.data();
@@ -84,9 +83,8 @@ inline constexpr int segments_at_once = 4;
 /// What one row of a strip does in a sweep. `first_contact` is that of each segment of the row, and of the
 /// next row's first one.
 template <Policies policies, class OnChange>
-Changes resolve_row(State<policies>& state, Strip<RealOf<policies.precision>>& strip, int row,
-                    const int* first_contact, const ApproachToleranceOf<policies>& approaching,
-                    const OnChange on_change) {
+Changes resolve_row(State<policies>& state, StripOf<policies>& strip, int row, const int* first_contact,
+                    const ApproachToleranceOf<policies>& approaching, const OnChange on_change) {
     Changes changes;
     unsigned char* const marks = state.active.row(row);
     const Selection active = active_segments(marks, state.active.per_row(), strip.segments);

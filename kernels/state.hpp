@@ -83,6 +83,8 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
         steps_flown = 0;
     }
 
+    BasicDisc<Real>& disc(int i) { return this->discs[static_cast<std::size_t>(i)]; }
+    const BasicDisc<Real>& disc(int i) const { return this->discs[static_cast<std::size_t>(i)]; }
     int count() const { return static_cast<int>(this->discs.size()); }
     Real reach_squared() const { return (2 * radius) * (2 * radius); }
 
@@ -120,14 +122,14 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
     }
 };
 
+template <Policies policies> using StripOf = Strip<RealOf<policies.precision>>;
 template <Policies policies> using ApproachToleranceOf = ApproachTolerance<RealOf<policies.precision>>;
 
 /// The discs in double, disc i at index i.
 template <Policies policies> std::vector<Disc> discs_by_number(const State<policies>& state) {
     std::vector<Disc> discs(state.discs.size());
     for (int i = 0; i < state.count(); ++i) {
-        discs[static_cast<std::size_t>(state.number(i))] =
-            disc_cast<double>(state.discs[static_cast<std::size_t>(i)]);
+        discs[static_cast<std::size_t>(state.number(i))] = disc_cast<double>(state.disc(i));
     }
     return discs;
 }
