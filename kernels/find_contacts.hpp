@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -157,22 +158,35 @@ Tally add_near_pairs(const State<policies>& state, RealOf<policies.precision> se
     return tally;
 }
 
-/// Searches one segment of a row for partners of its discs among the discs after them: in storage order the
-/// boxes of lower rows hold only discs before, and so does a disc's own box up to itself, so that half the
-/// neighbourhood is enough. Disc by disc, since most boxes hold one or none.
+/// The discs after disc i of box (row, column) among which its partners are: in its own row of boxes, and in
+/// the next one. In storage order the boxes of lower rows hold only discs before, and so does a disc's own
+/// box up to itself, so that half the neighbourhood is enough. `box_begin` is that of the row's first box.
+template <Neighbourhood neighbourhood, class Real>
+[[gnu::always_inline]] inline std::array<Indices, 2>
+discs_after(int i, const BasicDisc<Real>& disc, const Grid& grid, int row, int column, const int* box_begin) {
+    const BoxRange near = Look<neighbourhood>::along(grid, disc.x, column);
+    const Indices own{i + 1, box_begin[near.last + 1]};
+    Indices next{0, 0};
+    if (Look<neighbourhood>::along(grid, disc.y, row).last > row) {
+        const int* const next_begin = box_begin + grid.boxes_per_side();
+        next = {next_begin[near.first], next_begin[near.last + 1]};
+    }
+    return {own, next};
+}
+
+/// Searches one segment of a row for partners of its discs. Disc by disc, since most boxes hold one or none.
 template <Policies policies>
 void search_segment(State<policies>& state, const Candidates<policies>& candidates,
                     RealOf<policies.precision> radius, FoundPairs& found, int row, BoxRange columns) {
     found.clear();
     const Grid grid = state.grid; // a copy: its integers could alias those that are stored
     [[maybe_unused]] const ActiveSegments::Segment segment = state.active.segment(row, columns);
-    const int row_begin = grid.box_of(row, 0);
-    const int boxes_per_side = grid.boxes_per_side();
-    const int* const box_begin = state.box_begin.data();
-    const int end = box_begin[row_begin + columns.last + 1];
-    for (int i = box_begin[row_begin + columns.first]; i < end; ++i) {
+    const int first_box = grid.box_of(row, 0);
+    const int* const box_begin = state.box_begin.data() + first_box;
+    const int end = box_begin[columns.last + 1];
+    for (int i = box_begin[columns.first]; i < end; ++i) {
         const auto disc = static_cast<std::size_t>(i);
-        const int column = state.box_of_disc[disc] - row_begin;
+        const int column = state.box_of_disc[disc] - first_box;
         if constexpr (policies.worklist == Worklist::active) {
             state.segments_of_disc[disc] = segment.beside(column);
         }
@@ -185,13 +199,8 @@ void search_segment(State<policies>& state, const Candidates<policies>& candidat
             *pair = {i, i};
             found.end_at(pair + 1);
         }
-        const BoxRange near = Look<policies.neighbourhood>::along(grid, state.discs[disc].x, column);
-        const Indices own{i + 1, box_begin[row_begin + near.last + 1]};
-        Indices next{0, 0};
-        if (Look<policies.neighbourhood>::along(grid, state.discs[disc].y, row).last > row) {
-            const int next_row_begin = row_begin + boxes_per_side;
-            next = {box_begin[next_row_begin + near.first], box_begin[next_row_begin + near.last + 1]};
-        }
+        const auto [own, next] =
+            discs_after<policies.neighbourhood>(i, state.discs[disc], grid, row, column, box_begin);
         found.end_at(candidates.append(i, own, next, found.room(own.count() + next.count() + 12)));
     }
 }
