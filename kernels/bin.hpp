@@ -31,7 +31,7 @@ void bin(State<policies>& state, const Tuning& /*tuning*/, SomeProbe& /*probe*/)
     for (int first = 0; first < state.count(); first += at_once) {
         const int last = std::min(first + at_once, state.count());
         for (int i = first; i < last; ++i) {
-            const auto& disc = state.discs[static_cast<std::size_t>(i)];
+            const auto& disc = state.disc(i);
             const int box = state.grid.box_of(state.grid.coordinate(disc.y), state.grid.coordinate(disc.x));
             box_of_disc[static_cast<std::size_t>(i - first)] = &state.boxes[static_cast<std::size_t>(box)];
             __builtin_prefetch(&state.boxes[static_cast<std::size_t>(box)]);
@@ -50,10 +50,7 @@ inline int share(int part, int parts, int count) {
 /// Runs `body(part)` for each of as many parts as there are threads.
 template <class SomeProbe, class Body>
 void for_each_part(const Tuning& tuning, SomeProbe& probe, const Body& body) {
-    parallel_for<Schedule::static_>(tuning.threads, tuning.threads, 1, probe, [&](int part) {
-        body(part);
-        return Tally{};
-    });
+    parallel_for<Schedule::static_>(tuning.threads, tuning.threads, 1, probe, body);
 }
 
 /// The boxes from the first to the last of those of some discs.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "grid.hpp"
@@ -30,7 +32,7 @@ template <class Real> struct Contact {
 template <class Real> struct NearPair {
     OverlappingDiscs discs;
     Real last; ///< how long before the end of the step they last collided; infinity if they did not
-    Real time; ///< how long before it they came into contact, as they fly now; see way_back.hpp
+    Real time; ///< how long before it they came into contact, as they fly now; see at_contact.hpp
 };
 
 /// A disc near another one, or near a wall, as itself, in the list of the other one.
@@ -65,7 +67,10 @@ class FoundPairs {
         return pairs_.data() + size_;
     }
 
-    void end_at(const OverlappingDiscs* end) { size_ = static_cast<std::size_t>(end - pairs_.data()); }
+    void end_at(const OverlappingDiscs* end) {
+        size_ = static_cast<std::size_t>(end - pairs_.data());
+        assert(size_ <= pairs_.size());
+    }
 
   private:
     std::vector<OverlappingDiscs> pairs_;
@@ -76,13 +81,27 @@ class FoundPairs {
 /// disc lies in the same strip or in the first row of the next.
 template <class Real> struct Strip {
     std::vector<Contact<Real>> contacts;
-    std::vector<int> block_begin;     ///< of each block of boxes, its first contact; at the end, their number
-    FoundPairs found;                 ///< of one block, while it is searched
+    std::vector<int> contact_begin;   ///< of each segment, its first contact; at the end, their number
+    FoundPairs found;                 ///< of one segment, while it is searched
     std::vector<NearPair<Real>> near; ///< Impact::at_contact: what the search finds, before contacts are made
-    std::vector<int> pending; ///< ditto: near pairs that are to collide, in a sweep; room for one more
-    int pending_count = 0;
-    std::vector<int> blocks_to_look_at; ///< blocks of one row to look at, in a sweep; room for one more
-    std::vector<int> colliding;         ///< contacts that may collide, in a sweep; room for four more
+    std::vector<int> near_begin; ///< ditto: of each segment, its first near pair; at the end, their number
+    std::vector<int> pending;    ///< ditto: room for the numbers of all near pairs and one more
+    int pending_count = 0;       ///< ditto: how many of them are pending
+    std::vector<int> segments;   ///< room to select segments of one row in
+    std::vector<int> selected;   ///< room to select contacts or near pairs in
+
+    /// Impact::at_contact: the near pairs that have come into contact and have not collided yet.
+    std::span<const int> pending_pairs() const {
+        return {pending.data(), static_cast<std::size_t>(pending_count)};
+    }
+
+    /// Makes room for all that is selected in a sweep over so many near pairs or contacts.
+    void make_room(int count, int segments_per_row) {
+        selected.resize(static_cast<std::size_t>(count) + 4);
+        segments.resize(static_cast<std::size_t>(segments_per_row) + 1);
+        pending.resize(near.size() + 1);
+        pending_count = 0;
+    }
 };
 
 /// Of a disc, the earliest of the collisions that are known of it in a sweep.
@@ -91,34 +110,34 @@ template <class Real> struct EarliestCollision {
     int known_in = -1; ///< the sweep in which it is known
 };
 
-/// Which blocks of boxes have contacts to look at: with Worklist::all always all of them. A block is a run of
-/// boxes of one row. Before the first row stands a row of blocks that have none, so that every row has one
+/// Which segments have contacts to look at: with Worklist::all always all of them. A segment is a run of
+/// boxes of one row. Before the first row stands a row of segments that have none, so that every row has one
 /// before it.
-class ActiveBlocks {
+class ActiveSegments {
   public:
-    static constexpr int boxes_per_block = 16;
+    static constexpr int boxes_per_segment = 16;
 
-    explicit ActiveBlocks(int boxes_per_side)
-        : per_row_((boxes_per_side + boxes_per_block - 1) / boxes_per_block),
+    explicit ActiveSegments(int boxes_per_side)
+        : per_row_((boxes_per_side + boxes_per_segment - 1) / boxes_per_segment),
           stride_((per_row_ + cache_line - 1) / cache_line * cache_line), last_column_(boxes_per_side - 1),
           marks_(static_cast<std::size_t>(stride_) * (static_cast<std::size_t>(boxes_per_side) + 1)) {}
 
     int per_row() const { return per_row_; }
 
-    /// The mark of the first block of a row; those of the row's other blocks follow.
+    /// The mark of the first segment of a row; those of the row's other segments follow.
     unsigned char* row(int row) { return marks_.data() + static_cast<std::ptrdiff_t>(row + 1) * stride_; }
 
-    /// Of a disc, the marks of its own block and of those that the boxes beside its own lie in: two at most,
-    /// and the same one twice for most discs.
+    /// Of a disc, the marks of its own segment and of those that the boxes beside its own lie in: two at
+    /// most, and the same one twice for most discs.
     struct Beside {
         int left;
         int right;
     };
 
-    /// The same for every column of a block.
-    struct Block {
+    /// The same for every column of a segment.
+    struct Segment {
         int mark;
-        int left_edge; ///< the column whose left neighbour lies in another block, or -1
+        int left_edge; ///< the column whose left neighbour lies in another segment, or -1
         int right_edge;
 
         Beside beside(int column) const {
@@ -127,23 +146,24 @@ class ActiveBlocks {
         }
     };
 
-    /// `columns` are those of the block.
-    Block block(int row, BoxRange columns) const {
-        return {.mark = (row + 1) * stride_ + columns.first / boxes_per_block,
+    /// `columns` are those of the segment.
+    Segment segment(int row, BoxRange columns) const {
+        return {.mark = (row + 1) * stride_ + columns.first / boxes_per_segment,
                 .left_edge = columns.first > 0 ? columns.first : -1,
                 .right_edge = columns.last < last_column_ ? columns.last : -1};
     }
 
-    /// Marks blocks. A copy of what that takes, which can stay in registers: a byte may alias anything, so
+    /// Marks segments. A copy of what that takes, which can stay in registers: a byte may alias anything, so
     /// that after a store through it the members would be loaded again.
     struct Marker {
         unsigned char* marks;
         std::ptrdiff_t stride;
 
-        /// Marks every block that can hold a contact of that disc: as the first one, in its own box; as the
+        /// Marks every segment that can hold a contact of that disc: as the first one, in its own box; as the
         /// second, in the box to the left or one of the three below. (The box to the right can hold none, but
         /// to leave it out would take longer.)
         void mark(Beside beside) const {
+            assert(beside.left >= stride && beside.right >= stride);
             unsigned char* const below = marks - stride;
             marks[beside.left] = 1;
             marks[beside.right] = 1;

@@ -10,6 +10,7 @@
 #include "policies.hpp"
 #include "resolve_lists.hpp"
 #include "state.hpp"
+#include "tally.hpp"
 
 namespace carom {
 
@@ -25,7 +26,7 @@ template <> struct Look<Neighbourhood::nine> {
 
 template <> struct Look<Neighbourhood::four> {
     static BoxRange along(const Grid& grid, double position, int index) {
-        const int other = std::clamp(index + grid.reach(position), 0, grid.boxes_per_side() - 1);
+        const int other = std::clamp(index + grid.nearer_side(position), 0, grid.boxes_per_side() - 1);
         return {std::min(index, other), std::max(index, other)};
     }
 };
@@ -65,10 +66,10 @@ void for_each_pair_within(const State<policies>& state, int row, int column,
                           RealOf<policies.precision> reach_squared, const OnPair& on_pair) {
     const auto& own = state.discs_in(row, column);
     for (auto i = own.begin(); i != own.end(); ++i) {
-        const auto& disc = state.discs[static_cast<std::size_t>(*i)];
+        const auto& disc = state.disc(*i);
         auto j = i;
         for (++j; j != own.end(); ++j) {
-            if (overlap(disc, state.discs[static_cast<std::size_t>(*j)], reach_squared)) {
+            if (overlap(disc, state.disc(*j), reach_squared)) {
                 on_pair(*i, *j);
             }
         }
@@ -80,10 +81,10 @@ void for_each_pair_within(const State<policies>& state, int row, int column,
 template <Policies policies, class OnOther>
 void for_each_other_beyond(const State<policies>& state, int i, int row, int column,
                            RealOf<policies.precision> reach_squared, const OnOther& on_other) {
-    const auto disc = state.discs[static_cast<std::size_t>(i)];
+    const auto disc = state.disc(i);
     const auto look = [&](int other_row, int other_column) {
         for (const int j : state.discs_in(other_row, other_column)) {
-            if (overlap(disc, state.discs[static_cast<std::size_t>(j)], reach_squared)) {
+            if (overlap(disc, state.disc(j), reach_squared)) {
                 on_other(j);
             }
         }
@@ -105,8 +106,7 @@ void find_within_box(State<policies>& state, int row, int column,
         state.overlaps[static_cast<std::size_t>(j)].push_back(i);
         if constexpr (policies.self_contained == SelfContained::on) {
             ++tally.pair_attempts;
-            tally.pair_resolves += resolve_pair(state.discs[static_cast<std::size_t>(i)],
-                                                state.discs[static_cast<std::size_t>(j)], approaching);
+            tally.pair_resolves += resolve_pair(state.disc(i), state.disc(j), approaching);
         }
     });
 }
@@ -135,7 +135,7 @@ template <Policies policies> std::int64_t find_beyond_box(State<policies>& state
         auto& overlaps = state.overlaps[static_cast<std::size_t>(i)];
         for_each_other_beyond(state, i, row, column, reach_squared, [&](int j) { overlaps.push_back(j); });
         state.overlaps_wall[static_cast<std::size_t>(i)] =
-            at_wall && overlaps_wall(state.discs[static_cast<std::size_t>(i)], state.side, state.radius);
+            at_wall && overlaps_wall(state.disc(i), state.side, state.radius);
         entries += static_cast<std::int64_t>(overlaps.size());
     }
     return entries;
@@ -163,7 +163,7 @@ template <Policies policies, class SomeProbe>
 Tally find(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     const int boxes_per_side = state.grid.boxes_per_side();
-    Tally tally = parallel_for_boxes<policies.find_schedule>(
+    Tally tally = parallel_for_boxes<policies.find_schedule, Tally>(
         tuning.threads, boxes_per_side, boxes_per_side, tuning.find_chunk, probe,
         [&](int row, int column, Tally& sum) {
             look_ahead_to_find(state, row, column);

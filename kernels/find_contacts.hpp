@@ -1,9 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -15,6 +18,7 @@
 #include "policies.hpp"
 #include "state.hpp"
 #include "storage.hpp"
+#include "tally.hpp"
 
 namespace carom {
 
@@ -27,7 +31,8 @@ template <Policies policies> struct Candidates {
     const float* y;
     Real reach_squared;
     float filter_reach_squared;
-    bool sparse; ///< most discs overlap none: then it pays to ask first
+    bool sparse;             ///< most discs overlap none: then it pays to ask first
+    std::ptrdiff_t readable; ///< so many of `x` and `y`, for assertions
 
     /// Of centres within twice `radius`.
     Candidates(const State<policies>& state, Real radius)
@@ -35,7 +40,8 @@ template <Policies policies> struct Candidates {
           reach_squared((2 * radius) * (2 * radius)),
           filter_reach_squared(carom::filter_reach_squared(state.side, radius)),
           sparse(static_cast<Real>(state.count()) * (state.radius * state.radius) <
-                 state.side * state.side / 32) {}
+                 state.side * state.side / 32),
+          readable(std::ssize(state.near_x)) {}
 
     /// Writes disc i with each disc that may overlap it, of `own` and of `next`, to `found`, which has room
     /// for all of them and twelve more; returns the end. Without a branch on the outcome or on how many they
@@ -77,6 +83,7 @@ template <Policies policies> struct Candidates {
 
     /// Of the four discs from j on those before `end` that may overlap disc i.
     unsigned may_overlap(int i, int j, int end) const {
+        assert(j + 4 <= readable);
         return carom::may_overlap(x + j, y + j, x[i], y[i], filter_reach_squared, end - j);
     }
 
@@ -97,7 +104,7 @@ template <Policies policies> struct Candidates {
 /// such a pair never collides, and is no contact.
 template <Policies policies>
 [[gnu::always_inline]] inline bool add_contact(const State<policies>& state, OverlappingDiscs pair,
-                                               Strip<typename State<policies>::Real>& strip) {
+                                               StripOf<policies>& strip) {
     using Real = typename State<policies>::Real;
     constexpr bool surely_overlap = policies.search == Search::exact && policies.impact == Impact::step_end;
     if (pair.at_wall()) {
@@ -105,8 +112,8 @@ template <Policies policies>
         strip.contacts.push_back({pair, {nan, nan}});
         return false;
     }
-    const auto& first = state.discs[static_cast<std::size_t>(pair.first)];
-    const auto& second = state.discs[static_cast<std::size_t>(pair.second)];
+    const auto& first = state.disc(pair.first);
+    const auto& second = state.disc(pair.second);
     const Real dx = second.x - first.x;
     const Real dy = second.y - first.y;
     const Real distance_squared = dx * dx + dy * dy;
@@ -121,8 +128,7 @@ template <Policies policies>
 }
 
 /// Turns the candidates that do overlap into contacts; returns the number of pairs.
-template <Policies policies>
-Tally add_contacts(const State<policies>& state, Strip<typename State<policies>::Real>& strip) {
+template <Policies policies> Tally add_contacts(const State<policies>& state, StripOf<policies>& strip) {
     Tally tally;
     for (const OverlappingDiscs pair : strip.found) {
         tally.overlaps += add_contact(state, pair, strip);
@@ -133,13 +139,13 @@ Tally add_contacts(const State<policies>& state, Strip<typename State<policies>:
 /// Turns the candidates into pairs that are near each other; returns how many of them overlap.
 template <Policies policies>
 Tally add_near_pairs(const State<policies>& state, RealOf<policies.precision> search_reach_squared,
-                     Strip<RealOf<policies.precision>>& strip) {
+                     StripOf<policies>& strip) {
     using Real = typename State<policies>::Real;
     constexpr Real never = std::numeric_limits<Real>::infinity();
     Tally tally;
     for (const OverlappingDiscs pair : strip.found) {
-        const auto& first = state.discs[static_cast<std::size_t>(pair.first)];
-        const auto& second = state.discs[static_cast<std::size_t>(pair.second)];
+        const auto& first = state.disc(pair.first);
+        const auto& second = state.disc(pair.second);
         const Real dx = second.x - first.x;
         const Real dy = second.y - first.y;
         const Real distance_squared = dx * dx + dy * dy;
@@ -152,24 +158,37 @@ Tally add_near_pairs(const State<policies>& state, RealOf<policies.precision> se
     return tally;
 }
 
-/// Searches one block of boxes of a row for partners of its discs among the discs after them: in storage
-/// order the boxes of lower rows hold only discs before, and so does a disc's own box up to itself, so that
-/// half the neighbourhood is enough. Disc by disc, since most boxes hold one or none.
+/// The discs after disc i of box (row, column) among which its partners are: in its own row of boxes, and in
+/// the next one. In storage order the boxes of lower rows hold only discs before, and so does a disc's own
+/// box up to itself, so that half the neighbourhood is enough. `box_begin` is that of the row's first box.
+template <Neighbourhood neighbourhood, class Real>
+[[gnu::always_inline]] inline std::array<Indices, 2>
+discs_after(int i, const BasicDisc<Real>& disc, const Grid& grid, int row, int column, const int* box_begin) {
+    const BoxRange near = Look<neighbourhood>::along(grid, disc.x, column);
+    const Indices own{i + 1, box_begin[near.last + 1]};
+    Indices next{0, 0};
+    if (Look<neighbourhood>::along(grid, disc.y, row).last > row) {
+        const int* const next_begin = box_begin + grid.boxes_per_side();
+        next = {next_begin[near.first], next_begin[near.last + 1]};
+    }
+    return {own, next};
+}
+
+/// Searches one segment of a row for partners of its discs. Disc by disc, since most boxes hold one or none.
 template <Policies policies>
-void search_block(State<policies>& state, const Candidates<policies>& candidates,
-                  RealOf<policies.precision> radius, FoundPairs& found, int row, BoxRange columns) {
+void search_segment(State<policies>& state, const Candidates<policies>& candidates,
+                    RealOf<policies.precision> radius, FoundPairs& found, int row, BoxRange columns) {
     found.clear();
     const Grid grid = state.grid; // a copy: its integers could alias those that are stored
-    [[maybe_unused]] const ActiveBlocks::Block block = state.active.block(row, columns);
-    const int row_begin = grid.box_of(row, 0);
-    const int boxes_per_side = grid.boxes_per_side();
-    const int* const box_begin = state.box_begin.data();
-    const int end = box_begin[row_begin + columns.last + 1];
-    for (int i = box_begin[row_begin + columns.first]; i < end; ++i) {
+    [[maybe_unused]] const ActiveSegments::Segment segment = state.active.segment(row, columns);
+    const int first_box = grid.box_of(row, 0);
+    const int* const box_begin = state.box_begin.data() + first_box;
+    const int end = box_begin[columns.last + 1];
+    for (int i = box_begin[columns.first]; i < end; ++i) {
         const auto disc = static_cast<std::size_t>(i);
-        const int column = state.box_of_disc[disc] - row_begin;
+        const int column = state.box_of_disc[disc] - first_box;
         if constexpr (policies.worklist == Worklist::active) {
-            state.blocks_of_disc[disc] = block.beside(column);
+            state.segments_of_disc[disc] = segment.beside(column);
         }
         if constexpr (policies.impact == Impact::at_contact) {
             state.earliest[disc] = {};
@@ -180,13 +199,8 @@ void search_block(State<policies>& state, const Candidates<policies>& candidates
             *pair = {i, i};
             found.end_at(pair + 1);
         }
-        const BoxRange near = Look<policies.neighbourhood>::along(grid, state.discs[disc].x, column);
-        const Indices own{i + 1, box_begin[row_begin + near.last + 1]};
-        Indices next{0, 0};
-        if (Look<policies.neighbourhood>::along(grid, state.discs[disc].y, row).last > row) {
-            const int next_row_begin = row_begin + boxes_per_side;
-            next = {box_begin[next_row_begin + near.first], box_begin[next_row_begin + near.last + 1]};
-        }
+        const auto [own, next] =
+            discs_after<policies.neighbourhood>(i, state.discs[disc], grid, row, column, box_begin);
         found.end_at(candidates.append(i, own, next, found.room(own.count() + next.count() + 12)));
     }
 }
@@ -194,8 +208,8 @@ void search_block(State<policies>& state, const Candidates<policies>& candidates
 /// What the candidates become: contacts at once or, if collisions are taken back to their time of contact
 /// first, pairs that are near each other. Returns how many are known of the strip by now.
 template <Policies policies>
-int add_found(const State<policies>& state, const Candidates<policies>& candidates,
-              Strip<typename State<policies>::Real>& strip, Tally& tally) {
+int add_found(const State<policies>& state, const Candidates<policies>& candidates, StripOf<policies>& strip,
+              Tally& tally) {
     if constexpr (policies.impact == Impact::at_contact) {
         tally += add_near_pairs(state, candidates.reach_squared, strip);
         return static_cast<int>(strip.near.size());
@@ -207,27 +221,24 @@ int add_found(const State<policies>& state, const Candidates<policies>& candidat
 
 template <Policies policies>
 Tally find_in_strip(State<policies>& state, int index, RealOf<policies.precision> radius) {
-    constexpr int per_block = ActiveBlocks::boxes_per_block;
+    constexpr int per_segment = ActiveSegments::boxes_per_segment;
     Tally tally;
     const Candidates<policies> candidates(state, radius);
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     strip.contacts.clear();
     strip.near.clear();
-    strip.block_begin.assign(1, 0);
+    std::vector<int>& segment_begin =
+        policies.impact == Impact::at_contact ? strip.near_begin : strip.contact_begin;
+    segment_begin.assign(1, 0);
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
     for (int row = rows.first; row <= rows.last; ++row) {
-        for (int column = 0; column < state.grid.boxes_per_side(); column += per_block) {
-            const int last = std::min(column + per_block, state.grid.boxes_per_side()) - 1;
-            search_block(state, candidates, radius, strip.found, row, {column, last});
-            strip.block_begin.push_back(add_found(state, candidates, strip, tally));
+        for (int column = 0; column < state.grid.boxes_per_side(); column += per_segment) {
+            const int last = std::min(column + per_segment, state.grid.boxes_per_side()) - 1;
+            search_segment(state, candidates, radius, strip.found, row, {column, last});
+            segment_begin.push_back(add_found(state, candidates, strip, tally));
         }
     }
-    strip.blocks_to_look_at.resize(static_cast<std::size_t>(state.active.per_row()) + 1);
-    strip.colliding.resize(static_cast<std::size_t>(strip.block_begin.back()) + 4);
-    if constexpr (policies.impact == Impact::at_contact) {
-        strip.pending.resize(strip.near.size() + 1);
-        strip.pending_count = 0;
-    }
+    strip.make_room(segment_begin.back(), state.active.per_row());
     for (int row = rows.first; row <= rows.last; ++row) {
         std::fill_n(state.active.row(row), state.active.per_row(), static_cast<unsigned char>(1));
     }

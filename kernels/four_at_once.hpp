@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
 
 // Four discs or contacts at a time, or two pairs, in registers, by GNU's vectors and one instruction of its
 // own. A mask is -1 where something is true and 0 elsewhere; a bitmask has a bit for each of the four, that
@@ -60,6 +62,47 @@ inline FourInts compressed_indices(int first, unsigned bitmask) {
     std::memcpy(&indices, compress_table.indices[bitmask].data(), sizeof indices);
     return indices + first;
 }
+
+/// Numbers selected from many, in their order, in memory that belongs to somebody else. No branch depends on
+/// what is selected, which no processor can predict: each candidate is written behind the last one selected,
+/// where the next one overwrites it if it is not. So there must be room for one more than are selected, or
+/// for four more where candidates come four at a time.
+class Selection {
+  public:
+    explicit Selection(std::span<int> room)
+        : begin_(room.data()), end_(begin_), limit_(begin_ + room.size()) {}
+
+    /// One of some of the others, in their place: what is written is never ahead of what is still to be read.
+    static Selection from(const Selection& others) {
+        Selection some = others;
+        some.end_ = some.begin_;
+        return some;
+    }
+
+    const int* begin() const { return begin_; }
+    const int* end() const { return end_; }
+    int count() const { return static_cast<int>(end_ - begin_); }
+
+    /// `selected` is 0 or 1.
+    void add_if(int selected, int number) {
+        assert(end_ < limit_ && (selected == 0 || selected == 1));
+        *end_ = number;
+        end_ += selected;
+    }
+
+    /// Those of the four numbers from `first` on whose bits are set.
+    void add_four(unsigned bitmask, int first) {
+        assert(limit_ - end_ >= 4);
+        const FourInts numbers = compressed_indices(first, bitmask);
+        std::memcpy(end_, &numbers, sizeof numbers);
+        end_ += compress_table.count[bitmask];
+    }
+
+  private:
+    int* begin_;
+    int* end_;
+    [[maybe_unused]] const int* limit_; ///< of the room, for assertions
+};
 
 /// Of four, the first `count`: -1; the rest: 0.
 inline FourInts mask_of_first(int count) { return FourInts{0, 1, 2, 3} < count; }

@@ -22,12 +22,12 @@ struct BoxRange {
 ///
 /// wide: w = 4r + 1, the published side, which gives the checkered and the row order their proof
 /// (resolve.hpp): at least 4r. The index of a box is that of the published program, floor(position / w) as
-/// rounded, and so is the half of its box in which a disc lies (but see `reach`). Three departures, none of
-/// which touches the published scenes: for huge radii the 1 drowns in rounding, so the side is at least 4r (1
-/// + 2^-20); there are at most 4096 boxes along a side, so that a huge empty scene costs memory for its discs
-/// and not for its emptiness; and there is one box at least. snug: 2r (1 + 2^-20), the reach of a disc, but
-/// no less than the mean distance between discs, sqrt(L^2 / N), so that there are about N boxes at most.
-/// Scale-free. It leaves no rest to put into the last box.
+/// rounded, and so is the half of its box in which a disc lies (but see `nearer_side`). Three departures,
+/// none of which touches the published scenes: for huge radii the 1 drowns in rounding, so the side is at
+/// least 4r (1 + 2^-20); there are at most 4096 boxes along a side, so that a huge empty scene costs memory
+/// for its discs and not for its emptiness; and there is one box at least. snug: 2r (1 + 2^-20), the reach of
+/// a disc, but no less than the mean distance between discs, sqrt(L^2 / N), so that there are about N boxes
+/// at most. Scale-free. It leaves no rest to put into the last box.
 class Grid {
   public:
     Grid(double side, double radius, int count = 1, BoxSide choice = BoxSide::wide,
@@ -70,7 +70,7 @@ class Grid {
     /// The published program asks whether fmod(position, w) >= w / 2, which is the same but for a position so
     /// little below an edge that position / w is rounded up to a whole number: it is then put into the next
     /// box and looks away from the edge, so that the pair stands in the other disc's list alone.
-    int reach(double position) const {
+    int nearer_side(double position) const {
         const double offset = position - std::trunc(position / box_side_) * box_side_;
         return offset >= box_side_ / 2 ? 1 : -1;
     }

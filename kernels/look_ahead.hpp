@@ -36,7 +36,7 @@ template <Policies policies>
 [[gnu::always_inline]] inline void prefetch_discs(const State<policies>& state,
                                                   const std::vector<int>& discs) {
     for (const int i : discs) {
-        __builtin_prefetch(&state.discs[static_cast<std::size_t>(i)]);
+        __builtin_prefetch(&state.disc(i));
         __builtin_prefetch(&state.overlaps[static_cast<std::size_t>(i)]);
         if constexpr (policies.impact == Impact::at_contact) {
             __builtin_prefetch(&state.near[static_cast<std::size_t>(i)]);

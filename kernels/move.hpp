@@ -26,19 +26,18 @@ template <Policies policies, class SomeProbe>
     requires(policies.storage == Storage::sorted)
 void move(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     using Real = typename State<policies>::Real;
-    constexpr int block = 256;
+    constexpr int discs_at_a_time = 256;
     const Real dt = Real{1} / static_cast<Real>(tuning.substeps);
     const int count = state.count();
-    const int blocks = (count + block - 1) / block;
-    parallel_for<Schedule::static_>(tuning.threads, blocks, 1, probe, [&](int k) {
-        for (int i = k * block; i < std::min((k + 1) * block, count); ++i) {
-            BasicDisc<Real>& disc = state.discs[static_cast<std::size_t>(i)];
+    const int iterations = (count + discs_at_a_time - 1) / discs_at_a_time;
+    parallel_for<Schedule::static_>(tuning.threads, iterations, 1, probe, [&](int k) {
+        for (int i = k * discs_at_a_time; i < std::min((k + 1) * discs_at_a_time, count); ++i) {
+            BasicDisc<Real>& disc = state.disc(i);
             disc.x += disc.vx * dt;
             disc.y += disc.vy * dt;
             state.box_of_disc[static_cast<std::size_t>(i)] =
                 state.grid.box_of(state.grid.coordinate(disc.y), state.grid.coordinate(disc.x));
         }
-        return Tally{};
     });
 }
 

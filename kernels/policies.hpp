@@ -73,9 +73,8 @@ enum class Worklist {
 
 /// When a collision happens that is found at the end of a step.
 enum class Impact {
-    step_end,     ///< then: the discs are where they are, and only their velocities change
-    at_contact,   ///< when the discs came into contact: they have flown on with their new velocities since
-    event_driven, ///< when it does: no step, and none of the other policies (exact/event_driven.hpp)
+    step_end,   ///< then: the discs are where they are, and only their velocities change
+    at_contact, ///< when the discs came into contact: they have flown on with their new velocities since
 };
 
 /// The floating-point type of positions and velocities.
@@ -130,7 +129,7 @@ inline constexpr int rounds_within_box = 1000;
 
 /// Impact::at_contact: so many sweeps at most take collisions back to their time of contact. What is left is
 /// resolved at the step's end. Dense scenes in steps of a fifth of a radius need six or seven.
-inline constexpr int most_impact_sweeps = 16;
+inline constexpr int most_sweeps_at_contact = 16;
 
 /// When an approaching pair counts as colliding.
 enum class Tolerance {

@@ -9,11 +9,12 @@ enum class Phase { move, bin, find, resolve };
 
 /// A collision as a simulation has just made it.
 template <class Real> struct Collision {
-    Real time; ///< since the start (Impact::event_driven), or before the end of the step (Impact::at_contact)
-    int sweep; ///< Impact::at_contact: of the step, from 0; else 0
-    int first; ///< the number of a disc
+    Real time;                    ///< since the start (exact/event_driven.hpp), or before the end of the step
+                                  ///< (Impact::at_contact)
+    int sweep;                    ///< Impact::at_contact: of the step, from 0; else 0
+    int first;                    ///< the number of a disc
     int second;                   ///< the same; the first one's if it met a wall
-    BasicDisc<Real> first_after;  ///< at that time (event_driven), or at the end of the step (at_contact)
+    BasicDisc<Real> first_after;  ///< at that time (event-driven), or at the end of the step (at_contact)
     BasicDisc<Real> second_after; ///< likewise
 
     bool at_wall() const { return first == second; }

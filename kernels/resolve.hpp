@@ -1,7 +1,7 @@
 #pragma once
 
-#include "impacts_contacts.hpp"
-#include "impacts_lists.hpp"
+#include "at_contact_lists.hpp"
+#include "at_contact_strips.hpp"
 #include "policies.hpp"
 #include "state.hpp"
 #include "sweep.hpp"

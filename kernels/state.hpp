@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "collide.hpp"
@@ -25,7 +27,7 @@ template <class Real> struct OverlapsOf<Overlaps::lists, Real> {
     std::vector<std::vector<NearDisc<Real>>>
         near; ///< Impact::at_contact: for each disc those near it, and near a wall itself
     std::vector<NextCollision<Real>> next; ///< ditto: of each disc
-    std::vector<unsigned char> asked;      ///< ditto: of each disc, whether it looks back in this sweep
+    std::vector<unsigned char> asked;      ///< ditto: of each disc, whether it chooses anew in this sweep
     std::vector<unsigned char> asked_next; ///< ditto: in the next one
 
     OverlapsOf(const Grid& /*grid*/, int count)
@@ -34,14 +36,14 @@ template <class Real> struct OverlapsOf<Overlaps::lists, Real> {
 
 template <class Real> struct OverlapsOf<Overlaps::contacts, Real> {
     std::vector<Strip<Real>> strips;
-    std::vector<ActiveBlocks::Beside> blocks_of_disc;
-    ActiveBlocks active;
+    std::vector<ActiveSegments::Beside> segments_of_disc;
+    ActiveSegments active;
     std::vector<EarliestCollision<Real>> earliest; ///< Impact::at_contact: of each disc
     std::vector<int> changed_in; ///< ditto: of each disc the last sweep in which it collided; -1 before
 
     OverlapsOf(const Grid& grid, int count)
         : strips(static_cast<std::size_t>(grid.strip_count(strip_height(Order::strips)))),
-          blocks_of_disc(static_cast<std::size_t>(count)), active(grid.boxes_per_side()) {}
+          segments_of_disc(static_cast<std::size_t>(count)), active(grid.boxes_per_side()) {}
 };
 
 /// Root of the mean squared speed of the discs.
@@ -81,6 +83,8 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
         steps_flown = 0;
     }
 
+    BasicDisc<Real>& disc(int i) { return this->discs[static_cast<std::size_t>(i)]; }
+    const BasicDisc<Real>& disc(int i) const { return this->discs[static_cast<std::size_t>(i)]; }
     int count() const { return static_cast<int>(this->discs.size()); }
     Real reach_squared() const { return (2 * radius) * (2 * radius); }
 
@@ -113,17 +117,19 @@ struct State : DiscsOf<policies.storage, RealOf<policies.precision>>,
           OverlapsOf<policies.overlaps, Real>(its_grid, static_cast<int>(scene.discs.size())),
           side(static_cast<Real>(scene.side)), radius(static_cast<Real>(scene.radius)),
           speed(policies.impact == Impact::at_contact ? static_cast<Real>(usual_speed(scene)) : 0),
-          grid(its_grid) {}
+          grid(its_grid) {
+        assert(scene.discs.size() <= static_cast<std::size_t>(std::numeric_limits<int>::max()));
+    }
 };
 
+template <Policies policies> using StripOf = Strip<RealOf<policies.precision>>;
 template <Policies policies> using ApproachToleranceOf = ApproachTolerance<RealOf<policies.precision>>;
 
 /// The discs in double, disc i at index i.
 template <Policies policies> std::vector<Disc> discs_by_number(const State<policies>& state) {
     std::vector<Disc> discs(state.discs.size());
     for (int i = 0; i < state.count(); ++i) {
-        discs[static_cast<std::size_t>(state.number(i))] =
-            disc_cast<double>(state.discs[static_cast<std::size_t>(i)]);
+        discs[static_cast<std::size_t>(state.number(i))] = disc_cast<double>(state.disc(i));
     }
     return discs;
 }

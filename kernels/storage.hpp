@@ -11,7 +11,6 @@
 #include "policies.hpp"
 #include "probe.hpp"
 #include "scene.hpp"
-#include "tally.hpp"
 
 namespace carom {
 
@@ -117,7 +116,6 @@ template <class Real> struct DiscsOf<Storage::sorted, Real> {
             const auto index = static_cast<std::size_t>(i);
             discs[index] = disc_cast<Real>(scene.discs[index]);
             numbers[index] = i;
-            return Tally{};
         });
     }
 

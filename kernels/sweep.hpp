@@ -47,13 +47,13 @@ inline Swept one_sweep(Tally work) {
     return {work, work.pair_resolves + work.wall_resolves};
 }
 
-/// The sweeps of Impact::at_contact (way_back.hpp), until one changes nothing. `sweep(index, threads)` runs
+/// The sweeps of Impact::at_contact (at_contact.hpp), until one changes nothing. `sweep(index, threads)` runs
 /// one and returns what it did.
 template <class SomeProbe, class Sweep>
-Tally sweep_impacts(const Tuning& tuning, SomeProbe& probe, const Sweep& sweep) {
+Tally sweep_at_contact(const Tuning& tuning, SomeProbe& probe, const Sweep& sweep) {
     Tally total;
     std::int64_t last_changes = few_changes;
-    for (int index = 0; index < most_impact_sweeps && last_changes > 0; ++index) {
+    for (int index = 0; index < most_sweeps_at_contact && last_changes > 0; ++index) {
         probe.sweep_begin();
         const Swept swept = one_sweep(sweep(index, last_changes < few_changes ? 1 : tuning.threads));
         probe.sweep_end();
@@ -70,7 +70,7 @@ Swept sweep_checkered(State<policies>& state, const Tuning& tuning,
     const int side = state.grid.boxes_per_side();
     for (int first_row = 0; first_row < 2; ++first_row) {
         for (int first_column = 0; first_column < 2; ++first_column) {
-            tally += parallel_for_boxes<policies.resolve_schedule>(
+            tally += parallel_for_boxes<policies.resolve_schedule, Tally>(
                 tuning.threads, every_other(side, first_row), every_other(side, first_column),
                 tuning.resolve_chunk, probe, [&](int k, int l, Tally& sum) {
                     const int row = first_row + 2 * k;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -20,7 +21,7 @@
 // The sweeps of `strips` without its barriers. There a strip waits twice a sweep for all others, though it
 // shares discs and marks only with those beside it. Here it waits for these alone: an even strip until both
 // have been through the sweep before, an odd one until both have been through this one. So any two strips
-// beside each other take the same turns as in `strips`, others share nothing (sweep.hpp,
+// beside each other take the same order as in `strips`, others share nothing (sweep.hpp,
 // resolve_contacts.hpp), and the result is the same to the last bit.
 //
 // Whether a sweep was the last can be told only when all strips have been through it. Meanwhile some begin
@@ -99,7 +100,7 @@ template <Policies policies> bool exceeds_cache(const State<policies>& state, co
         return false;
     } else {
         std::size_t bytes =
-            state.discs.size() * (sizeof state.discs.front() + sizeof state.blocks_of_disc.front());
+            state.discs.size() * (sizeof state.discs.front() + sizeof state.segments_of_disc.front());
         for (const auto& strip : state.strips) {
             bytes += strip.contacts.size() * sizeof strip.contacts.front();
         }
@@ -116,12 +117,13 @@ Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, in
                       SomeProbe& probe) {
     const int wanted = skewed ? most_sweeps_at_once : tuning.threads == 1 ? 1 : done + 1;
     const int count = std::min({wanted, most, most_sweeps_at_once});
+    assert(count > 0);
     const int strips = state.grid.strip_count(strip_height(policies.order));
     const std::vector<StripSweep> order =
         sweep_order(strips, count, skewed ? tuning.threads / 4 + 1 : strips);
     std::array<std::atomic<int>, most_sweeps_at_once> changes{};
     std::array<std::atomic<int>, most_sweeps_at_once> attempts{};
-    const auto resolve_turn = [&](int index) {
+    const auto resolve_next = [&](int index) {
         const auto [strip, sweep] = order[static_cast<std::size_t>(index)];
         Changes made = resolve_strip(state, strip, approaching);
         attempts[static_cast<std::size_t>(sweep)].fetch_add(std::exchange(made.attempts, 0),
@@ -135,7 +137,7 @@ Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, in
     Swept swept;
     swept.work =
         parallel_for<policies.resolve_schedule>(tuning.threads, static_cast<int>(order.size()),
-                                                tuning.resolve_chunk, probe, resolve_turn, [&](int index) {
+                                                tuning.resolve_chunk, probe, resolve_next, [&](int index) {
                                                     const auto [strip, sweep] =
                                                         order[static_cast<std::size_t>(index)];
                                                     return wavefront.can_begin(strip, done + sweep);

@@ -10,9 +10,6 @@ template class EventDriven<long double>;
 
 namespace {
 
-constexpr Policies policies{.impact = Impact::event_driven};
-constexpr Name name = name_of(policies);
-
 std::unique_ptr<Simulation> simulate(const Scene& scene, const Tuning& tuning) {
     return std::make_unique<EventDrivenSimulation<NoCollisionLog>>(scene, tuning.substeps);
 }
@@ -20,8 +17,9 @@ std::unique_ptr<Simulation> simulate(const Scene& scene, const Tuning& tuning) {
 } // namespace
 
 const Variant& event_driven() {
-    static constexpr Variant variant{.name = name.view(),
-                                     .policies = policies,
+    static constexpr Variant variant{.name = word(Engine::event_driven),
+                                     .engine = Engine::event_driven,
+                                     .policies = {},
                                      .simulate = simulate,
                                      .simulate_observed = nullptr,
                                      .simulate_logged = simulate_event_driven_logged};

@@ -13,9 +13,9 @@ extern template class EventDriven<double, CollisionLog<double>&>;
 extern template class EventDriven<long double, CollisionLog<long double>&>;
 
 /// The event-driven simulation (kernels/exact/event_driven.hpp) as one more variant, beside the table: every
-/// collision at its time, in order, exact to rounding. Of the policies only `impact` and `precision` mean
-/// anything. It runs on one thread, whatever the tuning says; a step of dt only says when to look at it. Of
-/// scenes whose discs overlap at the start it makes something of its own.
+/// collision at its time, in order, exact to rounding. It runs on one thread, whatever the tuning says; a
+/// step of dt only says when to look at it. Of scenes whose discs overlap at the start it makes something of
+/// its own.
 const Variant& event_driven();
 
 } // namespace carom

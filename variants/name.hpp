@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "kernels/policies.hpp"
+#include "variants/engine.hpp"
 
 namespace carom {
 
@@ -36,9 +37,9 @@ constexpr std::string_view word(Overlaps value) { return value == Overlaps::cont
 constexpr std::string_view word(Search value) { return value == Search::filtered ? "filtered" : "exact"; }
 constexpr std::string_view word(Worklist value) { return value == Worklist::active ? "active" : "all"; }
 constexpr std::string_view word(Impact value) {
-    constexpr std::array<std::string_view, 3> words{"step_end", "at_contact", "event_driven"};
-    return words[static_cast<std::size_t>(value)];
+    return value == Impact::at_contact ? "at_contact" : "step_end";
 }
+constexpr std::string_view word(Engine value) { return value == Engine::steps ? "steps" : "event_driven"; }
 constexpr std::string_view word(Precision value) { return value == Precision::float_ ? "float" : "double"; }
 
 /// The name of a variant, built at compile time.

@@ -9,6 +9,7 @@
 #include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
 #include "kernels/state.hpp"
+#include "variants/engine.hpp"
 
 namespace carom {
 
@@ -31,6 +32,7 @@ class Simulation {
 /// One row of the table, or the event-driven simulation, with what it takes to run it.
 struct Variant {
     std::string_view name;
+    Engine engine = Engine::steps;
     Policies policies;
 
     /// Starts a simulation; throws std::bad_alloc if there is no memory for it. `tuning` must hold positive

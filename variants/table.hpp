@@ -43,9 +43,6 @@ constexpr std::string_view impossible(const Policies& policies) {
         policies.worklist != Worklist::active) {
         return "only active contacts are taken back to their time: a collision says which to ask anew";
     }
-    if (policies.impact == Impact::event_driven) {
-        return "the event-driven simulation has no step to choose policies for: see event_driven.hpp";
-    }
     return "";
 }
 

@@ -97,7 +97,7 @@ double kolmogorov_smirnov_distance(std::vector<double> one, std::vector<double> 
 
 ErrorMeasures measure_errors(const Scene& scene, const Variant& variant, const Tuning& tuning,
                              std::int64_t most_events) {
-    if (variant.policies.impact == Impact::event_driven) {
+    if (variant.engine == Engine::event_driven) {
         return measure_event_driven_errors(scene, most_events);
     }
     const auto simulation = variant.simulate(scene, tuning);

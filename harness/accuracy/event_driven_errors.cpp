@@ -51,7 +51,7 @@ void finish(const Scene& scene, const EventDriven<double>& simulation, ErrorMeas
 ErrorMeasures measure_event_driven_errors(const Scene& scene, std::int64_t most_events) {
     EventDriven<double> simulation(scene);
     Companion<long double> companion(scene, most_events);
-    const Checker checker(scene.side, scene.radius, 1, Tolerance::relative, Rounding(), Impact::event_driven);
+    const Checker checker(scene.side, scene.radius, 1, Tolerance::relative);
     Penetration penetration(overlapping_pairs(scene.discs, scene.radius), scene.radius);
     ErrorMeasures measures;
     for (int time = 1; time <= scene.steps; ++time) {

@@ -30,13 +30,13 @@ class ExactSteps final : public CollisionChecker {
 
 } // namespace
 
-std::unique_ptr<CollisionChecker> collision_checker(const Scene& scene, const Policies& policies,
+std::unique_ptr<CollisionChecker> collision_checker(const Scene& scene, const Variant& variant,
                                                     const Tuning& tuning) {
-    if (policies.impact == Impact::event_driven) {
+    if (variant.engine == Engine::event_driven) {
         return std::make_unique<ExactSteps>(scene, tuning.substeps);
     }
-    if (policies.impact == Impact::at_contact) {
-        return std::make_unique<ContactChecker>(scene, policies, tuning);
+    if (variant.policies.impact == Impact::at_contact) {
+        return std::make_unique<ContactChecker>(scene, variant.policies, tuning);
     }
     return nullptr;
 }

@@ -8,6 +8,7 @@
 #include "kernels/policies.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
+#include "variants/registry.hpp"
 
 namespace carom {
 
@@ -30,9 +31,9 @@ class CollisionChecker {
 };
 
 /// The one for a variant's run from a scene's start, or null if its collisions happen at the steps' ends:
-/// then states tell all (checker.hpp). For Impact::event_driven it is a PathChecker, whose steps are those of
+/// then states tell all (checker.hpp). For Engine::event_driven it is a PathChecker, whose steps are those of
 /// `tuning` in time; for Impact::at_contact a ContactChecker.
-std::unique_ptr<CollisionChecker> collision_checker(const Scene& scene, const Policies& policies,
+std::unique_ptr<CollisionChecker> collision_checker(const Scene& scene, const Variant& variant,
                                                     const Tuning& tuning);
 
 } // namespace carom

@@ -246,7 +246,7 @@ std::optional<PastCollision> ContactChecker::surely_in_wall(const Disc& disc) co
 }
 
 std::optional<std::string> ContactChecker::left_pending() const {
-    if (sweeps_ == most_impact_sweeps) {
+    if (sweeps_ == most_sweeps_at_contact) {
         return std::nullopt;
     }
     for (const DiscsNearby& near : near_.all()) {
@@ -254,7 +254,7 @@ std::optional<std::string> ContactChecker::left_pending() const {
             return format(
                 "discs %d and %d met %.17g before the end, and do not collide although %d sweeps were "
                 "left",
-                near.first, near.second, pending->time, most_impact_sweeps - sweeps_);
+                near.first, near.second, pending->time, most_sweeps_at_contact - sweeps_);
         }
     }
     return std::nullopt;

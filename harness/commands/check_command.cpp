@@ -42,7 +42,8 @@ Verdict check_file(const CheckOptions& options, const Scene& scene, const Varian
             "--substeps: found beside --trajectory, whose states are whole steps apart; expected either");
     }
     const Rounding rounding = rounding_of(variant.policies);
-    const Checker checker(scene.side, scene.radius, 1, tuning.tolerance, rounding, variant.policies.impact);
+    const Checker checker(scene.side, scene.radius, 1, tuning.tolerance, rounding, variant.policies.impact,
+                          variant.engine);
     TrajectoryFile file(options.trajectory, scene.discs.size());
     CheckedTrajectory checked = check_trajectory(scene, file, checker, rounding);
     return {options.trajectory, std::move(checked.discs), std::move(checked.violation), "states"};

@@ -59,7 +59,7 @@ CLI::Validator positive_number() {
 
 std::string text_of(const Method& method) {
     const std::string name(method.variant->name);
-    if (method.variant->policies.impact == Impact::event_driven) {
+    if (method.variant->engine == Engine::event_driven) {
         return name;
     }
     return name + ", dt = " + (method.substeps == 1 ? "1" : "1/" + number_text(method.substeps));

@@ -18,7 +18,7 @@ namespace {
 nlohmann::ordered_json variant_json(const Variant& variant) {
     const Determinism same_bits = promised(variant.policies);
     return {{"name", variant.name},
-            {"policies", policies_json(variant.policies)},
+            {"policies", policies_json(variant.policies, variant.engine)},
             {"same_bits", {{"threads", same_bits.threads}, {"compilers", same_bits.compilers}}}};
 }
 
@@ -44,7 +44,7 @@ std::string word_of(const nlohmann::ordered_json& choice) {
 
 /// The policies of the published best, and then the names, which say in what each variant differs.
 void print_table() {
-    const auto policies = policies_json(variants().front().policies);
+    const auto policies = policies_json(variants().front().policies, Engine::steps);
     for (const Variant& variant : variants()) {
         std::printf("%s\n", std::string(variant.name).c_str());
         if (&variant == &variants().front()) {

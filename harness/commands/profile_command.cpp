@@ -48,8 +48,8 @@ Run passed(Run run, const Measurement& measurement) {
 /// Runs the scene without a probe. Throws CheckError if it fails its check.
 Run bare_run(const Measurement& measurement, CheckScope scope, Stopwatch stopwatch = {}) {
     const auto simulation = measurement.variant.simulate(measurement.scene, measurement.tuning);
-    return passed(run_scene(measurement.scene, *simulation, measurement.tuning,
-                            {scope, measurement.variant.policies}, nullptr, std::move(stopwatch)),
+    return passed(run_scene(measurement.scene, *simulation, measurement.tuning, {scope, measurement.variant},
+                            nullptr, std::move(stopwatch)),
                   measurement);
 }
 
@@ -58,7 +58,7 @@ Run profiled_run(const Measurement& measurement, Profiler& profiler, const Run& 
     const auto simulation =
         measurement.variant.simulate_observed(measurement.scene, measurement.tuning, profiler);
     Run run = run_scene(measurement.scene, *simulation, measurement.tuning,
-                        {CheckScope::last_step, measurement.variant.policies});
+                        {CheckScope::last_step, measurement.variant});
     if (!run.violation && run.discs != bare.discs) {
         run.violation = "the profiled run ends in another state than the bare one";
     }

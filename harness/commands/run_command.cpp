@@ -54,6 +54,7 @@ struct Seconds {
 struct Summary {
     std::string scene;
     std::string_view variant;
+    Engine engine;
     Policies policies;
     int threads;
     int threads_asked = 0; ///< or taken for granted; there may be fewer
@@ -86,6 +87,7 @@ Summary summarise(const RunOptions& options, const Scene& scene, const Variant& 
     };
     return {.scene = shown_name(options.simulation.scene),
             .variant = variant.name,
+            .engine = variant.engine,
             .policies = variant.policies,
             .threads = tuning.threads,
             .substeps = tuning.substeps,
@@ -112,7 +114,7 @@ Summary summarise(const RunOptions& options, const Scene& scene, const Variant& 
 nlohmann::ordered_json summary_json(const Summary& summary) {
     return {{"scene", summary.scene},
             {"variant", summary.variant},
-            {"policies", policies_json(summary.policies)},
+            {"policies", policies_json(summary.policies, summary.engine)},
             {"threads", summary.threads},
             {"threads_asked", summary.threads_asked},
             {"substeps", summary.substeps},
@@ -138,7 +140,7 @@ nlohmann::ordered_json summary_json(const Summary& summary) {
 
 /// "60 steps", or "60 units of time in 480 steps"; without steps "60 units of time".
 std::string steps_text(const Summary& summary) {
-    if (summary.policies.impact == Impact::event_driven) {
+    if (summary.engine == Engine::event_driven) {
         return counted(summary.units_of_time, "unit") + " of time";
     }
     const std::string steps = counted(summary.steps, "step");
@@ -226,7 +228,7 @@ void run(RunOptions options) {
         options.simulation.tuning.substeps = chosen->tried.method.substeps;
     }
     const Variant& variant = require_variant(options.simulation.variant, scene, options.simulation.tuning);
-    if (variant.policies.impact == Impact::event_driven) {
+    if (variant.engine == Engine::event_driven) {
         options.simulation.tuning.threads = 1;
         options.simulation.threads_withheld = 0;
     }

@@ -147,7 +147,7 @@ const Variant& require_variant(const std::string& name, const Scene& scene, cons
                          "1e-15, or a fastest speed whose product with the radius is not within 1e-15 "
                          "to 1e17; expected a variant in double");
     }
-    if (variant.policies.impact == Impact::event_driven) {
+    if (variant.engine == Engine::event_driven) {
         require_event_driven(scene, tuning);
     }
     return variant;

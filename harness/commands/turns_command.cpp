@@ -155,7 +155,7 @@ Run counted_run(const Measurement& measurement) {
     }
     const auto simulation = measurement.variant.simulate(measurement.scene, measurement.tuning);
     return run_scene(measurement.scene, *simulation, measurement.tuning,
-                     Check(CheckScope::last_step, measurement.variant.policies));
+                     Check(CheckScope::last_step, measurement.variant));
 }
 
 /// One after the other, each gone before the next begins.

@@ -28,7 +28,7 @@ void BenchCase::run(benchmark::State& state) {
         simulation_->restart(measurement_.scene);
         Stopwatch stopwatch([&state] { state.ResumeTiming(); }, [&state] { state.PauseTiming(); });
         measurement_.add(run_scene(measurement_.scene, *simulation_, measurement_.tuning,
-                                   Check(CheckScope::last_step, measurement_.variant.policies), nullptr,
+                                   Check(CheckScope::last_step, measurement_.variant), nullptr,
                                    std::move(stopwatch)));
         state.ResumeTiming();
         state.SetIterationTime(measurement_.repetitions.back().steps_seconds);

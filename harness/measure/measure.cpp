@@ -19,8 +19,8 @@ std::string at_step(int step, int substep, int substeps, const std::string& what
 }
 
 std::string unsettled(const Checker& checker, const std::vector<Disc>& discs, int sweep_limit,
-                      Impact impact) {
-    if (impact == Impact::event_driven) {
+                      Engine engine) {
+    if (engine == Engine::event_driven) {
         return "the collisions of one instant do not come to an end: a disc is wedged";
     }
     return "the resolve did not end within " + std::to_string(sweep_limit) + " sweeps: " +
@@ -33,7 +33,7 @@ RunInParts::RunInParts(const Scene& scene, Simulation& simulation, const Tuning&
                        OnStep on_step, Stopwatch stopwatch)
     : scene_(scene), simulation_(simulation), tuning_(tuning), check_(check),
       checker_(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, rounding_of(check.policies),
-               check.policies.impact),
+               check.policies.impact, check.engine),
       on_step_(std::move(on_step)), stopwatch_(std::move(stopwatch)) {}
 
 TurnTime RunInParts::advance(int steps) {
@@ -94,8 +94,7 @@ std::optional<std::string> RunInParts::violation_after(const std::vector<Disc>& 
 /// What is wrong with a step that did not end, if it is not that alone.
 std::string RunInParts::violation_unsettled() const {
     const auto told = check_.collisions != nullptr ? check_.collisions->violation_so_far() : std::nullopt;
-    return told ? *told
-                : unsettled(checker_, simulation_.discs(), tuning_.sweep_limit, check_.policies.impact);
+    return told ? *told : unsettled(checker_, simulation_.discs(), tuning_.sweep_limit, check_.engine);
 }
 
 Run RunInParts::finish() {
@@ -114,11 +113,11 @@ Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, 
 
 Run checked_run(const Scene& scene, const Variant& variant, const Tuning& tuning, const OnStep& on_step,
                 Stopwatch stopwatch) {
-    const auto collisions = collision_checker(scene, variant.policies, tuning);
+    const auto collisions = collision_checker(scene, variant, tuning);
     const auto simulation = collisions ? variant.simulate_logged(scene, tuning, collisions->log())
                                        : variant.simulate(scene, tuning);
-    return run_scene(scene, *simulation, tuning, {CheckScope::every_step, variant.policies, collisions.get()},
-                     on_step, std::move(stopwatch));
+    return run_scene(scene, *simulation, tuning, {CheckScope::every_step, variant, collisions.get()}, on_step,
+                     std::move(stopwatch));
 }
 
 std::string state_hash(const std::vector<Disc>& discs) {

@@ -21,16 +21,18 @@ namespace carom {
 /// Which steps of a run the checker looks at.
 enum class CheckScope { nothing, last_step, every_step };
 
-/// What the checker looks at, and the policies whose precision and time of impact it expects. `collisions`,
+/// What the checker looks at, and whose precision and time of impact it expects. `collisions`,
 /// if it is not null, is who is told every collision of the run: then it checks the steps.
 struct Check {
     CheckScope scope;
+    Engine engine = Engine::steps;
     Policies policies;
     CollisionChecker* collisions = nullptr;
 
-    Check(CheckScope some_scope, const Policies& some_policies = {}, // NOLINT(*-explicit-*)
-          CollisionChecker* some_collisions = nullptr)
-        : scope(some_scope), policies(some_policies), collisions(some_collisions) {}
+    Check(CheckScope some_scope) : scope(some_scope) {} // NOLINT(*-explicit-*)
+    Check(CheckScope some_scope, const Variant& variant, CollisionChecker* some_collisions = nullptr)
+        : scope(some_scope), engine(variant.engine), policies(variant.policies), collisions(some_collisions) {
+    }
 };
 
 /// A run of all S steps of a scene.

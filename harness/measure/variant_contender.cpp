@@ -23,7 +23,7 @@ void VariantContender::start() {
         simulation_->restart(measurement_.scene);
         const CheckScope scope = ++runs_ == 1 ? CheckScope::last_step : CheckScope::nothing;
         run_.emplace(measurement_.scene, *simulation_, measurement_.tuning,
-                     Check(scope, measurement_.variant.policies));
+                     Check(scope, measurement_.variant));
     }
     *measurement_.own_seconds += process_seconds() - start;
 }

@@ -7,14 +7,15 @@
 
 namespace carom {
 
-/// Every policy as a field of its own; null where it has no meaning for the variant.
-inline nlohmann::ordered_json policies_json(const Policies& policies) {
-    if (policies.impact == Impact::event_driven) {
-        nlohmann::ordered_json json = policies_json(Policies{});
+/// Every policy as a field of its own; null where it has no meaning for the variant. Of the engine without
+/// steps `impact` is its name.
+inline nlohmann::ordered_json policies_json(const Policies& policies, Engine engine) {
+    if (engine == Engine::event_driven) {
+        nlohmann::ordered_json json = policies_json(Policies{}, Engine::steps);
         for (auto& choice : json) {
             choice = nullptr;
         }
-        json["impact"] = word(policies.impact);
+        json["impact"] = word(engine);
         json["precision"] = word(policies.precision);
         return json;
     }

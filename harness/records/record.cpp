@@ -21,8 +21,8 @@ using Json = nlohmann::ordered_json;
 
 Json axes_json(const Variant& variant, const Tuning& tuning) {
     Json axes{{"variant", variant.name}};
-    axes.update(policies_json(variant.policies));
-    const bool has_loops = variant.policies.impact != Impact::event_driven;
+    axes.update(policies_json(variant.policies, variant.engine));
+    const bool has_loops = variant.engine == Engine::steps;
     const bool find_has_chunk = has_loops && has_chunk(variant.policies.find_schedule);
     const bool resolve_has_chunk =
         has_loops && !is_sequential(variant.policies.order) && has_chunk(variant.policies.resolve_schedule);

@@ -29,16 +29,16 @@ double kinetic_energy(const std::vector<Disc>& discs) {
 }
 
 Checker::Checker(double side, double radius, double dt, Tolerance tolerance, const Rounding& rounding,
-                 Impact impact)
+                 Impact impact, Engine engine)
     : walls_{.side = rounding(side), .radius = rounding(radius), .rounding = rounding}, dt_(rounding(dt)),
-      tolerance_(tolerance), rounding_(rounding), impact_(impact) {}
+      tolerance_(tolerance), rounding_(rounding), impact_(impact), engine_(engine) {}
 
 std::optional<std::string> Checker::step(const std::vector<Disc>& before,
                                          const std::vector<Disc>& after) const {
     if (before.size() != after.size()) {
         return format("%zu discs became %zu", before.size(), after.size());
     }
-    if (impact_ == Impact::event_driven) {
+    if (engine_ == Engine::event_driven) {
         return event_driven_violation(before, after, dt_, walls_);
     }
     const std::vector<Disc> free = flown(before, dt_, walls_);

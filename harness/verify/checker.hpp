@@ -9,6 +9,7 @@
 #include "harness/verify/walls.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/scene.hpp"
+#include "variants/engine.hpp"
 
 namespace carom {
 
@@ -18,7 +19,7 @@ class Checker {
   public:
     /// `dt` is the step's length in time; `rounding` is that of the precision that the discs are kept in.
     Checker(double side, double radius, double dt, Tolerance tolerance, const Rounding& rounding = Rounding(),
-            Impact impact = Impact::step_end);
+            Impact impact = Impact::step_end, Engine engine = Engine::steps);
 
     /// The first violation, named with its discs and numbers, or nothing:
     ///  - every disc was moved by exactly v dt (v before the step), and its state is finite;
@@ -33,8 +34,8 @@ class Checker {
     /// step stands in at_contact.hpp. Discs that were moved into others, or into a wall, that they did not
     /// overlap before may be left colliding: the next step follows them back.
     ///
-    /// Of Impact::event_driven only the states at the ends are seen: what holds of them stands in
-    /// event_driven.hpp.
+    /// Of Engine::event_driven only the states at the ends are seen: what holds of them stands in
+    /// event_driven_violation.hpp.
     std::optional<std::string> step(const std::vector<Disc>& before, const std::vector<Disc>& after) const;
 
     /// The first pair or wall left colliding, or nothing.
@@ -59,6 +60,7 @@ class Checker {
     Tolerance tolerance_;
     Rounding rounding_;
     Impact impact_;
+    Engine engine_;
 };
 
 /// Total kinetic energy, for unit mass: the sum of (vx^2 + vy^2) / 2.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -61,6 +62,7 @@ template <class Real> class FirstCollision {
 
     [[gnu::always_inline]] void look_into(int cell) {
         const auto& held = cells_[cell];
+        assert(count_ + held.discs.size() <= most);
         for (std::size_t k = 0; k < held.discs.size(); ++k) {
             candidates_[count_ + k] = static_cast<std::size_t>(held.discs[k]);
         }
@@ -76,6 +78,7 @@ template <class Real> class FirstCollision {
         std::array<Real, most> c;
         std::array<Real, most> discriminant;
         Flight<Real>& one = flights_[disc_];
+        assert(count_ < most);
         candidates_[count_] = disc_; // it does not collide with itself, so that their number may be even
         const std::size_t even = count_ + count_ % 2;
         for (std::size_t k = 0; k < even; ++k) {

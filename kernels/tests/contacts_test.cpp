@@ -105,10 +105,10 @@ TEST(Contacts, AreEveryOverlappingPairOnceInWideBoxes) { finds_each_pair_once<wi
 TEST(Contacts, AreEveryOverlappingPairOnceInSnugBoxes) { finds_each_pair_once<snug>(); }
 TEST(Contacts, AreEveryOverlappingPairOnceThroughTheFilter) { finds_each_pair_once<filtered>(); }
 
-/// A contact with the strip and, counted over all rows from the first, the block that it stands in.
+/// A contact with the strip and, counted over all rows from the first, the segment that it stands in.
 struct Place {
     int strip;
-    std::ptrdiff_t block;
+    std::ptrdiff_t segment;
     OverlappingDiscs discs;
 };
 
@@ -116,11 +116,11 @@ std::vector<Place> places(State<active>& state) {
     std::vector<Place> found;
     for (int s = 0; s < static_cast<int>(state.strips.size()); ++s) {
         const auto& strip = state.strips[static_cast<std::size_t>(s)];
-        const std::ptrdiff_t first_block =
+        const std::ptrdiff_t first_segment =
             static_cast<std::ptrdiff_t>(s) * strip_height(Order::strips) * state.active.per_row();
-        for (std::size_t b = 0; b + 1 < strip.block_begin.size(); ++b) {
-            for (int c = strip.block_begin[b]; c < strip.block_begin[b + 1]; ++c) {
-                found.push_back({s, first_block + static_cast<std::ptrdiff_t>(b),
+        for (std::size_t b = 0; b + 1 < strip.contact_begin.size(); ++b) {
+            for (int c = strip.contact_begin[b]; c < strip.contact_begin[b + 1]; ++c) {
+                found.push_back({s, first_segment + static_cast<std::ptrdiff_t>(b),
                                  strip.contacts[static_cast<std::size_t>(c)].discs});
             }
         }
@@ -133,46 +133,47 @@ std::set<std::ptrdiff_t> marked_by(State<active>& state, int disc) {
     for (int row = 0; row < state.grid.boxes_per_side(); ++row) {
         std::fill_n(state.active.row(row), per_row, static_cast<unsigned char>(0));
     }
-    state.active.marker().mark(state.blocks_of_disc[static_cast<std::size_t>(disc)]);
-    std::set<std::ptrdiff_t> blocks;
+    state.active.marker().mark(state.segments_of_disc[static_cast<std::size_t>(disc)]);
+    std::set<std::ptrdiff_t> segments;
     for (int row = 0; row < state.grid.boxes_per_side(); ++row) {
-        for (int block = 0; block < per_row; ++block) {
-            if (state.active.row(row)[block] != 0) {
-                blocks.insert(static_cast<std::ptrdiff_t>(row) * per_row + block);
+        for (int segment = 0; segment < per_row; ++segment) {
+            if (state.active.row(row)[segment] != 0) {
+                segments.insert(static_cast<std::ptrdiff_t>(row) * per_row + segment);
             }
         }
     }
-    return blocks;
+    return segments;
 }
 
-/// Scenes wide enough for many blocks in a row, and the odd ones.
-std::vector<tests::NamedScene> scenes_with_blocks() {
+/// Scenes wide enough for many segments in a row, and the odd ones.
+std::vector<tests::NamedScene> scenes_with_segments() {
     std::vector<tests::NamedScene> scenes = tests::all_scenes();
-    scenes.push_back({"many blocks", tests::random_scene_of_density(4000, 0.9, 2, 71)});
+    scenes.push_back({"many segments", tests::random_scene_of_density(4000, 0.9, 2, 71)});
     return scenes;
 }
 
-TEST(ActiveBlocks, AreAllThatHoldAContactOfTheDiscAndFewMore) {
-    for (const auto& [name, scene] : scenes_with_blocks()) {
+TEST(ActiveSegments, AreAllThatHoldAContactOfTheDiscAndFewMore) {
+    for (const auto& [name, scene] : scenes_with_segments()) {
         SCOPED_TRACE(name);
         Tally tally;
         auto state = found<active>(scene, tally);
-        std::map<int, std::set<std::ptrdiff_t>> blocks_of;
+        std::map<int, std::set<std::ptrdiff_t>> segments_of;
         for (const Place& place : places(state)) {
-            blocks_of[place.discs.first].insert(place.block);
-            blocks_of[place.discs.second].insert(place.block);
+            segments_of[place.discs.first].insert(place.segment);
+            segments_of[place.discs.second].insert(place.segment);
         }
         for (int disc = 0; disc < state.count(); ++disc) {
             const auto marked = marked_by(state, disc);
             EXPECT_LE(marked.size(), 4);
-            EXPECT_TRUE(std::ranges::includes(marked, blocks_of[disc])) << "disc " << disc;
+            EXPECT_TRUE(std::ranges::includes(marked, segments_of[disc])) << "disc " << disc;
         }
     }
 }
 
-/// The proof of resolve_contacts.hpp, looked at: strips of one parity share no disc, and mark no block alike.
+/// The proof of resolve_contacts.hpp, looked at: strips of one parity share no disc, and mark no segment
+/// alike.
 TEST(StripsOfContacts, ShareNoDiscAndNoMarkWithinAParity) {
-    for (const auto& [name, scene] : scenes_with_blocks()) {
+    for (const auto& [name, scene] : scenes_with_segments()) {
         SCOPED_TRACE(name);
         Tally tally;
         auto state = found<active>(scene, tally);
@@ -185,12 +186,12 @@ TEST(StripsOfContacts, ShareNoDiscAndNoMarkWithinAParity) {
         std::map<std::pair<std::ptrdiff_t, int>, std::set<int>> strips_of_mark;
         for (const auto& [disc_and_parity, strips] : strips_of_disc) {
             ASSERT_EQ(strips.size(), 1) << "disc " << disc_and_parity.first;
-            for (const std::ptrdiff_t block : marked_by(state, disc_and_parity.first)) {
-                strips_of_mark[{block, disc_and_parity.second}].insert(*strips.begin());
+            for (const std::ptrdiff_t segment : marked_by(state, disc_and_parity.first)) {
+                strips_of_mark[{segment, disc_and_parity.second}].insert(*strips.begin());
             }
         }
         for (const auto& [mark_and_parity, strips] : strips_of_mark) {
-            ASSERT_EQ(strips.size(), 1) << "block " << mark_and_parity.first;
+            ASSERT_EQ(strips.size(), 1) << "segment " << mark_and_parity.first;
         }
     }
 }
@@ -263,7 +264,7 @@ Changes sweep_over_all(State<active>& state) {
 }
 
 TEST(ActiveWorklist, LeavesOutNothingThatWouldChange) {
-    for (const auto& [name, scene] : scenes_with_blocks()) {
+    for (const auto& [name, scene] : scenes_with_segments()) {
         SCOPED_TRACE(name);
         State<active> state(scene);
         NoProbe probe;
@@ -283,7 +284,7 @@ TEST(Wavefront, EndsInTheBitsOfStripsAfterTheSameWork) {
         policies.resolve_schedule = Schedule::dynamic;
         return policies;
     }();
-    auto scenes = scenes_with_blocks();
+    auto scenes = scenes_with_segments();
     scenes.push_back({"crowded", tests::random_scene_of_density(3000, 1.2, 3, 72)});
     for (const auto& [name, scene] : scenes) {
         const tests::Outcome expected = tests::simulate<active>(scene, {.threads = 1});

@@ -96,13 +96,13 @@ TEST(GridCoordinate, NeverDecreasesWithThePosition) {
 
 TEST(GridReach, IsTowardsTheNearerBox) {
     const Grid grid(50, 1);
-    EXPECT_EQ(grid.reach(10.1), -1);
-    EXPECT_EQ(grid.reach(12.4), -1);
-    EXPECT_EQ(grid.reach(12.5), 1);
-    EXPECT_EQ(grid.reach(12.6), 1);
-    EXPECT_EQ(grid.reach(14.9), 1);
-    EXPECT_EQ(grid.reach(-0.1), -1);
-    EXPECT_EQ(grid.reach(-4.9), -1);
+    EXPECT_EQ(grid.nearer_side(10.1), -1);
+    EXPECT_EQ(grid.nearer_side(12.4), -1);
+    EXPECT_EQ(grid.nearer_side(12.5), 1);
+    EXPECT_EQ(grid.nearer_side(12.6), 1);
+    EXPECT_EQ(grid.nearer_side(14.9), 1);
+    EXPECT_EQ(grid.nearer_side(-0.1), -1);
+    EXPECT_EQ(grid.nearer_side(-4.9), -1);
 }
 
 TEST(GridNeighbours, OfBothNeighbourhoodsHoldEveryOverlappingPartner) {

@@ -53,7 +53,7 @@ TEST(PublishedGrid, IsThatOfThePublishedProgramForEveryPosition) {
             if (std::abs(position) < 1e9) {
                 const bool rounded_up = std::trunc(position / width) * width > position && position > 0;
                 const int upper = !rounded_up && std::fmod(position, width) >= width / 2.0 ? 1 : -1;
-                ASSERT_EQ(grid.reach(position), upper) << position << " in boxes of " << width;
+                ASSERT_EQ(grid.nearer_side(position), upper) << position << " in boxes of " << width;
                 ASSERT_EQ(grid.coordinate(position),
                           std::clamp(static_cast<int>(position / width), 0, grid.boxes_per_side() - 1))
                     << position << " in boxes of " << width;

@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include "kernels/exact/all_pairs.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
 #include "kernels/state.hpp"
 #include "kernels/step.hpp"
+#include "kernels/tests/all_pairs.hpp"
 
 namespace carom {
 

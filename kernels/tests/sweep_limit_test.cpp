@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "kernels/exact/all_pairs.hpp"
+#include "kernels/tests/all_pairs.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "kernels/tests/simulate.hpp"
 

@@ -16,7 +16,7 @@ using tests::Outcome;
 using tests::same_bits;
 using tests::simulate;
 
-TEST(TurnsOf, AreEachOnceAndAfterThoseThatTheyWaitFor) {
+TEST(SweepOrder, AreEachOnceAndAfterThoseThatTheyWaitFor) {
     for (const int strips : {1, 2, 3, 4, 5, 8, 13, 24, 31}) {
         for (const int sweeps : {1, 2, 3, 8}) {
             for (const int pairs_at_once : {1, 2, 3, 5, strips}) {
@@ -35,7 +35,7 @@ TEST(TurnsOf, AreEachOnceAndAfterThoseThatTheyWaitFor) {
     }
 }
 
-TEST(TurnsOf, AreSweepBySweepIfAllPairsAreAtOnce) {
+TEST(SweepOrder, AreSweepBySweepIfAllPairsAreAtOnce) {
     int last = 0;
     for (const auto [strip, sweep] : sweep_order(9, 4, 9)) {
         const int place = 2 * sweep + strip % 2;
@@ -45,7 +45,7 @@ TEST(TurnsOf, AreSweepBySweepIfAllPairsAreAtOnce) {
     EXPECT_EQ(last, 7);
 }
 
-TEST(TurnsOf, ComeBackToAStripBeforeOthersAreFarOff) {
+TEST(SweepOrder, ComeBackToAStripBeforeOthersAreFarOff) {
     constexpr int strips = 100;
     constexpr int sweeps = 8;
     int furthest = 0;

@@ -49,10 +49,9 @@ TEST(FindVariant, FindsNothingElse) {
 TEST(EventDrivenVariant, IsFoundByItsNameAndStandsBesideTheTable) {
     EXPECT_EQ(event_driven().name, "event_driven");
     EXPECT_EQ(find_variant("event_driven"), &event_driven());
-    EXPECT_EQ(event_driven().policies.impact, Impact::event_driven);
-    EXPECT_NE(impossible(event_driven().policies), "");
+    EXPECT_EQ(event_driven().engine, Engine::event_driven);
     for (const Variant& variant : variants()) {
-        EXPECT_NE(variant.policies.impact, Impact::event_driven);
+        EXPECT_EQ(variant.engine, Engine::steps);
     }
 }
 

@@ -39,7 +39,7 @@ Profiled profile(const char* name, const Tuning& tuning, TimelineOptions timelin
     Profiled profiled{{}, Profiler(variant.policies, tuning, timeline)};
     const Scene scene = small_scene();
     const auto simulation = variant.simulate_observed(scene, tuning, profiled.profiler);
-    profiled.run = run_scene(scene, *simulation, tuning, {CheckScope::last_step, variant.policies});
+    profiled.run = run_scene(scene, *simulation, tuning, {CheckScope::last_step, variant});
     return profiled;
 }
 

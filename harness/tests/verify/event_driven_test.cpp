@@ -29,7 +29,8 @@ Scene apart(double area_fraction, std::uint64_t seed, int count = 150) {
 }
 
 Checker checker_of(const Scene& scene) {
-    return {scene.side, scene.radius, 1, Tolerance::relative, Rounding(), Impact::event_driven};
+    return {scene.side,       scene.radius,        1, Tolerance::relative, Rounding(),
+            Impact::step_end, Engine::event_driven};
 }
 
 carom::Run checked(const Scene& scene, const Tuning& tuning = {}) {

@@ -25,7 +25,7 @@ TEST_P(SlowHardCases, DriftStaysWithinWhatRoundingAllows) {
     const Scene scene = scene_of("drift");
     const auto simulation = GetParam().simulate(scene, {});
     const Rounding rounding = rounding_of(GetParam().policies);
-    const carom::Run run = run_scene(scene, *simulation, {}, {CheckScope::last_step, GetParam().policies});
+    const carom::Run run = run_scene(scene, *simulation, {}, {CheckScope::last_step, GetParam()});
     EXPECT_EQ(run.violation, std::nullopt);
     const auto collisions = static_cast<double>(run.work.pair_resolves);
     EXPECT_GT(collisions, 500'000);

@@ -14,7 +14,7 @@
 #include "harness/tests/scenes/random_scenes.hpp"
 #include "harness/verify/checker.hpp"
 #include "harness/verify/rounding.hpp"
-#include "kernels/exact/all_pairs.hpp"
+#include "kernels/tests/all_pairs.hpp"
 #include "kernels/tests/simulate.hpp"
 #include "variants/registry.hpp"
 
@@ -148,7 +148,7 @@ std::optional<std::string> first_wrong(const Scene& scene, const Variant& varian
     const Rounding rounding = rounding_of(variant.policies);
     const bool at_contact = variant.policies.impact == Impact::at_contact;
     const Checker checker(scene.side, scene.radius, dt, tuning.tolerance, rounding, variant.policies.impact);
-    const auto collisions = collision_checker(scene, variant.policies, tuning);
+    const auto collisions = collision_checker(scene, variant, tuning);
     const auto simulation = collisions ? variant.simulate_logged(scene, tuning, collisions->log())
                                        : variant.simulate(scene, tuning);
     for (int step = 1; step <= scene.steps * tuning.substeps; ++step) {

@@ -3,6 +3,7 @@
 
 #include "harness/tests/collisions/mutants/mutant.hpp"
 
+#include <cstddef>
 #include <string_view>
 #include <utility>
 
@@ -16,16 +17,17 @@ namespace {
 
 constexpr std::string_view variant = CAROM_MUTANT_VARIANT;
 
-constexpr Policies policies_of_variant() {
-    for (const Policies& policies : table) {
-        if (name_of(policies).view() == variant) {
-            return policies;
-        }
+constexpr Engine engine = variant == word(Engine::event_driven) ? Engine::event_driven : Engine::steps;
+
+constexpr std::size_t row_of_variant() {
+    std::size_t row = 0;
+    while (row < table.size() && name_of(table[row]).view() != variant) {
+        ++row;
     }
-    return {.impact = Impact::event_driven};
+    return row;
 }
-constexpr Policies policies = policies_of_variant();
-static_assert((policies.impact == Impact::event_driven) == (variant == "event_driven"), "no such variant");
+static_assert((row_of_variant() == table.size()) == (engine == Engine::event_driven), "no such variant");
+constexpr Policies policies = engine == Engine::event_driven ? Policies{} : table[row_of_variant()];
 
 template <class Real> mutants::Disc plain(const BasicDisc<Real>& disc) {
     return {static_cast<double>(disc.x), static_cast<double>(disc.y), static_cast<double>(disc.vx),
@@ -99,7 +101,7 @@ template <class Real> class Exact final : public mutants::Simulation {
 template <Policies policies>
 std::unique_ptr<mutants::Simulation> simulate(const mutants::Scene& scene, const mutants::Tuning& tuning,
                                               mutants::Tell tell) {
-    if constexpr (policies.impact == Impact::event_driven) {
+    if constexpr (engine == Engine::event_driven) {
         return std::make_unique<Exact<double>>(scene_of(scene), tuning, std::move(tell));
     } else {
         return std::make_unique<Stepped<policies>>(scene_of(scene), tuning, std::move(tell));

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kernels/exact/all_pairs.hpp"
+#include "kernels/tests/all_pairs.hpp"
 #include "kernels/tests/definition.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "kernels/tests/simulate.hpp"

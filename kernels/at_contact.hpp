@@ -18,7 +18,7 @@
 // each other the way back along its present motion is asked when it came into contact. Both discs then get
 // the velocities that the collision of that moment gives them, and the places to which they have flown with
 // these since. Discs at walls likewise. Here stands how one pair or disc collides so; in which sweeps all of
-// them do, in impacts_contacts.hpp and impacts_lists.hpp.
+// them do, in at_contact_strips.hpp and at_contact_lists.hpp.
 //
 // The order is that of time: a sweep makes those collisions that are the earliest known of both of their
 // discs. No two of these share a disc, so that they may be made in any order, and what a later one would do
@@ -28,9 +28,9 @@
 // disc at the same instant one is made, and the other one asked again: with contacts the first in the order
 // of the strips, with lists that with the disc of the lowest number.)
 //
-// Why it ends: after `most_impact_sweeps`. A pair collides again within a step only later than before, and
-// where the sweeps are not enough, what is left collides at the step's end, without being moved, as all do
-// with Impact::step_end. Why discs stay where they belong: a collision keeps the energy of the pair, and
+// Why it ends: after `most_sweeps_at_contact`. A pair collides again within a step only later than before,
+// and where the sweeps are not enough, what is left collides at the step's end, without being moved, as all
+// do with Impact::step_end. Why discs stay where they belong: a collision keeps the energy of the pair, and
 // moves neither disc farther than the pair flies, one relative to the other, in two steps. Discs that it
 // moves into others not near them, or into a wall, are found in the next step, by the same way back.
 
@@ -42,6 +42,8 @@ template <class Real> struct WayBack {
     Real all;  ///< through the step before as well, if there is one: for discs that move into each other,
                ///< since a collision of that step may have moved them there
 };
+
+template <Policies policies> using WayBackOf = WayBack<RealOf<policies.precision>>;
 
 /// The motion of the second of two discs as the first one sees it: |d - v t|^2 = (2r)^2, with a = |v|^2, b =
 /// d.v, c = |d|^2 - (2r)^2, at the times t ago at which they were in contact. `Number` is of one pair, or a
@@ -145,7 +147,7 @@ template <class Real> void bounce_back(Real& position, Real& velocity, Real side
 
 /// How far back the discs may be followed from the end of the present step.
 template <Policies policies>
-WayBack<RealOf<policies.precision>> way_back(const State<policies>& state, const Tuning& tuning) {
+WayBackOf<policies> way_back(const State<policies>& state, const Tuning& tuning) {
     using Real = RealOf<policies.precision>;
     const Real dt = Real{1} / static_cast<Real>(tuning.substeps);
     return {dt, dt * static_cast<Real>(state.steps_flown)};
@@ -154,21 +156,20 @@ WayBack<RealOf<policies.precision>> way_back(const State<policies>& state, const
 /// When the discs of a near pair that has met came into contact, or a disc and a wall.
 template <Policies policies>
 RealOf<policies.precision> time_of(OverlappingDiscs discs, const State<policies>& state,
-                                   const WayBack<RealOf<policies.precision>>& back) {
-    const auto& disc = state.discs[static_cast<std::size_t>(discs.first)];
+                                   const WayBackOf<policies>& back) {
+    const auto& disc = state.disc(discs.first);
     if (discs.at_wall()) [[unlikely]] {
         return std::max(time_in_wall(disc.x, disc.vx, state.side, state.radius, back),
                         time_in_wall(disc.y, disc.vy, state.side, state.radius, back));
     }
-    return motion_of(disc, state.discs[static_cast<std::size_t>(discs.second)], state.reach_squared())
-        .time_since_contact();
+    return motion_of(disc, state.disc(discs.second), state.reach_squared()).time_since_contact();
 }
 
 /// A disc bounces off the walls that it met at that time, before now.
 template <Policies policies>
 Changes bounce_at(RealOf<policies.precision> time, State<policies>& state, int i,
-                  const WayBack<RealOf<policies.precision>>& back) {
-    auto& disc = state.discs[static_cast<std::size_t>(i)];
+                  const WayBackOf<policies>& back) {
+    auto& disc = state.disc(i);
     Changes changes;
     if (time_in_wall(disc.x, disc.vx, state.side, state.radius, back) == time) {
         bounce_back(disc.x, disc.vx, state.side, state.radius);
@@ -184,14 +185,12 @@ Changes bounce_at(RealOf<policies.precision> time, State<policies>& state, int i
 /// Makes the collision that two discs, or a disc and a wall, had at that time; returns what it changed.
 template <Policies policies>
 [[gnu::always_inline]] inline Changes collide_at(RealOf<policies.precision> time, State<policies>& state,
-                                                 OverlappingDiscs discs,
-                                                 const WayBack<RealOf<policies.precision>>& back,
+                                                 OverlappingDiscs discs, const WayBackOf<policies>& back,
                                                  const ApproachToleranceOf<policies>& approaching) {
     if (discs.at_wall()) {
         return bounce_at(time, state, discs.first, back);
     }
-    return {.pairs = collide_back(time, state.discs[static_cast<std::size_t>(discs.first)],
-                                  state.discs[static_cast<std::size_t>(discs.second)], approaching)};
+    return {.pairs = collide_back(time, state.disc(discs.first), state.disc(discs.second), approaching)};
 }
 
 /// Tells a collision, if it was made.

@@ -7,16 +7,17 @@
 #include <iterator>
 #include <limits>
 
+#include "at_contact.hpp"
 #include "collide.hpp"
 #include "contacts.hpp"
 #include "find.hpp"
+#include "four_at_once.hpp"
 #include "look_ahead.hpp"
 #include "parallel_for.hpp"
 #include "policies.hpp"
 #include "state.hpp"
 #include "sweep.hpp"
 #include "tally.hpp"
-#include "way_back.hpp"
 
 // Impact::at_contact with lists. Each near pair stands in two lists, and each disc chooses the earliest
 // collision of its own. Two discs that choose each other collide.
@@ -36,15 +37,15 @@ namespace carom {
 /// that can have left them, the earliest that comes after the last one of the same two discs. Of several at
 /// the same instant it is that with the disc of the lowest index.
 template <Policies policies>
-Changes look_back(State<policies>& state, int i, const WayBack<RealOf<policies.precision>>& back) {
+Changes choose_next(State<policies>& state, int i, const WayBackOf<policies>& back) {
     const auto& near = state.near[static_cast<std::size_t>(i)];
-    const auto disc = state.discs[static_cast<std::size_t>(i)];
+    const auto disc = state.disc(i);
     const auto reach_squared = state.reach_squared();
     NextCollision<RealOf<policies.precision>> next;
     for (int entry = 0; entry < std::ssize(near); ++entry) {
         const auto& [other, in_own_box, last] = near[static_cast<std::size_t>(entry)];
         const OverlappingDiscs discs{i, other};
-        const auto& partner = state.discs[static_cast<std::size_t>(other)];
+        const auto& partner = state.disc(other);
         if (!discs.at_wall() && !motion_of(disc, partner, reach_squared).met(back)) {
             continue;
         }
@@ -65,15 +66,14 @@ Changes look_back(State<policies>& state, int i, const WayBack<RealOf<policies.p
 /// nobody writes.
 template <Policies policies>
 void find_near_in_box(State<policies>& state, int row, int column, RealOf<policies.precision> radius,
-                      const WayBack<RealOf<policies.precision>>& back, Tally& tally) {
+                      const WayBackOf<policies>& back, Tally& tally) {
     using Real = RealOf<policies.precision>;
     const Real near_squared = (2 * radius) * (2 * radius);
     const bool at_wall = state.grid.at_wall(row, column);
     const auto add = [&](int i, int j, bool in_own_box) {
         constexpr Real never = std::numeric_limits<Real>::infinity();
         state.near[static_cast<std::size_t>(i)].push_back({j, in_own_box, never});
-        tally.overlaps += i != j && overlap(state.discs[static_cast<std::size_t>(i)],
-                                            state.discs[static_cast<std::size_t>(j)], state.reach_squared());
+        tally.overlaps += i != j && overlap(state.disc(i), state.disc(j), state.reach_squared());
     };
     for (const int i : state.discs_in(row, column)) {
         state.near[static_cast<std::size_t>(i)].clear();
@@ -91,7 +91,7 @@ void find_near_in_box(State<policies>& state, int row, int column, RealOf<polici
         }
         state.asked[disc] = 1;
         state.asked_next[disc] = 0;
-        tally += look_back(state, i, back);
+        tally += choose_next(state, i, back);
     }
 }
 
@@ -107,7 +107,7 @@ Tally find(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const auto back = way_back(state, tuning);
     const auto radius = state.search_radius(back.step);
     const int boxes_per_side = state.grid.boxes_per_side();
-    Tally tally = parallel_for_boxes<policies.find_schedule>(
+    Tally tally = parallel_for_boxes<policies.find_schedule, Tally>(
         tuning.threads, boxes_per_side, boxes_per_side, tuning.find_chunk, probe,
         [&](int row, int column, Tally& sum) {
             look_ahead_to_find(state, row, column);
@@ -133,15 +133,14 @@ Tally for_each_asked(const State<policies>& state, int threads, const Tuning& tu
             const int first = range * discs_at_once;
             const int last = std::min(first + discs_at_once, count);
             begin(first, last);
-            std::array<int, discs_at_once + 1> asked; // room for one more
-            int* end = asked.data();
+            std::array<int, discs_at_once + 1> room;
+            Selection asked(room);
             for (int i = first; i < last; ++i) {
-                *end = i;
-                end += state.asked[static_cast<std::size_t>(i)];
+                asked.add_if(state.asked[static_cast<std::size_t>(i)], i);
             }
             Changes changes;
-            for (const int* i = asked.data(); i != end; ++i) {
-                changes += body(*i);
+            for (const int i : asked) {
+                changes += body(i);
             }
             return Tally(changes);
         });
@@ -161,8 +160,7 @@ template <Policies policies> void ask_again(State<policies>& state, int i) {
 /// Makes the collision that disc i, which was asked, has chosen, if the other disc has chosen the same one.
 /// If both were asked, it is made when the first of them comes up.
 template <Policies policies, class SomeProbe>
-Changes collide_if_both_choose(State<policies>& state, int i, int sweep,
-                               const WayBack<RealOf<policies.precision>>& back,
+Changes collide_if_both_choose(State<policies>& state, int i, int sweep, const WayBackOf<policies>& back,
                                const ApproachToleranceOf<policies>& approaching, SomeProbe& probe) {
     const auto [time, other, entry] = state.next[static_cast<std::size_t>(i)];
     if (other < 0) {
@@ -189,10 +187,10 @@ void find_left_in_box(State<policies>& state, int row, int column,
                       const ApproachToleranceOf<policies>& approaching, Tally& tally) {
     const auto reach_squared = state.reach_squared();
     const auto add_overlaps = [&](int i, bool in_own_box) {
-        const auto& disc = state.discs[static_cast<std::size_t>(i)];
+        const auto& disc = state.disc(i);
         for (const auto& near : state.near[static_cast<std::size_t>(i)]) {
             if (near.in_own_box == in_own_box && near.other != i &&
-                overlap(disc, state.discs[static_cast<std::size_t>(near.other)], reach_squared)) {
+                overlap(disc, state.disc(near.other), reach_squared)) {
                 state.overlaps[static_cast<std::size_t>(i)].push_back(near.other);
             }
         }
@@ -215,7 +213,7 @@ template <Policies policies, class SomeProbe>
 Tally find_left(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     const int boxes_per_side = state.grid.boxes_per_side();
-    return parallel_for_boxes<policies.find_schedule>(
+    return parallel_for_boxes<policies.find_schedule, Tally>(
         tuning.threads, boxes_per_side, boxes_per_side, tuning.find_chunk, probe,
         [&](int row, int column, Tally& sum) {
             look_ahead_to_find_left(state, row, column);
@@ -232,7 +230,7 @@ template <Policies policies, class SomeProbe>
 Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const auto back = way_back(state, tuning);
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
-    return sweep_impacts(tuning, probe, [&](int sweep, int threads) {
+    return sweep_at_contact(tuning, probe, [&](int sweep, int threads) {
         Tally work;
         if (sweep > 0) { // `find` has asked them for the first
             state.asked.swap(state.asked_next);
@@ -240,7 +238,7 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
                 std::fill_n(state.asked_next.begin() + first, last - first, static_cast<unsigned char>(0));
             };
             work += for_each_asked(state, threads, tuning, probe, begin,
-                                   [&](int i) { return look_back(state, i, back); });
+                                   [&](int i) { return choose_next(state, i, back); });
         }
         work += for_each_asked(
             state, threads, tuning, probe, [](int, int) {},
