@@ -43,10 +43,10 @@ void add_group(CLI::App& program, const char* group, std::initializer_list<AddVe
 
 void add_verbs(CLI::App& program) {
     using namespace carom;
-    add_group(program, groups::simulate,
-              {add_run_command, add_check_command, add_reference_command, add_generate_command,
-               add_list_command, add_movie_command});
-    add_group(program, groups::study, {add_study_commands});
+    add_group(
+        program, groups::simulate,
+        {add_run_command, add_check_command, add_reference_command, add_generate_command, add_list_command});
+    add_python_verbs(program);
     add_group(program, groups::machine,
               {add_doctor_command, add_limits_command, add_bench_command, add_profile_command});
     add_group(program, groups::none,

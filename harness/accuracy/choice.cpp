@@ -6,6 +6,11 @@
 #include <numbers>
 #include <numeric>
 
+#include "harness/verify/rounding.hpp"
+#include "variants/event_driven_variant.hpp"
+#include "variants/fastest.hpp"
+#include "variants/table.hpp"
+
 namespace carom {
 namespace {
 
@@ -13,7 +18,36 @@ double sum_from(const std::vector<double>& amounts, int first) {
     return std::accumulate(amounts.begin() + first, amounts.end(), 0.0);
 }
 
+/// Every variant that may be the cheapest: the fastest with either impact, in either precision that holds the
+/// scene. First those that reach a bound with fewer steps, since they say how far the others need to go.
+std::vector<const Variant*> candidates(const Scene& scene) {
+    std::vector<const Variant*> found;
+    for (const Policies& base : {at_contact(ladder.back()), fastest_variant(scene).policies}) {
+        for (const Precision precision : {Precision::double_, Precision::float_}) {
+            Policies wanted = base;
+            wanted.precision = precision;
+            const auto variant = std::ranges::find(variants(), wanted, &Variant::policies);
+            if (variant != variants().end() && holds(wanted, scene)) {
+                found.push_back(&*variant);
+            }
+        }
+    }
+    return found;
+}
+
 } // namespace
+
+std::vector<Method> methods_for(const Scene& scene) {
+    constexpr int most_substeps = 64;
+    const std::vector<const Variant*> fastest = candidates(scene);
+    std::vector<Method> methods{{.variant = &event_driven()}};
+    for (int substeps = 1; substeps <= most_substeps; substeps *= 2) {
+        for (const Variant* variant : fastest) {
+            methods.push_back({.variant = variant, .substeps = substeps});
+        }
+    }
+    return methods;
+}
 
 std::optional<Tried> cheapest_below(std::span<const Tried> tried, double bound, int units) {
     std::optional<Tried> cheapest;

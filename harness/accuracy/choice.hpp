@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "kernels/scene.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {
@@ -22,6 +23,11 @@ struct Method {
 
     friend bool operator==(const Method&, const Method&) = default;
 };
+
+/// Everything that could be chosen for the scene, whether a trial comes to it or not: the event-driven
+/// simulation; the fastest variant with collisions at the step's end and at contact, in double and in float,
+/// each with 1, 2, 4 ... up to 64 substeps, all of them with few substeps before any with twice as many.
+std::vector<Method> methods_for(const Scene& scene);
 
 /// What a trial says of a method.
 struct Tried {
@@ -49,8 +55,7 @@ const Tried& most_exact(std::span<const Tried> tried);
 struct Amounts {
     std::vector<double> exact;
     std::vector<double> other;
-    double grain =
-        1; ///< the variance of an amount over its mean; 1 of events that know nothing of each other
+    double grain = 1; ///< variance of an amount over its mean; 1 of events that know nothing of each other
 };
 
 /// A relative error that is expected, and by how much it may be larger.

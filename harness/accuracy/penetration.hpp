@@ -1,13 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <unordered_set>
 #include <vector>
 
 #include "harness/verify/overlapping_pairs.hpp"
+#include "harness/verify/disc_states.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {
@@ -30,7 +30,7 @@ class Penetration {
             }
             const Disc& one = discs[static_cast<std::size_t>(pair.first)];
             const Disc& two = discs[static_cast<std::size_t>(pair.second)];
-            const double distance = std::hypot(two.x - one.x, two.y - one.y);
+            const double distance = distance_of(seen_from(one, two));
             const double depth = std::max(2 - distance / radius_, 0.0);
             worst_ = std::max(worst_, depth);
             sum_ += depth;

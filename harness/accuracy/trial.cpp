@@ -4,17 +4,16 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "harness/accuracy/companion.hpp"
-#include "harness/accuracy/momentum_watch.hpp"
+#include "harness/accuracy/momentum_balance.hpp"
 #include "harness/scenes/piece.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/process_clock.hpp"
 #include "harness/verify/rounding.hpp"
 #include "kernels/exact/event_driven.hpp"
 #include "variants/event_driven_variant.hpp"
-#include "variants/fastest.hpp"
-#include "variants/table.hpp"
 
 namespace carom {
 namespace {
@@ -23,7 +22,6 @@ namespace {
 /// more than the cheapest that will do, take some ten times as much together.
 constexpr double seconds_of_one = 0.06;
 constexpr double seconds_of_all = 0.8;
-constexpr int most_substeps = 64;
 
 /// Of a trial of an average, which needs some units of time to become what it stays.
 constexpr int fewest_units_of_average = 8;
@@ -49,6 +47,30 @@ Scene scene_of_trial(const Scene& scene, Measure measure) {
     return unit_seconds * scene.steps <= seconds_of_one ? scene : piece;
 }
 
+/// What a trial is of: fixed before a method runs.
+struct TrialCase {
+    double start; ///< of the trial, in seconds of the process
+    const Scene& scene;
+    const Tuning& tuning;
+    Measure measure;
+    double bound;
+    Scene piece; ///< what runs: the scene itself, or a piece of it
+
+    bool is_whole() const { return scene.discs.size() == piece.discs.size(); }
+
+    /// How many times as many discs as the piece the scene has, and how many times as much of what is
+    /// averaged.
+    double times_larger() const {
+        return static_cast<double>(scene.discs.size()) /
+               static_cast<double>(std::max<std::size_t>(piece.discs.size(), 1));
+    }
+    double times_more() const {
+        return measure == Measure::pressure ? scene.side / piece.side : times_larger();
+    }
+
+    bool is_out_of_time() const { return process_seconds() - start > seconds_of_all; }
+};
+
 /// What a method did in a trial.
 struct Ran {
     std::vector<Disc> at_one;          ///< the state after one unit of time
@@ -66,242 +88,200 @@ struct Ran {
     }
 };
 
-/// Every variant that may be the cheapest: the fastest with either impact, in either precision that holds the
-/// scene. First those that reach a bound with fewer steps, since they say how far the others need to go.
-std::vector<const Variant*> candidates(const Scene& scene) {
-    std::vector<const Variant*> found;
-    for (const Policies& base : {at_contact(ladder.back()), fastest_variant(scene).policies}) {
-        for (const Precision precision : {Precision::double_, Precision::float_}) {
-            Policies wanted = base;
-            wanted.precision = precision;
-            const auto variant = std::ranges::find(variants(), wanted, &Variant::policies);
-            if (variant != variants().end() && holds(wanted, scene)) {
-                found.push_back(&*variant);
-            }
-        }
+/// What the event-driven simulation did: the others are held against it.
+struct ExactRun {
+    Ran ran;
+    int units = 1;    ///< of time, that each method runs
+    double grain = 1; ///< of what is averaged
+    double error = 0; ///< its own
+};
+
+void require_end(bool settled) {
+    if (!settled) {
+        throw CheckError("the collisions of one instant do not come to an end: a disc is wedged");
     }
-    return found;
 }
 
-class Trying {
-  public:
-    Trying(const Scene& scene, const Tuning& tuning, Measure measure, double bound)
-        : piece_(scene_of_trial(scene, measure)), tuning_(tuning), measure_(measure), bound_(bound),
-          units_of_run_(scene.steps), is_whole_(scene.discs.size() == piece_.discs.size()),
-          times_larger_(static_cast<double>(scene.discs.size()) /
-                        static_cast<double>(std::max<std::size_t>(piece_.discs.size(), 1))),
-          times_more_(measure == Measure::pressure ? scene.side / piece_.side : times_larger_),
-          extended_(piece_) {}
+/// What the measure is the average of, since the start.
+template <class Real> double amount_of(const EventDriven<Real>& simulation, Measure measure) {
+    return measure == Measure::pressure ? static_cast<double>(simulation.wall_impulse())
+                                        : static_cast<double>(simulation.pair_collisions());
+}
 
-    Trial run() {
-        try_event_driven();
-        std::vector<const Variant*> open = candidates(piece_);
-        for (int substeps = 1; substeps <= most_substeps; substeps *= 2) {
-            std::erase_if(open, [&](const Variant* variant) { return !try_variant(*variant, substeps); });
-        }
-        for (int round = 0; round < further_rounds; ++round) {
-            time_again();
-        }
-        return {.tried = std::move(tried_),
-                .discs = piece_.discs.size(),
-                .whole_scene = is_whole_,
-                .units_of_time = units_,
-                .seconds = process_seconds() - start_};
+int affordable_units(const TrialCase& given, double unit_seconds) {
+    const double fewest = given.measure == Measure::path ? 1 : fewest_units_of_average;
+    const double affordable = std::floor(seconds_of_one / std::max(unit_seconds, 1e-9));
+    return static_cast<int>(std::min(std::max(affordable, fewest), static_cast<double>(given.scene.steps)));
+}
+
+void advance_exactly(const TrialCase& given, int unit, EventDriven<double>& simulation, Ran& ran) {
+    const double so_far = amount_of(simulation, given.measure);
+    const double before = process_seconds();
+    require_end(simulation.advance(unit));
+    ran.units_seconds.push_back(process_seconds() - before);
+    ran.amounts.push_back(amount_of(simulation, given.measure) - so_far);
+    if (unit == 1) {
+        ran.at_one = simulation.discs();
     }
+}
 
-  private:
-    /// The first, since it says how long a trial may be, and what nobody needs to exceed.
-    void try_event_driven() {
+/// What double rounds.
+double own_error(const TrialCase& given, const ExactRun& exact) {
+    EventDriven<long double> extended(given.piece);
+    require_end(extended.advance(given.measure == Measure::path ? 1 : exact.units));
+    if (given.measure == Measure::path) {
+        return rms_distance(exact.ran.at_one, extended.discs(), given.piece.radius);
+    }
+    const double in_all = std::accumulate(exact.ran.amounts.begin(), exact.ran.amounts.end(), 0.0);
+    return expected_average_error({.exact = {amount_of(extended, given.measure)}, .other = {in_all}}, 1)
+        .error;
+}
+
+/// The first to run: it says how long a trial may be, and what nobody needs to exceed.
+ExactRun run_exactly(const TrialCase& given) {
+    ExactRun exact;
+    const double before = process_seconds();
+    EventDriven<double> simulation(given.piece);
+    exact.ran.setting_up = process_seconds() - before;
+    for (int unit = 1; unit <= exact.units; ++unit) {
+        advance_exactly(given, unit, simulation, exact.ran);
+        exact.units = unit == 1 ? affordable_units(given, exact.ran.units_seconds.front()) : exact.units;
+    }
+    if (given.measure == Measure::pressure) {
+        exact.grain =
+            grain_of_impulse(simulation.wall_impulse(), static_cast<double>(simulation.wall_collisions()));
+    }
+    exact.error = own_error(given, exact);
+    return exact;
+}
+
+Expected error_of(const TrialCase& given, const ExactRun& exact, const Ran& ran) {
+    if (given.measure != Measure::path) {
+        return expected_average_error(
+            {.exact = exact.ran.amounts, .other = ran.amounts, .grain = exact.grain}, given.scene.steps,
+            given.times_more());
+    }
+    const double error = rms_distance(ran.at_one, exact.ran.at_one, given.piece.radius);
+    return {.error = error, .margin = given.is_whole() ? 0 : margin_of_piece * error};
+}
+
+Tried tried_of(const TrialCase& given, const Method& method, const Ran& ran, const Expected& expected) {
+    return {.method = method,
+            .error = expected.error,
+            .margin = expected.margin,
+            .setting_up = given.times_larger() * ran.setting_up,
+            .unit_seconds = given.times_larger() * ran.unit_seconds()};
+}
+
+/// Of the momentum that walls take up, which a step does not tell; none where nobody asks.
+std::optional<MomentumWatch> watch_of(const TrialCase& given, const Method& method,
+                                      const Simulation& simulation) {
+    if (given.measure != Measure::pressure) {
+        return std::nullopt;
+    }
+    const Policies& policies = method.variant->policies;
+    return MomentumWatch(given.piece, rounding_of(policies), policies.impact, 1.0 / method.substeps,
+                         simulation.discs());
+}
+
+/// A unit of time. False if a resolve did not end, or what it does to the walls cannot be told, or not in
+/// time.
+bool advance(const TrialCase& given, Simulation& simulation, int substeps,
+             std::optional<MomentumWatch>& watch, Ran& ran) {
+    double& amount = ran.amounts.emplace_back(0);
+    double& seconds = ran.units_seconds.emplace_back(0);
+    for (int substep = 0; substep < substeps; ++substep) {
         const double before = process_seconds();
-        EventDriven<double> simulation(piece_);
-        Ran ran;
-        ran.setting_up = process_seconds() - before;
-        for (int unit = 1; unit == 1 || unit <= units_; ++unit) {
-            advance_exactly(simulation, unit, ran);
-            units_ = unit == 1 ? units_for(ran.units_seconds.front()) : units_;
-        }
-        exact_at_one_ = ran.at_one;
-        amounts_ = {.exact = ran.amounts,
-                    .other = {},
-                    .grain = measure_ == Measure::pressure
-                                 ? grain_of_impulse(simulation.wall_impulse(),
-                                                    static_cast<double>(simulation.wall_collisions()))
-                                 : 1};
-        note({.variant = &event_driven()}, ran, {.error = own_error(ran)});
-    }
-
-    void advance_exactly(EventDriven<double>& simulation, int unit, Ran& ran) const {
-        const double so_far = amount(simulation);
-        const double before = process_seconds();
-        require_end(simulation.advance(unit));
-        ran.units_seconds.push_back(process_seconds() - before);
-        ran.amounts.push_back(amount(simulation) - so_far);
-        if (unit == 1) {
-            ran.at_one = simulation.discs();
-        }
-    }
-
-    /// What the measure is the average of, since the start.
-    template <class Real> double amount(const EventDriven<Real>& simulation) const {
-        return measure_ == Measure::pressure ? static_cast<double>(simulation.wall_impulse())
-                                             : static_cast<double>(simulation.pair_collisions());
-    }
-
-    int units_for(double seconds) const {
-        const double fewest = measure_ == Measure::path ? 1 : fewest_units_of_average;
-        const double affordable = std::floor(seconds_of_one / std::max(seconds, 1e-9));
-        return static_cast<int>(std::min(std::max(affordable, fewest), static_cast<double>(units_of_run_)));
-    }
-
-    /// Of the event-driven simulation: what double rounds.
-    double own_error(const Ran& ran) {
-        require_end(extended_.advance(measure_ == Measure::path ? 1 : units_));
-        if (measure_ == Measure::path) {
-            return rms_distance(ran.at_one, extended_.discs(), piece_.radius);
-        }
-        const double in_all = std::accumulate(ran.amounts.begin(), ran.amounts.end(), 0.0);
-        return expected_average_error({.exact = {amount(extended_)}, .other = {in_all}}, 1).error;
-    }
-
-    static void require_end(bool settled) {
-        if (!settled) {
-            throw CheckError("the collisions of one instant do not come to an end: a disc is wedged");
-        }
-    }
-
-    /// Whether more substeps of it are worth a trial.
-    bool try_variant(const Variant& variant, int substeps) {
-        if (process_seconds() - start_ > seconds_of_all) {
+        const Tally tally = simulation.step();
+        seconds += process_seconds() - before;
+        if (!tally.settled) {
             return false;
         }
-        const auto ran = run_variant(variant, substeps);
-        if (!ran) {
+        amount += watch ? watch->step(simulation.discs()) : static_cast<double>(tally.pair_resolves);
+        if (watch && (watch->balance().from_wall_to_wall() || given.is_out_of_time())) {
             return false;
         }
-        note({.variant = &variant, .substeps = substeps}, *ran, error_of(*ran));
-        const auto cheapest = cheapest_below(tried_, bound_, units_of_run_);
-        return !cheapest || cheapest->cost(units_of_run_) > tried_.back().cost(units_of_run_);
     }
-
-    void time_again() {
-        for (Tried& one : tried_) {
-            if (one.largest_error() > bound_ || process_seconds() - start_ > seconds_of_all) {
-                continue;
-            }
-            if (const auto ran = run_variant(*one.method.variant, one.method.substeps)) {
-                one.setting_up = std::min(one.setting_up, times_larger_ * ran->setting_up);
-                one.unit_seconds = std::min(one.unit_seconds, times_larger_ * ran->unit_seconds());
-            }
-        }
+    if (ran.units_seconds.size() == 1) {
+        ran.at_one = simulation.discs();
     }
+    return true;
+}
 
-    /// Nothing if a resolve did not end, or what it does to the walls cannot be told, or not in time.
-    std::optional<Ran> run_variant(const Variant& variant, int substeps) const {
-        Tuning tuning = tuning_;
-        tuning.substeps = substeps;
-        const double before = process_seconds();
-        const auto simulation = variant.simulate(piece_, tuning);
-        Ran ran;
-        ran.setting_up = process_seconds() - before;
-        auto watch = watch_of(variant, substeps, *simulation);
-        for (int unit = 1; unit <= units_; ++unit) {
-            if (!advance(*simulation, substeps, ran, watch)) {
-                return std::nullopt;
-            }
-            if (measure_ == Measure::path && error_of(ran).error > bound_) {
-                break;
-            }
-        }
-        return ran;
-    }
-
-    /// Of the momentum that walls take up, which a step does not tell; none where nobody asks.
-    std::optional<MomentumWatch> watch_of(const Variant& variant, int substeps,
-                                          const Simulation& simulation) const {
-        if (measure_ != Measure::pressure) {
+/// Nothing where a unit of time was not run to its end.
+std::optional<Ran> run_method(const TrialCase& given, const ExactRun& exact, const Method& method) {
+    Tuning tuning = given.tuning;
+    tuning.substeps = method.substeps;
+    const double before = process_seconds();
+    const auto simulation = method.variant->simulate(given.piece, tuning);
+    Ran ran;
+    ran.setting_up = process_seconds() - before;
+    auto watch = watch_of(given, method, *simulation);
+    for (int unit = 1; unit <= exact.units; ++unit) {
+        if (!advance(given, *simulation, method.substeps, watch, ran)) {
             return std::nullopt;
         }
-        return MomentumWatch(piece_, rounding_of(variant.policies), variant.policies.impact, 1.0 / substeps,
-                             simulation.discs());
-    }
-
-    bool advance(Simulation& simulation, int substeps, Ran& ran, std::optional<MomentumWatch>& watch) const {
-        ran.amounts.push_back(0);
-        ran.units_seconds.push_back(0);
-        for (int substep = 0; substep < substeps; ++substep) {
-            const double before = process_seconds();
-            const Tally tally = simulation.step();
-            ran.units_seconds.back() += process_seconds() - before;
-            if (!tally.settled) {
-                return false;
-            }
-            if (!watch) {
-                ran.amounts.back() += static_cast<double>(tally.pair_resolves);
-            } else if (!look(simulation, ran, *watch)) {
-                return false;
-            }
+        if (given.measure == Measure::path && error_of(given, exact, ran).error > given.bound) {
+            break;
         }
-        if (ran.units_seconds.size() == 1) {
-            ran.at_one = simulation.discs();
+    }
+    return ran;
+}
+
+/// Whether more substeps of its variant are worth a trial.
+bool try_method(const TrialCase& given, const ExactRun& exact, const Method& method,
+                std::vector<Tried>& tried) {
+    if (given.is_out_of_time()) {
+        return false;
+    }
+    const auto ran = run_method(given, exact, method);
+    if (!ran) {
+        return false;
+    }
+    tried.push_back(tried_of(given, method, *ran, error_of(given, exact, *ran)));
+    const auto cheapest = cheapest_below(tried, given.bound, given.scene.steps);
+    return !cheapest || cheapest->cost(given.scene.steps) > tried.back().cost(given.scene.steps);
+}
+
+void time_again(const TrialCase& given, const ExactRun& exact, std::vector<Tried>& tried) {
+    for (Tried& one : tried) {
+        if (one.largest_error() > given.bound || given.is_out_of_time()) {
+            continue;
         }
-        return true;
-    }
-
-    bool look(const Simulation& simulation, Ran& ran, MomentumWatch& watch) const {
-        const double so_far = watch.balance().wall_impulse();
-        watch.step(simulation.discs());
-        ran.amounts.back() += watch.balance().wall_impulse() - so_far;
-        return !watch.balance().from_wall_to_wall() && process_seconds() - start_ <= seconds_of_all;
-    }
-
-    Expected error_of(const Ran& ran) const {
-        if (measure_ != Measure::path) {
-            Amounts amounts = amounts_;
-            amounts.other = ran.amounts;
-            return expected_average_error(amounts, units_of_run_, times_more_);
+        if (const auto ran = run_method(given, exact, one.method)) {
+            one.setting_up = std::min(one.setting_up, given.times_larger() * ran->setting_up);
+            one.unit_seconds = std::min(one.unit_seconds, given.times_larger() * ran->unit_seconds());
         }
-        const double error = rms_distance(ran.at_one, exact_at_one_, piece_.radius);
-        return {.error = error, .margin = is_whole_ ? 0 : margin_of_piece * error};
     }
-
-    void note(const Method& method, const Ran& ran, const Expected& expected) {
-        tried_.push_back({.method = method,
-                          .error = expected.error,
-                          .margin = expected.margin,
-                          .setting_up = times_larger_ * ran.setting_up,
-                          .unit_seconds = times_larger_ * ran.unit_seconds()});
-    }
-
-    double start_ = process_seconds();
-    Scene piece_;
-    Tuning tuning_;
-    Measure measure_;
-    double bound_;
-    int units_of_run_;
-    bool is_whole_;
-    double times_larger_; ///< the scene than the piece, in discs
-    double times_more_;   ///< of what is averaged there is in the scene
-    EventDriven<long double> extended_;
-    int units_ = 0;
-    std::vector<Disc> exact_at_one_;
-    Amounts amounts_;
-    std::vector<Tried> tried_;
-};
+}
 
 } // namespace
 
-std::vector<Method> methods_for(const Scene& scene) {
-    std::vector<Method> methods{{.variant = &event_driven()}};
-    for (const Variant* variant : candidates(scene)) {
-        for (int substeps = 1; substeps <= most_substeps; substeps *= 2) {
-            methods.push_back({.variant = variant, .substeps = substeps});
+Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound) {
+    const TrialCase given{.start = process_seconds(),
+                          .scene = scene,
+                          .tuning = tuning,
+                          .measure = measure,
+                          .bound = bound,
+                          .piece = scene_of_trial(scene, measure)};
+    const ExactRun exact = run_exactly(given);
+    std::vector<Tried> tried{
+        tried_of(given, {.variant = &event_driven()}, exact.ran, {.error = exact.error})};
+    std::vector<const Variant*> done{&event_driven()};
+    for (const Method& method : methods_for(given.piece)) {
+        const bool is_open = std::ranges::count(done, method.variant) == 0;
+        if (is_open && !try_method(given, exact, method, tried)) {
+            done.push_back(method.variant);
         }
     }
-    return methods;
-}
-
-Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound) {
-    return Trying(scene, tuning, measure, bound).run();
+    for (int round = 0; round < further_rounds; ++round) {
+        time_again(given, exact, tried);
+    }
+    return {.tried = std::move(tried),
+            .discs = given.piece.discs.size(),
+            .whole_scene = given.is_whole(),
+            .units_of_time = exact.units,
+            .seconds = process_seconds() - given.start};
 }
 
 } // namespace carom

@@ -18,11 +18,9 @@ struct Trial {
     double seconds = 0;       ///< that all of it took
 };
 
-/// Tries methods on the scene until the cheapest of them with an error below `bound` is known: the
-/// event-driven simulation; the fastest variant with collisions at the step's end and at contact, in double
-/// and in float, each with 1, 2, 4 ... up to 64 substeps until its error is below the bound or it costs more
-/// than one that is, all of them with few substeps before any with twice as many. Each runs on the threads
-/// and with the tolerance of `tuning`, and is timed there; how many threads these are decides nothing.
+/// Tries the methods for the scene until the cheapest of them with an error below `bound` is known: each
+/// variant until its error is below the bound or it costs more than one that is. Each runs on the threads and
+/// with the tolerance of `tuning`, and is timed there; how many threads these are decides nothing.
 ///
 /// Errors are against the event-driven simulation, as in error_measures.hpp: in double, its own in long
 /// double. A scene of more than `largest_trial` discs is tried on the fullest of its pieces of that size, and
@@ -30,10 +28,6 @@ struct Trial {
 /// The discs must be apart at the start, and the scene have a unit of time. Throws CheckError if the
 /// collisions of an instant do not come to an end.
 Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound);
-
-/// Everything that could be chosen for the scene, whether a trial comes to it or not: the event-driven
-/// simulation, and each variant that is tried with each number of substeps.
-std::vector<Method> methods_for(const Scene& scene);
 
 /// Discs of the largest scene that is tried as a whole. Averages need fewer, for longer.
 constexpr std::size_t largest_trial(Measure measure) { return measure == Measure::path ? 20'000 : 4'000; }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "harness/collisions/exchange.hpp"
 #include "harness/support/format.hpp"
 #include "harness/verify/at_contact.hpp"
 #include "harness/verify/conservation.hpp"
@@ -31,10 +32,6 @@ ContactRules rules_of(const Scene& scene, const Policies& policies, const Tuning
             .way_back = dt,
             .near = near_radius(scene, dt),
             .tolerance = tuning.tolerance};
-}
-
-std::string velocities(const Disc& one, const Disc& two) {
-    return format("(%.17g, %.17g) and (%.17g, %.17g)", one.vx, one.vy, two.vx, two.vy);
 }
 
 std::string when(const Collision<double>& collision) {
@@ -102,11 +99,8 @@ std::optional<std::string> ContactChecker::collide_sweeps() {
 }
 
 std::optional<std::string> ContactChecker::violation_of(const Collision<double>& collision) {
-    const int count = static_cast<int>(discs_.size());
-    if (collision.first < 0 || collision.first >= count || collision.second < 0 ||
-        collision.second >= count) {
-        return format("a collision of discs %d and %d is told, of %d", collision.first, collision.second,
-                      count);
+    if (Found violation = unknown_discs(collision, static_cast<int>(discs_.size()))) {
+        return violation;
     }
     const DiscsNearby* near = near_.find_pair(collision.first, collision.second);
     if (near == nullptr) {
@@ -126,7 +120,7 @@ std::optional<std::string> ContactChecker::violation_of(const Collision<double>&
 std::optional<std::string> ContactChecker::wrong_pair(const Collision<double>& collision) const {
     const PairBackwards pair(rules_, disc(collision.first), disc(collision.second));
     const Disc d = pair.at(collision.time);
-    const double distance = std::hypot(d.x, d.y);
+    const double distance = distance_of(d);
     const auto who = [&] { return format("discs %d and %d", collision.first, collision.second); };
     if (!(std::abs(distance * distance - pair.reach() * pair.reach()) <= 2 * pair.uncertain())) {
         return who() + format(" collide while they are %.17g apart, not %.17g", distance, pair.reach()) +
@@ -136,7 +130,7 @@ std::optional<std::string> ContactChecker::wrong_pair(const Collision<double>& c
         return who() + " collide before the way back" + when(collision);
     }
     // A grazing pair may be seen to part a little: by the root of what its distance is uncertain.
-    if (!(d.x * d.vx + d.y * d.vy <= 2 * pair.speed() * std::sqrt(pair.uncertain()))) {
+    if (!(parting_of(d) <= 2 * speed_of(d) * std::sqrt(pair.uncertain()))) {
         return who() + " collide while they part" + when(collision);
     }
     return wrong_exchange(collision, d, std::sqrt(rules_.epsilon() * pair.uncertain()) / distance);
@@ -147,40 +141,19 @@ std::optional<std::string> ContactChecker::wrong_exchange(const Collision<double
                                                           double uncertain) const {
     const Disc& one = disc(collision.first);
     const Disc& two = disc(collision.second);
-    const Disc& one_after = collision.first_after;
-    const Disc& two_after = collision.second_after;
-    const auto wrong = [&](const char* what) {
-        return format("discs %d and %d, of velocities %s, %s: they get %s", collision.first, collision.second,
-                      velocities(one, two).c_str(), what, velocities(one_after, two_after).c_str()) +
-               when(collision);
-    };
     const double epsilon = rules_.epsilon();
-    const double speeds = std::hypot(one.vx, one.vy) + std::hypot(two.vx, two.vy);
-    const double roundings = 16 * epsilon * speeds;
-    if (!(std::hypot(one_after.vx + two_after.vx - one.vx - two.vx,
-                     one_after.vy + two_after.vy - one.vy - two.vy) <= roundings)) {
-        return wrong("do not keep their momentum");
+    if (const Found violation = wrong_velocities(collision, one, two, d, epsilon, 8 * uncertain)) {
+        return *violation + when(collision);
     }
-    const auto squares = [](const Disc& first, const Disc& second) {
-        return first.vx * first.vx + first.vy * first.vy + second.vx * second.vx + second.vy * second.vy;
-    };
-    if (!(std::abs(squares(one_after, two_after) - squares(one, two)) <= roundings * speeds)) {
-        return wrong("do not keep their energy");
-    }
-    const double squared = d.x * d.x + d.y * d.y;
-    const double share = (d.vx * d.x + d.vy * d.y) / squared;
-    if (!(std::hypot(one.vx + share * d.x - one_after.vx, one.vy + share * d.y - one_after.vy) <=
-          roundings + 8 * speeds * uncertain)) {
-        return wrong("do not exchange what they have along the line of centres");
-    }
+    const double speeds = speed_of(one) + speed_of(two);
     const auto astray = [&](const Disc& before, const Disc& after) {
         const double x = before.x + (after.vx - before.vx) * collision.time;
         const double y = before.y + (after.vy - before.vy) * collision.time;
         const double extent = std::abs(x) + std::abs(y) + std::abs(before.x) + std::abs(before.y);
         return !(std::hypot(after.x - x, after.y - y) <= 16 * epsilon * (extent + speeds * collision.time));
     };
-    if (astray(one, one_after) || astray(two, two_after)) {
-        return wrong("are not where they have flown since");
+    if (astray(one, collision.first_after) || astray(two, collision.second_after)) {
+        return told_velocities(collision, one, two, "are not where they have flown since") + when(collision);
     }
     return std::nullopt;
 }
@@ -204,11 +177,8 @@ std::optional<std::string> ContactChecker::wrong_wall(const Collision<double>& c
     if (right_in_x && right_in_y && turned > 0) {
         return std::nullopt;
     }
-    return format(
-               "disc %d at (%.17g, %.17g), velocity (%.17g, %.17g), is at (%.17g, %.17g), velocity (%.17g, "
-               "%.17g), after a wall that it met",
-               collision.first, before.x, before.y, before.vx, before.vy, after.x, after.y, after.vx,
-               after.vy) +
+    return format("disc %d at %s, is at %s, after a wall that it met", collision.first,
+                  state_text(before).c_str(), state_text(after).c_str()) +
            when(collision);
 }
 
@@ -232,17 +202,14 @@ std::optional<PastCollision> ContactChecker::surely_pending(const DiscsNearby& n
     if (!near.surely) {
         return std::nullopt;
     }
-    const auto met = near.first == near.second
-                         ? surely_in_wall(disc(near.first))
-                         : PairBackwards(rules_, disc(near.first), disc(near.second)).surely_met();
+    const Disc& one = disc(near.first);
+    if (near.at_wall()) {
+        const double time =
+            std::max(time_in_wall(rules_, one.x, one.vx), time_in_wall(rules_, one.y, one.vy));
+        return time >= 0 && time < near.last ? std::optional(PastCollision{time, 0}) : std::nullopt;
+    }
+    const auto met = PairBackwards(rules_, one, disc(near.second)).surely_met();
     return met && met->time < near.last - met->uncertain ? met : std::nullopt;
-}
-
-std::optional<PastCollision> ContactChecker::surely_in_wall(const Disc& disc) const {
-    const double in_x = time_in_wall(rules_, disc.x, disc.vx);
-    const double in_y = time_in_wall(rules_, disc.y, disc.vy);
-    const double time = std::max(in_x, in_y);
-    return time >= 0 ? std::optional(PastCollision{time, 0}) : std::nullopt;
 }
 
 std::optional<std::string> ContactChecker::left_pending() const {
@@ -262,9 +229,8 @@ std::optional<std::string> ContactChecker::left_pending() const {
 
 std::optional<std::string> ContactChecker::wrong_after(const std::vector<Disc>& after) const {
     for (std::size_t i = 0; i < after.size(); ++i) {
-        if (!std::isfinite(after[i].x + after[i].y + after[i].vx + after[i].vy)) {
-            return format("disc %zu has a state that is not finite: (%g, %g), velocity (%g, %g)", i,
-                          after[i].x, after[i].y, after[i].vx, after[i].vy);
+        if (Found violation = not_finite(after[i], i)) {
+            return violation;
         }
         if (after[i].x != discs_[i].x || after[i].y != discs_[i].y) {
             return format("disc %zu is at (%.17g, %.17g) instead of at (%.17g, %.17g)", i, after[i].x,
@@ -276,10 +242,9 @@ std::optional<std::string> ContactChecker::wrong_after(const std::vector<Disc>& 
         const Disc& one = after[static_cast<std::size_t>(near.first)];
         const Disc& two = after[static_cast<std::size_t>(near.second)];
         Found violation;
-        if (near.surely && near.first == near.second) {
+        if (near.surely && near.at_wall()) {
             violation = at_end_.wall_colliding(after, near.first);
-        } else if (near.surely &&
-                   std::hypot(two.x - one.x, two.y - one.y) < reach * (1 - 8 * rules_.epsilon())) {
+        } else if (near.surely && distance_of(seen_from(one, two)) < reach * (1 - 8 * rules_.epsilon())) {
             violation = at_end_.pair_colliding(after, {near.first, near.second});
         }
         if (violation) {

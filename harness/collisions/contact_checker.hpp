@@ -49,7 +49,6 @@ class ContactChecker final : public CollisionChecker, public CollisionLog<double
     Found wrong_wall(const Collision<double>& collision) const;
     Found earlier(int disc, const Collision<double>& collision) const;
     std::optional<PastCollision> surely_pending(const DiscsNearby& near) const;
-    std::optional<PastCollision> surely_in_wall(const Disc& disc) const;
     Found left_pending() const;
     Found wrong_after(const std::vector<Disc>& after) const;
 

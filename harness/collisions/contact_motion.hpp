@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "harness/verify/disc_states.hpp"
 #include "harness/verify/walls.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/scene.hpp"
@@ -36,19 +37,17 @@ struct PastCollision {
 class PairBackwards {
   public:
     PairBackwards(const ContactRules& rules, const Disc& one, const Disc& two)
-        : rules_(rules), dx_(two.x - one.x), dy_(two.y - one.y), vx_(two.vx - one.vx), vy_(two.vy - one.vy),
-          speeds_(std::hypot(std::hypot(one.vx, one.vy), std::hypot(two.vx, two.vy))),
-          b_(dx_ * vx_ + dy_ * vy_), way_back_(b_ < 0 ? rules.way_back : rules.dt) {
-        const double farthest = std::hypot(dx_, dy_) + std::hypot(vx_, vy_) * way_back_ + reach();
+        : rules_(rules), d_(seen_from(one, two)), speeds_(std::hypot(speed_of(one), speed_of(two))),
+          way_back_(parting_of(d_) < 0 ? rules.way_back : rules.dt) {
+        const double farthest = distance_of(d_) + speed_of(d_) * way_back_ + reach();
         uncertain_ = 32 * rules.epsilon() * farthest * farthest;
     }
 
     double reach() const { return 2 * rules_.walls.radius; }
     double way_back() const { return way_back_; }
-    double speed() const { return std::hypot(vx_, vy_); }
 
     /// Where the second disc was, seen from the first.
-    Disc at(double time) const { return {dx_ - vx_ * time, dy_ - vy_ * time, vx_, vy_}; }
+    Disc at(double time) const { return {d_.x - d_.vx * time, d_.y - d_.vy * time, d_.vx, d_.vy}; }
 
     /// How wrong the square of a distance may be.
     double uncertain() const { return uncertain_; }
@@ -56,19 +55,20 @@ class PairBackwards {
     /// The collision that these two surely had, if they have flown as they do now: whatever the rounding,
     /// they were apart when the way back begins, have met since, and approached by more than what is let be.
     std::optional<PastCollision> surely_met() const {
-        const double a = vx_ * vx_ + vy_ * vy_;
-        const double c = dx_ * dx_ + dy_ * dy_ - reach() * reach();
-        const double discriminant = b_ * b_ - a * c;
+        const double a = d_.vx * d_.vx + d_.vy * d_.vy;
+        const double b = parting_of(d_);
+        const double c = d_.x * d_.x + d_.y * d_.y - reach() * reach();
+        const double discriminant = b * b - a * c;
         const double closing = std::sqrt(std::max(discriminant, 0.0));
-        const bool were_apart = c - way_back_ * (2 * b_ - a * way_back_) > uncertain_;
-        const double uncertain_b = 32 * rules_.epsilon() * std::sqrt(a) * (std::hypot(dx_, dy_) + reach());
-        const bool parted = b_ > uncertain_b && b_ < a * way_back_ - uncertain_b;
+        const bool were_apart = c - way_back_ * (2 * b - a * way_back_) > uncertain_;
+        const double uncertain_b = 32 * rules_.epsilon() * std::sqrt(a) * (distance_of(d_) + reach());
+        const bool parted = b > uncertain_b && b < a * way_back_ - uncertain_b;
         const bool in_contact = c < -uncertain_;
         if (!were_apart || !(in_contact || parted) || discriminant <= 4 * a * uncertain_ ||
             closing <= let_be()) {
             return std::nullopt;
         }
-        const double time = b_ < 0 ? -c / (closing - b_) : (b_ + closing) / a;
+        const double time = b < 0 ? -c / (closing - b) : (b + closing) / a;
         const PastCollision met{time, uncertain_ / closing + 32 * rules_.epsilon() * time};
         const bool within = time > met.uncertain && time < way_back_ - met.uncertain;
         return within ? std::optional(met) : std::nullopt;
@@ -82,12 +82,8 @@ class PairBackwards {
     }
 
     const ContactRules& rules_;
-    double dx_;
-    double dy_;
-    double vx_;
-    double vy_;
+    Disc d_;
     double speeds_;
-    double b_;
     double way_back_;
     double uncertain_;
 };

@@ -15,7 +15,7 @@ void NearDiscs::find(const std::vector<Disc>& free, const ContactRules& rules) {
     for (const OverlappingPair& pair : overlapping_pairs(free, rules.near * (1 + roundings))) {
         const Disc& one = free[static_cast<std::size_t>(pair.first)];
         const Disc& two = free[static_cast<std::size_t>(pair.second)];
-        const double distance = std::hypot(two.x - one.x, two.y - one.y);
+        const double distance = distance_of(seen_from(one, two));
         pairs_.push_back({pair.first, pair.second, distance < 2 * rules.near * (1 - roundings), never});
     }
     const double slack = roundings * (rules.near + rules.walls.side);
@@ -30,30 +30,17 @@ void NearDiscs::find(const std::vector<Disc>& free, const ContactRules& rules) {
     sort_by_disc(free.size());
 }
 
-/// A counting sort.
 void NearDiscs::sort_by_disc(std::size_t discs) {
-    begin_.assign(discs + 1, 0);
-    for (const DiscsNearby& pair : pairs_) {
-        ++begin_[static_cast<std::size_t>(pair.first)];
-        begin_[static_cast<std::size_t>(pair.second)] += pair.at_wall() ? 0 : 1;
+    places_.resize(discs);
+    for (auto& places : places_) {
+        places.clear();
     }
-    std::size_t end = 0;
-    for (std::size_t& begin : begin_) {
-        end += begin;
-        begin = end;
-    }
-    places_.resize(end);
-    for (std::size_t place = 0; place < pairs_.size(); ++place) {
-        places_[--begin_[static_cast<std::size_t>(pairs_[place].first)]] = place;
+    for (std::size_t place = pairs_.size(); place-- > 0;) {
+        places_[static_cast<std::size_t>(pairs_[place].first)].push_back(place);
         if (!pairs_[place].at_wall()) {
-            places_[--begin_[static_cast<std::size_t>(pairs_[place].second)]] = place;
+            places_[static_cast<std::size_t>(pairs_[place].second)].push_back(place);
         }
     }
-}
-
-std::span<const std::size_t> NearDiscs::places_of(int disc) const {
-    const auto i = static_cast<std::size_t>(disc);
-    return {places_.data() + begin_[i], begin_[i + 1] - begin_[i]};
 }
 
 DiscsNearby* NearDiscs::find_pair(int first, int second) {

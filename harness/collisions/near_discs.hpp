@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "harness/collisions/contact_motion.hpp"
@@ -27,7 +26,9 @@ class NearDiscs {
     const std::vector<DiscsNearby>& all() const { return pairs_; }
 
     /// Where in `all` those of a disc stand.
-    std::span<const std::size_t> places_of(int disc) const;
+    const std::vector<std::size_t>& places_of(int disc) const {
+        return places_[static_cast<std::size_t>(disc)];
+    }
 
     /// That of two discs, or of one and a wall, or null.
     DiscsNearby* find_pair(int first, int second);
@@ -36,8 +37,7 @@ class NearDiscs {
     void sort_by_disc(std::size_t discs);
 
     std::vector<DiscsNearby> pairs_;
-    std::vector<std::size_t> begin_; ///< of each disc its first entry in `places_`; one more
-    std::vector<std::size_t> places_;
+    std::vector<std::vector<std::size_t>> places_; ///< of each disc
 };
 
 } // namespace carom

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "harness/collisions/exchange.hpp"
 #include "harness/support/format.hpp"
 
 namespace carom {
@@ -11,11 +12,6 @@ namespace {
 
 /// Of so many pieces, and some for each disc, memory is not short; then they are searched.
 constexpr std::size_t many_pieces = 65'536;
-
-template <class Real> std::string text(const BasicDisc<Real>& disc) {
-    return format("(%.17g, %.17g), velocity (%.17g, %.17g)", static_cast<double>(disc.x),
-                  static_cast<double>(disc.y), static_cast<double>(disc.vx), static_cast<double>(disc.vy));
-}
 
 template <class Real> bool is_finite(const BasicDisc<Real>& disc) {
     return std::isfinite(disc.x + disc.y + disc.vx + disc.vy);
@@ -57,12 +53,8 @@ template <class Real> void PathChecker<Real>::collided(const Collision<Real>& co
 
 template <class Real>
 std::optional<std::string> PathChecker<Real>::violation_of(const Collision<Real>& collision) {
-    const auto is_disc = [this](int disc) {
-        return disc >= 0 && static_cast<std::size_t>(disc) < paths_.size();
-    };
-    if (!is_disc(collision.first) || !is_disc(collision.second)) {
-        return format("a collision of discs %d and %d is told, of %zu", collision.first, collision.second,
-                      paths_.size());
+    if (auto violation = unknown_discs(collision, static_cast<int>(paths_.size()))) {
+        return violation;
     }
     if (!(collision.time >= now_)) {
         return format("a collision of time %.17g is told after one of time %.17g",
@@ -88,8 +80,8 @@ std::optional<std::string> PathChecker<Real>::off_path(int disc, const BasicDisc
     if (is_finite(place) && std::max(std::abs(place.x - there.x), std::abs(place.y - there.y)) <= allowed) {
         return std::nullopt;
     }
-    return format("disc %d is at %s, and its path leads to %s,", disc, text(place).c_str(),
-                  text(there).c_str()) +
+    return format("disc %d is at %s, and its path leads to %s,", disc, state_text(place).c_str(),
+                  state_text(there).c_str()) +
            at_time(time);
 }
 
@@ -98,16 +90,12 @@ std::optional<std::string> PathChecker<Real>::wrong_pair(const Collision<Real>& 
     const Path<Real>& first = path(collision.first);
     const Path<Real>& second = path(collision.second);
     const Real time = collision.time;
-    const BasicDisc<Real> one = first.at(time);
-    const BasicDisc<Real> two = second.at(time);
     const Real later = std::max(first.time, second.time);
-    const BasicDisc<Real> one_then = first.at(later);
-    const BasicDisc<Real> two_then = second.at(later);
-    const Real distance_then = std::hypot(two_then.x - one_then.x, two_then.y - one_then.y);
+    const Real distance_then = distance_of(seen_from(first.at(later), second.at(later)));
+    const BasicDisc<Real> d = seen_from(first.at(time), second.at(time));
+    const Real distance = distance_of(d);
     const Real place = rounding_.place(first, time) + rounding_.place(second, time);
-    const Real speed = std::hypot(two.vx - one.vx, two.vy - one.vy);
-    const Real allowed = place + rounding_.gap(speed, time, distance_then);
-    const Real distance = std::hypot(two.x - one.x, two.y - one.y);
+    const Real allowed = place + rounding_.gap(speed_of(d), time, distance_then);
     const Real gap = distance - 2 * radius_;
     const auto who = [&] { return format("discs %d and %d", collision.first, collision.second); };
     if (!(gap <= allowed)) {
@@ -119,54 +107,15 @@ std::optional<std::string> PathChecker<Real>::wrong_pair(const Collision<Real>& 
                at_time(time);
     }
     // Within the gap allowed of the nearest that a grazing pair comes, it may be seen to part a little.
-    const Real approach = (two.vx - one.vx) * (two.x - one.x) + (two.vy - one.vy) * (two.y - one.y);
-    const Real parting = speed * (std::sqrt(2 * (distance + radius_) * allowed) + allowed);
-    if (!(approach <= parting)) {
-        return who() + format(" collide while they part at %.3g", static_cast<double>(approach / distance)) +
+    const Real most_parting = speed_of(d) * (std::sqrt(2 * (distance + radius_) * allowed) + allowed);
+    if (!(parting_of(d) <= most_parting)) {
+        return who() +
+               format(" collide while they part at %.3g", static_cast<double>(parting_of(d) / distance)) +
                at_time(time);
     }
-    return wrong_exchange(collision, one, two, place);
-}
-
-/// The normal is uncertain by `place` over the distance; all else are a few roundings of the velocities.
-template <class Real>
-std::optional<std::string> PathChecker<Real>::wrong_exchange(const Collision<Real>& collision,
-                                                             const BasicDisc<Real>& one,
-                                                             const BasicDisc<Real>& two, Real place) {
-    const BasicDisc<Real>& one_after = collision.first_after;
-    const BasicDisc<Real>& two_after = collision.second_after;
-    const auto wrong = [&](const char* what) {
-        return format(
-                   "discs %d and %d, of velocities (%.17g, %.17g) and (%.17g, %.17g), %s: they get (%.17g, "
-                   "%.17g) and (%.17g, %.17g)",
-                   collision.first, collision.second, static_cast<double>(one.vx),
-                   static_cast<double>(one.vy), static_cast<double>(two.vx), static_cast<double>(two.vy),
-                   what, static_cast<double>(one_after.vx), static_cast<double>(one_after.vy),
-                   static_cast<double>(two_after.vx), static_cast<double>(two_after.vy)) +
-               at_time(collision.time);
-    };
-    const Real speeds = std::hypot(one.vx, one.vy) + std::hypot(two.vx, two.vy);
-    const Real roundings = 16 * PathRounding<Real>::epsilon * speeds;
-    if (std::hypot(one_after.vx + two_after.vx - one.vx - two.vx,
-                   one_after.vy + two_after.vy - one.vy - two.vy) > roundings) {
-        return wrong("do not keep their momentum");
-    }
-    const auto squares = [](const BasicDisc<Real>& first, const BasicDisc<Real>& second) {
-        return first.vx * first.vx + first.vy * first.vy + second.vx * second.vx + second.vy * second.vy;
-    };
-    if (std::abs(squares(one_after, two_after) - squares(one, two)) > roundings * speeds) {
-        return wrong("do not keep their energy");
-    }
-    const Real dx = two.x - one.x;
-    const Real dy = two.y - one.y;
-    const Real distance = std::hypot(dx, dy);
-    const Real exchanged = ((two.vx - one.vx) * dx + (two.vy - one.vy) * dy) / distance;
-    const Real off = std::hypot(one.vx + exchanged * (dx / distance) - one_after.vx,
-                                one.vy + exchanged * (dy / distance) - one_after.vy);
-    if (off > roundings + 4 * speeds * (place / distance)) {
-        return wrong("do not exchange what they have along the line of centres");
-    }
-    return std::nullopt;
+    Found violation = wrong_velocities(collision, first.start, second.start, d, PathRounding<Real>::epsilon,
+                                       4 * (place / distance));
+    return violation ? *violation + at_time(time) : violation;
 }
 
 /// How far a disc is beyond the wall that it flies to, along one axis.
@@ -261,7 +210,7 @@ std::optional<std::string> PathChecker<Real>::violation_at(Real time,
         }
         if (discs[i].vx != paths_[i].start.vx || discs[i].vy != paths_[i].start.vy) {
             return format("disc %d is at %s, and its last collision left it (%.17g, %.17g),", disc,
-                          text(discs[i]).c_str(), static_cast<double>(paths_[i].start.vx),
+                          state_text(discs[i]).c_str(), static_cast<double>(paths_[i].start.vx),
                           static_cast<double>(paths_[i].start.vy)) +
                    at_time(time);
         }

@@ -50,8 +50,6 @@ template <class Real> class PathChecker final : public CollisionLog<Real> {
     Found violation_of(const Collision<Real>& collision);
     Found off_path(int disc, const BasicDisc<Real>& place, Real time);
     Found wrong_pair(const Collision<Real>& collision);
-    Found wrong_exchange(const Collision<Real>& collision, const BasicDisc<Real>& one,
-                         const BasicDisc<Real>& two, Real place);
     Found wrong_wall(const Collision<Real>& collision);
     Found beyond_wall(int disc, Real time);
     Real beyond(Real position, Real velocity) const;

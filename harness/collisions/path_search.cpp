@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harness/support/format.hpp"
+#include "harness/verify/disc_states.hpp"
 
 namespace carom {
 namespace {
@@ -175,13 +176,8 @@ std::optional<std::string> PathSearch<Real>::violation_of(const Segment& one, co
     const Path<Real>& other = two.piece->path;
     const Real begin = std::max(one.begin, two.begin);
     const Real duration = std::min(one.end, two.end) - begin;
-    const auto apart = [&](Real time) {
-        const BasicDisc<Real> here = path.at(time);
-        const BasicDisc<Real> there = other.at(time);
-        return BasicDisc<Real>{there.x - here.x, there.y - here.y, there.vx - here.vx, there.vy - here.vy};
-    };
-    const BasicDisc<Real> d = apart(begin);
-    const Real approach = d.x * d.vx + d.y * d.vy;
+    const BasicDisc<Real> d = seen_from(path.at(begin), other.at(begin));
+    const Real approach = parting_of(d);
     const Real speed_squared = d.vx * d.vx + d.vy * d.vy;
     const Real nearest = approach < 0 ? std::min(-approach / speed_squared, duration) : Real{0};
     const Real x = d.x + d.vx * nearest;
@@ -190,8 +186,8 @@ std::optional<std::string> PathSearch<Real>::violation_of(const Segment& one, co
         return std::nullopt;
     }
     const Real time = begin + nearest;
-    const BasicDisc<Real> at_first = apart(std::max(path.time, other.time));
-    const Real first_distance = std::hypot(at_first.x, at_first.y);
+    const Real first = std::max(path.time, other.time);
+    const Real first_distance = distance_of(seen_from(path.at(first), other.at(first)));
     const Real depth = std::min(2 * radius_, first_distance) - std::hypot(x, y);
     const Real allowed = rounding_.place(path, time) + rounding_.place(other, time) +
                          rounding_.gap(std::sqrt(speed_squared), time, first_distance);

@@ -1,8 +1,6 @@
 #include "harness/command_line/described_process.hpp"
 
 #include <algorithm>
-#include <optional>
-#include <type_traits>
 #include <utility>
 
 #include <unistd.h>
@@ -35,49 +33,38 @@ std::vector<std::string> environment_with(const std::map<std::string, std::strin
     return variables;
 }
 
-template <class Value> constexpr const char* kind() {
-    if constexpr (std::is_same_v<Value, std::string>) {
-        return "a text";
-    } else if constexpr (std::is_same_v<Value, bool>) {
-        return "true or false";
-    } else if constexpr (std::is_integral_v<Value>) {
-        return "a whole number";
-    } else if constexpr (std::is_floating_point_v<Value>) {
-        return "a number";
-    } else if constexpr (std::is_same_v<Value, std::vector<int>>) {
-        return "a list of whole numbers";
-    } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
-        return "a list of texts";
-    } else {
-        return "an object of texts";
-    }
-}
+// What a value of each type is called.
+const char* kind(const std::string& /*value*/) { return "a text"; }
+const char* kind(bool /*value*/) { return "true or false"; }
+const char* kind(int /*value*/) { return "a whole number"; }
+const char* kind(double /*value*/) { return "a number"; }
+const char* kind(const std::vector<int>& /*value*/) { return "a list of whole numbers"; }
+const char* kind(const std::vector<std::string>& /*value*/) { return "a list of texts"; }
+const char* kind(const std::map<std::string, std::string>& /*value*/) { return "an object of texts"; }
 
-/// The value of a key, or `otherwise` where the key is not there. Throws InputError.
-template <class Value>
-Value value_of(const Json& process, const char* key, const std::optional<Value>& otherwise = std::nullopt) {
+/// Takes the value of a key. Throws InputError.
+template <class Value> void require(const Json& process, const char* key, Value& value) {
     const auto found = process.find(key);
     if (found == process.end()) {
-        if (otherwise) {
-            return *otherwise;
-        }
-        throw InputError(std::string(key) + ": found none, expected " + kind<Value>());
+        throw InputError(std::string(key) + ": found none, expected " + kind(value));
     }
     try {
-        return found->template get<Value>();
+        found->get_to(value);
     } catch (const Json::exception&) {
         throw InputError(std::string(key) + ": found " + in_quotes(json_text(*found, -1)) + ", expected " +
-                         kind<Value>());
+                         kind(value));
     }
 }
 
-std::string text_of(const Json& process, const char* key) { return value_of<std::string>(process, key, ""); }
+/// The same where the key is there; else `value` stays.
+template <class Value> void take(const Json& process, const char* key, Value& value) {
+    if (process.contains(key)) {
+        require(process, key, value);
+    }
+}
 
 /// Of one that times itself in short processes: so often at most in one measurement.
 constexpr int most_rounds_of_a_benchmark = 20;
-
-using ListOfWords = std::vector<std::string>;
-using Texts = std::map<std::string, std::string>;
 
 KeptBy kept_by(const std::string& word) {
     if (word.empty()) {
@@ -89,31 +76,34 @@ KeptBy kept_by(const std::string& word) {
     return word == "cgroup" ? KeptBy::cgroup : KeptBy::subreaper;
 }
 
-ProgramContender contender(const Json& json) {
+ProgramContender contender(const Json& json, bool is_benchmark) {
     ProgramContender one;
-    one.command = {.words = value_of<ListOfWords>(json, "command"),
-                   .folder = text_of(json, "folder"),
-                   .environment = environment_with(value_of(json, "environment", std::optional(Texts()))),
-                   .most_seconds = value_of<double>(json, "most_seconds", 600.0),
-                   .pattern = text_of(json, "pattern")};
-    one.prepare = value_of<ListOfWords>(json, "prepare", ListOfWords());
-    one.conclude = value_of<ListOfWords>(json, "conclude", ListOfWords());
-    one.fresh_folder = value_of<bool>(json, "fresh_folder", false);
-    one.warm_ups = value_of<int>(json, "warm_ups", 0);
-    one.expected_seconds = value_of<double>(json, "expected_seconds", 0.0);
+    std::map<std::string, std::string> environment;
+    std::string keeper;
+    require(json, "command", one.command.words);
+    take(json, "folder", one.command.folder);
+    take(json, "environment", environment);
+    take(json, "most_seconds", one.command.most_seconds);
+    take(json, "pattern", one.command.pattern);
+    take(json, "prepare", one.prepare);
+    take(json, "conclude", one.conclude);
+    take(json, "fresh_folder", one.fresh_folder);
+    take(json, "warm_ups", one.warm_ups);
+    take(json, "expected_seconds", one.expected_seconds);
     if (json.contains("turns")) {
-        one.turns = value_of<bool>(json, "turns");
+        require(json, "turns", one.turns.emplace());
     }
-    one.kept_by = kept_by(text_of(json, "kept_by"));
-    const bool is_benchmark = !text_of(json, "benchmark").empty();
+    take(json, "kept_by", keeper);
+    one.kept_by = kept_by(keeper);
+    one.command.environment = environment_with(environment);
     one.times_itself = is_benchmark || !one.command.pattern.empty();
     one.most_rounds = is_benchmark ? most_rounds_of_a_benchmark : 1;
     return one;
 }
 
 /// The system takes a word to end at a zero byte.
-void require_words(const char* key, const ListOfWords& words) {
-    if (!words.empty() && words.front().empty()) {
+void require_words(const char* key, const std::vector<std::string>& words, bool may_be_none = true) {
+    if (words.empty() ? !may_be_none : words.front().empty()) {
         throw InputError(std::string(key) + ": found no word, expected a program and its arguments");
     }
     for (const std::string& word : words) {
@@ -133,10 +123,7 @@ void require_at_least(const char* key, double found, double least) {
 
 void require_usable(const DescribedProcess& one) {
     const ProgramContender& contender = one.contender;
-    if (contender.command.words.empty()) {
-        throw InputError("command: found no word, expected a program and its arguments");
-    }
-    require_words("command", contender.command.words);
+    require_words("command", contender.command.words, false);
     require_words("prepare", contender.prepare);
     require_words("conclude", contender.conclude);
     if (!(contender.command.most_seconds > 0)) {
@@ -157,20 +144,21 @@ void require_usable(const DescribedProcess& one) {
 }
 
 DescribedProcess described(const Json& json) {
-    DescribedProcess one{.contender = contender(json),
-                         .record = value_of<std::string>(json, "record"),
-                         .tags = value_of<ListOfWords>(json, "tags", ListOfWords()),
-                         .sources = value_of<ListOfWords>(json, "sources", ListOfWords()),
-                         .written = value_of(json, "written", std::optional(Texts())),
-                         .exit_codes = value_of(json, "exit_codes", std::optional(std::vector<int>{0})),
-                         .scene = text_of(json, "scene"),
-                         .checked = text_of(json, "checked"),
-                         .threads = value_of<int>(json, "threads", 1),
-                         .axes = json.value("axes", Json::object()),
-                         .build = json.value("build", Json::object()),
-                         .unit_seconds = value_of<double>(json, "unit_seconds", 1.0),
-                         .benchmark = text_of(json, "benchmark"),
-                         .output = text_of(json, "output")};
+    DescribedProcess one;
+    take(json, "benchmark", one.benchmark);
+    one.contender = contender(json, !one.benchmark.empty());
+    require(json, "record", one.record);
+    take(json, "tags", one.tags);
+    take(json, "sources", one.sources);
+    take(json, "written", one.written);
+    take(json, "exit_codes", one.exit_codes);
+    take(json, "scene", one.scene);
+    take(json, "checked", one.checked);
+    take(json, "threads", one.threads);
+    one.axes = json.value("axes", one.axes);
+    one.build = json.value("build", one.build);
+    take(json, "unit_seconds", one.unit_seconds);
+    take(json, "output", one.output);
     require_usable(one);
     return one;
 }

@@ -1,6 +1,8 @@
 #include "harness/command_line/help.hpp"
 
 #include <cstddef>
+#include <sstream>
+#include <utility>
 #include <vector>
 
 #include "harness/support/errors.hpp"
@@ -8,27 +10,52 @@
 #include "harness/support/text.hpp"
 
 namespace carom {
-namespace {
 
-constexpr std::size_t column_of_text = 30;
-
-using Options = std::vector<const CLI::Option*>;
-
-/// What stands on the left, and what is told of it on the right, or below if the left is too long.
-std::string entry(const std::string& left, const std::string& right) {
-    std::string line = "  " + left;
-    std::string above;
-    if (line.size() + 2 > column_of_text) {
-        above = line + '\n';
-        line.clear();
-    }
-    line.resize(column_of_text, ' ');
-    return above + wrapped(line + right, column_of_text);
+Help::Help() {
+    label("Positionals", "Arguments");
+    label("SUBCOMMAND", "VERB");
 }
 
-std::string with_default(const std::string& name, const CLI::Option& option) {
-    const std::string value = option.get_default_str();
-    return name + (value.empty() ? "" : "=" + value);
+std::string Help::make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const {
+    std::istringstream lines(CLI::Formatter::make_help(app, std::move(name), mode));
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t indent = line.starts_with("  ") ? get_column_width() : 2;
+        text += wrapped(line, text.empty() ? 0 : indent);
+    }
+    while (text.ends_with("\n\n")) {
+        text.pop_back();
+    }
+    return text;
+}
+
+std::string Help::make_subcommands(const CLI::App* app, CLI::AppFormatMode mode) const {
+    if (mode != CLI::AppFormatMode::All) {
+        return CLI::Formatter::make_subcommands(app, mode);
+    }
+    std::string text;
+    for (const CLI::App* verb : app->get_subcommands([](const CLI::App*) { return true; })) {
+        text += "\n" + verb->help(app->get_name());
+    }
+    return text;
+}
+
+/// What is told stands on the right, or below if what is typed is too long.
+std::string Help::make_option(const CLI::Option* option, bool is_argument) const {
+    std::string line = "  " + typed_form(*option, is_argument);
+    const bool fits = line.size() + 2 <= get_column_width();
+    line += fits ? "" : "\n";
+    line.append(get_column_width() - (fits ? line.size() : 0), ' ');
+    return line + told_of(*option) + "\n";
+}
+
+std::string typed_form(const CLI::Option& option, bool is_argument) {
+    std::string form = option.get_name(is_argument, !is_argument);
+    if (option.get_items_expected_max() > 0) {
+        const std::string value = option.get_default_str();
+        form += (is_argument ? "" : " " + option.get_type_name()) + (value.empty() ? "" : "=" + value);
+    }
+    return form;
 }
 
 std::string told_of(const CLI::Option& option) {
@@ -37,81 +64,6 @@ std::string told_of(const CLI::Option& option) {
         text += "; needs " + other->get_name();
     }
     return text;
-}
-
-Options positional(const CLI::App& app) {
-    return app.get_options([](const CLI::Option* option) { return option->get_positional(); });
-}
-
-std::string under(const std::string& heading, const std::vector<HelpEntry>& entries) {
-    std::string text = entries.empty() ? "" : "\n" + heading + ":\n";
-    for (const auto& [left, right] : entries) {
-        text += entry(left, right);
-    }
-    return text;
-}
-
-/// The verbs of a group, with their whole help or a line each.
-std::string group_text(const CLI::App& app, const std::string& name, const std::string& group, bool whole) {
-    std::string text;
-    std::vector<HelpEntry> lines;
-    for (const CLI::App* verb : verbs_of(app, group)) {
-        text += whole ? "\n" + verb->help(name) : "";
-        lines.push_back({verb->get_name(), verb->get_description()});
-    }
-    return whole ? text : under(group, lines);
-}
-
-std::string verbs_text(const CLI::App& app, const std::string& name, bool whole) {
-    std::string text;
-    for (const char* group : {groups::simulate, groups::study, groups::machine}) {
-        text += group_text(app, name, group, whole);
-    }
-    return whole ? text + group_text(app, name, groups::none, whole) : text;
-}
-
-} // namespace
-
-std::vector<HelpEntry> arguments_of(const CLI::App& verb) {
-    std::vector<HelpEntry> entries;
-    for (const CLI::Option* option : positional(verb)) {
-        entries.push_back({with_default(option->get_name(true), *option), told_of(*option)});
-    }
-    return entries;
-}
-
-std::vector<HelpEntry> options_of(const CLI::App& verb) {
-    std::vector<HelpEntry> entries;
-    for (const CLI::Option* option : verb.get_options([](const auto* one) { return one->nonpositional(); })) {
-        const bool takes_a_value = option->get_items_expected_max() > 0;
-        const std::string names = option->get_name(false, true);
-        const std::string typed = takes_a_value ? names + " " + option->get_type_name() : names;
-        entries.push_back({takes_a_value ? with_default(typed, *option) : typed, told_of(*option)});
-    }
-    return entries;
-}
-
-std::string usage_of(const CLI::App& app, const std::string& name) {
-    std::string line = name + " [OPTIONS]";
-    for (const CLI::Option* option : positional(app)) {
-        const std::string many = option->get_items_expected_max() > 1 ? "..." : "";
-        const std::string shown = option->get_name(true) + many;
-        line += option->get_required() ? " " + shown : " [" + shown + "]";
-    }
-    const bool has_verbs = !app.get_subcommands([](const CLI::App*) { return true; }).empty();
-    return line + (has_verbs ? " VERB" : "");
-}
-
-std::vector<const CLI::App*> verbs_of(const CLI::App& program, const std::string& group) {
-    return program.get_subcommands([&](const CLI::App* verb) { return verb->get_group() == group; });
-}
-
-std::string Help::make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const {
-    std::string text = wrapped(app->get_description(), 0) + wrapped("Usage: " + usage_of(*app, name), 2) +
-                       under("Arguments", arguments_of(*app)) + under("Options", options_of(*app)) +
-                       verbs_text(*app, name, mode == CLI::AppFormatMode::All);
-    const std::string footer = app->get_footer();
-    return text + (footer.empty() ? "" : "\n" + wrapped(footer, 2));
 }
 
 CLI::App& require_verb(CLI::App& program, const std::string& name) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -16,29 +15,20 @@ inline constexpr const char* machine = "This machine";
 inline constexpr const char* none = "";
 } // namespace groups
 
-/// The help of the program or of a verb, laid out here and not by CLI11, whose releases differ: what it does,
-/// how to call it, its arguments and options with what they take and their defaults. No line is wider than a
-/// terminal of 80 columns: what is longer goes on below its own column.
-class Help final : public CLI::FormatterBase {
+/// The help of the program or of a verb: CLI11's, with what an option needs behind what it does, and with the
+/// whole help of every verb if all is asked for. No line is wider than a terminal of 80 columns: what is
+/// longer goes on below its own column.
+class Help final : public CLI::Formatter {
   public:
+    Help();
     std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override;
+    std::string make_subcommands(const CLI::App* app, CLI::AppFormatMode mode) const override;
+    std::string make_option(const CLI::Option* option, bool is_argument) const override;
 };
 
-/// An argument, an option or a verb as it is typed, and what is told of it.
-struct HelpEntry {
-    std::string left;
-    std::string right;
-};
-
-/// What the help of a verb tells of, in its order.
-std::vector<HelpEntry> arguments_of(const CLI::App& verb);
-std::vector<HelpEntry> options_of(const CLI::App& verb);
-
-/// "carom run [OPTIONS] SCENE [THREADS]".
-std::string usage_of(const CLI::App& app, const std::string& name);
-
-/// The verbs of one of the `groups`.
-std::vector<const CLI::App*> verbs_of(const CLI::App& program, const std::string& group);
+/// An argument or an option as it is typed, with its default, and what is told of it.
+std::string typed_form(const CLI::Option& option, bool is_argument);
+std::string told_of(const CLI::Option& option);
 
 /// The verb of that name. Throws InputError, with the nearest one, if there is none.
 CLI::App& require_verb(CLI::App& program, const std::string& name);

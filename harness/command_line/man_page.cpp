@@ -25,18 +25,20 @@ std::string escaped(std::string_view text) {
     return roff;
 }
 
-std::string entry(const HelpEntry& one) {
-    return ".TP\n.B " + escaped(one.left) + "\n" + escaped(one.right) + "\n";
+std::string entry(const std::string& typed, const std::string& told) {
+    return ".TP\n.B " + escaped(typed) + "\n" + escaped(told) + "\n";
 }
 
 std::string verb_section(const CLI::App& verb) {
-    std::string text = ".SS carom " + escaped(verb.get_name()) + "\n" + escaped(verb.get_description()) +
-                       ".\n.PP\n" + escaped(usage_of(verb, "carom " + verb.get_name())) + "\n";
-    for (const HelpEntry& one : arguments_of(verb)) {
-        text += entry(one);
+    const std::string name = "carom " + verb.get_name();
+    std::string text = ".SS " + escaped(name) + "\n" + escaped(verb.get_description()) + ".\n.PP\n" +
+                       escaped(Help().make_usage(&verb, name));
+    for (const CLI::Option* argument :
+         verb.get_options([](const auto* one) { return one->get_positional(); })) {
+        text += entry(typed_form(*argument, true), told_of(*argument));
     }
-    for (const HelpEntry& one : options_of(verb)) {
-        text += entry(one);
+    for (const CLI::Option* option : verb.get_options([](const auto* one) { return one->nonpositional(); })) {
+        text += entry(typed_form(*option, false), told_of(*option));
     }
     return text;
 }
@@ -50,8 +52,9 @@ std::string man_page(const CLI::App& program, const std::string& version) {
     std::string details = ".SH EACH VERB\n";
     for (const char* group : {groups::simulate, groups::study, groups::machine}) {
         text += ".SS " + escaped(group) + "\n";
-        for (const CLI::App* verb : verbs_of(program, group)) {
-            text += entry({verb->get_name(), verb->get_description()});
+        const auto is_in_group = [&](const CLI::App* verb) { return verb->get_group() == group; };
+        for (const CLI::App* verb : program.get_subcommands(is_in_group)) {
+            text += entry(verb->get_name(), verb->get_description());
             details += verb_section(*verb);
         }
     }

@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <string_view>
 #include <system_error>
 
 #include <unistd.h>
@@ -17,34 +16,25 @@
 namespace carom {
 namespace {
 
-/// A verb, the package that does it, whether that takes the verb's name as a word, and what it is for.
 struct PythonVerb {
     const char* name;
-    const char* package;
-    bool is_word;
+    const char* group;
+    const char* package;    ///< that does it
+    bool is_word;           ///< the package takes the verb's name as a word
+    bool takes_the_program; ///< the package is told where this program is
     const char* told;
 };
 
 constexpr std::array python_verbs{
-    PythonVerb{"movie", "analysis", true, "Draw a run as an animation, or one step of it"},
-    PythonVerb{"study", "experiments", false,
+    PythonVerb{"movie", groups::simulate, "analysis", true, true,
+               "Draw a run as an animation, or one step of it"},
+    PythonVerb{"study", groups::study, "experiments", false, false,
                "Plan, run and look after a study, here or on a cluster; has verbs of its own"},
-    PythonVerb{"report", "analysis", true, "Write the report of whatever was measured"},
-    PythonVerb{"claims", "analysis", true, "Print each claim with its verdict"},
-    PythonVerb{"figures", "analysis", true, "Draw the figures of whatever was measured"},
+    PythonVerb{"report", groups::study, "analysis", true, false, "Write the report of whatever was measured"},
+    PythonVerb{"claims", groups::study, "analysis", true, false, "Print each claim with its verdict"},
+    PythonVerb{"figures", groups::study, "analysis", true, false,
+               "Draw the figures of whatever was measured"},
 };
-
-constexpr const PythonVerb& movie = python_verbs[0];
-
-const PythonVerb* find_verb(std::string_view name) {
-    const auto* const found =
-        std::ranges::find_if(python_verbs, [name](const PythonVerb& verb) { return name == verb.name; });
-    return found == python_verbs.end() ? nullptr : found;
-}
-
-void add_verb(CLI::App& program, const PythonVerb& verb) {
-    program.add_subcommand(verb.name, verb.told)->prefix_command();
-}
 
 /// The program's own file, all links followed.
 std::filesystem::path own_file() {
@@ -68,7 +58,7 @@ std::vector<std::string> python_words(const PythonVerb& verb, const std::vector<
     }
     std::vector<std::string> all{python.string(), "-I", "-m", verb.package};
     all.insert(all.end(), words.begin() + (verb.is_word ? 0 : 1), words.end());
-    if (&verb == &movie) {
+    if (verb.takes_the_program) {
         all.insert(all.end(), {"--program", own_file().string()});
     }
     return all;
@@ -76,20 +66,17 @@ std::vector<std::string> python_words(const PythonVerb& verb, const std::vector<
 
 } // namespace
 
-void add_movie_command(CLI::App& program) { add_verb(program, movie); }
-
-void add_study_commands(CLI::App& program) {
+void add_python_verbs(CLI::App& program) {
     for (const PythonVerb& verb : python_verbs) {
-        if (&verb != &movie) {
-            add_verb(program, verb);
-        }
+        program.add_subcommand(verb.name, verb.told)->prefix_command()->group(verb.group);
     }
 }
 
 void hand_over(const std::vector<std::string>& words) {
     const bool asks_help = words.size() > 1 && words.front() == "help";
-    const PythonVerb* const verb = words.empty() ? nullptr : find_verb(words[asks_help ? 1 : 0]);
-    if (verb == nullptr) {
+    const std::string name = words.empty() ? "" : words[asks_help ? 1 : 0];
+    const auto* const verb = std::ranges::find(python_verbs, name, &PythonVerb::name);
+    if (verb == python_verbs.end()) {
         return;
     }
     std::vector<std::string> all =

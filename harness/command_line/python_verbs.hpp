@@ -8,8 +8,7 @@
 namespace carom {
 
 /// Add the verbs that Carom's Python packages do, so that help and completion know them.
-void add_movie_command(CLI::App& program);
-void add_study_commands(CLI::App& program);
+void add_python_verbs(CLI::App& program);
 
 /// Becomes the Python program that does the verb which `words` begin with, as git becomes the program of a
 /// verb; returns where that is a verb of this program, or none. Throws InputError where the packages or their

@@ -17,17 +17,17 @@ std::string help_of(const CLI::App& app) {
     return "`" + (parent == nullptr ? "" : parent->get_name() + " ") + app.get_name() + " --help`";
 }
 
-Found unexpected_argument(const CLI::App& app, const std::vector<std::string>& words) {
+Found unexpected_argument(const CLI::App& app) {
+    const auto words = app.remaining();
     if (words.empty()) {
         return std::nullopt;
     }
-    std::string arguments;
-    for (const CLI::Option* option :
-         app.get_options([](const CLI::Option* option) { return option->get_positional(); })) {
-        arguments += (arguments.empty() ? "" : " ") + option->get_name(true);
-    }
-    return "found " + in_quotes(words.front()) + ", expected " +
-           (arguments.empty() ? "no argument" : "no argument after " + arguments) + ": " + help_of(app);
+    const auto arguments =
+        app.get_options([](const CLI::Option* option) { return option->get_positional(); });
+    const auto name = [](const CLI::Option* argument) { return argument->get_name(true); };
+    return "found " + in_quotes(words.front()) + ", expected no argument" +
+           (arguments.empty() ? "" : " after " + CLI::detail::join(arguments, name, " ")) + ": " +
+           help_of(app);
 }
 
 Found missing_argument(const CLI::App& app) {
@@ -89,25 +89,22 @@ std::string first_line_of(const std::string& text) {
     return text.substr(0, std::min(text.find('\n'), longest));
 }
 
-template <class Error> bool is(const CLI::ParseError& error) {
-    return dynamic_cast<const Error*>(&error) != nullptr;
-}
-
 Found wrong(const CLI::App& app, const CLI::ParseError& error) {
-    if (is<CLI::ExtrasError>(error)) {
-        return unexpected_argument(app, app.remaining());
-    }
-    if (is<CLI::RequiredError>(error)) {
+    switch (static_cast<CLI::ExitCodes>(error.get_exit_code())) {
+    case CLI::ExitCodes::ExtrasError:
+        return unexpected_argument(app);
+    case CLI::ExitCodes::RequiredError:
         return missing_argument(app);
-    }
-    if (is<CLI::RequiresError>(error) || is<CLI::ExcludesError>(error)) {
+    case CLI::ExitCodes::RequiresError:
+    case CLI::ExitCodes::ExcludesError:
         return wrong_pair(app);
-    }
-    if (is<CLI::ArgumentMismatch>(error)) {
+    case CLI::ExitCodes::ArgumentMismatch: {
         const Found twice = given_twice(app);
         return twice ? twice : without_value(app, error.what());
     }
-    return std::nullopt;
+    default:
+        return std::nullopt;
+    }
 }
 
 } // namespace
@@ -139,7 +136,8 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error)
             return *unknown;
         }
     }
-    if (called.empty() && program.get_require_subcommand_min() > 0 && is<CLI::RequiredError>(error)) {
+    const bool lacks_something = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError);
+    if (called.empty() && program.get_require_subcommand_min() > 0 && lacks_something) {
         return "found no verb, expected one out of " + help_of(program);
     }
     return wrong(app, error).value_or(first_line_of(error.what()));

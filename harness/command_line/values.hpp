@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -15,19 +14,17 @@
 #include "harness/support/text.hpp"
 
 // What options take, and what is said of what they do not, whichever release of CLI11 reads the command line:
-// "--threads: found 'two', expected a whole number from 1 to 1024".
+// "--threads: found 'two', expected a whole number from 1 to 1024". CLI11's own validators word it otherwise.
 
 namespace carom {
 
-/// A number of that type within the bounds. It is handed on in plain decimal digits, since CLI11 would read
-/// 010 as an octal number.
-template <class Number> CLI::Validator number_from(Number least, Number most) {
-    const auto check = [least, most](std::string& text) {
+/// A number that is `right`, or else a message with what was `expected`. It is handed on in plain decimal
+/// digits, since CLI11 would read 010 as an octal number.
+template <class Number, class Right> CLI::Validator number_that(Right right, const std::string& expected) {
+    const auto check = [right, expected](std::string& text) {
         const std::optional<Number> value = parse_number<Number>(text);
-        if (!value || !(least <= *value && *value <= most)) {
-            return "found " + in_quotes(text) + ", expected a " +
-                   (std::is_integral_v<Number> ? "whole " : "") + "number from " + number_text(least) +
-                   " to " + number_text(most);
+        if (!value || !right(*value)) {
+            return "found " + in_quotes(text) + ", expected " + expected;
         }
         text = number_text(*value);
         return std::string();
@@ -35,21 +32,39 @@ template <class Number> CLI::Validator number_from(Number least, Number most) {
     return {check, ""};
 }
 
-/// Any number that is finite.
+/// A number of that type within the bounds.
+template <class Number> CLI::Validator number_from(Number least, Number most) {
+    return number_that<Number>([=](Number value) { return least <= value && value <= most; },
+                               (std::is_integral_v<Number> ? "a whole number from " : "a number from ") +
+                                   number_text(least) + " to " + number_text(most));
+}
+
 inline CLI::Validator finite_number() {
-    const auto check = [](std::string& text) {
-        const std::optional<double> value = parse_number<double>(text);
-        const bool finite = value && std::abs(*value) <= std::numeric_limits<double>::max();
-        return finite ? std::string() : "found " + in_quotes(text) + ", expected a number";
+    return number_that<double>([](double value) { return std::isfinite(value); }, "a number");
+}
+
+inline CLI::Validator positive_number() {
+    return number_that<double>([](double value) { return value > 0 && std::isfinite(value); },
+                               "a number above 0");
+}
+
+/// One of these words, of which there is one at least.
+inline CLI::Validator one_of(const std::vector<std::string>& words) {
+    std::string expected = words.front();
+    for (std::size_t k = 1; k < words.size(); ++k) {
+        expected += (k + 1 < words.size() ? ", " : " or ") + words[k];
+    }
+    const auto check = [words, expected](std::string& word) {
+        return std::ranges::count(words, word) > 0 ? std::string()
+                                                   : "found " + in_quotes(word) + ", expected " + expected;
     };
     return {check, ""};
 }
 
-/// "relative|published".
-std::string alternatives(const std::vector<std::string>& words);
-
-/// One of these words.
-CLI::Validator one_of(const std::vector<std::string>& words);
+/// Lets an option take one of these words alone, and shows them in its help: "relative|published".
+inline CLI::Option* take_one_of(CLI::Option* option, const std::vector<std::string>& words) {
+    return option->check(one_of(words))->type_name(CLI::detail::join(words, "|"));
+}
 
 /// Adds an option for a number within bounds, whose default is what `value` holds.
 template <class Number>
@@ -68,20 +83,15 @@ template <class Value>
 CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& value,
                         const std::vector<std::pair<std::string, Value>>& choices, const std::string& help) {
     std::vector<std::string> words;
-    std::string now;
     for (const auto& choice : choices) {
         words.push_back(choice.first);
-        if (choice.second == value) {
-            now = choice.first;
-        }
     }
     const auto choose = [&value, choices](const std::string& word) {
         value = std::ranges::find(choices, word, &std::pair<std::string, Value>::first)->second;
     };
-    return command.add_option_function<std::string>(name, choose, help)
-        ->check(one_of(words))
-        ->type_name(alternatives(words))
-        ->default_str(now);
+    const auto now = std::ranges::find(choices, value, &std::pair<std::string, Value>::second);
+    return take_one_of(command.add_option_function<std::string>(name, choose, help), words)
+        ->default_str(now->first);
 }
 
 } // namespace carom

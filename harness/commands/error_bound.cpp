@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
-#include <limits>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,15 +45,6 @@ std::string error_text(const Tried& tried) {
 
 const MeasureText& text_of(Measure measure) {
     return *std::ranges::find(measure_texts, measure, &MeasureText::measure);
-}
-
-CLI::Validator positive_number() {
-    const auto check = [](std::string& text) {
-        const std::optional<double> value = parse_number<double>(text);
-        const bool positive = value && *value > 0 && *value <= std::numeric_limits<double>::max();
-        return positive ? std::string() : "found " + in_quotes(text) + ", expected a number above 0";
-    };
-    return {check, ""};
 }
 
 std::string text_of(const Method& method) {
@@ -133,28 +123,24 @@ void print_choice(const Chosen& chosen) {
 }
 
 nlohmann::ordered_json choice_json(const Chosen& chosen) {
+    const auto row = [](const Tried& one) {
+        return nlohmann::ordered_json{
+            {"variant", one.method.variant->name},  {"substeps", one.method.substeps},
+            {"error", number_or_null(one.error)},   {"largest_error", number_or_null(one.largest_error())},
+            {"setting_up_seconds", one.setting_up}, {"unit_seconds", one.unit_seconds}};
+    };
     auto tried = nlohmann::ordered_json::array();
-    for (const Tried& one : chosen.trial.tried) {
-        tried.push_back({{"variant", one.method.variant->name},
-                         {"substeps", one.method.substeps},
-                         {"error", number_or_null(one.error)},
-                         {"largest_error", number_or_null(one.largest_error())},
-                         {"setting_up_seconds", one.setting_up},
-                         {"unit_seconds", one.unit_seconds}});
-    }
-    return {{"error_below", chosen.bound.below},
-            {"measure", text_of(chosen.bound.measure).word},
-            {"variant", chosen.tried.method.variant->name},
-            {"substeps", chosen.tried.method.substeps},
-            {"error", number_or_null(chosen.tried.error)},
-            {"largest_error", number_or_null(chosen.tried.largest_error())},
-            {"unit_seconds", chosen.tried.unit_seconds},
-            {"trial",
-             {{"seconds", chosen.trial.seconds},
-              {"discs", chosen.trial.discs},
-              {"whole_scene", chosen.trial.whole_scene},
-              {"units_of_time", chosen.trial.units_of_time},
-              {"tried", tried}}}};
+    std::ranges::transform(chosen.trial.tried, std::back_inserter(tried), row);
+    nlohmann::ordered_json json{{"error_below", chosen.bound.below},
+                                {"measure", text_of(chosen.bound.measure).word}};
+    json.update(row(chosen.tried));
+    json.erase("setting_up_seconds");
+    json["trial"] = {{"seconds", chosen.trial.seconds},
+                     {"discs", chosen.trial.discs},
+                     {"whole_scene", chosen.trial.whole_scene},
+                     {"units_of_time", chosen.trial.units_of_time},
+                     {"tried", tried}};
+    return json;
 }
 
 } // namespace carom

@@ -40,9 +40,6 @@ const MeasureText& text_of(Measure measure);
 /// Every word with its measure.
 std::vector<std::pair<std::string, Measure>> measure_choices();
 
-/// Accepts a number above 0.
-CLI::Validator positive_number();
-
 /// The variant with the length of its step.
 std::string text_of(const Method& method);
 

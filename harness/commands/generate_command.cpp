@@ -91,21 +91,18 @@ void run_generate(const GenerateOptions& options) {
 
 /// N to VMAX, without which only a hard case can be written.
 std::vector<CLI::Option*> add_arguments(CLI::App& command, GeneratorArguments& arguments) {
-    CLI::Option* const count = command.add_option("N", arguments.count, "Number of discs");
-    CLI::Option* const side = command.add_option("L", arguments.side, "Side of the box");
-    CLI::Option* const radius = command.add_option("R", arguments.radius, "Radius of the discs");
-    CLI::Option* const steps = command.add_option("STEPS", arguments.steps, "Units of time to simulate");
-    CLI::Option* const least =
-        command.add_option("VMIN", arguments.least_velocity, "Least velocity component");
-    CLI::Option* const largest =
-        command.add_option("VMAX", arguments.largest_velocity, "Largest velocity component");
-    count->transform(number_from(0, most_discs));
-    steps->transform(number_from(0, std::numeric_limits<int>::max()));
-    side->transform(finite_number());
-    radius->transform(finite_number());
-    least->transform(number_from(-largest_number, largest_number));
-    largest->transform(number_from(-largest_number, largest_number));
-    return {count, side, radius, steps, least, largest};
+    const auto add = [&command](const char* name, auto& value, const CLI::Validator& right,
+                                const char* help) {
+        return command.add_option(name, value, help)->transform(right);
+    };
+    const auto velocity = number_from(-largest_number, largest_number);
+    return {add("N", arguments.count, number_from(0, most_discs), "Number of discs"),
+            add("L", arguments.side, finite_number(), "Side of the box"),
+            add("R", arguments.radius, finite_number(), "Radius of the discs"),
+            add("STEPS", arguments.steps, number_from(0, std::numeric_limits<int>::max()),
+                "Units of time to simulate"),
+            add("VMIN", arguments.least_velocity, velocity, "Least velocity component"),
+            add("VMAX", arguments.largest_velocity, velocity, "Largest velocity component")};
 }
 
 std::vector<CLI::Option*> add_choices(CLI::App& command, GeneratorArguments& arguments) {

@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -22,20 +23,18 @@ nlohmann::ordered_json variant_json(const Variant& variant) {
             {"same_bits", {{"threads", same_bits.threads}, {"compilers", same_bits.compilers}}}};
 }
 
-void print_json() {
+void print_names(bool as_json) {
+    std::vector<Variant> all(variants().begin(), variants().end());
+    all.push_back(event_driven());
     auto list = nlohmann::ordered_json::array();
-    for (const Variant& variant : variants()) {
-        list.push_back(variant_json(variant));
+    for (const Variant& variant : all) {
+        if (as_json) {
+            list.push_back(variant_json(variant));
+        } else {
+            std::cout << variant.name << '\n';
+        }
     }
-    list.push_back(variant_json(event_driven()));
-    std::cout << list.dump(2) << '\n';
-}
-
-void print_names() {
-    for (const Variant& variant : variants()) {
-        std::cout << variant.name << '\n';
-    }
-    std::cout << event_driven().name << '\n';
+    std::cout << (as_json ? list.dump(2) + "\n" : "");
 }
 
 std::string word_of(const nlohmann::ordered_json& choice) {
@@ -95,10 +94,8 @@ void add_list_command(CLI::App& program) {
     auto* names = command->add_flag("--names", choice->names, "One name a line");
     command->add_flag("--json", choice->json, "Names and policies as JSON")->excludes(names);
     command->callback([choice] {
-        if (choice->json) {
-            print_json();
-        } else if (choice->names) {
-            print_names();
+        if (choice->json || choice->names) {
+            print_names(choice->json);
         } else {
             print_table();
             print_promises();

@@ -12,10 +12,19 @@
 
 namespace carom {
 
-void add_measurement_options(CLI::App& command, MeasurementOptions& options) {
-    command.add_option("--record", options.record, "File for the record of this process (one case only)");
-    command.add_option("--tag", options.tags, "KEY=VALUE to keep in the record; may be repeated")
+void add_scene_option(CLI::App& command, std::string& scene) {
+    command.add_option("SCENE", scene, "Scene file; - is standard input")->required();
+}
+
+void add_record_options(CLI::App& command, std::string& record, std::vector<std::string>& tags) {
+    command.add_option("--record", record, "File for the record of this process");
+    command.add_option("--tag", tags, "KEY=VALUE to keep in the record; may be repeated")
         ->allow_extra_args(false);
+}
+
+void add_measurement_options(CLI::App& command, MeasurementOptions& options) {
+    add_record_options(command, options.record, options.tags);
+    command.get_option("--record")->description("File for the record of this process (one case only)");
     add_number(command, "--warm-up", options.warm_ups, 0, 1000,
                "Untimed whole runs before the first timed one; with none, two steps");
     add_choice<CheckScope>(command, "--check", options.scope,

@@ -19,6 +19,12 @@ struct MeasurementOptions {
     CheckScope scope = CheckScope::last_step;
 };
 
+/// Adds SCENE.
+void add_scene_option(CLI::App& command, std::string& scene);
+
+/// Adds --record and --tag.
+void add_record_options(CLI::App& command, std::string& record, std::vector<std::string>& tags);
+
 /// Adds --record, --tag, --warm-up and --check.
 void add_measurement_options(CLI::App& command, MeasurementOptions& options);
 

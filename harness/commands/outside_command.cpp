@@ -70,14 +70,12 @@ void add_outside_command(CLI::App& program) {
     auto options = std::make_shared<OutsideOptions>();
     CLI::App* command = program.add_subcommand(
         "outside", "Simulate by Chipmunk, a general engine, to stand beside; only where built with it");
-    command->add_option("SCENE", options->scene, "Scene file; - is standard input")->required();
+    add_scene_option(*command, options->scene);
     add_number(*command, "--substeps", options->substeps, 1, 1'000'000'000,
                "Steps per unit of time, dt = 1/K");
     add_number(*command, "--iterations", options->iterations, 1, 1'000'000,
                "Iterations of its solver in each step");
-    command->add_option("--record", options->record, "File for the record of this process");
-    command->add_option("--tag", options->tags, "KEY=VALUE to keep in the record; may be repeated")
-        ->allow_extra_args(false);
+    add_record_options(*command, options->record, options->tags);
     command->callback([options] { outside(*options); });
 }
 

@@ -138,7 +138,7 @@ void add_promises_command(CLI::App& program) {
     auto options = std::make_shared<PromisesOptions>();
     CLI::App* command = program.add_subcommand(
         "promises", "See whether what `run --error-below` chooses keeps its word, and what would cost less");
-    command->add_option("SCENE", options->scene, "Scene file; - is standard input")->required();
+    add_scene_option(*command, options->scene);
     add_number(*command, "--threads", options->tuning.threads, 1, most_threads, "OpenMP threads");
     command->add_option("--error-below", options->bounds, "Bound of the error; may be repeated")
         ->check(positive_number())
@@ -148,13 +148,11 @@ void add_promises_command(CLI::App& program) {
     for (const auto& [word, measure] : measure_choices()) {
         words.push_back(word);
     }
-    command->add_option("--measure", options->measures, "Which error; may be repeated; by default every one")
-        ->check(one_of(words))
-        ->type_name(alternatives(words))
+    take_one_of(command->add_option("--measure", options->measures,
+                                    "Which error; may be repeated; by default every one"),
+                words)
         ->allow_extra_args(false);
-    command->add_option("--record", options->record, "File for the record of this process");
-    command->add_option("--tag", options->tags, "KEY=VALUE to keep in the record; may be repeated")
-        ->allow_extra_args(false);
+    add_record_options(*command, options->record, options->tags);
     command->callback([options] { keep_promises(*options); });
 }
 

@@ -7,11 +7,13 @@
 #include "harness/collisions/path_checker.hpp"
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
+#include "harness/commands/measurement_options.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
+#include "harness/verify/checker.hpp"
 #include "variants/event_driven_variant.hpp"
 
 namespace carom {
@@ -26,51 +28,42 @@ struct ReferenceOptions {
     bool json = false;
 };
 
-template <class Real> std::string disc_lines(const std::vector<BasicDisc<Real>>& discs) {
-    std::string text;
-    for (std::size_t i = 0; i < discs.size(); ++i) {
-        append_disc(text, i, discs[i]);
-    }
-    return text;
-}
+/// The simulation as every one here runs: it tells its collisions, also where nobody asks for them.
+template <class Real> using Told = EventDriven<Real, CollisionLog<Real>&>;
 
-template <class Real> Real speeds_squared(const std::vector<BasicDisc<Real>>& discs) {
-    Real sum = 0;
-    for (const auto& disc : discs) {
-        sum += disc.vx * disc.vx + disc.vy * disc.vy;
-    }
-    return sum;
-}
+template <class Real> struct Unheard final : CollisionLog<Real> {
+    void collided(const Collision<Real>& /*collision*/) override {}
+};
 
 /// Pressure on the walls: momentum taken up per time and length of wall.
-template <class Real, class Log>
-nlohmann::ordered_json counts_json(const EventDriven<Real, Log>& reference, const Scene& scene, Real start) {
-    const Real end = speeds_squared(reference.discs());
+template <class Real>
+nlohmann::ordered_json counts_json(const Told<Real>& reference, const Scene& scene, Real start) {
+    const Real end = kinetic_energy(reference.discs());
     const auto time = static_cast<double>(reference.time());
     const auto impulse = static_cast<double>(reference.wall_impulse());
-    nlohmann::ordered_json json{{"time", time},
-                                {"particles", scene.discs.size()},
-                                {"pair_collisions", reference.pair_collisions()},
-                                {"wall_collisions", reference.wall_collisions()},
-                                {"wall_impulse", impulse},
-                                {"pressure", nullptr},
-                                {"energy_drift", nullptr}};
-    if (time > 0) {
-        json["pressure"] = impulse / (time * 4 * scene.side);
-    }
-    if (start > 0) {
-        json["energy_drift"] = static_cast<double>((end - start) / start);
-    }
-    return json;
+    const auto if_above_0 = [](auto whole, auto value) {
+        return whole > 0 ? nlohmann::ordered_json(static_cast<double>(value / whole)) : nullptr;
+    };
+    return {{"time", time},
+            {"particles", scene.discs.size()},
+            {"pair_collisions", reference.pair_collisions()},
+            {"wall_collisions", reference.wall_collisions()},
+            {"wall_impulse", impulse},
+            {"pressure", if_above_0(time * 4 * scene.side, impulse)},
+            {"energy_drift", if_above_0(start, end - start)}};
 }
 
-/// Goes on to the end and writes what was asked for. `violation` is asked for the first that was wrong then.
-template <class Real, class Log, class Violation>
-void finish(EventDriven<Real, Log> reference, const ReferenceOptions& options, const Scene& scene,
-            const Violation& violation) {
-    const Real start = speeds_squared(reference.discs());
+template <class Real> void simulate(const ReferenceOptions& options, const Scene& scene) {
+    std::optional<PathChecker<Real>> checker;
+    Unheard<Real> nobody;
+    if (options.check) {
+        checker.emplace(scene);
+    }
+    Told<Real> reference(scene, checker ? static_cast<CollisionLog<Real>&>(*checker) : nobody);
+    const Real start = kinetic_energy(reference.discs());
     const bool ended = reference.advance(static_cast<Real>(options.time));
-    if (const std::optional<std::string> wrong = violation(reference)) {
+    const auto wrong = checker ? checker->violation_at(reference.time(), reference.discs()) : std::nullopt;
+    if (wrong) {
         throw CheckError(shown_name(options.scene) + ", " + *wrong);
     }
     if (!ended) {
@@ -85,16 +78,6 @@ void finish(EventDriven<Real, Log> reference, const ReferenceOptions& options, c
     auto json = counts_json(reference, scene, start);
     json["check"] = options.check ? nlohmann::ordered_json("passed") : nullptr;
     write_text(options.output, json.dump(2) + "\n");
-}
-
-template <class Real> void simulate(const ReferenceOptions& options, const Scene& scene) {
-    if (!options.check) {
-        finish(EventDriven<Real>(scene), options, scene, [](const auto&) { return std::nullopt; });
-        return;
-    }
-    PathChecker<Real> checker(scene);
-    finish(EventDriven<Real, CollisionLog<Real>&>(scene, checker), options, scene,
-           [&](const auto& reference) { return checker.violation_at(reference.time(), reference.discs()); });
 }
 
 void reference(const ReferenceOptions& options) {
@@ -113,7 +96,7 @@ void add_reference_command(CLI::App& program) {
     auto options = std::make_shared<ReferenceOptions>();
     CLI::App* command = program.add_subcommand(
         "reference", "Simulate exactly, event by event, and print `i x y vx vy` for every disc");
-    command->add_option("SCENE", options->scene, "Scene file; - is standard input")->required();
+    add_scene_option(*command, options->scene);
     add_number(*command, "--time", options->time, 0.0, largest_number, "Time at which to print the state")
         ->required()
         ->default_str("");

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -50,124 +49,110 @@ struct Seconds {
     double rest() const { return process - reading - setting_up - steps; }
 };
 
-/// What a run did, by the step and by the second.
+/// A number that is told of a run.
+struct Figure {
+    const char* key;   ///< in JSON
+    const char* label; ///< on a terminal; null: it does not stand there
+    double value;
+    const char* unit;
+};
+
+/// What a run did.
 struct Summary {
-    std::string scene;
-    std::string_view variant;
-    Engine engine;
-    Policies policies;
-    int threads;
-    int threads_asked = 0; ///< or taken for granted; there may be fewer
-    int substeps;
-    std::size_t particles;
-    int units_of_time;  ///< the scene's S
-    std::int64_t steps; ///< of dt = 1/substeps; what is told by the step and by the second is told of these
-    double steps_per_second;
-    double disc_steps_per_second;
-    double overlaps_per_step;
-    double pair_resolves_per_step;
-    double wall_resolves_per_step;
-    double pair_attempts_per_step;
-    double sweeps_per_step;
+    const SimulationOptions& options;
+    const Scene& scene;
+    const Variant& variant;
+    int threads_asked;  ///< or taken for granted; there may be fewer
+    std::int64_t steps; ///< of dt = 1/substeps; what is told by the step and by the second is of these
+    std::vector<Figure> figures;        ///< of time, and by the second and by the step
     std::optional<double> energy_drift; ///< empty if nothing moves at the start
     int discs_outside;
     std::string state_hash; ///< empty if it is not to be printed: it takes its time
-    Seconds seconds;
 };
 
-Summary summarise(const RunOptions& options, const Scene& scene, const Variant& variant, const Run& run,
-                  const Seconds& seconds) {
-    const Tuning& tuning = options.simulation.tuning;
-    const std::int64_t steps = std::int64_t{scene.steps} * tuning.substeps;
+std::vector<Figure> figures_of(const Seconds& seconds, const Tally& work, double steps, double discs) {
     const auto per_step = [steps](std::int64_t total) {
-        return steps > 0 ? static_cast<double>(total) / static_cast<double>(steps) : 0;
+        return steps > 0 ? static_cast<double>(total) / steps : 0;
     };
-    const auto per_second = [&run](double total) {
-        return run.steps_seconds > 0 ? total / run.steps_seconds : 0;
-    };
-    return {.scene = shown_name(options.simulation.scene),
-            .variant = variant.name,
-            .engine = variant.engine,
-            .policies = variant.policies,
-            .threads = tuning.threads,
-            .substeps = tuning.substeps,
-            .particles = scene.discs.size(),
-            .units_of_time = scene.steps,
-            .steps = steps,
-            .steps_per_second = per_second(static_cast<double>(steps)),
-            .disc_steps_per_second =
-                per_second(static_cast<double>(steps) * static_cast<double>(scene.discs.size())),
-            .overlaps_per_step = per_step(run.work.overlaps),
-            .pair_resolves_per_step = per_step(run.work.pair_resolves),
-            .wall_resolves_per_step = per_step(run.work.wall_resolves),
-            .pair_attempts_per_step = per_step(run.work.pair_attempts),
-            .sweeps_per_step = per_step(run.work.sweeps),
-            .energy_drift = energy_drift(scene, run.discs),
-            .discs_outside = discs_outside(scene, run.discs),
-            .state_hash = options.json ? state_hash(run.discs) : "",
-            .seconds = {.reading = seconds.reading,
-                        .setting_up = seconds.setting_up,
-                        .steps = run.steps_seconds,
-                        .process = process_seconds()}};
+    const auto per_second = [&](double total) { return seconds.steps > 0 ? total / seconds.steps : 0; };
+    return {{"reading_seconds", "reading", seconds.reading, " s"},
+            {"setting_up_seconds", "setting up", seconds.setting_up, " s"},
+            {"steps_seconds", "steps", seconds.steps, " s"},
+            {"rest_seconds", nullptr, seconds.rest(), ""},
+            {"process_seconds", "whole process", seconds.process, " s"},
+            {"steps_per_second", "steps/s", per_second(steps), ""},
+            {"disc_steps_per_second", "disc-steps/s", per_second(steps * discs), ""},
+            {"overlaps_per_step", "overlaps", per_step(work.overlaps), " a step"},
+            {"pair_resolves_per_step", "pair resolves", per_step(work.pair_resolves), " a step"},
+            {"wall_resolves_per_step", "wall resolves", per_step(work.wall_resolves), " a step"},
+            {"pair_attempts_per_step", nullptr, per_step(work.pair_attempts), ""},
+            {"sweeps_per_step", "sweeps", per_step(work.sweeps), " a step"}};
+}
+
+Summary summarise(const RunOptions& options, int threads_asked, const Scene& scene, const Variant& variant,
+                  const Run& run, Seconds seconds) {
+    Summary summary{.options = options.simulation,
+                    .scene = scene,
+                    .variant = variant,
+                    .threads_asked = threads_asked,
+                    .steps = std::int64_t{scene.steps} * options.simulation.tuning.substeps,
+                    .figures = {},
+                    .energy_drift = energy_drift(scene, run.discs),
+                    .discs_outside = discs_outside(scene, run.discs),
+                    .state_hash = options.json ? state_hash(run.discs) : ""};
+    seconds.steps = run.steps_seconds;
+    seconds.process = process_seconds();
+    summary.figures = figures_of(seconds, run.work, static_cast<double>(summary.steps),
+                                 static_cast<double>(scene.discs.size()));
+    return summary;
 }
 
 nlohmann::ordered_json summary_json(const Summary& summary) {
-    return {{"scene", summary.scene},
-            {"variant", summary.variant},
-            {"policies", policies_json(summary.policies, summary.engine)},
-            {"threads", summary.threads},
-            {"threads_asked", summary.threads_asked},
-            {"substeps", summary.substeps},
-            {"particles", summary.particles},
-            {"steps", summary.units_of_time},
-            {"steps_simulated", summary.steps},
-            {"reading_seconds", summary.seconds.reading},
-            {"setting_up_seconds", summary.seconds.setting_up},
-            {"steps_seconds", summary.seconds.steps},
-            {"rest_seconds", summary.seconds.rest()},
-            {"process_seconds", summary.seconds.process},
-            {"steps_per_second", summary.steps_per_second},
-            {"disc_steps_per_second", summary.disc_steps_per_second},
-            {"overlaps_per_step", summary.overlaps_per_step},
-            {"pair_resolves_per_step", summary.pair_resolves_per_step},
-            {"wall_resolves_per_step", summary.wall_resolves_per_step},
-            {"pair_attempts_per_step", summary.pair_attempts_per_step},
-            {"sweeps_per_step", summary.sweeps_per_step},
-            {"energy_drift", or_null(summary.energy_drift)},
-            {"discs_outside", summary.discs_outside},
-            {"state_hash", summary.state_hash}};
+    const Tuning& tuning = summary.options.tuning;
+    nlohmann::ordered_json json{{"scene", shown_name(summary.options.scene)},
+                                {"variant", summary.variant.name},
+                                {"policies", policies_json(summary.variant.policies, summary.variant.engine)},
+                                {"threads", tuning.threads},
+                                {"threads_asked", summary.threads_asked},
+                                {"substeps", tuning.substeps},
+                                {"particles", summary.scene.discs.size()},
+                                {"steps", summary.scene.steps},
+                                {"steps_simulated", summary.steps}};
+    for (const Figure& figure : summary.figures) {
+        json[figure.key] = figure.value;
+    }
+    json["energy_drift"] = or_null(summary.energy_drift);
+    json["discs_outside"] = summary.discs_outside;
+    json["state_hash"] = summary.state_hash;
+    return json;
 }
 
 /// "60 steps", or "60 units of time in 480 steps"; without steps "60 units of time".
 std::string steps_text(const Summary& summary) {
-    if (summary.engine == Engine::event_driven) {
-        return counted(summary.units_of_time, "unit") + " of time";
+    const std::string units = counted(summary.scene.steps, "unit") + " of time";
+    if (summary.variant.engine == Engine::event_driven) {
+        return units;
     }
     const std::string steps = counted(summary.steps, "step");
-    return summary.substeps == 1 ? steps : counted(summary.units_of_time, "unit") + " of time in " + steps;
+    return summary.options.tuning.substeps == 1 ? steps : units + " in " + steps;
 }
 
 /// "2 threads", or "1 thread (of 2)".
 std::string threads_text(const Summary& summary) {
-    const bool fewer = summary.threads < summary.threads_asked;
-    return counted(summary.threads, "thread") +
+    const bool fewer = summary.options.tuning.threads < summary.threads_asked;
+    return counted(summary.options.tuning.threads, "thread") +
            (fewer ? " (of " + number_text(summary.threads_asked) + ")" : "");
 }
 
 void print_summary(const Summary& summary) {
-    std::printf("%s: %s, %s, variant %s, %s\n", summary.scene.c_str(),
-                counted(summary.particles, "disc").c_str(), steps_text(summary).c_str(),
-                std::string(summary.variant).c_str(), threads_text(summary).c_str());
-    std::printf("  reading         %12.6g s\n", summary.seconds.reading);
-    std::printf("  setting up      %12.6g s\n", summary.seconds.setting_up);
-    std::printf("  steps           %12.6g s\n", summary.seconds.steps);
-    std::printf("  whole process   %12.6g s\n", summary.seconds.process);
-    std::printf("  steps/s         %12.6g\n", summary.steps_per_second);
-    std::printf("  disc-steps/s    %12.6g\n", summary.disc_steps_per_second);
-    std::printf("  overlaps        %12.6g a step\n", summary.overlaps_per_step);
-    std::printf("  pair resolves   %12.6g a step\n", summary.pair_resolves_per_step);
-    std::printf("  wall resolves   %12.6g a step\n", summary.wall_resolves_per_step);
-    std::printf("  sweeps          %12.6g a step\n", summary.sweeps_per_step);
+    std::printf("%s: %s, %s, variant %s, %s\n", shown_name(summary.options.scene).c_str(),
+                counted(summary.scene.discs.size(), "disc").c_str(), steps_text(summary).c_str(),
+                std::string(summary.variant.name).c_str(), threads_text(summary).c_str());
+    for (const Figure& figure : summary.figures) {
+        if (figure.label != nullptr) {
+            std::printf("  %-15s %12.6g%s\n", figure.label, figure.value, figure.unit);
+        }
+    }
     if (summary.energy_drift) {
         std::printf("  energy drift    %12.3g relative\n", *summary.energy_drift);
     } else {
@@ -233,8 +218,7 @@ void run(RunOptions options) {
         options.simulation.threads_withheld = 0;
     }
     const Run result = simulate(options, scene, variant, seconds);
-    Summary summary = summarise(options, scene, variant, result, seconds);
-    summary.threads_asked = asked;
+    const Summary summary = summarise(options, asked, scene, variant, result, seconds);
     std::optional<ErrorMeasures> errors;
     if (options.errors) {
         errors = measure_errors(scene, variant, options.simulation.tuning);
@@ -257,9 +241,9 @@ void run(RunOptions options) {
             print_errors(*errors);
         }
     }
-    note_crowding(summary.threads);
+    note_crowding(options.simulation.tuning.threads);
     note_withheld_threads(options.simulation);
-    if (summary.threads == asked) {
+    if (options.simulation.tuning.threads == asked) {
         note_if_busy(watch, asked);
     }
 }

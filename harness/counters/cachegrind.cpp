@@ -20,11 +20,11 @@ namespace {
 /// Why nothing can be simulated, and what to do about it.
 class Obstacle : public CounterError {
   public:
-    explicit Obstacle(const Explanation& why) : CounterError(why.reason), remedy_(why.remedy) {}
-    const std::string& remedy() const { return remedy_; }
+    explicit Obstacle(const Explanation& why) : CounterError(why.reason), why_(why) {}
+    const Explanation& why() const { return why_; }
 
   private:
-    std::string remedy_;
+    Explanation why_;
 };
 
 /// A folder for temporary files, gone with all that is in it when this is.
@@ -125,13 +125,8 @@ class SimulatedRun {
     Process process_;
 };
 
-CounterValue row(std::string_view name, std::optional<double> value) {
-    return {.name = std::string(name),
-            .thread = {},
-            .value = value,
-            .source = "cachegrind",
-            .reason = {},
-            .remedy = {}};
+CounterValue row(std::string_view name, std::optional<double> value, const Explanation& why = {}) {
+    return {std::string(name), {}, value, "cachegrind", why.reason, why.remedy};
 }
 
 } // namespace
@@ -159,9 +154,7 @@ std::vector<CounterValue> simulate_counters(const Scene& scene, std::string_view
         rows.push_back(row("steps", static_cast<double>(shortened.steps) * tuning.substeps));
     } catch (const Obstacle& obstacle) {
         for (const SimulatedName& name : simulated_counts()) {
-            rows.push_back(row(name.counter, {}));
-            rows.back().reason = obstacle.what();
-            rows.back().remedy = obstacle.remedy();
+            rows.push_back(row(name.counter, {}, obstacle.why()));
         }
     }
     return rows;

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "harness/counters/access.hpp"
-#include "harness/counters/default_counters.hpp"
 #include "harness/counters/groups.hpp"
 #include "harness/counters/on_threads.hpp"
 #include "harness/counters/papi.hpp"
@@ -14,6 +13,23 @@
 
 namespace carom {
 namespace {
+
+/// What is counted if nobody says otherwise: presets where PAPI has them for this CPU, otherwise the kernel's
+/// own generic events.
+std::vector<Alternatives> default_counters() {
+    return {{"PAPI_TOT_CYC", "perf::CYCLES"},
+            {"PAPI_TOT_INS", "perf::INSTRUCTIONS"},
+            {"PAPI_L1_DCM", "perf::L1-DCACHE-LOAD-MISSES"},
+            {"PAPI_L2_TCM", "PAPI_L2_DCM"},
+            {"PAPI_L3_TCM", "perf::CACHE-MISSES"},
+            {"PAPI_BR_MSP", "perf::BRANCH-MISSES"},
+            {"PAPI_TLB_DM", "perf::DTLB-LOAD-MISSES"},
+            {"PAPI_RES_STL", "perf::STALLED-CYCLES-BACKEND"},
+            {"perf::TASK-CLOCK"},
+            {"perf::CONTEXT-SWITCHES"},
+            {"perf::CPU-MIGRATIONS"},
+            {"perf::PAGE-FAULTS"}};
+}
 
 std::vector<std::string> events_of_environment() {
     std::vector<std::string> events;
@@ -85,8 +101,8 @@ std::vector<CounterValue> count_groups(const std::vector<CounterGroup>& groups, 
         const auto counts = counters[g].counts();
         for (std::size_t k = 0; k < groups[g].events.size(); ++k) {
             for (std::size_t thread = 0; thread < counts.size(); ++thread) {
-                rows.push_back({groups[g].events[k], static_cast<int>(thread), counts[thread][k],
-                                groups[g].source, "", ""});
+                rows.push_back(
+                    {groups[g].events[k], static_cast<int>(thread), counts[thread][k], groups[g].source});
             }
         }
     }
@@ -122,7 +138,7 @@ std::vector<CounterValue> count(const std::vector<std::string>& events, int thre
         const auto counted = count_groups(groups, threads, run);
         rows.insert(rows.end(), counted.begin(), counted.end());
     }
-    rows.push_back({"maximum_resident_bytes", {}, maximum_resident_bytes(), "rusage", "", ""});
+    rows.push_back({"maximum_resident_bytes", {}, maximum_resident_bytes(), "rusage"});
     rows.insert(rows.end(), plan.missing.begin(), plan.missing.end());
     return rows;
 }

@@ -15,9 +15,9 @@ struct CounterValue {
     std::string name;          ///< of the event, as its source calls it
     std::optional<int> thread; ///< empty where the source cannot tell threads apart, or nothing was counted
     std::optional<double> value;
-    std::string source; ///< papi-hardware, papi-software, rusage or cachegrind
-    std::string reason; ///< why there is no value; empty if there is one
-    std::string remedy;
+    std::string source;      ///< papi-hardware, papi-software, rusage or cachegrind
+    std::string reason = {}; ///< why there is no value; empty if there is one
+    std::string remedy = {};
 };
 
 /// One whole run on the threads asked for; what counts is what lies between starts and stops of the

@@ -18,9 +18,15 @@ std::string place(std::size_t thread, std::size_t threads) {
 
 } // namespace
 
-ThreadCounters::ThreadCounters(std::vector<std::string> events, MakeEventSet make, int threads)
-    : events_(std::move(events)), make_(std::move(make)), threads_(static_cast<std::size_t>(threads)) {
-    on_each(&ThreadCounters::prepare_here);
+ThreadCounters::ThreadCounters(std::vector<std::string> events, const MakeEventSet& make, int threads)
+    : events_(std::move(events)), threads_(static_cast<std::size_t>(threads)) {
+    on_each([&](Thread& thread) {
+        thread.set = make();
+        for (const std::string& event : events_) {
+            thread.set->add(event);
+        }
+        thread.identity = pthread_self();
+    });
 }
 
 ThreadCounters::~ThreadCounters() {
@@ -28,9 +34,23 @@ ThreadCounters::~ThreadCounters() {
                    [this](int thread) { threads_[static_cast<std::size_t>(thread)].set.reset(); });
 }
 
-void ThreadCounters::start() { on_each(&ThreadCounters::start_here); }
+void ThreadCounters::start() {
+    on_each([](Thread& thread) {
+        require_same(thread);
+        thread.set->start();
+    });
+}
 
-void ThreadCounters::stop() { on_each(&ThreadCounters::stop_here); }
+void ThreadCounters::stop() {
+    on_each([this](Thread& thread) {
+        require_same(thread);
+        const std::vector<double> counts = thread.set->stop();
+        thread.counts.resize(events_.size());
+        for (std::size_t k = 0; k < events_.size(); ++k) {
+            thread.counts[k] += counts.at(k);
+        }
+    });
+}
 
 std::vector<std::vector<double>> ThreadCounters::counts() const {
     std::vector<std::vector<double>> counts;
@@ -42,11 +62,11 @@ std::vector<std::vector<double>> ThreadCounters::counts() const {
 }
 
 /// Exceptions must not leave the parallel region: an error is thrown after it.
-void ThreadCounters::on_each(void (ThreadCounters::*body)(Thread&) const) {
-    on_each_thread(static_cast<int>(threads_.size()), [this, body](int number) {
+void ThreadCounters::on_each(const std::function<void(Thread&)>& body) {
+    on_each_thread(static_cast<int>(threads_.size()), [&](int number) {
         Thread& thread = threads_[static_cast<std::size_t>(number)];
         try {
-            (this->*body)(thread);
+            body(thread);
         } catch (const std::exception& error) {
             thread.error = error.what();
         }
@@ -59,28 +79,6 @@ void ThreadCounters::on_each(void (ThreadCounters::*body)(Thread&) const) {
         if (!thread.identity) {
             throw CheckError(place(i, threads_.size()) + "OpenMP gave fewer threads than were asked for");
         }
-    }
-}
-
-void ThreadCounters::prepare_here(Thread& thread) const {
-    thread.set = make_();
-    for (const std::string& event : events_) {
-        thread.set->add(event);
-    }
-    thread.identity = pthread_self();
-}
-
-void ThreadCounters::start_here(Thread& thread) const {
-    require_same(thread);
-    thread.set->start();
-}
-
-void ThreadCounters::stop_here(Thread& thread) const {
-    require_same(thread);
-    const std::vector<double> counts = thread.set->stop();
-    thread.counts.resize(events_.size());
-    for (std::size_t k = 0; k < events_.size(); ++k) {
-        thread.counts[k] += counts.at(k);
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@ namespace carom {
 /// CheckError if a thread refuses, is missing or reports nothing.
 class ThreadCounters {
   public:
-    ThreadCounters(std::vector<std::string> events, MakeEventSet make, int threads);
+    ThreadCounters(std::vector<std::string> events, const MakeEventSet& make, int threads);
     ~ThreadCounters();
     ThreadCounters(const ThreadCounters&) = delete;
     ThreadCounters& operator=(const ThreadCounters&) = delete;
@@ -33,15 +34,11 @@ class ThreadCounters {
         std::string error;
     };
 
-    void on_each(void (ThreadCounters::*body)(Thread&) const);
-    void prepare_here(Thread& thread) const;
-    void start_here(Thread& thread) const;
-    void stop_here(Thread& thread) const;
+    void on_each(const std::function<void(Thread&)>& body);
     static void require_same(const Thread& thread);
     void require_counts(const Thread& thread, const std::string& where) const;
 
     std::vector<std::string> events_;
-    MakeEventSet make_;
     std::vector<Thread> threads_;
 };
 

@@ -67,16 +67,12 @@ class RusageEventSet : public EventSet {
 
 } // namespace
 
-const std::vector<std::string>& rusage_events() {
-    static const std::vector<std::string> events = [] {
-        std::vector<std::string> names;
-        names.reserve(fields.size());
-        for (const Field& field : fields) {
-            names.emplace_back(field.event);
-        }
-        return names;
-    }();
-    return events;
+std::vector<std::string> rusage_events() {
+    std::vector<std::string> names;
+    for (const Field& field : fields) {
+        names.emplace_back(field.event);
+    }
+    return names;
 }
 
 std::unique_ptr<EventSet> rusage_event_set() { return std::make_unique<RusageEventSet>(); }

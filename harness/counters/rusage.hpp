@@ -10,7 +10,7 @@ namespace carom {
 
 /// What the system itself keeps count of for each thread: `user_seconds`, `system_seconds`,
 /// `minor_page_faults`, `major_page_faults`, `voluntary_context_switches`, `involuntary_context_switches`.
-const std::vector<std::string>& rusage_events();
+std::vector<std::string> rusage_events();
 
 /// Counts them for the calling thread, by getrusage(RUSAGE_THREAD).
 std::unique_ptr<EventSet> rusage_event_set();

@@ -9,7 +9,7 @@ namespace carom {
 /// measure.
 ///
 /// It has happened before main (waiting.cpp); this puts the environment back into the state in which that
-/// runtime did not find it, and is to be called first in main.
+/// runtime did not find it, or says so if there was no place for the setting. To be called first in main.
 void settle_waiting();
 
 } // namespace carom

@@ -13,8 +13,6 @@
 namespace carom {
 namespace {
 
-constexpr std::string_view blank = " \t\r";
-
 /// Reads a text line by line and field by field, and knows where it is.
 class LineReader {
   public:
@@ -38,7 +36,7 @@ class LineReader {
     }
 
     template <class Number> Number field(const char* expected) {
-        const std::string_view text = next_field();
+        const std::string_view text = take_word(line_);
         const auto value = parse_number<Number>(text);
         if (!value) {
             fail(text.empty() ? "the end of the line" : in_quotes(text), expected);
@@ -55,7 +53,7 @@ class LineReader {
     }
 
     void end_line() {
-        if (const std::string_view text = next_field(); !text.empty()) {
+        if (const std::string_view text = take_word(line_); !text.empty()) {
             fail(in_quotes(text), "the end of the line");
         }
     }
@@ -63,7 +61,7 @@ class LineReader {
     void end_text() {
         while (!rest_.empty()) {
             next_line("");
-            if (const std::string_view text = next_field(); !text.empty()) {
+            if (const std::string_view text = take_word(line_); !text.empty()) {
                 fail(in_quotes(text), "the end of the file after the last disc");
             }
         }
@@ -72,19 +70,6 @@ class LineReader {
     std::size_t bytes_left() const { return rest_.size() + beyond_; }
 
   private:
-    std::string_view next_field() {
-        const auto start = line_.find_first_not_of(blank);
-        if (start == std::string_view::npos) {
-            line_ = {};
-            return {};
-        }
-        line_.remove_prefix(start);
-        const auto end = std::min(line_.find_first_of(blank), line_.size());
-        const std::string_view text = line_.substr(0, end);
-        line_.remove_prefix(end);
-        return text;
-    }
-
     std::string_view rest_;
     std::string_view line_;
     std::string name_;
@@ -201,10 +186,7 @@ Scene read_scene(const std::filesystem::path& path, int threads) {
 std::string scene_text(const Scene& scene) {
     std::string text = std::to_string(scene.discs.size()) + "\n" + number_text(scene.side) + "\n" +
                        number_text(scene.radius) + "\n" + std::to_string(scene.steps) + "\n";
-    for (std::size_t i = 0; i < scene.discs.size(); ++i) {
-        append_disc(text, i, scene.discs[i]);
-    }
-    return text;
+    return text + disc_lines(scene.discs);
 }
 
 } // namespace carom

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "harness/support/text.hpp"
 #include "kernels/scene.hpp"
@@ -38,6 +39,15 @@ template <class Real> void append_disc(std::string& text, std::size_t i, const B
         append_number(text, value);
     }
     text += '\n';
+}
+
+/// All of them, a line each.
+template <class Real> std::string disc_lines(const std::vector<BasicDisc<Real>>& discs) {
+    std::string text;
+    for (std::size_t i = 0; i < discs.size(); ++i) {
+        append_disc(text, i, discs[i]);
+    }
+    return text;
 }
 
 /// Throw InputError, with `where` in front, if `parse_scene` would not accept the number.

@@ -24,17 +24,6 @@ constexpr std::array<const char*, 6> columns{"step", "i", "x", "y", "vx", "vy"};
 
 gzFile gz(void* file) { return static_cast<gzFile>(file); }
 
-std::vector<std::string_view> words_of(std::string_view line) {
-    constexpr auto blank = " \t\r\n";
-    std::vector<std::string_view> words;
-    for (auto begin = line.find_first_not_of(blank); begin != std::string_view::npos;) {
-        const auto end = std::min(line.find_first_of(blank, begin), line.size());
-        words.push_back(line.substr(begin, end - begin));
-        begin = line.find_first_not_of(blank, end);
-    }
-    return words;
-}
-
 int digits_of(std::string_view number) {
     const auto mantissa = number.substr(0, number.find_first_of("eE"));
     const auto first = mantissa.find_first_of("123456789");
@@ -113,18 +102,24 @@ bool TrajectoryFile::next_line() {
 }
 
 Disc TrajectoryFile::disc_of_line(std::vector<bool>& seen, std::size_t& index) {
-    const auto words = words_of(line_);
+    std::vector<std::string_view> words;
+    std::string_view rest = line_;
+    for (auto word = take_word(rest); !word.empty(); word = take_word(rest)) {
+        words.push_back(word);
+    }
     if (words.size() != columns.size()) {
         refuse("found " + counted(words.size(), "word") + ", expected 6: step i x y vx vy");
     }
+    const auto refuse_word = [&](std::size_t k, const std::string& expected) {
+        refuse(std::string(columns[k]) + ": found '" + std::string(words[k]) + "', expected " + expected);
+    };
     const auto step = parse_number<int>(words[0]);
     if (!step || *step != steps_read_) {
-        refuse("step: found '" + std::string(words[0]) + "', expected " + std::to_string(steps_read_));
+        refuse_word(0, std::to_string(steps_read_));
     }
     const auto number = parse_number<std::size_t>(words[1]);
     if (!number || *number >= discs_) {
-        refuse("i: found '" + std::string(words[1]) + "', expected a whole number from 0 to " +
-               std::to_string(discs_ - 1));
+        refuse_word(1, "a whole number from 0 to " + std::to_string(discs_ - 1));
     }
     if (seen[*number]) {
         refuse("i: found disc " + std::to_string(*number) + " twice in step " + std::to_string(steps_read_) +
@@ -137,8 +132,7 @@ Disc TrajectoryFile::disc_of_line(std::vector<bool>& seen, std::size_t& index) {
         const std::string_view word = words[k + 2];
         const auto value = parse_number<double>(word);
         if (!value || !std::isfinite(*value)) {
-            refuse(std::string(columns[k + 2]) + ": found '" + std::string(word) +
-                   "', expected a finite number");
+            refuse_word(k + 2, "a finite number");
         }
         values[k] = *value;
         most_digits_ = std::max(most_digits_, digits_of(word));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -21,6 +22,15 @@ template <class Number> std::optional<Number> parse_number(std::string_view text
         return std::nullopt;
     }
     return value;
+}
+
+/// Takes the next word off a line, up to a blank; empty at the end of the line.
+inline std::string_view take_word(std::string_view& line) {
+    constexpr std::string_view blank = " \t\r";
+    line.remove_prefix(std::min(line.find_first_not_of(blank), line.size()));
+    const std::string_view word = line.substr(0, line.find_first_of(blank));
+    line.remove_prefix(word.size());
+    return word;
 }
 
 /// Appends the shortest text that reads back as the same number; of a whole number up to 1e15 its digits,

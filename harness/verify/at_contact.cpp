@@ -6,6 +6,7 @@
 
 #include "harness/support/format.hpp"
 #include "harness/verify/conservation.hpp"
+#include "harness/verify/disc_states.hpp"
 #include "harness/verify/overlapping_pairs.hpp"
 
 namespace carom {
@@ -52,21 +53,13 @@ bool agree(const Disc& one, const Disc& two, const Allowed& allowed) {
            std::hypot(one.vx - two.vx, one.vy - two.vy) <= allowed.velocity;
 }
 
-std::string text(const Disc& disc) {
-    return format("(%.17g, %.17g), velocity (%.17g, %.17g)", disc.x, disc.y, disc.vx, disc.vy);
-}
-
 /// Two discs that are apart, followed forward.
 class TwoBodies {
   public:
     TwoBodies(const Disc& its_one, const Disc& its_two, double radius)
-        : one(its_one), two(its_two), reach_(2 * radius), vx_(two.vx - one.vx), vy_(two.vy - one.vy) {
-        const double dx = two.x - one.x;
-        const double dy = two.y - one.y;
-        closing_ = -(dx * vx_ + dy * vy_);
-        gap_ = (std::hypot(dx, dy) - reach_) * (std::hypot(dx, dy) + reach_);
-        discriminant_ = closing_ * closing_ - (vx_ * vx_ + vy_ * vy_) * gap_;
-    }
+        : one(its_one), two(its_two), reach_(2 * radius), d_(seen_from(one, two)), closing_(-parting_of(d_)),
+          gap_((distance_of(d_) - reach_) * (distance_of(d_) + reach_)),
+          discriminant_(closing_ * closing_ - speed_squared() * gap_) {}
 
     /// Flies on for `dt`, through the contact if there is one.
     void fly(double dt) {
@@ -76,7 +69,7 @@ class TwoBodies {
         if (contact <= dt) {
             const double nx = (two.x - one.x) / reach_;
             const double ny = (two.y - one.y) / reach_;
-            const double exchanged = vx_ * nx + vy_ * ny;
+            const double exchanged = d_.vx * nx + d_.vy * ny;
             one.vx += exchanged * nx;
             one.vy += exchanged * ny;
             two.vx -= exchanged * nx;
@@ -88,7 +81,7 @@ class TwoBodies {
     /// How wrong the speed of approach at contact may be if positions are uncertain by `position`: of a
     /// grazing pair, whose discriminant is all rounding, by its root.
     double uncertain_speed(double position) const {
-        const double uncertain = 2 * reach_ * position * (vx_ * vx_ + vy_ * vy_);
+        const double uncertain = 2 * reach_ * position * speed_squared();
         const double root = std::sqrt(std::max(discriminant_, 0.0)) + std::sqrt(uncertain);
         return root > 0 ? uncertain / root / reach_ : 0;
     }
@@ -97,6 +90,8 @@ class TwoBodies {
     Disc two;
 
   private:
+    double speed_squared() const { return d_.vx * d_.vx + d_.vy * d_.vy; }
+
     void fly_freely(double time) {
         for (Disc* disc : {&one, &two}) {
             disc->x += disc->vx * time;
@@ -105,8 +100,7 @@ class TwoBodies {
     }
 
     double reach_;
-    double vx_;
-    double vy_;
+    Disc d_; ///< the second seen from the first, at the start
     double closing_;
     double gap_;
     double discriminant_;
@@ -122,7 +116,7 @@ std::optional<std::string> pair_violation(const Step& step, const OverlappingPai
         return std::nullopt;
     }
     const auto distance = [&](const std::vector<Disc>& discs) {
-        return std::hypot(discs[second].x - discs[first].x, discs[second].y - discs[first].y);
+        return distance_of(seen_from(discs[first], discs[second]));
     };
     const double reach = 2 * step.walls.radius;
     const double slack = 256 * step.walls.rounding.epsilon() * (step.walls.side + reach);
@@ -143,8 +137,9 @@ std::optional<std::string> pair_violation(const Step& step, const OverlappingPai
     }
     return format("discs %d and %d, which met with nothing else near, are at %s and %s instead of at %s and "
                   "%s",
-                  pair.first, pair.second, text(step.after[first]).c_str(), text(step.after[second]).c_str(),
-                  text(bodies.one).c_str(), text(bodies.two).c_str());
+                  pair.first, pair.second, state_text(step.after[first]).c_str(),
+                  state_text(step.after[second]).c_str(), state_text(bodies.one).c_str(),
+                  state_text(bodies.two).c_str());
 }
 
 /// Does a disc fly so far in a step that it meets walls many times?
@@ -184,8 +179,8 @@ std::optional<std::string> alone_violation(const Step& step, int i) {
         ends_at_wall(step, before.y, free, &Disc::y, &Disc::vy, after, allowed)) {
         return std::nullopt;
     }
-    return format("disc %d, which met no other, flew to %s and is at %s", i, text(free).c_str(),
-                  text(after).c_str());
+    return format("disc %d, which met no other, flew to %s and is at %s", i, state_text(free).c_str(),
+                  state_text(after).c_str());
 }
 
 std::vector<OverlappingPair> near_pairs(const std::vector<Disc>& discs, const Walls& walls) {
@@ -195,14 +190,7 @@ std::vector<OverlappingPair> near_pairs(const std::vector<Disc>& discs, const Wa
 
 Step step_of(const std::vector<Disc>& before, const std::vector<Disc>& free, const std::vector<Disc>& after,
              double dt, const Walls& walls) {
-    const double widest = widest_look * walls.radius * (1 + 8 * walls.rounding.epsilon());
-    Step step{before,
-              free,
-              after,
-              dt,
-              walls,
-              overlapping_pairs(free, widest, walls.rounding),
-              std::vector<int>(free.size())};
+    Step step{before, free, after, dt, walls, near_pairs(free, walls), std::vector<int>(free.size())};
     for (const OverlappingPair& pair : step.near) {
         ++step.neighbours[Step::index(pair.first)];
         ++step.neighbours[Step::index(pair.second)];

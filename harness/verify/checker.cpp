@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "harness/support/format.hpp"
 #include "harness/verify/at_contact.hpp"
 #include "harness/verify/conservation.hpp"
+#include "harness/verify/disc_states.hpp"
 #include "harness/verify/event_driven_violation.hpp"
 
 namespace carom {
@@ -22,10 +22,12 @@ const double coincident =
 
 } // namespace
 
-double kinetic_energy(const std::vector<Disc>& discs) {
-    return std::accumulate(discs.begin(), discs.end(), 0.0, [](double sum, const Disc& disc) {
-        return sum + 0.5 * (disc.vx * disc.vx + disc.vy * disc.vy);
-    });
+std::optional<std::string> not_finite(const Disc& disc, std::size_t i) {
+    if (std::isfinite(disc.x + disc.y + disc.vx + disc.vy)) {
+        return std::nullopt;
+    }
+    return format("disc %zu has a state that is not finite: (%g, %g), velocity (%g, %g)", i, disc.x, disc.y,
+                  disc.vx, disc.vy);
 }
 
 Checker::Checker(double side, double radius, double dt, Tolerance tolerance, const Rounding& rounding,
@@ -113,9 +115,8 @@ std::optional<std::string> Checker::moved(const std::vector<Disc>& before, const
             return format("disc %zu moved from (%.17g, %.17g) to (%.17g, %.17g) instead of to (%.17g, %.17g)",
                           i, before[i].x, before[i].y, after[i].x, after[i].y, free[i].x, free[i].y);
         }
-        if (!std::isfinite(after[i].x + after[i].y + after[i].vx + after[i].vy)) {
-            return format("disc %zu has a state that is not finite: (%g, %g), velocity (%g, %g)", i,
-                          after[i].x, after[i].y, after[i].vx, after[i].vy);
+        if (auto violation = not_finite(after[i], i)) {
+            return violation;
         }
     }
     return std::nullopt;
@@ -138,12 +139,13 @@ std::optional<std::string> Checker::pair_colliding(const std::vector<Disc>& disc
                                                    const OverlappingPair& pair) const {
     const Disc& one = discs[static_cast<std::size_t>(pair.first)];
     const Disc& two = discs[static_cast<std::size_t>(pair.second)];
-    const double distance = std::hypot(two.x - one.x, two.y - one.y);
+    const Disc d = seen_from(one, two);
+    const double distance = distance_of(d);
     if (distance < (rounding_.is_double() ? coincident<double> : coincident<float>)) {
         return std::nullopt;
     }
-    const double approach = (two.vx - one.vx) * (two.x - one.x) + (two.vy - one.vy) * (two.y - one.y);
-    const double speeds = std::hypot(std::hypot(one.vx, one.vy), std::hypot(two.vx, two.vy));
+    const double approach = parting_of(d);
+    const double speeds = std::hypot(speed_of(one), speed_of(two));
     // Twice what the kernel leaves, since both round.
     const double allowed = std::max(tolerance_ == Tolerance::published ? 1e-7 : 0,
                                     2 * 64 * rounding_.epsilon() * distance * speeds);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,13 +42,13 @@ class Checker {
     /// The first pair or wall left colliding, or nothing.
     std::optional<std::string> colliding(const std::vector<Disc>& discs) const;
 
+    /// How many pairs and walls are left colliding.
+    long count_colliding(const std::vector<Disc>& discs) const;
+
     /// Is an overlapping pair, or a disc in a wall, left colliding?
     std::optional<std::string> pair_colliding(const std::vector<Disc>& discs,
                                               const OverlappingPair& pair) const;
     std::optional<std::string> wall_colliding(const std::vector<Disc>& discs, int i) const;
-
-    /// How many pairs and walls are left colliding.
-    long count_colliding(const std::vector<Disc>& discs) const;
 
   private:
     std::optional<std::string> moved(const std::vector<Disc>& before, const std::vector<Disc>& free,
@@ -63,7 +64,16 @@ class Checker {
     Engine engine_;
 };
 
+/// Says so if the state of disc i is not finite.
+std::optional<std::string> not_finite(const Disc& disc, std::size_t i);
+
 /// Total kinetic energy, for unit mass: the sum of (vx^2 + vy^2) / 2.
-double kinetic_energy(const std::vector<Disc>& discs);
+template <class Real = double> Real kinetic_energy(const std::vector<BasicDisc<Real>>& discs) {
+    Real sum = 0;
+    for (const BasicDisc<Real>& disc : discs) {
+        sum += Real{0.5} * (disc.vx * disc.vx + disc.vy * disc.vy);
+    }
+    return sum;
+}
 
 } // namespace carom

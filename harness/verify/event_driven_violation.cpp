@@ -6,6 +6,7 @@
 
 #include "harness/support/format.hpp"
 #include "harness/verify/checker.hpp"
+#include "harness/verify/disc_states.hpp"
 #include "harness/verify/overlapping_pairs.hpp"
 
 namespace carom {
@@ -24,8 +25,6 @@ double allowed(const std::vector<Disc>& discs, double dt, const Walls& walls) {
     return roundings * walls.rounding.epsilon() * extent;
 }
 
-bool is_finite(const Disc& disc) { return std::isfinite(disc.x + disc.y + disc.vx + disc.vy); }
-
 std::optional<std::string> overlap(const std::vector<Disc>& discs, const Walls& walls, double slack) {
     for (std::size_t i = 0; i < discs.size(); ++i) {
         const double low = std::min(discs[i].x, discs[i].y) - walls.radius;
@@ -37,7 +36,7 @@ std::optional<std::string> overlap(const std::vector<Disc>& discs, const Walls& 
     for (const OverlappingPair& pair : overlapping_pairs(discs, walls.radius, walls.rounding)) {
         const Disc& one = discs[static_cast<std::size_t>(pair.first)];
         const Disc& two = discs[static_cast<std::size_t>(pair.second)];
-        const double depth = 2 * walls.radius - std::hypot(two.x - one.x, two.y - one.y);
+        const double depth = 2 * walls.radius - distance_of(seen_from(one, two));
         if (depth > slack) {
             return format("discs %d and %d overlap by %.3g", pair.first, pair.second, depth);
         }
@@ -78,13 +77,10 @@ std::vector<Way> free_ways(const std::vector<Disc>& before, const std::vector<Di
 }
 
 double least_distance(const Disc& one, const Disc& two, double dt) {
-    const double dx = two.x - one.x;
-    const double dy = two.y - one.y;
-    const double vx = two.vx - one.vx;
-    const double vy = two.vy - one.vy;
-    const double squared = vx * vx + vy * vy;
-    const double nearest = squared > 0 ? std::clamp(-(dx * vx + dy * vy) / squared, 0.0, dt) : 0;
-    return std::hypot(dx + vx * nearest, dy + vy * nearest);
+    const Disc d = seen_from(one, two);
+    const double squared = d.vx * d.vx + d.vy * d.vy;
+    const double nearest = squared > 0 ? std::clamp(-parting_of(d) / squared, 0.0, dt) : 0;
+    return std::hypot(d.x + d.vx * nearest, d.y + d.vy * nearest);
 }
 
 /// Two that met nobody although their ways cross.
@@ -110,9 +106,10 @@ std::optional<std::string> missed_collision(const std::vector<Way>& ways, double
 std::optional<std::string> event_driven_violation(const std::vector<Disc>& before,
                                                   const std::vector<Disc>& after, double dt,
                                                   const Walls& walls) {
-    if (const auto wrong = std::ranges::find_if_not(after, is_finite); wrong != after.end()) {
-        return format("disc %td has a state that is not finite: (%g, %g), velocity (%g, %g)",
-                      wrong - after.begin(), wrong->x, wrong->y, wrong->vx, wrong->vy);
+    for (std::size_t i = 0; i < after.size(); ++i) {
+        if (auto violation = not_finite(after[i], i)) {
+            return violation;
+        }
     }
     const double slack = allowed(before, dt, walls);
     if (auto violation = overlap(after, walls, slack)) {

@@ -2,6 +2,7 @@
 
 #include "harness/support/errors.hpp"
 #include "harness/support/format.hpp"
+#include "harness/verify/disc_states.hpp"
 
 namespace carom {
 namespace {
@@ -12,14 +13,9 @@ constexpr int surely_rounded_digits = 15;
 
 void require_start(const Scene& scene, const std::vector<Disc>& discs, const std::string& path) {
     for (std::size_t i = 0; i < discs.size(); ++i) {
-        const Disc& found = discs[i];
-        const Disc& expected = scene.discs[i];
-        if (found != expected) {
-            throw InputError(path +
-                             format(": begins with disc %zu at (%.17g, %.17g), velocity (%.17g, "
-                                    "%.17g), expected the scene's (%.17g, %.17g), velocity (%.17g, %.17g)",
-                                    i, found.x, found.y, found.vx, found.vy, expected.x, expected.y,
-                                    expected.vx, expected.vy));
+        if (discs[i] != scene.discs[i]) {
+            throw InputError(path + format(": begins with disc %zu at %s, expected the scene's %s", i,
+                                           state_text(discs[i]).c_str(), state_text(scene.discs[i]).c_str()));
         }
     }
 }
