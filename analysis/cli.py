@@ -4,11 +4,14 @@ import argparse
 import json
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from support.command_line import Parser, exit_code_of, print_anything
 from support.errors import InputError
+
+Verb = Callable[[argparse.Namespace], int]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -24,49 +27,36 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = Parser(prog="carom", description=__doc__)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for name, run, text in (
-        ("figures", _figures, "draw the figures of whatever records are there"),
-        ("report", _report, "write report.html and report.pdf"),
-        ("claims", _claims, "print each published claim with its verdict"),
-        (
-            "follow",
-            _follow,
-            "answer each line of standard input, as a running study asks: open, page, report",
-        ),
-        ("performance", _performance, "print the ladder and the limits as Markdown tables"),
-    ):
-        command = commands.add_parser(name, help=text, description=text)
-        command.add_argument(
-            "--results", type=Path, default=Path("results"), metavar="DIR", help="default: results"
-        )
-        if name in ("report", "follow"):
-            command.add_argument(
-                "--study",
-                metavar="A,B",
-                default="",
-                help="the questions that were asked, which lead the report",
-            )
-        if name == "figures":
-            command.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
+
+    def verb(run: Verb, text: str, results: str = "", description: str = "") -> argparse.ArgumentParser:
+        """Add the verb that a function is called after, with a folder of results where it has one."""
+        command = commands.add_parser(run.__name__.strip("_"), help=text, description=description or text)
         command.set_defaults(run=run)
-    text = "tell how often verdicts are wrong here, from what `carom study calibrate` measured"
-    calibration = commands.add_parser("calibration", help=text, description=text)
-    told = "default: results/calibration"
-    calibration.add_argument(
-        "--results", type=Path, default=Path("results/calibration"), metavar="DIR", help=told
-    )
-    calibration.set_defaults(run=_calibration)
-    compare = commands.add_parser(
-        "compare",
-        help="compare two results folders",
-        description="Compare results B with A. Exit code 3: something is slower; 4: something is undecided.",
-    )
+        if results:
+            told = f"default: {results}"
+            command.add_argument("--results", type=Path, default=Path(results), metavar="DIR", help=told)
+        return command
+
+    asked: Any = {
+        "metavar": "A,B",
+        "default": "",
+        "help": "the questions that were asked, which lead the report",
+    }
+    figures = verb(_figures, "draw the figures of whatever records are there", "results")
+    figures.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
+    verb(_report, "write report.html and report.pdf", "results").add_argument("--study", **asked)
+    verb(_claims, "print each published claim with its verdict", "results")
+    told = "answer each line of standard input, as a running study asks: open, page, report"
+    verb(_follow, told, "results").add_argument("--study", **asked)
+    verb(_performance, "print the ladder and the limits as Markdown tables", "results")
+    told = "tell how often verdicts are wrong here, from what `carom study calibrate` measured"
+    verb(_calibration, told, "results/calibration")
+    told = "Compare results B with A. Exit code 3: something is slower; 4: something is undecided."
+    compare = verb(_compare, "compare two results folders", description=told)
     compare.add_argument("first", type=Path, metavar="A")
     compare.add_argument("second", type=Path, metavar="B")
     compare.add_argument("--experiment", metavar="NAME", help="only this experiment")
-    compare.set_defaults(run=_compare)
-    text = "draw a run as an animation, or one step of it as a picture"
-    movie = commands.add_parser("movie", help=text, description=text)
+    movie = verb(_movie, "draw a run as an animation, or one step of it as a picture")
     movie.add_argument("scene", type=Path, metavar="SCENE", help="a scene file")
     told = "its run, from `carom run --trajectory`; without it the scene is simulated"
     movie.add_argument("trajectory", type=Path, nargs="?", metavar="TRAJECTORY", help=told)
@@ -75,7 +65,6 @@ def _parser() -> argparse.ArgumentParser:
     movie.add_argument("--program", type=Path, help=argparse.SUPPRESS)  # `carom` tells where it is
     movie.add_argument("--output", type=Path, metavar="FILE", help="*.mp4 (needs ffmpeg), *.gif or *.png")
     movie.add_argument("--step", type=_step, metavar="S", help="of a picture (default: the last)")
-    movie.set_defaults(run=_movie)
     return parser
 
 
@@ -119,9 +108,8 @@ def _follow(options: argparse.Namespace) -> int:
             case ["report", *how_far]:
                 answer = [str(write_meanwhile(options.results, _asked(options), " ".join(how_far)))]
             case _:
-                raise InputError(
-                    f"follow: found {line.strip()!r}, expected `open`, `page`, `report` or `report ...`"
-                )
+                expected = "expected `open`, `page`, `report` or `report ...`"
+                raise InputError(f"follow: found {line.strip()!r}, {expected}")
         print(json.dumps(answer), flush=True)
     return 0
 
@@ -129,13 +117,12 @@ def _follow(options: argparse.Namespace) -> int:
 def _report(options: argparse.Namespace) -> int:
     from analysis.report import write
 
-    for path in write(options.results, _asked(options)):
-        print(path)
+    print(*write(options.results, _asked(options)), sep="\n")
     return 0
 
 
 def _asked(options: argparse.Namespace) -> list[str]:
-    return [name for name in options.study.replace(",", " ").split() if name]
+    return list(options.study.replace(",", " ").split())
 
 
 def _claims(options: argparse.Namespace) -> int:
@@ -174,9 +161,7 @@ def _calibration(options: argparse.Namespace) -> int:
     from analysis.calibration.result import write
 
     text, files = write(options.results)
-    print(text)
-    for path in files:
-        print(path)
+    print(text, *files, sep="\n")
     return 0
 
 
@@ -200,10 +185,8 @@ def _compare(options: argparse.Namespace) -> int:
     if code == comparison.SLOWER:
         print(f"Slower (exit code {code} of carom study compare).")
     elif code == comparison.UNDECIDED:
-        print(
-            f"Undecided: more blocks or a quieter machine would tell "
-            f"(exit code {code} of carom study compare)."
-        )
+        why = "more blocks or a quieter machine would tell"
+        print(f"Undecided: {why} (exit code {code} of carom study compare).")
     return code
 
 

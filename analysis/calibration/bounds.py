@@ -4,9 +4,7 @@ from scipy import stats
 
 
 def upper_bound(hits: float, tries: float, error: float = 0.05) -> float:
-    """Return the share above which so few hits in independent tries have a probability below `error`; 1
-    without any try.
-    """
+    """Return the share above which so few hits in independent tries have a chance below `error`, or 1."""
     if tries <= hits:
         return 1.0
     return float(stats.beta.ppf(1 - error, hits + 1, tries - hits))

@@ -7,14 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analysis.support.values import Floats
 from support.errors import InputError
 
 FILE = "calibration.json"
 SCHEMA_VERSION = 1
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -39,13 +37,10 @@ class Stream:
     def log_ratios(self, reference: int, candidate: int) -> Floats:
         """The value of each block: the median over its rounds of ln(candidate / reference)."""
         logs = np.log(self.seconds)
-        values: Floats = np.median(logs[:, :, candidate] - logs[:, :, reference], axis=1)
-        return values
+        return np.median(logs[:, :, candidate] - logs[:, :, reference], axis=1)
 
     def seconds_of_block(self, reference: int, candidate: int) -> float:
-        """What a block of these two alone takes: their part of the time, with as large a part of what was
-        not timed.
-        """
+        """What a block of these two alone takes: their part of the time, timed or not."""
         timed = self.seconds.sum(axis=(0, 1))
         share = (timed[reference] + timed[candidate]) / timed.sum()
         return float(self.wall_seconds * share / self.blocks)
@@ -67,9 +62,8 @@ def load(folder: Path) -> Calibration:
     except FileNotFoundError:
         raise InputError(f"{path}: is not there, expected what `make calibrate` measures") from None
     except (OSError, ValueError) as error:
-        raise InputError(
-            f"{path}: cannot be read: {error}, expected what `make calibrate` measures"
-        ) from None
+        told = f"{path}: cannot be read: {error}, expected what `make calibrate` measures"
+        raise InputError(told) from None
     try:
         if content["schema_version"] != SCHEMA_VERSION:
             raise ValueError(f"schema_version {content['schema_version']}, expected {SCHEMA_VERSION}")

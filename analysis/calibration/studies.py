@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analysis.calibration.streams import Floats, Stream
-from analysis.statistics.looks import next_look
+from analysis.calibration.streams import Stream
+from analysis.statistics.looks import LOOKS, looks_up_to
 from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.parallel import in_parallel
+from analysis.support.values import Floats
 
 FEWEST_STUDIES = 2000
 """Of one stream, on stretches that overlap, if it has so many."""
@@ -51,16 +52,6 @@ def is_wrong(verdict: str, more: float, margin: float = MARGIN) -> bool:
     return verdict in DECIDED and verdict != truth
 
 
-def looks_up_to(most: float) -> list[int]:
-    """Return the planned looks at no more than so many blocks."""
-    looks = []
-    look = next_look(0)
-    while look <= most:
-        looks.append(look)
-        look = next_look(look)
-    return looks
-
-
 Rule = Callable[[Floats], Mapping[str, Any]]
 """From the values of blocks to a row as `verdicts.judge_one` gives it."""
 
@@ -76,12 +67,7 @@ def study(values: Floats, looks: Sequence[int], more: float, rule: Rule = judge_
         covered = covered and row["low"] <= 1 + more <= row["high"]
         if verdict in DECIDED:
             break
-    return {
-        "verdict": verdict,
-        "blocks": blocks,
-        "wrong": is_wrong(verdict, more),
-        "covered": covered,
-    }
+    return {"verdict": verdict, "blocks": blocks, "wrong": is_wrong(verdict, more), "covered": covered}
 
 
 def of_stream(stream: Stream, one: Comparison, rule: Rule = judge_one) -> Iterator[dict[str, Any]]:
@@ -100,8 +86,7 @@ def of_stream(stream: Stream, one: Comparison, rule: Rule = judge_one) -> Iterat
 
 def overlapping(stream: Stream) -> tuple[range, list[int]]:
     """Return where the overlapping studies of a comparison begin, and their looks."""
-    first = next_look(0)
-    looks = looks_up_to(max(stream.blocks / LONGEST_PART, min(first, stream.blocks)))
+    looks = looks_up_to(max(stream.blocks / LONGEST_PART, min(LOOKS[0], stream.blocks)))
     if not looks:
         return range(0), []
     places = stream.blocks - looks[-1] + 1
@@ -111,8 +96,7 @@ def overlapping(stream: Stream) -> tuple[range, list[int]]:
 
 def disjoint(stream: Stream) -> tuple[range, list[int]]:
     """Return where the disjoint studies of a comparison begin, and their looks."""
-    first = next_look(0)
-    looks = looks_up_to(min(LONGEST_DISJOINT, max(first, stream.blocks / DISJOINT_PART)))
+    looks = looks_up_to(min(LONGEST_DISJOINT, max(LOOKS[0], stream.blocks / DISJOINT_PART)))
     return range(0, stream.blocks - looks[-1] + 1, looks[-1]), looks
 
 
@@ -139,8 +123,6 @@ COLUMNS = [
 
 
 def quantile_until_found(studies: pd.DataFrame, level: float) -> float:
-    """Return the seconds by which this part of the studies had found that the candidate is slower; infinite
-    where fewer found it.
-    """
+    """Return the seconds by which this part of the studies had found the candidate slower, if they did."""
     seconds = np.where(studies["verdict"] == "slower", studies["seconds"], np.inf)
     return float(np.quantile(seconds, level, method="higher")) if len(seconds) else np.inf

@@ -8,12 +8,17 @@ import pandas as pd
 from analysis.calibration.bounds import interval, upper_bound
 from analysis.calibration.streams import Stream
 from analysis.calibration.studies import DECIDED, quantile_until_found
+from analysis.calibration.usual_ways import COUNTED
 
 OURS = "Carom"
 FOUND_WITHIN_SECONDS = 60.0
 TO_BE_FOUND = 0.05
 
 STREAM = ["kind", "condition"]
+ERRORS = [
+    *("studies", "decided", "wrong", "missed", "disjoint", "disjoint_wrong", "bound"),
+    *("stretches", "stretches_wrong", "stretch_bound"),
+]
 
 
 def errors(studies: pd.DataFrame, by: Sequence[str]) -> pd.DataFrame:
@@ -26,24 +31,16 @@ def errors(studies: pd.DataFrame, by: Sequence[str]) -> pd.DataFrame:
     rows = []
     for key, group in studies.groupby(list(by), sort=False):
         apart, over = group[group["disjoint"]], group[~group["disjoint"]]
-        wrong = int(apart["wrong"].sum())
         stretches = apart.groupby([*STREAM, "start"])["wrong"].any()
-        rows.append(
-            {
-                **dict(zip(by, key, strict=True)),
-                "studies": len(over),
-                "decided": float(over["verdict"].isin(DECIDED).mean()),
-                "wrong": int(over["wrong"].sum()),
-                "missed": int((~over["covered"]).sum()),
-                "disjoint": len(apart),
-                "disjoint_wrong": wrong,
-                "bound": upper_bound(wrong, len(apart)),
-                "stretches": len(stretches),
-                "stretches_wrong": int(stretches.sum()),
-                "stretch_bound": upper_bound(int(stretches.sum()), len(stretches)),
-            }
-        )
-    return pd.DataFrame(rows)
+        decided, wrong = float(over["verdict"].isin(DECIDED).mean()), int(over["wrong"].sum())
+        counts = (len(over), decided, wrong, int((~over["covered"]).sum()))
+        rows.append((*key, *counts, *_bounded(apart["wrong"]), *_bounded(stretches)))
+    return pd.DataFrame(rows, columns=[*by, *ERRORS])
+
+
+def _bounded(wrong: pd.Series) -> tuple[int, int, float]:
+    hits = int(wrong.sum())
+    return len(wrong), hits, upper_bound(hits, len(wrong))
 
 
 def power(studies: pd.DataFrame, more: float = TO_BE_FOUND) -> pd.DataFrame:
@@ -54,17 +51,10 @@ def power(studies: pd.DataFrame, more: float = TO_BE_FOUND) -> pd.DataFrame:
     rows = []
     for key, group in asked.groupby(STREAM, sort=False):
         in_time = (group["verdict"] == "slower") & (group["seconds"] <= FOUND_WITHIN_SECONDS)
-        rows.append(
-            {
-                **dict(zip(STREAM, key, strict=True)),
-                "studies": len(group),
-                "found": float(in_time.mean()),
-                "half": quantile_until_found(group, 0.5),
-                "nine_of_ten": quantile_until_found(group, 0.9),
-                "longest": float(group["seconds"].max()),
-            }
-        )
-    return pd.DataFrame(rows)
+        half, nine_of_ten = (quantile_until_found(group, part) for part in (0.5, 0.9))
+        longest = float(group["seconds"].max())
+        rows.append((*key, len(group), float(in_time.mean()), half, nine_of_ten, longest))
+    return pd.DataFrame(rows, columns=[*STREAM, "studies", "found", "half", "nine_of_ten", "longest"])
 
 
 def ours_and_theirs(studies: pd.DataFrame, ways: pd.DataFrame, streams: Sequence[Stream]) -> pd.DataFrame:
@@ -79,10 +69,9 @@ def ours_and_theirs(studies: pd.DataFrame, ways: pd.DataFrame, streams: Sequence
     for key, group in counted.groupby(["condition", "way", "more"], sort=False):
         tries, disjoint = int(group["studies"].sum()), int(group["disjoint"].sum())
         said = float(group["hits"].sum()) / tries if tries else np.nan
-        low, high = interval(said * disjoint, disjoint) if tries and disjoint else (np.nan, np.nan)
-        named = dict(zip(("condition", "way", "more"), key, strict=True))
-        rows.append({**named, "studies": tries, "said": said, "low": low, "high": high})
-    return pd.DataFrame(rows)
+        ends = interval(said * disjoint, disjoint) if tries and disjoint else (np.nan, np.nan)
+        rows.append((*key, tries, said, *ends))
+    return pd.DataFrame(rows, columns=["condition", "way", "more", "studies", "said", "low", "high"])
 
 
 def _ours(studies: pd.DataFrame, streams: Sequence[Stream]) -> pd.DataFrame:
@@ -91,16 +80,7 @@ def _ours(studies: pd.DataFrame, streams: Sequence[Stream]) -> pd.DataFrame:
     rows = []
     over = studies[~studies["disjoint"] & (studies["reference"] == 0)]
     for (kind, condition, more), group in over.groupby([*STREAM, "more"], sort=False):
-        rows.append(
-            {
-                "kind": kind,
-                "condition": condition,
-                "way": OURS,
-                "more": more,
-                "studies": len(group),
-                "slower": int((group["verdict"] == "slower").sum()),
-                "faster": int((group["verdict"] == "faster").sum()),
-                "disjoint": int(blocks[kind, condition] / group["blocks"].mean()),
-            }
-        )
-    return pd.DataFrame(rows)
+        said = [int((group["verdict"] == verdict).sum()) for verdict in ("slower", "faster")]
+        disjoint = int(blocks[kind, condition] / group["blocks"].mean())
+        rows.append((kind, condition, OURS, more, len(group), *said, disjoint))
+    return pd.DataFrame(rows, columns=COUNTED)

@@ -13,8 +13,9 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
-from analysis.calibration.streams import Floats, Stream
+from analysis.calibration.streams import Stream
 from analysis.calibration.studies import comparisons
+from analysis.support.values import Floats
 
 Said = NDArray[np.int64]
 """Of each study: 1 slower, -1 faster, 0 no difference."""
@@ -51,9 +52,7 @@ def least_by_a_hundredth(first: Floats, second: Floats) -> Said:
 
 
 def ranges(first: Floats, second: Floats) -> Said:
-    """Return which is slower by mean and standard deviation, as hyperfine prints them, where the two ranges
-    do not overlap.
-    """
+    """Return which is slower by mean and deviation, as hyperfine prints them, where they do not overlap."""
     change = second.mean(axis=1) - first.mean(axis=1)
     reach = first.std(axis=1, ddof=1) + second.std(axis=1, ddof=1)
     return _direction(change, np.abs(change) > reach)
@@ -109,6 +108,9 @@ WAYS = (
 )
 
 
+COUNTED = ["kind", "condition", "way", "more", "studies", "slower", "faster", "disjoint"]
+
+
 def all_ways(streams: Sequence[Stream]) -> pd.DataFrame:
     """Return a row for each stream, way and comparison with the first contender: `kind`, `condition`, `way`,
     `more`, how many `studies`, in how many of them it said `slower` and `faster`, and how many would not
@@ -124,16 +126,6 @@ def all_ways(streams: Sequence[Stream]) -> pd.DataFrame:
                 if one.reference != 0:
                     continue
                 said = way.studies(flat[:, [0, one.candidate]], starts) if starts else np.zeros(0)
-                rows.append(
-                    {
-                        "kind": stream.kind,
-                        "condition": stream.condition,
-                        "way": way.name,
-                        "more": one.more,
-                        "studies": len(said),
-                        "slower": int((said > 0).sum()),
-                        "faster": int((said < 0).sum()),
-                        "disjoint": len(flat) // way.rounds,
-                    }
-                )
-    return pd.DataFrame(rows)
+                counted = (len(said), int((said > 0).sum()), int((said < 0).sum()), len(flat) // way.rounds)
+                rows.append((stream.kind, stream.condition, way.name, one.more, *counted))
+    return pd.DataFrame(rows, columns=COUNTED)

@@ -6,20 +6,17 @@ from dataclasses import asdict, replace
 
 import pandas as pd
 
-from analysis.claims import (
-    compilers,
-    counts,
-    curves,
-    family,
-    machines,
-    missing,
-    phases,
-    ratios,
-    scaling,
-    schedules,
-)
+from analysis.claims import family, missing
+from analysis.claims.compilers import compilers
+from analysis.claims.counts import fewer_wasted_attempts
+from analysis.claims.curves import falls_then_rises, grows, linear, spike_then_linear
 from analysis.claims.entry import Claim, Evidence, load
+from analysis.claims.machines import clock
 from analysis.claims.outcome import ELSEWHERE, OPEN, Compared, Outcome, Verdict
+from analysis.claims.phases import phase_dominates
+from analysis.claims.ratios import pair
+from analysis.claims.scaling import scaling
+from analysis.claims.schedules import best_schedule
 from analysis.records.published import Published
 from analysis.records.studies import Study
 from analysis.support.wording import count, listed
@@ -28,19 +25,13 @@ from support.errors import InputError
 __all__ = ["TESTS", "Claim", "Tested", "evaluate", "load"]
 
 TESTS: dict[str, Callable[..., Outcome]] = {
-    "scaling": scaling.scaling,
-    "grows": curves.grows,
-    "linear": curves.linear,
-    "falls_then_rises": curves.falls_then_rises,
-    "spike_then_linear": curves.spike_then_linear,
-    "pair": ratios.pair,
-    "compilers": compilers.compilers,
-    "fewer_wasted_attempts": counts.fewer_wasted_attempts,
-    "best_schedule": schedules.best_schedule,
-    "phase_dominates": phases.phase_dominates,
-    "clock": machines.clock,
-}
-"""Each a function of the evidence and of the claim's arguments."""
+    test.__name__: test
+    for test in (
+        scaling, grows, linear, falls_then_rises, spike_then_linear, pair, compilers, fewer_wasted_attempts,
+        best_schedule, phase_dominates, clock,
+    )
+}  # fmt: skip
+"""Each a function of the evidence and of the claim's arguments, by its name."""
 
 COLUMNS = [
     "id", "claim", "effect", "claimed_threads", "experiments", "tested_threads", "said", "verdict",
@@ -86,18 +77,15 @@ def evaluate(
 
 def _remembered(evidence: Evidence, claim: Claim, tested: Tested) -> Outcome:
     """Test a claim, unless it was tested on the same records before."""
-    known = (claim, evidence.study.name, tuple(map(_records_of(claim), evidence.studies)))
+    told = ["file", "recorded_at", "session"]
+    records = []
+    for study in evidence.studies:
+        runs = study.runs[study.runs["experiment"].isin(claim.experiments)]
+        records.append((study.name, *runs[told].itertuples(index=False, name=None)))
+    known = (claim, evidence.study.name, records)
     if claim.id not in tested or tested[claim.id][0] != known:
         tested[claim.id] = (known, _tested(evidence, claim))
     return tested[claim.id][1]
-
-
-def _records_of(claim: Claim) -> Callable[[Study], object]:
-    def records(study: Study) -> object:
-        runs = study.runs[study.runs["experiment"].isin(claim.experiments)]
-        return study.name, *runs[["file", "recorded_at", "session"]].itertuples(index=False, name=None)
-
-    return records
 
 
 def _tested(evidence: Evidence, claim: Claim) -> Outcome:
@@ -114,8 +102,7 @@ def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[st
     tested = tuple(sorted(int(number) for number in runs["threads"].unique()))
     outcome = _with_failures(_elsewhere(outcome, claim, tested, study.scale), claim, study)
     if not math.isnan(wanted):
-        told = missing.said(study, claim, outcome.blocks, wanted)
-        outcome = replace(outcome, why=f"{outcome.why}; {told}" if outcome.why else told)
+        outcome = _because(outcome, missing.said(study, claim, outcome.blocks, wanted))
     figures = (*_setting(claim, tested, runs), *outcome.figures)
     return {
         "id": claim.id,
@@ -132,14 +119,14 @@ def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[st
 
 def _elsewhere(outcome: Outcome, claim: Claim, tested: tuple[int, ...], scale: str) -> Outcome:
     """A verdict on other threads than those of the claim, or at a smaller scale, is one about them alone."""
-    if outcome.verdict not in ELSEWHERE:
+    if outcome.verdict not in ELSEWHERE or (scale in claim.scales and _on_its_threads(claim, tested)):
         return outcome
-    if scale not in claim.scales:
-        why = "; ".join(part for part in (outcome.why, claim.other_scales) if part)
-        return replace(outcome, verdict=ELSEWHERE[outcome.verdict], why=why)
-    if _on_its_threads(claim, tested):
-        return outcome
-    return replace(outcome, verdict=ELSEWHERE[outcome.verdict])
+    elsewhere = replace(outcome, verdict=ELSEWHERE[outcome.verdict])
+    return elsewhere if scale in claim.scales else _because(elsewhere, claim.other_scales)
+
+
+def _because(outcome: Outcome, more: str) -> Outcome:
+    return replace(outcome, why="; ".join(filter(None, (outcome.why, more))))
 
 
 def _on_its_threads(claim: Claim, tested: tuple[int, ...]) -> bool:
@@ -158,8 +145,7 @@ def _with_failures(outcome: Outcome, claim: Claim, study: Study) -> Outcome:
     failed = study.failures[study.failures["experiment"].isin(claim.experiments)]
     if failed.empty:
         return outcome
-    said = f"{count(len(failed), 'process')} failed and left no time"
-    return replace(outcome, why=f"{outcome.why}; {said}" if outcome.why else said)
+    return _because(outcome, f"{count(len(failed), 'process')} failed and left no time")
 
 
 def _said(verdict: Verdict, claim: Claim, tested: tuple[int, ...], scale: str) -> str:
@@ -185,8 +171,14 @@ def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> tuple
     number = "" if origin.threads is None else str(origin.threads)
     said = ", ".join(part for part in (number, origin.threads_said) if part) or "not stated"
     scenes = runs[["particles", "radius", "side", "steps"]].dropna()
-    ends = {name: _ends(scenes[name]) for name in scenes if len(scenes)}
-    scene = "{particles} discs of radius {radius}, side {side}, {steps} steps".format(**ends) if ends else "–"
+    ends = {
+        name: listed(sorted({float(one.min()), float(one.max())}), " to ") for name, one in scenes.items()
+    }
+    scene = (
+        "{particles} discs of radius {radius}, side {side}, {steps} steps".format(**ends)
+        if len(scenes)
+        else "–"
+    )
     models = listed(sorted(runs["cpu_model"].unique()))
     return (
         Compared("threads", said, listed(tested)),
@@ -194,8 +186,3 @@ def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> tuple
         Compared("scene", origin.scene, scene),
         Compared("tolerance", "published", listed(sorted(runs["tolerance"].dropna().unique())) or "–"),
     )
-
-
-def _ends(column: pd.Series) -> str:
-    """Return a column's value, or its least and greatest."""
-    return listed(sorted({float(column.min()), float(column.max())}), " to ")

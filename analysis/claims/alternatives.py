@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import pandas as pd
 
@@ -34,12 +33,8 @@ class Alternatives:
             return Outcome(FAILS, measured, why, p=float(faster["p"].min()), blocks=blocks)
         p = float(self.table["behind"].max())
         undecided = int((self.table["behind"] > ERROR).sum())
-        row = {
-            "margin": self.margin,
-            "blocks": blocks,
-            "p": p,
-            "verdict": "inconclusive" if undecided else "not faster",
-        }
+        verdict = "inconclusive" if undecided else "not faster"
+        row = {"margin": self.margin, "blocks": blocks, "p": p, "verdict": verdict}
         said = f"not settled against {undecided} of {others} others; {TOO_FEW}"
         found = judged(row, "not faster", measured, unsettled=said)
         why = found.why or f"none of {others} others is faster by more than {100 * self.margin:g} %"
@@ -53,18 +48,8 @@ def alternatives(pairs: pd.DataFrame, margin: float = MARGIN) -> Alternatives:
     That nothing is faster needs evidence against every alternative (an intersection of tests, each at 5 %);
     that something is faster is Holm-corrected over the alternatives.
     """
-    alone = {
-        name: judge_one(group["log_ratio"], margin, biases=group.get("bias"))
-        for name, group in pairs.groupby("name")
-    }
-    table = judge(pairs, ["name"], margin)
-    behind, ahead = ([p(alone[name]) for name in table["name"]] for p in (_behind, _ahead))
-    return Alternatives(table.assign(behind=behind, ahead=ahead), margin)
-
-
-def _behind(row: dict[str, Any]) -> float:
-    return float(row["not_faster"])
-
-
-def _ahead(row: dict[str, Any]) -> float:
-    return float(row["not_equivalent"]) if row["ratio"] < 1 else math.inf
+    groups = (group for _, group in pairs.groupby("name"))
+    alone = [judge_one(group["log_ratio"], margin, biases=group.get("bias")) for group in groups]
+    behind = [row["not_faster"] for row in alone]
+    ahead = [row["not_equivalent"] if row["ratio"] < 1 else math.inf for row in alone]
+    return Alternatives(judge(pairs, ["name"], margin).assign(behind=behind, ahead=ahead), margin)

@@ -10,7 +10,7 @@ import pandas as pd
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, directed, judged, no_records, told
 from analysis.records.tables import COUNTS
-from analysis.statistics.pairs import PAIR, log_ratios, process_medians
+from analysis.statistics.pairs import PAIR, process_medians, ratios_of
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, count
 
@@ -41,22 +41,19 @@ def fewer_wasted_attempts(
         for value in ("wasted_attempts", "pair_attempts", "pair_resolves")
     }
     times = process_medians(evidence.study.times_of(experiment))
-    seconds = None
-    if not (runs["question_kind"] == COUNTS).all():
-        seconds = judge_one(_over_blocks(*(times[times[axis] == value] for value in (reference, candidate))))
-    said = "; ".join(
-        f"{change(row)} of {value.replace('_', ' ')} ({_told(row)})" for value, row in rows.items()
-    )
+    what = {value: value.replace("_", " ") for value in rows}
+    said = "; ".join(f"{change(row)} of {what[value]} ({_told(row)})" for value, row in rows.items())
     wasted = rows["wasted_attempts"]
     measured = f"{candidate} against {reference}, over {count(wasted['blocks'], 'seed')}: {said}"
-    if seconds is not None:
-        measured += f"; {change(seconds)} of time, {blocks(seconds)} ({seconds['verdict']})"
-    figures = (
-        *(Compared(f"{value.replace('_', ' ')}", "–", change(row)) for value, row in rows.items()),
-        *([Compared("time", "–", change(seconds))] if seconds is not None else []),
-    )
+    figures = [Compared(what[value], "–", change(row)) for value, row in rows.items()]
+    if not (runs["question_kind"] == COUNTS).all():
+        # The mean over the seeds of each block: what a block suffers, all its seeds do.
+        pairs = ratios_of(times, axis, reference, candidate, match=("x",))
+        row = judge_one(pairs.groupby(PAIR)["log_ratio"].mean())
+        measured += f"; {change(row)} of time, {blocks(row)} ({row['verdict']})"
+        figures.append(Compared("time", "–", change(row)))
     unsettled = TOO_FEW.replace("blocks or a quieter machine", "seeds")
-    found = judged(wasted, "faster", measured, figures, unsettled, unit="seed")
+    found = judged(wasted, "faster", measured, tuple(figures), unsettled, unit="seed")
     return replace(found, blocks=0)  # more blocks bring no further seed
 
 
@@ -70,9 +67,3 @@ def _over_seeds(before: pd.DataFrame, after: pd.DataFrame, value: str) -> pd.Ser
     counted = [side.groupby("x")[value].median() for side in (before, after)]
     ratios = np.log(counted[1] / counted[0])
     return ratios.replace([np.inf, -np.inf], np.nan).dropna()
-
-
-def _over_blocks(before: pd.DataFrame, after: pd.DataFrame) -> pd.Series:
-    """Return the mean over the seeds of each block: what a block suffers, all its seeds do."""
-    pairs = log_ratios(before, after, match=("x",))
-    return pairs.groupby(PAIR)["log_ratio"].mean()

@@ -6,14 +6,13 @@ from math import isfinite
 
 import pandas as pd
 
-from analysis.claims import published_curves
 from analysis.claims.alternatives import alternatives
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records
 from analysis.records.studies import Study
 from analysis.statistics.intervals import FEWEST
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios, process_medians, ratios_of
 from analysis.statistics.trends import Minimum, growth, linearity, minimum
 from analysis.support.wording import blocks, change, exact, factor, interval, listed, number
 
@@ -58,7 +57,7 @@ def _grows(evidence: Evidence, experiment: str) -> Outcome:
 
 def _growth_compared(evidence: Evidence, experiment: str, processes: pd.DataFrame) -> Compared:
     """Return by which factor the time grows from the first to the last x, each over its own range."""
-    curve = published_curves.curve(evidence.published, experiment)
+    curve = evidence.published.curve(experiment)
     theirs = evidence.published.without_degenerate(experiment, curve)
     said = [_factor(one) if one["x"].nunique() > 1 else "–" for one in (theirs, processes)]
     return Compared(f"growth of the time over {processes['x_name'].iloc[0]}", *said)
@@ -67,19 +66,17 @@ def _growth_compared(evidence: Evidence, experiment: str, processes: pd.DataFram
 def _factor(processes: pd.DataFrame) -> str:
     """Return the factor of the times and that of x, e.g. `×5.67 from 10 000 to 100 000`."""
     ends = processes["x"].min(), processes["x"].max()
-    pairs = log_ratios(*(processes[processes["x"] == end] for end in ends))
-    trend = growth(processes).change["ratio"] if len(pairs) else float("nan")
+    both = len(ratios_of(processes, "x", *ends))
+    trend = growth(processes).change["ratio"] if both else float("nan")
     return f"{factor(trend)} from {exact(ends[0])} to {exact(ends[1])}"
 
 
 def linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> Outcome:
-    """Test that the time is a straight line over x: the exponent of x, over any fixed cost, within the
-    bounds.
-    """
+    """Test that the time is a straight line over x: its exponent, over any fixed cost, is within bounds."""
     processes = published_processes(evidence.study, experiment)
     if processes.empty:
         return no_records(experiment)
-    curve = published_curves.curve(evidence.published, experiment)
+    curve = evidence.published.curve(experiment)
     outcome = _linear(processes, curve, within)
     grown = _growth_compared(evidence, experiment, processes)
     return replace(outcome, figures=(*outcome.figures, grown))
@@ -111,7 +108,7 @@ def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = 
     if processes["x"].nunique() < 3:
         return Outcome(OPEN, why="needs at least three values of the swept parameter")
     margin = evidence.margin(experiment)
-    shape = _shape(processes, published_curves.curve(evidence.published, experiment), margin)
+    shape = _shape(processes, evidence.published.curve(experiment), margin)
     return shape if least is None else both([shape, _least_at(processes, least, margin)])
 
 
@@ -165,7 +162,7 @@ def spike_then_linear(evidence: Evidence, experiment: str, within: tuple[float, 
     if not spike.measured:
         return spike
     ours = _from_the_lowest(published_processes(evidence.study, experiment))
-    theirs = _from_the_lowest(published_curves.curve(evidence.published, experiment))
+    theirs = _from_the_lowest(evidence.published.curve(experiment))
     return both([spike, _linear(ours, theirs, within)])
 
 

@@ -56,8 +56,7 @@ class Claim:
     @property
     def experiments(self) -> Sequence[str]:
         """The experiments on whose records the test looks."""
-        names: Sequence[str] = self.arguments.get("experiments") or [self.arguments["experiment"]]
-        return names
+        return self.arguments.get("experiments") or [self.arguments["experiment"]]
 
 
 @dataclass(frozen=True)
@@ -70,8 +69,7 @@ class Evidence:
 
     def margin(self, experiment: str) -> float:
         """Return the least difference that matters, as the experiment's question states it."""
-        runs = self.study.runs
-        return stated(runs[runs["experiment"] == experiment]).margin
+        return stated(*self.study.of(experiment, "runs")).margin
 
 
 def load(results: Path | None = None) -> list[Claim]:
@@ -85,9 +83,7 @@ def load(results: Path | None = None) -> list[Claim]:
 
 
 def questions_folder(results: Path) -> str:
-    """Return the folder of the questions behind a results folder, empty for the published ones. Raises
-    InputError as `load` does.
-    """
+    """Return the folder of a results folder's questions, empty for the published. Raises as `load` does."""
     return str(_content(results)[1].get("questions", ""))
 
 

@@ -29,11 +29,15 @@ class Measured:
         return {int(number) for number in self.processes["threads"]}
 
     @property
+    def seconds(self) -> str:
+        """The median time in words."""
+        return f"{number(float(self.processes['steps_seconds'].median()))} s"
+
+    @property
     def said(self) -> str:
         """The machine with its clock, threads and median time."""
         clock = f"{number(self.gigahertz, 2)} GHz" if self.gigahertz else "clock not known"
-        seconds = number(float(self.processes["steps_seconds"].median()))
-        return f"{self.machine}: {clock}, {listed(sorted(self.threads))} threads, {seconds} s"
+        return f"{self.machine}: {clock}, {listed(sorted(self.threads))} threads, {self.seconds}"
 
 
 def clock(evidence: Evidence, experiment: str) -> Outcome:
@@ -51,7 +55,7 @@ def clock(evidence: Evidence, experiment: str) -> Outcome:
     why = _undecidable(machines)
     if why:
         return Outcome(OPEN, measured if len(machines) > 1 else "", why, figures)
-    ordered = sorted(_known(machines), key=lambda one: one.gigahertz or 0)
+    ordered = sorted((one for one in machines if one.gigahertz), key=lambda one: one.gigahertz or 0)
     rows = [
         judge_unpaired(slow.processes["steps_seconds"], fast.processes["steps_seconds"])
         for slow, fast in pairwise(ordered)
@@ -62,15 +66,11 @@ def clock(evidence: Evidence, experiment: str) -> Outcome:
     return replace(joined, measured=measured, why=why, figures=figures)
 
 
-def _known(machines: Sequence[Measured]) -> list[Measured]:
-    return [one for one in machines if one.gigahertz]
-
-
 def _undecidable(machines: Sequence[Measured]) -> str:
     """Return why the machines present cannot be ordered, or nothing."""
     if len(machines) < 2:
         return "needs two machines of different clocks; only one is present"
-    known = _known(machines)
+    known = [one for one in machines if one.gigahertz]
     if len({one.gigahertz for one in known}) < 2:
         return "needs two machines whose greatest clocks are known and differ; a base clock in a name is none"
     threads = set().union(*(one.threads for one in known))
@@ -82,24 +82,14 @@ def _undecidable(machines: Sequence[Measured]) -> str:
 def _figures(published: Published, experiment: str, machines: Sequence[Measured]) -> tuple[Compared, ...]:
     """Return a row a machine, of the study or of ours, where both have it one row."""
     times = published.experiment(experiment).groupby("series")["seconds"].median()
-    rows = {}
+    rows = []
     for row in published.machines.itertuples():
-        ours = [number(float(one.processes["steps_seconds"].median())) for one in machines
-                if one.gigahertz and _is(str(row.processor), one)]  # fmt: skip
+        cpus = ((one, str(one.processes["cpu_model"].iloc[0])) for one in machines if one.gigahertz)
+        ours = next((one.seconds for one, cpu in cpus if _names(str(row.processor), cpu)), "–")
         theirs = f"{number(float(times[row.machine]))} s" if row.machine in times else "–"
-        rows[row.machine] = Compared(
-            f"{row.machine}, {row.maximum_gigahertz} GHz", theirs, f"{ours[0]} s" if ours else "–"
-        )
-    others = [
-        Compared(one.machine, "–", f"{number(float(one.processes['steps_seconds'].median()))} s")
-        for one in machines
-        if not one.gigahertz
-    ]
-    return (*rows.values(), *others)
-
-
-def _is(processor: str, machine: Measured) -> bool:
-    return _names(processor, str(machine.processes["cpu_model"].iloc[0]))
+        rows.append(Compared(f"{row.machine}, {row.maximum_gigahertz} GHz", theirs, ours))
+    others = [Compared(one.machine, "–", one.seconds) for one in machines if not one.gigahertz]
+    return (*rows, *others)
 
 
 def _names(processor: str, cpu_model: str) -> bool:

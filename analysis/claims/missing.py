@@ -43,18 +43,14 @@ def said(study: Study, claim: Claim, blocks: int, wanted: float) -> str:
 
 
 def seconds_per_block(study: Study, experiment: str) -> float:
-    """Return the median time that a block of the experiment took, all its processes together; 0 without
-    any.
-    """
-    runs = study.runs[study.runs["experiment"] == experiment]
+    """Return the median time that a block of the experiment took, all processes together; 0 for none."""
+    (runs,) = study.of(experiment, "runs")
     each = runs.drop(without_partner(runs).index).groupby(PAIR)["process_seconds"].sum()
     return float(each.median()) if len(each) else 0.0
 
 
 def tally(table: pd.DataFrame) -> dict[str, int]:
-    """Return how many claims are decided, open, not to be decided here, and not measured, of a table of
-    `evaluate`.
-    """
+    """Return how many claims of a table of `evaluate` are decided, open, not measured or not decidable."""
     decided, still_open = table["verdict"].isin(DECIDED), table["needed"].notna()
     unmeasured = table["missing"] & ~decided & ~still_open
     states = {"decided": decided, "open": still_open, "not measured": unmeasured}

@@ -1,7 +1,7 @@
 """What became of a claim: holds, does not hold, or cannot be decided here, with what was measured and why."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import isfinite
 from typing import Any
@@ -83,11 +83,7 @@ def no_records(experiment: str, missing: str = "") -> Outcome:
 
 
 def directed(
-    log_ratios: ArrayLike,
-    margin: float = MARGIN,
-    *,
-    once: bool = False,
-    biases: ArrayLike | None = None,
+    log_ratios: ArrayLike, margin: float = MARGIN, *, once: bool = False, biases: ArrayLike | None = None
 ) -> dict[str, Any]:
     """Return the row of `judge_one` with its `margin`, and the p-values of the ratio being less than 1 and
     more than 1, by however little: `any_faster` and `any_slower`.
@@ -113,21 +109,20 @@ def judged(
     where the interval has no part in what was expected, whether or not it tells the other verdicts from each
     other. A row without the p-value of that, e.g. `not_faster`, fails by another verdict.
     """
+    outcome = Outcome(OPEN, measured, figures=figures, blocks=row["blocks"])
     if row["blocks"] < FEWEST:
         why = f"rests on {count(row['blocks'], unit)}: a verdict needs at least {FEWEST}"
-        return Outcome(OPEN, measured, why, figures, blocks=row["blocks"])
+        return replace(outcome, why=why)
     against = row.get(denial(expected))
     if row["verdict"] == expected:
-        return Outcome(HOLDS, measured, figures=figures, p=row["p"], blocks=row["blocks"])
+        return replace(outcome, verdict=HOLDS, p=row["p"])
     if _is_by_less(row, expected):
-        p = max(row[denial(expected)], row[f"any_{expected}"])
-        return Outcome(HOLDS_BY_LESS, measured, figures=figures, p=p, blocks=row["blocks"])
+        return replace(outcome, verdict=HOLDS_BY_LESS, p=max(against or 0.0, row[f"any_{expected}"]))
     if against is not None and against <= ERROR:
-        return Outcome(FAILS, measured, figures=figures, p=against, blocks=row["blocks"])
+        return replace(outcome, verdict=FAILS, p=against)
     if row["verdict"] != "inconclusive":
-        return Outcome(FAILS, measured, figures=figures, p=row["p"], blocks=row["blocks"])
-    unsettled += _short(row, expected)
-    return Outcome(OPEN, measured, unsettled, figures, p=row["p"], against=against, blocks=row["blocks"])
+        return replace(outcome, verdict=FAILS, p=row["p"])
+    return replace(outcome, why=unsettled + _short(row, expected), p=row["p"], against=against)
 
 
 def told(row: Mapping[str, Any], expected: str) -> str:
@@ -152,9 +147,7 @@ def _is_by_less(row: Mapping[str, Any], expected: str) -> bool:
 
 
 def _short(row: Mapping[str, Any], expected: str) -> str:
-    """Say by how much the interval of a ratio misses the verdict that it comes closest to; nothing of a row
-    without one.
-    """
+    """Say by how much the interval of a ratio, if a row has one, misses the verdict that it is closest to."""
     if "low" not in row or not isfinite(row["low"]) or not isfinite(row["high"]):
         return ""
     margin = row.get("margin", MARGIN)

@@ -21,7 +21,7 @@ def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str)
     the search alone: what it takes longer with them, in the same block, is theirs. This takes the search to
     last as long with them as without. The ratio tested is that of resolving to all the rest.
     """
-    phases = evidence.study.phases[evidence.study.phases["experiment"] == experiment]
+    (phases,) = evidence.study.of(experiment, "phases")
     walls = phases[phases["variant"].isin(VARIANTS)].pivot_table(
         index=PAIR, columns=["variant", "phase"], values="wall_seconds"
     )

@@ -10,7 +10,6 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.claims import published_curves
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import OPEN, Compared, Outcome, directed, judged, no_records, told
@@ -49,8 +48,8 @@ def _one_pair(
     if not shared:
         return no_records(experiment, f"{candidate} and {reference} at the same {name}")
     rows = {x: _judged(against, chosen, x, evidence.margin(experiment)) for x in shared}
-    theirs = published_curves.ratio(evidence.published, experiment, candidate, reference)
-    published = "–" if pd.isna(theirs) else percent(theirs - 1)
+    theirs = evidence.published.ratio(experiment, candidate, reference)
+    published = percent(theirs["ratio"] - 1) if theirs else "–"
     what = f"time of {candidate} against {reference}"
     figures = tuple(
         Compared(f"{what}, {experiment if at is None else f'{name} = {exact(x)}'}", published, change(row))

@@ -5,12 +5,11 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.claims import published_curves
 from analysis.claims.curves import published_processes
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, Compared, Outcome, directed, judged, no_records, told
-from analysis.statistics.pairs import log_ratios
+from analysis.statistics.pairs import ratios_of
 from analysis.statistics.scalability import doubt
 from analysis.statistics.verdicts import MARGIN
 from analysis.support.wording import blocks, change, exact, factor
@@ -31,8 +30,7 @@ class Stretch:
 
     def judge(self, processes: pd.DataFrame) -> dict[str, Any]:
         """Return the row of `directed` for the time at its end against that at its start."""
-        ends = (processes[processes["x"] == end] for end in (self.start, self.end))
-        return directed(log_ratios(*ends)["log_ratio"], self.margin)
+        return directed(ratios_of(processes, "x", self.start, self.end)["log_ratio"], self.margin)
 
     def same_binding(self, processes: pd.DataFrame) -> bool:
         """Tell whether both ends were measured with threads bound alike."""
@@ -51,9 +49,7 @@ def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_m
     study = evidence.study
     cores = study.cores or study.hardware_threads
     margin = evidence.margin(experiment)
-    stretches = _stretches(
-        sorted(processes["x"].unique()), cores, study.hardware_threads, flat_margin, margin
-    )
+    stretches = _stretches(processes, cores, study.hardware_threads, flat_margin, margin)
     there = [stretch for stretch in stretches if stretch.start < stretch.end]
     tested = [_judged(stretch, processes, cores) for stretch in there]
     absent = [Outcome(OPEN, why=f"needs {one.needs}") for one in stretches if one not in there]
@@ -62,8 +58,9 @@ def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_m
 
 
 def _stretches(
-    x: list[float], cores: int, hardware: int, flat_margin: float, margin: float = MARGIN
+    processes: pd.DataFrame, cores: int, hardware: int, flat_margin: float, margin: float = MARGIN
 ) -> list[Stretch]:
+    x = sorted(processes["x"].unique())
     at_cores, at_hardware = (max((n for n in x if n <= limit), default=x[0]) for limit in (cores, hardware))
     beyond = "runs with more threads than the machine has"
     return [
@@ -92,11 +89,9 @@ def _compared(
     evidence: Evidence, experiment: str, ours: list[Stretch], processes: pd.DataFrame, machine: str
 ) -> tuple[Compared, ...]:
     """Return each stretch's factor of time on the study's machine and on this one."""
-    curve = published_curves.curve(evidence.published, experiment)
+    curve = evidence.published.curve(experiment)
     size = evidence.published.machines.set_index("machine").loc[machine]
-    theirs = _stretches(
-        sorted(curve["x"].unique()), int(size["cores"]), int(size["hardware_threads"]), MARGIN
-    )
+    theirs = _stretches(curve, int(size["cores"]), int(size["hardware_threads"]), MARGIN)
 
     def said(stretch: Stretch, one: pd.DataFrame) -> str:
         if stretch.start >= stretch.end:

@@ -1,7 +1,6 @@
 """Claims that one schedule and chunk is the one to choose."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -48,45 +47,38 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     if pairs.empty:
         return no_records(experiment, "any block with both sides")
     margin = evidence.margin(experiment)
-    average = directed(_average(pairs), margin)
+    # ln(choice / mean of the others) of every block that has all of them.
+    table = pairs.pivot_table(index=PAIR, columns="name", values="log_ratio").dropna()
+    average = directed(-table.mean(axis=1), margin)
     found = alternatives(pairs, margin)
     best, seconds = found.best, number(float(np.median(chosen["steps_seconds"])))
     measured = (
         f"{schedule} {chunk}: {seconds} s on {count(int(chosen['threads'].iloc[0]), 'thread')}; "
         f"best other, {best['name']}: {change(best)} of time, {blocks(best)}"
     )
+    theirs = _best_other(evidence, experiment, schedule, chunk)
     figures = (
         Compared("fastest measured", *_fastest(evidence.published, experiment, processes)),
-        Compared("best other against the choice", _best_other(evidence, experiment, schedule, chunk),
-                 f"{best['name']}: {change(best)}"),
-    )  # fmt: skip
-    return replace(both([found.outcome(measured), _matters(average)]), figures=figures)
-
-
-def _average(pairs: pd.DataFrame) -> pd.Series:
-    """Return ln(choice / mean of the others) of every block that has all of them."""
-    table = pairs.pivot_table(index=PAIR, columns="name", values="log_ratio").dropna()
-    return -table.mean(axis=1)
-
-
-def _matters(average: dict[str, Any]) -> Outcome:
-    """Judge the choice against the average of the others."""
-    measured = f"against the others on average {change(average)} of time, {blocks(average)}"
-    outcome = judged(average, "faster", measured)
-    return replace(outcome, why=NOT_BETTER[told(average, "faster")]) if outcome.verdict == FAILS else outcome
+        Compared("best other against the choice", theirs, f"{best['name']}: {change(best)}"),
+    )
+    against = f"against the others on average {change(average)} of time, {blocks(average)}"
+    matters = judged(average, "faster", against)
+    if matters.verdict == FAILS:
+        matters = replace(matters, why=NOT_BETTER[told(average, "faster")])
+    return replace(both([found.outcome(measured), matters]), figures=figures)
 
 
 def _fastest(published: Published, experiment: str, processes: pd.DataFrame) -> tuple[str, str]:
     """Return the schedule with the least time in the study, and that with the least median here."""
-    theirs = published.experiment(experiment).rename(columns={"seconds": "steps_seconds"})
-    said = []
-    for table in (theirs, processes.groupby(["series", "x"], as_index=False)["steps_seconds"].median()):
-        least = None if table.empty else table.loc[table["steps_seconds"].idxmin()]
-        said.append(
-            "–" if least is None
-            else f"{least['series']} {exact(least['x'])}, {number(least['steps_seconds'], 4)} s"
-        )  # fmt: skip
-    return said[0], said[1]
+    ours = processes.groupby(["series", "x"], as_index=False)["steps_seconds"].median()
+    return _least(published.experiment(experiment), "seconds"), _least(ours, "steps_seconds")
+
+
+def _least(table: pd.DataFrame, value: str) -> str:
+    if table.empty:
+        return "–"
+    least = table.loc[table[value].idxmin()]
+    return f"{least['series']} {exact(least['x'])}, {number(least[value], 4)} s"
 
 
 def _best_other(evidence: Evidence, experiment: str, schedule: str, chunk: int) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.records.reading import load
-from analysis.records.studies import Study, split
+from analysis.records.studies import split
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.unpaired import judge_unpaired
 from analysis.statistics.verdicts import COLUMNS, corrected
@@ -47,38 +47,22 @@ def compare(first: Path, second: Path, experiment: str | None = None) -> pd.Data
 
 
 def _judged(groups: Sequence[Mapping[Point, pd.Series]], points: Sequence[Point]) -> pd.DataFrame:
-    rows = [
-        {
-            **dict(zip(POINT, point, strict=True)),
-            **judge_unpaired(*(group.get(point, ()) for group in groups)),
-        }
-        for point in points
-    ]
-    return pd.DataFrame(rows)
+    rows = [judge_unpaired(*(group.get(point, ()) for group in groups)) for point in points]
+    return pd.concat([pd.DataFrame(points, columns=POINT), pd.DataFrame(rows)], axis=1)
 
 
 def _processes(folder: Path, experiment: str | None) -> pd.DataFrame:
-    study = only(split(load(folder)), folder)
-    times = study.times if experiment is None else study.times_of(experiment)
-    processes = process_medians(times)
-    return processes.assign(
-        label=processes["label"].fillna("").astype(str),
-        scene_name=processes["scene_name"].fillna(""),
-        find_chunk=processes["find_chunk"].fillna(0),
-        resolve_chunk=processes["resolve_chunk"].fillna(0),
-        substeps=processes["substeps"].fillna(1),
-        tolerance=processes["tolerance"].fillna(""),
-    )
-
-
-def only(studies: Sequence[Study], folder: Path) -> Study:
-    """Return the single study of a folder; raises InputError if there is none, or more than one."""
+    studies = split(load(folder))
     if not studies:
         raise InputError(f"{folder}: no records to compare")
     if len(studies) > 1:
         names = "; ".join(study.name for study in studies)
         raise InputError(f"{folder}: found {len(studies)} studies, expected one to compare ({names})")
-    return studies[0]
+    study = studies[0]
+    times = study.times if experiment is None else study.times_of(experiment)
+    unsaid = dict.fromkeys(("label", "scene_name", "tolerance"), "")
+    numbers = {"find_chunk": 0, "resolve_chunk": 0, "substeps": 1}
+    return process_medians(times).fillna({**unsaid, **numbers}).astype({"label": str})
 
 
 def exit_code(table: pd.DataFrame) -> int:

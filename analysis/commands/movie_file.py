@@ -17,7 +17,11 @@ def target_of(scene: Path, output: Path | None = None, step: int | None = None) 
     box = read_box(scene)
     suffix = ".png" if step is not None else ".mp4" if _has_ffmpeg() else ".gif"
     target = output or (FOLDER / scene.stem).with_suffix(suffix)
-    _require_format(target)
+    if target.suffix not in SUFFIXES:
+        expected = f"expected one of {', '.join(SUFFIXES)}"
+        raise InputError(f"{target}: found the suffix '{target.suffix}', {expected}")
+    if target.suffix == ".mp4" and not _has_ffmpeg():
+        raise InputError(f"{target}: needs ffmpeg, which is not here; install it, or choose a name *.gif")
     if output is not None and not target.parent.is_dir():
         raise InputError(f"{target}: found no folder {target.parent}, expected one that is there")
     if step is not None and target.suffix != ".png":
@@ -29,12 +33,3 @@ def target_of(scene: Path, output: Path | None = None, step: int | None = None) 
 
 def _has_ffmpeg() -> bool:
     return shutil.which("ffmpeg") is not None
-
-
-def _require_format(target: Path) -> None:
-    if target.suffix not in SUFFIXES:
-        raise InputError(
-            f"{target}: found the suffix '{target.suffix}', expected one of {', '.join(SUFFIXES)}"
-        )
-    if target.suffix == ".mp4" and not _has_ffmpeg():
-        raise InputError(f"{target}: needs ffmpeg, which is not here; install it, or choose a name *.gif")

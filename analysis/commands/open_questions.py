@@ -20,6 +20,9 @@ from analysis.support.wording import change
 COMPARED = ("comparison", "control")
 """Kinds of questions whose every difference has a verdict, also in a question that no claim is about."""
 
+Item = tuple[str, int, float]
+"""What has a verdict: its experiment, its blocks, and the blocks that it needs, NaN if it is decided."""
+
 OPTIMISM = 12
 """How many times the blocks there are settle what seems to lie on a margin, should it lie a standard error
 off: the square of the 3.5 standard errors that a look at one of a dozen claims asks for.
@@ -46,36 +49,30 @@ def open_questions(results: Path, remembered: claims.Tested | None = None) -> di
     items = [*_claims(table), *_comparisons(studies[0], claimed, found["said"])]
     experiments = dict.fromkeys(experiment for experiment, _, _ in items)
     for experiment in experiments:
-        own = [(blocks, _worth(blocks, needed)) for name, blocks, needed in items if name == experiment]
-        in_sight = [(needed, blocks) for blocks, needed in own if math.isfinite(needed)]
+        own = [
+            (OPTIMISM * blocks if math.isinf(needed) and OPTIMISM * blocks <= MOST_BLOCKS else needed, blocks)
+            for name, blocks, needed in items
+            if name == experiment
+        ]
+        in_sight = [one for one in own if math.isfinite(one[0])]
         if in_sight:
             needed, blocks = min(in_sight)
-            found["open"][experiment] = {
-                "blocks": blocks,
-                "next": next_look(blocks),
-                "needed": int(needed),
-            }
-        elif all(math.isnan(needed) for _, needed in own):
+            found["open"][experiment] = {"blocks": blocks, "next": next_look(blocks), "needed": int(needed)}
+        elif all(math.isnan(needed) for needed, _ in own):
             found["settled"].append(experiment)
     return found
 
 
-def _worth(blocks: int, needed: float) -> float:
-    return OPTIMISM * blocks if math.isinf(needed) and OPTIMISM * blocks <= MOST_BLOCKS else needed
-
-
-def _claims(table: pd.DataFrame) -> Iterator[tuple[str, int, float]]:
-    """Yield experiment, blocks and needed blocks of each claim; NaN for one that is decided."""
+def _claims(table: pd.DataFrame) -> Iterator[Item]:
+    """Yield the items of the claims."""
     for row in table.itertuples():
         if row.verdict in DECIDED or not math.isnan(row.needed):
             for experiment in row.experiments:
                 yield experiment, int(row.blocks), float(row.needed)
 
 
-def _comparisons(
-    study: Study, claimed: Collection[str], said: dict[str, str]
-) -> Iterator[tuple[str, int, float]]:
-    """Yield the same of each difference that a comparison draws; add to `said` what is decided."""
+def _comparisons(study: Study, claimed: Collection[str], said: dict[str, str]) -> Iterator[Item]:
+    """Yield the items of the differences that comparisons draw; add to `said` what is decided."""
     for experiment, times in study.times.groupby("experiment"):
         if experiment in claimed or times["question_kind"].iloc[0] not in COMPARED:
             continue

@@ -1,16 +1,17 @@
 """The ladder and the limits as Markdown tables, for documents."""
 
-from collections.abc import Hashable, Mapping, Sequence
-from typing import Any
-
 import pandas as pd
 
-from analysis.derived.ladder import RUNG, claims, factors, named, rungs, scene_title, speed_up
+from analysis.derived.ladder import RUNG, claims, factors, named, rungs, scene_title, speed_up, tables_of
 from analysis.derived.limits import against_limits
 from analysis.records.studies import Study
-from analysis.support.wording import number, share
+from analysis.support.values import Row
+from analysis.support.wording import markdown_table, number, share
 
-Row = Mapping[Hashable, Any]
+RUNGS = [
+    *("rung", "ns per disc and step", "factor", "resolves per disc and step", "sweeps per step"),
+    "checks passed",
+]
 
 
 def markdown(study: Study) -> str:
@@ -20,39 +21,24 @@ def markdown(study: Study) -> str:
 
 
 def _ladder(study: Study, experiment: str) -> str:
-    runs = named(study.runs[study.runs["experiment"] == experiment])
-    times = named(study.times_of(experiment))
-    if times.empty or times["series_number"].isna().any():
+    tables = tables_of(study, experiment)
+    if tables is None:
         return ""
+    runs, times = tables
     judged = factors(times)[[*RUNG, "ratio", "low", "high"]]
-    table = (
-        rungs(runs, times, study.counters).drop(columns=["low", "high"]).merge(judged, on=RUNG, how="left")
-    )
+    table = rungs(runs, times, study.counters).drop(columns=["low", "high"])
+    table = table.merge(judged, on=RUNG, how="left")
     lines = [f"- {sentence}" for sentence in claims(runs, times)]
     for scene, rows in table.groupby("scene_name", sort=False):
-        body = [_rung(row) for row in rows.sort_values("series_number").to_dict("records")]
-        head = [
-            "rung",
-            "ns per disc and step",
-            "factor",
-            "resolves per disc and step",
-            "sweeps per step",
-            "checks passed",
-        ]
-        lines += ["", f"{scene_title(runs, str(scene))}:", "", _table(head, body)]
+        body = [
+            [
+                row["change"], number(row["nanoseconds"]), speed_up(row) if pd.notna(row["ratio"]) else "",
+                number(row["resolves"]), number(row["sweeps"]), f"{row['passed']} of {row['records']}",
+            ]
+            for row in rows.sort_values("series_number").to_dict("records")
+        ]  # fmt: skip
+        lines += ["", f"{scene_title(runs, str(scene))}:", "", markdown_table(RUNGS, body)]
     return "\n".join(lines)
-
-
-def _rung(row: Row) -> list[str]:
-    factor = speed_up(row) if pd.notna(row["ratio"]) else ""
-    counts = [number(row[name]) for name in ("resolves", "sweeps")]
-    return [
-        row["change"],
-        number(row["nanoseconds"]),
-        factor,
-        *counts,
-        f"{row['passed']} of {row['records']}",
-    ]
 
 
 def _limits(study: Study) -> str:
@@ -63,7 +49,7 @@ def _limits(study: Study) -> str:
         [_what(row), str(row["threads"]), number(1e-9 * row["best"]), number(1e-9 * row["median"])]
         for row in study.limits.loc[greatest.sort_values()].to_dict("records")
     ]
-    return _table(["limit", "threads", "best, 1e9/s", "median"], rows) if rows else ""
+    return markdown_table(["limit", "threads", "best, 1e9/s", "median"], rows) if rows else ""
 
 
 def _what(row: Row) -> str:
@@ -73,25 +59,15 @@ def _what(row: Row) -> str:
 
 
 def _phases(study: Study, experiment: str) -> str:
-    runs, phases, threads = (
-        named(table[table["experiment"] == experiment]) for table in (study.runs, study.phases, study.threads)
-    )
+    runs, phases, threads = map(named, study.of(experiment, "runs", "phases", "threads"))
     table = against_limits(runs, phases, threads, study.limits)
     body = [
         [
-            scene_title(runs, row["scene_name"]),
-            row["series"],
-            row["phase"],
+            scene_title(runs, row["scene_name"]), row["series"], row["phase"],
             *(number(row[name]) for name in ("bytes", "operations", "copy", "arithmetic", "wall")),
-            share(row["reached"]),
-            share(1 - row["busy"] / row["wall"]),
+            share(row["reached"]), share(1 - row["busy"] / row["wall"]),
         ]
         for row in table.to_dict("records")
-    ]
+    ]  # fmt: skip
     head = ["scene", "variant", "phase", "bytes", "operations", "least by copying, ns", "by arithmetic, ns"]
-    return _table([*head, "measured, ns", "reached", "waiting"], body) if body else ""
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    return markdown_table([*head, "measured, ns", "reached", "waiting"], body) if body else ""

@@ -13,7 +13,8 @@ from matplotlib.patches import Patch, Rectangle
 from matplotlib.text import Text
 
 from analysis.figures.style import INK
-from analysis.records.trajectory import Box, Floats, Trajectory
+from analysis.records.trajectory import Box, Trajectory
+from analysis.support.values import Floats
 
 MOST_BOXES = 48
 """Boxes a side up to which they are drawn; more of them would be finer than the picture."""
@@ -61,13 +62,11 @@ class Picture:
 
     def positions(self, moment: Moment) -> Floats:
         """Return where the discs are: between two steps they fly freely."""
-        place: Floats = self.run.positions[moment.step] + moment.fraction * self.run.velocities[moment.step]
-        return place
+        return self.run.positions[moment.step] + moment.fraction * self.run.velocities[moment.step]
 
     def speeds(self, moment: Moment) -> Floats:
         """Return how fast each disc is."""
-        speeds: Floats = np.hypot(*self.run.velocities[moment.step].T)
-        return speeds
+        return np.hypot(*self.run.velocities[moment.step].T)
 
     def words(self, moment: Moment) -> str:
         """Return the title: the scene and the step."""
@@ -103,7 +102,8 @@ class Picture:
             offset_transform=self.axes.transData, cmap="viridis", edgecolor=INK, linewidth=0.3, alpha=0.9,
             zorder=3,
         )  # fmt: skip
-        discs.set_clim(0, _fast(np.linalg.norm(self.run.velocities, axis=-1)))
+        # The brightest colour is that of the fastest disc but one in a hundred.
+        discs.set_clim(0, float(np.quantile(np.linalg.norm(self.run.velocities, axis=-1), 0.99)) or 1.0)
         self.axes.add_collection(discs)
         bar = self.figure.colorbar(discs, ax=self.axes, shrink=0.6, pad=0.02)
         bar.set_label("speed of a disc, lengths per unit of time")
@@ -114,11 +114,6 @@ def _limits(box: Box) -> tuple[float, float]:
     """The box and a little beside it: discs may be outside for a while."""
     margin = min(2 * box.radius, 0.05 * box.side)
     return -margin, box.side + margin
-
-
-def _fast(speeds: Floats) -> float:
-    """The speed of the brightest colour: that of the fastest but one in a hundred."""
-    return float(np.quantile(speeds, 0.99)) or 1.0
 
 
 def _draw_boxes(axes: Axes, box: Box) -> None:

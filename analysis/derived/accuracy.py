@@ -7,7 +7,7 @@ simulation takes no steps: it is a point with 0 substeps.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pandas as pd
@@ -15,11 +15,11 @@ import pandas as pd
 from analysis.records.studies import Study
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.convergence import order
-from analysis.statistics.intervals import Interval
 from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.pareto import front
 from analysis.statistics.verdicts import error_of_picked, judge_one
+from analysis.support.values import Interval
 
 POINT = ["scene_name", "series", "x"]
 Entrant = tuple[str, float]
@@ -41,17 +41,13 @@ class Measure:
     converges: bool
 
 
-def _column(name: str) -> Callable[[pd.DataFrame], pd.Series]:
-    return lambda runs: runs[name].abs()
+def _column(name: str, runs: pd.DataFrame) -> pd.Series:
+    return runs[name].abs()
 
 
-def _against_reference(name: str) -> Callable[[pd.DataFrame], pd.Series]:
-    def error(runs: pd.DataFrame) -> pd.Series:
-        reference = runs[f"{name}_reference"]
-        # Relative to 0, as where the exact run meets no wall, there is no error.
-        return (runs[name] / reference.where(reference != 0) - 1).abs()
-
-    return error
+def _against_reference(name: str, runs: pd.DataFrame) -> pd.Series:
+    # Relative to 0, as where the exact run meets no wall, there is no error.
+    return (runs[name] / runs[f"{name}_reference"].replace(0, np.nan) - 1).abs()
 
 
 def _parting(runs: pd.DataFrame) -> pd.Series:
@@ -65,7 +61,7 @@ MEASURES = [
         "path", "distance of the paths from the exact ones",
         "RMS distance from the exact paths at time 1, radii",
         "the root mean square over all discs of the distance to the event-driven reference at time 1",
-        _column("path"), converges=True,
+        partial(_column, "path"), converges=True,
     ),
     Measure(
         "parting", "when the paths part from the exact ones",
@@ -76,42 +72,42 @@ MEASURES = [
     Measure(
         "penetration_worst", "worst penetration", "worst penetration, radii",
         "the deepest overlap of any pair that was apart at the start",
-        _column("penetration_worst"), converges=True,
+        partial(_column, "penetration_worst"), converges=True,
     ),
     Measure(
         "penetration_mean", "mean penetration", "mean penetration, radii",
         "the mean depth over all overlaps of pairs that were apart at the start",
-        _column("penetration_mean"), converges=True,
+        partial(_column, "penetration_mean"), converges=True,
     ),
     Measure(
         "collision_rate", "collision rate", "relative error of the collision rate",
         "collisions of pairs per disc and unit of time against those of the reference",
-        _against_reference("collision_rate"), converges=True,
+        partial(_against_reference, "collision_rate"), converges=True,
     ),
     Measure(
         "pressure", "pressure", "relative error of the pressure",
         "the impulse on the walls per length and time against that of the reference",
-        _against_reference("pressure"), converges=True,
+        partial(_against_reference, "pressure"), converges=True,
     ),
     Measure(
         "speeds", "distribution of speeds", "greatest distance of the speeds' distributions",
         "the Kolmogorov-Smirnov distance between the distributions of speeds of run and reference at the end",
-        _column("speed_distance"), converges=False,
+        partial(_column, "speed_distance"), converges=False,
     ),
     Measure(
         "energy", "drift of energy", "relative drift of energy",
         "the change of kinetic energy from start to end; collisions conserve it, so that this is rounding",
-        _column("energy_drift"), converges=False,
+        partial(_column, "energy_drift"), converges=False,
     ),
     Measure(
         "momentum", "unexplained momentum", "momentum that no wall explains, relative",
         "the change of momentum that the walls' impulses do not account for, over the sum of all speeds",
-        _column("momentum_drift"), converges=False,
+        partial(_column, "momentum_drift"), converges=False,
     ),
     Measure(
         "unresolved", "unresolved collisions", "collisions left unresolved",
         "pairs and walls left colliding at the ends of units of time",
-        _column("unresolved_pairs"), converges=False,
+        partial(_column, "unresolved_pairs"), converges=False,
     ),
 ]  # fmt: skip
 
@@ -172,11 +168,12 @@ def outside(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
     `high` of the seconds for a unit of simulated time, and `error`, on the scenes of its runs. Empty but
     for the drift of energy.
     """
-    table = study.outside[study.outside["experiment"] == experiment].dropna(subset=["energy_drift"])
+    (table,) = study.of(experiment, "outside")
     table = table[table["scene_sha256"].isin(study.runs_of(experiment)["scene_sha256"])]
-    if table.empty or measure.key != "energy":
-        return pd.DataFrame()
+    table = table.dropna(subset=["energy_drift"])
     keys = ["scene_name", "substeps", "engine"]
+    if table.empty or measure.key != "energy":
+        return pd.DataFrame(columns=keys)
     errors = table.groupby(keys)["energy_drift"].median().rename("error").reset_index()
     return summarise(table, keys, "seconds").merge(errors, on=keys)
 

@@ -55,15 +55,12 @@ def differences(times: pd.DataFrame, against: str) -> pd.DataFrame:
     pairs = [
         log_ratios(first, part, match=("x",)).assign(series=name) for name, part in others.groupby("series")
     ]
-    columns = ["series", "x", "log_ratio"]
-    table = pd.concat(pairs) if pairs else pd.DataFrame(columns=columns)
+    table = pd.concat(pairs) if pairs else pd.DataFrame(columns=["series", "x", "log_ratio"])
     return judge(table, ["series", "x"], by.margin, by.error)
 
 
 def _latest(records: pd.DataFrame, tag: str, most: float, default: float) -> float:
-    """Return the number that the latest record has for a tag; the default for none, or for one that is none
-    between 0 and `most`.
-    """
+    """Return the latest record's number for a tag; the default for none, or for one not up to `most`."""
     if records.empty:
         return default
     value = pd.to_numeric(records.sort_values("recorded_at", kind="stable")[tag].tail(1), errors="coerce")

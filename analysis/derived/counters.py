@@ -73,17 +73,13 @@ def derived(counters: pd.DataFrame) -> pd.DataFrame:
     left out.
     """
     keys = ["experiment", "series", "file", "source", "discs", "time_steps"]
-    measured = counters.assign(
-        discs=counters["particles"], time_steps=counters["steps"] * counters["substeps"]
-    )
+    steps = counters["steps"] * counters["substeps"]
+    measured = counters.assign(discs=counters["particles"], time_steps=steps)
     totals = measured.groupby([*keys, "name"])["value"].agg(lambda values: values.sum(skipna=False))
     wide = totals.unstack("name").reset_index()
     tables = [_quantity(wide[wide["source"] == one.source], one) for one in QUANTITIES]
-    groups = (
-        pd.concat(tables)
-        .dropna(subset="value")
-        .groupby(["experiment", "series", "source", "quantity"], sort=False)
-    )
+    known = pd.concat(tables).dropna(subset="value")
+    groups = known.groupby(["experiment", "series", "source", "quantity"], sort=False)
     return groups["value"].agg(value="median", least="min", greatest="max", runs="count").reset_index()
 
 
@@ -93,15 +89,10 @@ def _quantity(wide: pd.DataFrame, quantity: Quantity) -> pd.DataFrame:
         value = value / _first_counted(wide, quantity.per)
     elif quantity.per != "run":
         discs = wide["discs"] if quantity.per == "disc and step" else 1
-        value = value / (_steps(wide) * discs)
+        # A simulation says how few steps it ran, all else covers the whole run.
+        steps = wide["steps"].fillna(wide["time_steps"]) if "steps" in wide else wide["time_steps"]
+        value = value / (steps * discs)
     return wide[["experiment", "series", "source"]].assign(quantity=quantity.name, value=value)
-
-
-def _steps(wide: pd.DataFrame) -> pd.Series:
-    """Return the steps that the counts cover: a simulation says how few it ran, all else covers the whole
-    run.
-    """
-    return wide["steps"].fillna(wide["time_steps"]) if "steps" in wide else wide["time_steps"]
 
 
 def _first_counted(wide: pd.DataFrame, events: Sequence[str]) -> pd.Series:

@@ -18,6 +18,10 @@ HOLDS, FAILS, LIMIT, UNMEASURED = "holds", "fails", "limit of the method", "not 
 COLUMNS = ["case", "title", "series", "precision", "impact", "verdict", "value", "bound", "reason"]
 AT_CONTACT = "at_contact"
 
+Told = tuple[str, float | None, float | None, str | None]
+"""Verdict, value, bound and reason of a cell."""
+NOTHING = (None, None, None)
+
 
 @dataclass(frozen=True)
 class Expectation:
@@ -79,22 +83,23 @@ def evaluate(study: Study, experiment: str) -> pd.DataFrame:
     why; *limit of the method*: wrong as it must be; *not measured*: there is neither a record nor a failure.
     A case that has no expectation of its own is held to the check alone.
     """
-    runs = _with_ends(study, experiment)
-    failures = study.failures[study.failures["experiment"] == experiment]
+    last = study.trajectory.sort_values("time").groupby("file")["rms_distance"].last()
+    runs = accuracy.errors(study, experiment)
+    runs = runs.assign(path_end=runs["file"].map(last))
+    (failures,) = study.of(experiment, "failures")
     series = sorted(set(runs["series"]) | set(failures["series"].dropna()))
     precision = dict(zip(runs["series"], runs["precision"], strict=True))
     impact = dict(zip(runs["series"], runs["impact"], strict=True))
-    expectations = _expectations(runs, failures)
+    known = {expected.name: expected for expected in load()}
+    measured = dict.fromkeys([*runs["scene_name"], *failures["scene_name"].dropna()])
+    others = (Expectation(name, "every step passes the check") for name in measured if name not in known)
+    expectations = [*load(), *others]
     special = {(expected.name, expected.impact) for expected in expectations if expected.impact}
     rows = [
-        {
-            "case": expected.name,
-            "title": expected.title,
-            "series": one,
-            "precision": precision.get(one),
-            "impact": impact.get(one),
-            **_cell(expected, one, runs, failures),
-        }
+        (
+            *(expected.name, expected.title, one, precision.get(one), impact.get(one)),
+            *_cell(expected, one, runs, failures),
+        )
         for expected in expectations
         for one in series
         if ((expected.name, impact.get(one)) in special) == bool(expected.impact)
@@ -102,49 +107,36 @@ def evaluate(study: Study, experiment: str) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def _with_ends(study: Study, experiment: str) -> pd.DataFrame:
-    last = study.trajectory.sort_values("time").groupby("file")["rms_distance"].last()
-    runs = accuracy.errors(study, experiment)
-    return runs.assign(path_end=runs["file"].map(last))
+def _cell(expected: Expectation, series: str, runs: pd.DataFrame, failures: pd.DataFrame) -> Told:
+    def of(table: pd.DataFrame, case: str) -> pd.DataFrame:
+        return table[(table["scene_name"] == case) & (table["series"] == series)]
 
-
-def _expectations(runs: pd.DataFrame, failures: pd.DataFrame) -> list[Expectation]:
-    known = load()
-    measured = dict.fromkeys([*runs["scene_name"], *failures["scene_name"].dropna()])
-    others = [name for name in measured if name not in {one.name for one in known}]
-    return [*known, *(Expectation(name, "every step passes the check") for name in others)]
-
-
-def _cell(expected: Expectation, series: str, runs: pd.DataFrame, failures: pd.DataFrame) -> dict[str, Any]:
-    found = runs[(runs["scene_name"] == expected.name) & (runs["series"] == series)]
+    found = of(runs, expected.name)
     if found.empty:
-        failed = failures[(failures["scene_name"] == expected.name) & (failures["series"] == series)]
-        reason = None if failed.empty else str(failed["reason"].iloc[-1])
-        return {"verdict": FAILS if reason else UNMEASURED, "value": None, "bound": None, "reason": reason}
+        failed = of(failures, expected.name)
+        return (UNMEASURED, *NOTHING) if failed.empty else (FAILS, None, None, str(failed["reason"].iloc[-1]))
     run = found.iloc[-1]
     value = run[expected.measure] if expected.measure else np.nan
     if expected.equals:
-        other = runs[(runs["scene_name"] == expected.equals) & (runs["series"] == series)]
+        other = of(runs, expected.equals)
         if other.empty:
-            reason = f"{expected.equals} was not measured"
-            return {"verdict": UNMEASURED, "value": None, "bound": None, "reason": reason}
+            return UNMEASURED, None, None, f"{expected.equals} was not measured"
         value = _difference(run, other.iloc[-1])
     return _judged(expected, str(run["precision"]), float(value))
 
 
-def _judged(expected: Expectation, precision: str, value: float) -> dict[str, Any]:
+def _judged(expected: Expectation, precision: str, value: float) -> Told:
     most, least = expected.at_most.get(precision), expected.at_least.get(precision)
     if np.isnan(value):
         asked = most is not None or least is not None
-        reason = f"there is no {expected.label}" if asked else None
-        return {"verdict": FAILS if asked else HOLDS, "value": None, "bound": None, "reason": reason}
+        return (FAILS, None, None, f"there is no {expected.label}") if asked else (HOLDS, *NOTHING)
+    if least is not None and value >= least:
+        return LIMIT, value, least, expected.limit
     if least is not None:
-        shows = value >= least
-        reason = expected.limit if shows else f"expected at least {least:g}"
-        return {"verdict": LIMIT if shows else FAILS, "value": value, "bound": least, "reason": reason}
-    holds = most is None or value <= most
-    reason = None if holds else f"expected at most {most:g}"
-    return {"verdict": HOLDS if holds else FAILS, "value": value, "bound": most, "reason": reason}
+        return FAILS, value, least, f"expected at least {least:g}"
+    if most is None or value <= most:
+        return HOLDS, value, most, None
+    return FAILS, value, most, f"expected at most {most:g}"
 
 
 def _difference(run: pd.Series, other: pd.Series) -> float:

@@ -13,7 +13,7 @@ from analysis.derived.counters import derived
 from analysis.records.studies import Study
 from analysis.records.tables import COLUMN_OF, LATER_AXES
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import process_medians, ratios_of
 from analysis.statistics.verdicts import COLUMNS, judge
 from analysis.support.wording import number, scene_in_words
 
@@ -52,11 +52,7 @@ def rungs(runs: pd.DataFrame, times: pd.DataFrame, counters: pd.DataFrame) -> pd
         resolves=passed["pair_resolves"] / (steps * passed["particles"]), sweeps=passed["sweeps"] / steps
     )
     table = runs.groupby(RUNG).agg(
-        series=("series", "first"),
-        variant=("variant", "first"),
-        particles=("particles", "first"),
-        side=("side", "first"),
-        radius=("radius", "first"),
+        **{name: (name, "first") for name in ("series", "variant", "particles", "side", "radius")},
         passed=("check_verdict", lambda verdicts: int((verdicts == "passed").sum())),
         records=("check_verdict", "size"),
     )
@@ -68,9 +64,7 @@ def rungs(runs: pd.DataFrame, times: pd.DataFrame, counters: pd.DataFrame) -> pd
 
 
 def factors(times: pd.DataFrame) -> pd.DataFrame:
-    """Return a row of `verdicts.judge` for every rung but the first of each scene, against the rung below
-    it.
-    """
+    """Return a row of `verdicts.judge` for every rung of each scene but the first, against the one below."""
     return _judged(times, lambda numbers: list(pairwise(numbers)), RUNG)
 
 
@@ -87,9 +81,7 @@ def speed_up(row: pd.Series | dict[str, float], digits: int = 3) -> str:
 
 
 def claims(runs: pd.DataFrame, times: pd.DataFrame) -> list[str]:
-    """Return a sentence a scene: by how much the last rung is faster than the first, with the 95 %
-    interval.
-    """
+    """Return a sentence a scene: by how much the last rung is faster than the first, with its interval."""
     first = _name(runs, runs["series_number"].min())
     return [
         f"{scene_title(runs, str(row['scene_name']))}: {speed_up(row)} faster than {first} ({row['verdict']})"
@@ -99,8 +91,14 @@ def claims(runs: pd.DataFrame, times: pd.DataFrame) -> list[str]:
 
 def headlines(study: Study, experiment: str = "ladder") -> list[str]:
     """Return the claims of a study's ladder; none without records of it."""
-    runs, times = (named(table[table["experiment"] == experiment]) for table in (study.runs, study.times))
-    return claims(runs, times) if len(times) and times["series_number"].notna().all() else []
+    tables = tables_of(study, experiment)
+    return claims(*tables) if tables else []
+
+
+def tables_of(study: Study, experiment: str) -> tuple[pd.DataFrame, pd.DataFrame] | None:
+    """Return the `runs` and the `times` of a ladder; None without records that tell its order."""
+    runs, times = map(named, study.of(experiment, "runs", "times"))
+    return None if times.empty or times["series_number"].isna().any() else (runs, times)
 
 
 def scene_title(runs: pd.DataFrame, scene: str) -> str:
@@ -121,47 +119,38 @@ def _judged(times: pd.DataFrame, pairs_of: PairsOf, by: list[str]) -> pd.DataFra
     pairs = []
     for scene, group in processes.groupby("scene_name"):
         for before, after in pairs_of(rungs_of_all):
-            sides = (group[group["series_number"] == rung] for rung in (before, after))
-            pairs.append(log_ratios(*sides).assign(scene_name=scene, series_number=after))
+            ratios = ratios_of(group, "series_number", before, after)
+            pairs.append(ratios.assign(scene_name=scene, series_number=after))
     found = [part for part in pairs if len(part)]
     return judge(pd.concat(found), by) if found else pd.DataFrame(columns=[*by, *COLUMNS])
 
 
 def _changes(runs: pd.DataFrame, table: pd.DataFrame) -> list[str]:
-    """Return for each row of the table the policies that differ from the rung below; the first has its
-    name.
-    """
+    """Return for each row of the table the policies that differ from the rung below, its name for none."""
     columns = {COLUMN_OF.get(name, name): name for name in POLICIES}
     first = runs.drop_duplicates("series_number").set_index("series_number").sort_index()
     policies = first[list(columns)].rename(columns=columns)
-    rows = [(float(str(rung)), row) for rung, row in policies.iterrows()]
-    said = {rung: "" for rung, _ in rows[:1]}
-    for (_, before), (rung, row) in pairwise(rows):
-        differs = [name for name in POLICIES if _differ(before[name], row[name])]
-        said[rung] = ", ".join(f"{name} {row[name]}".replace("_", " ") for name in differs)
-    return [
-        said[rung] or series for rung, series in zip(table["series_number"], table["series"], strict=True)
-    ]
-
-
-def _differ(one: object, other: object) -> bool:
-    """Tell whether a choice changed; one that means nothing to a variant has no value, and did not."""
-    return not pd.isna(one) and not pd.isna(other) and one != other
+    before = policies.shift()
+    # A choice that means nothing to a variant has no value, and did not change.
+    changed = (policies != before) & policies.notna() & before.notna()
+    said = {
+        rung: ", ".join(
+            f"{name} {row[name]}".replace("_", " ") for name in POLICIES if changed.loc[rung, name]
+        )
+        for rung, row in policies.iterrows()
+    }
+    rungs = zip(table["series_number"], table["series"], strict=True)
+    return [said[rung] or series for rung, series in rungs]
 
 
 def _instructions(table: pd.DataFrame, counters: pd.DataFrame) -> dict[str, Sequence[object]]:
-    """Return `instructions` and `source`, from profiled runs of the same variant on a scene of the same
-    size.
-    """
+    """Return `instructions` and `source`, from profiled runs of the variant on a scene of the same size."""
     known = counters[counters["source"].isin(SOURCES) & counters["name"].notna()]
     keys = ["variant", "particles", "side", "radius"]
-    found: dict[tuple[object, ...], tuple[float, str]] = {}
+    found: dict[object, tuple[float, str]] = {}
     for key, group in known.groupby(keys):
         rows = derived(group)
-        for source in reversed(SOURCES):
-            values = rows.loc[(rows["quantity"] == INSTRUCTIONS) & (rows["source"] == source), "value"]
-            if len(values):
-                found[tuple(key)] = (float(values.median()), source)
-    scenes = table[keys].itertuples(index=False, name=None)
-    pairs = [found.get(tuple(scene), (np.nan, "")) for scene in scenes]
+        medians = rows[rows["quantity"] == INSTRUCTIONS].groupby("source")["value"].median()
+        found |= [(key, (medians[source], source)) for source in reversed(SOURCES) if source in medians]
+    pairs = [found.get(scene, (np.nan, "")) for scene in table[keys].itertuples(index=False, name=None)]
     return {"instructions": [value for value, _ in pairs], "source": [source for _, source in pairs]}

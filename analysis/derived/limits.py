@@ -1,6 +1,4 @@
-"""Profiled phases against what the machine can do at most: the least time that each could take, and what it
-took.
-"""
+"""Profiled phases against what the machine can do at most: the least time that each could take."""
 
 import numpy as np
 import pandas as pd
@@ -25,12 +23,11 @@ def against_limits(
     limits of as many threads, or fewer.
     """
     rows = phases[["file", *KEYS, "particles", "steps", "substeps", "threads", "wall_seconds"]]
-    rows = rows.merge(unavoidable(runs), on=["file", "phase"]).merge(
-        _busy(threads), on=["file", "phase"], how="left"
-    )
-    best = [
-        _best(limits, count, size) for count, size in zip(rows["threads"], rows["working_set"], strict=True)
-    ]
+    rows = rows.merge(unavoidable(runs), on=["file", "phase"])
+    busy = busy_shares(threads, ["file", "phase"]).reset_index()
+    rows = rows.merge(busy, on=["file", "phase"], how="left")
+    sizes = zip(rows["threads"], rows["working_set"], strict=True)
+    best = [_best(limits, count, size) for count, size in sizes]
     rows = rows.join(pd.DataFrame(best, columns=RATES, index=rows.index))
     rows = rows.dropna(subset=["copy_rate", "arithmetic_rate"])
     discs_and_steps = rows["particles"] * rows["steps"] * rows["substeps"]
@@ -46,28 +43,20 @@ def against_limits(
     )
     rows = rows.assign(reached=rows["least"] / rows["wall"])
     numbers = [
-        "wall",
-        "busy",
-        COPY,
-        ARITHMETIC,
-        "least",
-        "reached",
-        "copy_rate",
-        "arithmetic_rate",
-        "bytes",
+        "wall", "busy", COPY, ARITHMETIC, "least", "reached", "copy_rate", "arithmetic_rate", "bytes",
         "operations",
-    ]
+    ]  # fmt: skip
     groups = rows.groupby(KEYS, sort=False)
     table = groups[numbers].median().join(groups[["level", "size", "threads", "particles"]].first())
     bound = np.where(table[COPY] >= table[ARITHMETIC], COPY, ARITHMETIC)
     return table.assign(bound=bound, runs=groups["file"].nunique()).reset_index()
 
 
-def _busy(threads: pd.DataFrame) -> pd.DataFrame:
-    """Return `busy_share` of each run and phase: busy over busy and waiting time, summed over the threads."""
-    summed = threads.groupby(["file", "phase"])[["busy_seconds", "waiting_seconds"]].sum()
+def busy_shares(threads: pd.DataFrame, by: list[str]) -> pd.Series:
+    """Return `busy_share` by columns: busy over busy and waiting time, summed over the threads."""
+    summed = threads.groupby(by)[["busy_seconds", "waiting_seconds"]].sum()
     whole = summed.sum(axis=1)
-    return (summed["busy_seconds"] / whole.where(whole > 0)).rename("busy_share").reset_index()
+    return (summed["busy_seconds"] / whole.where(whole > 0)).rename("busy_share")
 
 
 def _best(limits: pd.DataFrame, threads: int, working_set: float) -> tuple[str | None, float, float, float]:
@@ -85,9 +74,5 @@ def _best(limits: pd.DataFrame, threads: int, working_set: float) -> tuple[str |
     sizes = copies["working_set_bytes"]
     size = sizes[sizes <= max(working_set, sizes.min())].max()
     chosen = copies[sizes == size]
-    return (
-        str(chosen["level"].iloc[0]),
-        float(size),
-        float(chosen["best"].max()),
-        float(arithmetic["best"].max()),
-    )
+    copy_rate, arithmetic_rate = float(chosen["best"].max()), float(arithmetic["best"].max())
+    return str(chosen["level"].iloc[0]), float(size), copy_rate, arithmetic_rate

@@ -22,18 +22,11 @@ def ratios(times: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for series, group in processes.sort_values("series_number").groupby("series", sort=False):
         reference = group[group["label"] == WITHOUT]
+        seconds = float(reference["steps_seconds"].median())
         for label in STOPPED_BY:
             candidate = group[group["label"] == label]
-            pairs = log_ratios(reference, candidate)
-            if len(pairs) >= FEWEST:
-                rows.append(
-                    {
-                        "series": series,
-                        "label": label,
-                        "ratio": centre(pairs["log_ratio"], 0.95),
-                        "blocks": len(pairs),
-                        "seconds": float(reference["steps_seconds"].median()),
-                        "sliced": bool(candidate["in_turns"].mean() > 0.5),
-                    }
-                )
+            ratios = log_ratios(reference, candidate)["log_ratio"]
+            if len(ratios) >= FEWEST:
+                sliced = bool(candidate["in_turns"].mean() > 0.5)
+                rows.append((series, label, centre(ratios, 0.95), len(ratios), seconds, sliced))
     return pd.DataFrame(rows, columns=["series", "label", "ratio", "blocks", "seconds", "sliced"])

@@ -88,20 +88,13 @@ def step_of(runs: pd.DataFrame) -> Step:
 
 
 def unavoidable(runs: pd.DataFrame) -> pd.DataFrame:
-    """Return one row a run and phase: `file`, `phase`, `bytes` and `operations` a step, and the
-    `working_set` of a step in bytes.
-    """
+    """Return one row a run and phase: `file`, `phase`, `bytes`, `operations` and `working_set` of a step."""
     step = step_of(runs)
     tables = [
-        pd.DataFrame(
-            {
-                "file": runs["file"],
-                "phase": phase,
-                "bytes": BYTES[phase](step),
-                "operations": OPERATIONS[phase](step),
-                "working_set": step.working_set,
-            }
+        runs[["file"]].assign(
+            phase=phase, bytes=BYTES[phase](step), operations=OPERATIONS[phase](step),
+            working_set=step.working_set,
         )
         for phase in PHASES
-    ]
+    ]  # fmt: skip
     return pd.concat(tables, ignore_index=True)

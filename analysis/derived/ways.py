@@ -9,8 +9,9 @@ import numpy as np
 import pandas as pd
 
 from analysis.records.studies import Study
-from analysis.statistics.intervals import FEWEST, Interval, centre
-from analysis.statistics.pairs import PAIR, log_ratios, process_medians
+from analysis.statistics.intervals import FEWEST, centre
+from analysis.statistics.pairs import PAIR, process_medians, ratios_of
+from analysis.support.values import Interval
 from analysis.support.wording import change, listed, percent
 
 KIND = "ways"
@@ -48,12 +49,8 @@ class Comparison:
         """
         blocks = np.unique(np.geomspace(FEWEST, len(self.pairs), _SHOWN).round().astype(int))
         found = [self.log_ratio(way, number) for number in blocks]
-        return pd.DataFrame(
-            {
-                "seconds": [number * self.seconds[way] for number in blocks],
-                "half": [(one.high - one.low) / 2 for one in found],
-            }
-        )
+        half = [(one.high - one.low) / 2 for one in found]
+        return pd.DataFrame({"seconds": blocks * self.seconds[way], "half": half})
 
 
 def comparisons(study: Study, experiment: str) -> list[Comparison]:
@@ -64,22 +61,20 @@ def comparisons(study: Study, experiment: str) -> list[Comparison]:
     processes = processes.assign(seconds=processes["file"].map(spent))
     found = []
     for scene, group in processes.groupby("scene_name", sort=False):
-        order = group.sort_values("series_number")["series"].drop_duplicates()
-        for series in order.iloc[1:]:
-            name = f"{scene}: {series} / {order.iloc[0]}" if scene else f"{series} / {order.iloc[0]}"
-            one = _comparison(name, group, str(order.iloc[0]), str(series))
-            if len(one.pairs) >= FEWEST:
-                found.append(one)
-    return sorted(found, key=lambda one: one.name)
+        reference, *others = group.sort_values("series_number")["series"].drop_duplicates()
+        for series in others:
+            name = f"{scene}: {series} / {reference}" if scene else f"{series} / {reference}"
+            found.append(_comparison(name, group, str(reference), str(series)))
+    return sorted((one for one in found if len(one.pairs) >= FEWEST), key=lambda one: one.name)
 
 
 def _comparison(name: str, processes: pd.DataFrame, reference: str, candidate: str) -> Comparison:
     both = processes[processes["series"].isin([reference, candidate])]
     ways = {TURNS: both[both["in_turns"]], APART: both[~both["in_turns"]]}
-    tables = []
-    for way, part in ways.items():
-        pairs = log_ratios(*(part[part["series"] == series] for series in (reference, candidate)))
-        tables.append(pairs.set_index(PAIR)["log_ratio"].rename(way))
+    tables = [
+        ratios_of(part, "series", reference, candidate).set_index(PAIR)["log_ratio"].rename(way)
+        for way, part in ways.items()
+    ]
     seconds = {
         way: float(part.groupby(PAIR)["seconds"].sum().median()) if len(part) else np.nan
         for way, part in ways.items()
@@ -107,18 +102,14 @@ def bias_sentence(study: Study) -> str:
 
 def overall(found: list[Comparison]) -> Interval:
     """Return the mean of the biases, with its interval over the blocks that all comparisons have."""
-    tables = [
-        (one.pairs.set_index(PAIR)[TURNS] - one.pairs.set_index(PAIR)[APART]).rename(number)
-        for number, one in enumerate(found)
-    ]
-    shared = pd.concat(tables, axis=1, join="inner")
+    pairs = [one.pairs.set_index(PAIR) for one in found]
+    shared = pd.concat(
+        [one[TURNS] - one[APART] for one in pairs], axis=1, join="inner", keys=range(len(pairs))
+    )
     return centre(shared.mean(axis=1), 0.95)
 
 
 def said(log_ratio: Interval) -> str:
     """Return a log ratio as a change with its interval, e.g. `−0.2 % [−0.9 %, +0.5 %]`."""
-    row = {name: float(np.exp(getattr(log_ratio, end))) for name, end in _ENDS.items()}
+    row = dict(zip(("ratio", "low", "high"), np.exp(log_ratio).tolist(), strict=True))
     return change(row) if np.isfinite(row["high"]) else percent(row["ratio"] - 1)
-
-
-_ENDS = {"ratio": "estimate", "low": "low", "high": "high"}

@@ -18,7 +18,6 @@ from analysis.derived.ways import KIND, bias_sentence
 from analysis.figures import (
     comparisons,
     counters,
-    grid_length,
     hard_cases,
     ladder,
     limits,
@@ -35,9 +34,10 @@ from analysis.figures import (
     ways,
 )
 from analysis.figures.captions import growth_sentence, linear_sentence, minimum_sentence
-from analysis.figures.style import FORMATS, Data, Drawing, Table, mark_partial, partial, save, styled
+from analysis.figures.style import FORMATS, Data, Drawing, mark_partial, partial, save, styled
 from analysis.records.studies import Study
 from analysis.support.parallel import in_parallel
+from analysis.support.values import Table
 
 
 @dataclass(frozen=True)
@@ -63,9 +63,9 @@ class Drawn:
 
 
 def _of_kind(
-    experiment: str, title: str, draw: Callable[..., Drawing | None], subject: str, **more: object
+    name: str, title: str, draw: Callable[..., Drawing | None], subject: str, **more: object
 ) -> Entry:
-    return Entry(experiment, experiment, title, bound(draw, experiment=experiment, subject=subject, **more))
+    return Entry(name, name, title, bound(draw, experiment=name, subject=subject, **more))
 
 
 def _own(name: str, title: str, draw: Callable[[Data], Drawing | None], experiment: str = "") -> Entry:
@@ -97,21 +97,15 @@ def _counted(name: str, title: str, source: str, subject: str) -> Entry:
 
 
 def _accuracy(kind: str, experiment: str, name: str, title: str) -> list[Entry]:
-    """Return the entries of an experiment about errors: a figure a measure, or the one of promises or of hard
-    cases.
-    """
+    """Return the entries of an experiment about errors: one figure, or one for each measure."""
     single = {PROMISES: promises.promises, HARD_CASES: hard_cases.hard_cases}
+    drawn = bound(single.get(kind, speed_against_error.draw), experiment=experiment, subject=title)
     if kind in single:
-        return [
-            Entry(name, experiment, title, bound(single[kind], experiment=experiment, subject=title), kind)
-        ]
+        return [Entry(name, experiment, title, drawn, kind)]
     return [
-        Entry(
-            f"{name}-{measure.key}", experiment, f"{title}: {measure.title}",
-            bound(speed_against_error.draw, experiment=experiment, subject=title, measure=measure), kind,
-        )
-        for measure in MEASURES
-    ]  # fmt: skip
+        Entry(f"{name}-{one.key}", experiment, f"{title}: {one.title}", bound(drawn, measure=one), kind)
+        for one in MEASURES
+    ]
 
 
 SPEED_AGAINST_ERROR, PROMISES, HARD_CASES = OF_ERRORS = ("speed_against_error", "promises", "hard_cases")
@@ -129,7 +123,7 @@ FIGURES = [
     _own("oversubscription", "More threads than the machine has", scaling.oversubscription),
     _of_kind("machine", "Machines", machines.machines, "One scene on every machine"),
     _over("particles", "Number of discs", "number of discs", growth_sentence),
-    _own("grid_length", "Side length", grid_length.grid_length),
+    _own("grid_length", "Side length", sweeps.grid_length),
     _over("radius", "Radius", "radius of a disc", minimum_sentence),
     _own("density", "Area fraction", sweeps.density),
     _over("steps", "Steps", "number of steps", linear_sentence),
@@ -196,18 +190,13 @@ def draw(
     entries = [entry for entry in known if not wanted or entry.experiment in wanted]
     bias_sentence(data.study)  # before there are several processes, of which each would work it out
 
-    def drawn(number: int) -> _Saved | None:
+    def drawn(number: int) -> Drawn | None:
         return _draw(entries[number], data, folder, f"{prefix}{entries[number].name}", formats)
 
-    for entry, saved in zip(entries, in_parallel(drawn, len(entries)), strict=True):
-        if saved is not None:
-            yield Drawn(entry, *saved)
+    yield from filter(None, in_parallel(drawn, len(entries)))
 
 
-_Saved = tuple[str, list[Path], pd.DataFrame | None, Sequence[Table]]
-
-
-def _draw(entry: Entry, data: Data, folder: Path, name: str, formats: Sequence[str]) -> _Saved | None:
+def _draw(entry: Entry, data: Data, folder: Path, name: str, formats: Sequence[str]) -> Drawn | None:
     with styled(name):
         drawing = entry.draw(data)
     if drawing is None:
@@ -217,18 +206,19 @@ def _draw(entry: Entry, data: Data, folder: Path, name: str, formats: Sequence[s
     caption = f"{drawing.caption} {missing[0].upper()}{missing[1:]}." if missing else drawing.caption
     if drawing.verdicts is not None and data.study.times_of(entry.experiment)["in_turns"].all():
         caption += bias_sentence(data.study)
-    return caption, save(drawing, folder, name, formats), drawing.verdicts, drawing.tables
+    return Drawn(entry, caption, save(drawing, folder, name, formats), drawing.verdicts, drawing.tables)
 
 
 def further(study: Study) -> list[Entry]:
     """Return an entry for every experiment of the study that has no figure of its own, by name."""
-    runs = study.runs[~study.runs["experiment"].isin(experiments())]
+    runs = study.runs[~study.runs["experiment"].isin(titles())]
     return [entry for name, group in runs.groupby("experiment") for entry in _further(str(name), group)]
 
 
-def experiments() -> Sequence[str]:
-    """Return the names of the experiments that have a figure of their own."""
-    return list(dict.fromkeys(entry.experiment for entry in FIGURES))
+def titles() -> dict[str, str]:
+    """Return the experiments that have a figure of their own, each with the title of its first one."""
+    first = {entry.experiment: entry.title for entry in reversed(FIGURES)}
+    return {entry.experiment: first[entry.experiment] for entry in FIGURES}
 
 
 def _further(experiment: str, runs: pd.DataFrame) -> list[Entry]:

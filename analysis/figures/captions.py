@@ -1,11 +1,13 @@
 """Sentences of captions, generated from the data."""
 
+from collections.abc import Iterable
+
 import pandas as pd
 
-from analysis.statistics.intervals import Interval
 from analysis.statistics.pairs import process_medians, without_partner
 from analysis.statistics.trends import growth, linearity, minimum
-from analysis.support.wording import change, count, exact, interval, listed, number
+from analysis.support.values import Interval
+from analysis.support.wording import change, count, exact, interval, listed
 
 MEDIANS = "Dots are medians, bars their 95 % bootstrap intervals"
 PROCESSES = "A dot is the median of one process"
@@ -19,14 +21,13 @@ def opening(times: pd.DataFrame, subject: str, dots: str = MEDIANS) -> str:
         for name, column in (("N", "particles"), ("L", "side"), ("r", "radius"), ("steps", "steps"))
         if times[column].nunique() == 1
     ]
-    threads = f"{count(int(times['threads'].iloc[0]), 'thread')}" if times["threads"].nunique() == 1 else ""
-    setting = ", ".join([*fixed, threads] if threads else fixed)
-    sessions = times["session"].nunique()
-    processes = count(times["file"].nunique(), "process")
+    if times["threads"].nunique() == 1:
+        fixed.append(count(int(times["threads"].iloc[0]), "thread"))
+    nouns = {"file": "process", "block": "block", "session": "session"}
+    processes, blocks, sessions = (count(times[of].nunique(), noun) for of, noun in nouns.items())
     return (
-        f"{subject[0].upper()}{subject[1:]} ({setting}). {dots}: {processes} in "
-        f"{count(times['block'].nunique(), 'block')} and {count(sessions, 'session')}, "
-        f"{count(len(times), 'timed run')}, none left out.{_alone(times)}{_kind_of_time(times)}"
+        f"{subject[0].upper()}{subject[1:]} ({', '.join(fixed)}). {dots}: {processes} in {blocks} and "
+        f"{sessions}, {count(len(times), 'timed run')}, none left out.{_alone(times)}{_kind_of_time(times)}"
     )
 
 
@@ -39,6 +40,12 @@ def _alone(times: pd.DataFrame) -> str:
         f" In no ratio: {by_series(lone)}, beside which their session measured nothing to compare them with "
         "in that block."
     )
+
+
+def differing(names: Iterable[str], table: pd.DataFrame) -> str:
+    """Say the change of each row of `verdicts.judge`, with its name and its verdict."""
+    rows = zip(names, table.to_dict("records"), strict=True)
+    return "; ".join(f"{name} {change(row)} ({row['verdict']})" for name, row in rows)
 
 
 def by_series(runs: pd.DataFrame) -> str:
@@ -107,8 +114,3 @@ def minimum_sentence(times: pd.DataFrame) -> str:
 
 def _with(words: str, value: Interval) -> str:
     return "" if pd.isna(value.estimate) else f"{words} {interval(value)}"
-
-
-def seconds(value: float) -> str:
-    """Return a time with its unit."""
-    return f"{number(value)} s"

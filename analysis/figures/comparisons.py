@@ -1,21 +1,20 @@
 """Any number of series against one of them: times, differences within blocks, and a verdict for each."""
 
-from collections.abc import Hashable, Mapping
 from dataclasses import replace
-from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
 
 from analysis.derived.comparisons import USUAL, Stated, differences, reference, stated
-from analysis.figures.captions import opening, time_axis
-from analysis.figures.curves import dots
-from analysis.figures.hover import Told, tell
+from analysis.figures.captions import differing, opening, time_axis
+from analysis.figures.curves import bounded, difference, dots, margin_band
+from analysis.figures.labels import note
 from analysis.figures.league import league
-from analysis.figures.pairs import Sides, bounded, interval_bar, pair_drawing
-from analysis.figures.style import BAND, BLUE, FAINT, INK, Data, Drawing, new_figure
+from analysis.figures.pairs import Sides, pair_drawing
+from analysis.figures.style import BLUE, INK, Data, Drawing, new_figure
 from analysis.statistics.bootstrap import summarise
-from analysis.support.wording import change, exact
+from analysis.support.values import Row
+from analysis.support.wording import exact
 
 
 def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -26,7 +25,7 @@ def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
     against, by = reference(times), stated(times)
     table = differences(times, against)
     ranked = league(data.study, experiment)
-    tables = [] if ranked is None else [ranked]
+    tables = [ranked] if ranked else []
     table["name"] = [f"{_label(row, table)} against {against}" for row in table.to_dict("records")]
     names = sorted(times["series"].unique(), key=lambda name: name == against)
     if len(names) == 2 and times["x"].nunique() == 1:
@@ -45,17 +44,13 @@ def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
 
 
 def differences_sentence(table: pd.DataFrame, against: str, by: Stated = USUAL) -> str:
-    """Say every difference with its verdict, and the margin and error if they are the question's own; nothing
-    for an empty table.
-    """
-    said = "; ".join(
-        f"{_label(row, table)} {change(row)} ({row['verdict']})" for row in table.to_dict("records")
-    )
+    """Say every difference with its verdict, and the margin and error if they are the question's own."""
+    said = differing((_label(row, table) for row in table.to_dict("records")), table)
     own = "" if by == USUAL else f", with a margin of {_whole(by.margin)} and an error of {_whole(by.error)}"
     return f" Against {against}: {said} (Holm-corrected{own})." if said else ""
 
 
-def _label(row: Mapping[Hashable, Any], table: pd.DataFrame) -> str:
+def _label(row: Row, table: pd.DataFrame) -> str:
     """Return the series, with x where the table has several."""
     return f"{row['series']}, {exact(row['x'])}" if table["x"].nunique() > 1 else str(row["series"])
 
@@ -67,19 +62,11 @@ def _whole(fraction: float) -> str:
 
 def _differences(axes: Axes, table: pd.DataFrame, rows: pd.DataFrame, margin: float) -> None:
     """Draw every difference with the interval that decides at the height of its row in the other panel."""
-    axes.axvspan(-100 * margin, 100 * margin, color=BAND, zorder=0, linewidth=0)
-    axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
+    margin_band(axes, margin)
     heights = {(row.series, row.x): height for height, row in enumerate(rows.itertuples())}
     for row in table.to_dict("records"):
         height = heights[row["series"], row["x"]]
-        estimate = 100 * (row["ratio"] - 1)
-        interval_bar(axes, row, height, BLUE, 1.4)
-        (dot,) = axes.plot(estimate, height, "o", color=BLUE, markersize=5)
-        tell(dot, [Told(f"{_label(row, table)}: {row['verdict']}", change(row))])
-        axes.annotate(
-            row["verdict"], (estimate, height), xytext=(0, 6), textcoords="offset points", ha="center",
-            fontsize=7, color=INK,
-        )  # fmt: skip
-    axes.set(yticks=[], ylim=(-0.5, len(rows) - 0.3))
+        at = difference(axes, row, height, _label(row, table), BLUE, 1.4)
+        note(axes, row["verdict"], (at, height), (0, 6), ha="center", fontsize=7, color=INK)
+    axes.set_ylim(-0.5, len(rows) - 0.3)
     bounded(axes, margin)
-    axes.spines["left"].set_visible(False)

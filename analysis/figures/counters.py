@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from analysis.derived.counters import derived
+from analysis.figures.labels import name_rows, note
 from analysis.figures.style import BLUE, WIDTH, Data, Drawing
 from analysis.support.wording import count, number
 
@@ -14,12 +15,12 @@ COLUMNS = 3
 
 def panels(data: Data, source: str, subject: str) -> Drawing | None:
     """Draw what one source counted of the published variants, a panel a quantity."""
-    counters = data.study.counters
-    rows = derived(counters[(counters["experiment"] == "phases") & (counters["source"] == source)])
+    (counters,) = data.study.of("phases", "counters")
+    rows = derived(counters[counters["source"] == source])
     if rows.empty:
         return None
     quantities = list(dict.fromkeys(rows["quantity"]))
-    series = list(dict.fromkeys(counters.loc[counters["experiment"] == "phases", "series"]))[::-1]
+    series = list(dict.fromkeys(counters["series"]))[::-1]
     lines = -(-len(quantities) // COLUMNS)
     figure = Figure(figsize=(WIDTH, lines * (0.6 + 0.2 * len(series))))
     grid = figure.subplots(lines, COLUMNS, squeeze=False, sharey=True).ravel()
@@ -43,16 +44,9 @@ def _bars(axes: Axes, rows: pd.DataFrame, quantity: str) -> None:
     axes.set_xlim(0, top * 1.45 if top > 0 else 1)
     for height, row in zip(heights, rows.to_dict("records"), strict=True):
         known = not pd.isna(row["value"])
-        axes.annotate(
-            number(row["value"]) if known else "not counted",
-            (row["greatest"] if known else 0, height),
-            xytext=(3, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=6.5,
-        )
-    axes.set_yticks(heights, list(rows.index))
-    axes.tick_params(axis="y", length=0)
+        said, end = (number(row["value"]), row["greatest"]) if known else ("not counted", 0)
+        note(axes, said, (end, float(height)), (3, 0), va="center", fontsize=6.5)
+    name_rows(axes, list(rows.index))
     axes.set_title(quantity, fontsize=7)
     axes.xaxis.set_visible(False)
     axes.spines["bottom"].set_visible(False)

@@ -1,19 +1,19 @@
 """The hard cases: how far each variant stays from the bound of each case, and the table of all verdicts."""
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from textwrap import fill
-from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter
 
 from analysis.derived import hard_cases as cases
 from analysis.derived.hard_cases import AT_CONTACT, FAILS, HOLDS, LIMIT, UNMEASURED
 from analysis.figures.hover import Told, tell
+from analysis.figures.labels import key
 from analysis.figures.speed_against_error import power_of_ten
-from analysis.figures.style import BLUE, FAINT, INK, VERMILLION, Cell, Data, Drawing, Table, key, new_figure
+from analysis.figures.style import BLUE, FAINT, INK, VERMILLION, Data, Drawing, new_figure
+from analysis.support.values import Cell, Table, table_of
 from analysis.support.wording import count
 
 COLOURS = {"double": BLUE, "float": VERMILLION}
@@ -27,24 +27,18 @@ WIDEST = 6
 
 
 def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
-    """Draw the measure of every case and variant against its bound, with the table of verdicts; None without
-    records.
-    """
+    """Draw the measure of every case and variant against its bound, with the table of verdicts, if any."""
     table = cases.evaluate(data.study, experiment)
     if table.empty or (table["verdict"] == UNMEASURED).all():
         return None
     expected = {one.title: one for one in cases.load()}
-    drawn = [
-        title
-        for title in dict.fromkeys(table["title"])
-        if table.loc[table["title"] == title, "value"].notna().any()
-    ]
+    labels = {title: expected[title].label if title in expected else "" for title in table["title"]}
+    drawn = list(dict.fromkeys(table.loc[table["value"].notna(), "title"]))
     figure, (axes,) = new_figure(0.9 + 0.22 * max(1, len(drawn)))
     _dots(axes, table, drawn)
-    _name_measures(axes, [expected[title].label if title in expected else "" for title in drawn])
+    _name_measures(axes, [labels[title] for title in drawn])
     present = [precision for precision in COLOURS if (table["precision"] == precision).any()]
     key(axes, [*((f"● {one}", COLOURS[one]) for one in present), ("| bound", INK)])
-    labels = {title: expected[title].label if title in expected else "" for title in table["title"]}
     caption = (
         f"{subject}: {count(table['case'].nunique(), 'case')} and "
         f"{count(table['series'].nunique(), 'variant')}, a process for each. A dot is a variant on a case, "
@@ -66,7 +60,9 @@ def _dots(axes: Axes, table: pd.DataFrame, titles: list[str]) -> None:
         value = max(row["value"], zero)
         inside = "white" if row["verdict"] == LIMIT else colour
         (dot,) = axes.plot(value, height, "o", color=colour, markerfacecolor=inside, markersize=3.5, zorder=3)
-        tell(dot, [Told(f"{row['case']}, {row['series']}: {row['verdict']}", _against_bound(row))])
+        bound = "" if pd.isna(row["bound"]) else f" (bound {row['bound']:.1e})"
+        told = Told(f"{row['case']}, {row['series']}: {row['verdict']}", f"{row['value']:.1e}{bound}")
+        tell(dot, [told])
         if pd.notna(row["bound"]):
             axes.plot([max(row["bound"], zero)] * 2, [height - 0.14, height + 0.14], color=INK, linewidth=1.1)
     axes.set_xscale("log")
@@ -75,17 +71,10 @@ def _dots(axes: Axes, table: pd.DataFrame, titles: list[str]) -> None:
     axes.set_xlabel("what stands to the right of each case; relative where it has no unit")
     powers = range(round(np.log10(zero)) + 1, int(np.floor(np.log10(axes.get_xlim()[1]))) + 1)
     axes.set_xticks([zero, *(10.0**power for power in powers if power % 2 == 0)])
-    axes.xaxis.set_major_formatter(
-        FuncFormatter(lambda value, _: "0" if value <= zero else power_of_ten(value))
-    )
+    axes.xaxis.set_major_formatter(lambda value, _: "0" if value <= zero else power_of_ten(value))
     axes.minorticks_off()
     for height in heights.values():
         axes.axhline(height - 0.5, color=FAINT, linewidth=0.3, zorder=1)
-
-
-def _against_bound(row: Mapping[Hashable, Any]) -> str:
-    bound = "" if pd.isna(row["bound"]) else f" (bound {row['bound']:.1e})"
-    return f"{row['value']:.1e}{bound}"
 
 
 def _name_measures(axes: Axes, labels: Sequence[str]) -> None:
@@ -99,12 +88,12 @@ def _name_measures(axes: Axes, labels: Sequence[str]) -> None:
     axes.patch.set_visible(False)
 
 
-def _tables(table: pd.DataFrame, labels: dict[str, str]) -> Iterable[Table]:
+def _tables(verdicts: pd.DataFrame, labels: dict[str, str]) -> Iterable[Table]:
     """Yield a table for at most `WIDEST` variants of one precision and one time of impact: a row a case, a
     cell a verdict and a number.
     """
     expects = {one.title: one.expects for one in cases.load()}
-    known = table.fillna({"precision": ""})
+    known = verdicts.fillna({"precision": ""})
     for (precision, at_contact), alike in known.groupby(["precision", known["impact"] == AT_CONTACT]):
         collisions = ", collisions at contact" if at_contact else ""
         heading = f"In {precision} precision{collisions}:" if precision else "Without any record:"
@@ -112,15 +101,15 @@ def _tables(table: pd.DataFrame, labels: dict[str, str]) -> Iterable[Table]:
         for first in range(0, len(series), WIDEST):
             chosen = series[first : first + WIDEST]
             part = alike[alike["series"].isin(chosen)]
-            rows = [
+            rows: list[list[Cell | str]] = [
                 [
-                    Cell(f"{case.replace('_', ' ')}: {expects.get(title, '')}"),
-                    Cell(labels.get(title, "")),
+                    f"{case.replace('_', ' ')}: {expects.get(title, '')}",
+                    labels.get(title, ""),
                     *map(_verdict, group.to_dict("records")),
                 ]
                 for (case, title), group in part.groupby(["case", "title"], sort=False)
             ]
-            yield Table(heading, ["Case, and what is expected", "Number", *chosen], rows)
+            yield table_of(heading, ["Case, and what is expected", "Number", *chosen], rows)
 
 
 def _verdict(row: dict[str, object]) -> Cell:

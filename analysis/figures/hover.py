@@ -64,13 +64,9 @@ def _places(figure: Figure, line: Line2D) -> np.ndarray:
 def _texts(line: Line2D) -> list[str]:
     axes = line.axes
     labels = (axes.get_xlabel(), axes.get_ylabel()) if axes is not None else ("", "")
-    return ["\n".join(filter(None, (told.name, *_values(told, labels)))) for told in _TOLD[line]]
-
-
-def _values(told: Told, labels: tuple[str, str]) -> Iterable[str]:
-    for label, value in zip(labels, (told.x, told.y), strict=True):
-        named = " ".join(label.split())
-        yield f"{named}: {value}" if named and value else value
+    x, y = (" ".join(f"{label}: ".split()) + " " if label.strip() else "" for label in labels)
+    values = ((told.name, told.x and f"{x}{told.x}", told.y and f"{y}{told.y}") for told in _TOLD[line])
+    return ["\n".join(filter(None, one)) for one in values]
 
 
 def _titled(part: str, places: np.ndarray, texts: Sequence[str]) -> str:

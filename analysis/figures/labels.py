@@ -1,8 +1,25 @@
-"""Names written at the ends of curves, and beside points, so that none lies on another."""
+"""What is written in a figure: keys, ticks, and names at the ends of curves and beside points, so that none
+lies on another.
+"""
 
 from collections.abc import Sequence
+from typing import Any
 
+import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea, VPacker
+from matplotlib.textpath import TextPath
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.transforms import ScaledTranslation
+from scipy.optimize import isotonic_regression
+
+from analysis.figures.style import WIDTH
+from analysis.support.wording import exact
+
+KEY_SIZE, KEY_GAP, KEY_WIDTH = 7, 9, 72 * WIDTH - 50
+"""In points: of the letters of a key, between its entries, and the most of a line, beside an axis."""
 
 LINE_POINTS = 9.0
 
@@ -16,6 +33,79 @@ BESIDE = 3.0
 """Points between a point and its label."""
 
 
+def key(axes: Axes, entries: Sequence[tuple[str, str]], raised: float = 4) -> None:
+    """Name the curves above the axes, each in its own colour, in as many lines as it takes; `entries` are
+    text and colour, `raised` is in points.
+    """
+    lines: list[Artist] = [
+        HPacker(
+            children=[TextArea(text, textprops={"color": to, "fontsize": KEY_SIZE}) for text, to in line],
+            pad=0,
+            sep=KEY_GAP,
+            align="baseline",
+        )
+        for line in _lines_of_key(entries)
+    ]
+    figure = axes.figure.get_figure(root=True)
+    anchored = AnchoredOffsetbox(
+        "lower left", child=VPacker(children=lines, pad=0, sep=3, align="left"), pad=0, borderpad=0,
+        frameon=False, bbox_to_anchor=(0, 1),
+        bbox_transform=axes.transAxes + ScaledTranslation(0, raised / 72, figure.dpi_scale_trans),
+    )  # fmt: skip
+    # Wide keys run on over the neighbouring axes: only their height may count in the layout.
+    anchored.set_in_layout(False)
+    axes.set_title("\n".join(" " for _ in lines), pad=raised)
+    axes.add_artist(anchored)
+
+
+def _lines_of_key(entries: Sequence[tuple[str, str]]) -> list[list[tuple[str, str]]]:
+    """Share the entries out to lines that end before the figure does."""
+    lines: list[list[tuple[str, str]]] = [[]]
+    left = KEY_WIDTH
+    for text, colour in entries:
+        width = TextPath((0, 0), text, size=KEY_SIZE).get_extents().width + KEY_GAP
+        if width > left and lines[-1]:
+            lines.append([])
+            left = KEY_WIDTH
+        lines[-1].append((text, colour))
+        left -= width
+    return lines
+
+
+def name_rows(axes: Axes, names: Sequence[str], heights: Sequence[float] | None = None) -> None:
+    """Name the rows of a panel, without ticks: from below, one at each whole number if not at `heights`."""
+    axes.set_yticks(range(len(names)) if heights is None else heights, names)
+    axes.tick_params(axis="y", length=0)
+
+
+def note(axes: Axes, text: str, at: tuple[float, float], by: tuple[float, float], **look: Any) -> None:  # noqa: ANN401
+    """Write a text so many points to the right of a place and above it."""
+    axes.annotate(text, at, xytext=by, textcoords="offset points", **look)
+
+
+def plain_ticks(axis: Axis, values: Sequence[float] | None = None) -> None:
+    """Write the ticks as plain numbers, thousands grouped, also on a logarithmic axis."""
+    if values is not None:
+        axis.set_ticks(list(values))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: exact(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def logarithmic_ticks(axis: Axis) -> None:
+    """Put plain numbers at the powers of ten of a logarithmic axis and between them, over about a decade at
+    2 and 5 times them, over two at 3 times. Call it when the limits of the axis are settled.
+    """
+    low, high = axis.get_view_interval()
+    between = (1.0, 2.0, 5.0) if high < 12 * low else (1.0, 3.0) if high < 200 * low else (1.0,)
+    axis.set_major_locator(LogLocator(subs=between))
+    plain_ticks(axis)
+
+
+def from_zero(axes: Axes) -> None:
+    """Let the vertical axis begin at zero, with room above the highest point."""
+    axes.set_ylim(0, axes.get_ylim()[1] * 1.02)
+
+
 def label_ends(axes: Axes, labels: Sequence[tuple[str, float, str]], size: float = 7) -> None:
     """Write each label (text, height in data units, colour) right of the axes, at least one line apart.
 
@@ -27,16 +117,8 @@ def label_ends(axes: Axes, labels: Sequence[tuple[str, float, str]], size: float
     bottom, top = (axes.transAxes.transform((0, end))[1] * points for end in (0, 1))
     wanted = [axes.transData.transform((axes.get_xlim()[1], y))[1] * points for _, y, _ in labels]
     for (text, _, colour), height in zip(labels, spread(wanted, LINE_POINTS), strict=True):
-        axes.annotate(
-            text,
-            (1.0, (height - bottom) / (top - bottom)),
-            xycoords="axes fraction",
-            xytext=(4, 0),
-            textcoords="offset points",
-            va="center",
-            color=colour,
-            fontsize=size,
-        )
+        at = 1.0, (height - bottom) / (top - bottom)
+        note(axes, text, at, (4, 0), xycoords="axes fraction", va="center", color=colour, fontsize=size)
 
 
 def label_points(axes: Axes, labels: Sequence[tuple[str, float, float]], colour: str, size: float = 6) -> int:
@@ -57,45 +139,24 @@ def label_points(axes: Axes, labels: Sequence[tuple[str, float, float]], colour:
             bottom = at[1] + (BESIDE if up > 0 else -BESIDE - height)
             box = (left, bottom, left + width, bottom + height)
             inside = first <= left and left + width <= last
-            if inside and not any(_overlap(box, other) for other in taken):
+            if inside and not any(
+                box[0] < other[2] and other[0] < box[2] and box[1] < other[3] and other[1] < box[3]
+                for other in taken
+            ):
                 taken.append(box)
-                axes.annotate(
-                    text, (x, y), xytext=(right * BESIDE, up * BESIDE), textcoords="offset points",
-                    ha="left" if right > 0 else "right", va="bottom" if up > 0 else "top",
-                    fontsize=size, color=colour, zorder=4,
-                )  # fmt: skip
+                align = {"ha": "left" if right > 0 else "right", "va": "bottom" if up > 0 else "top"}
+                offset = right * BESIDE, up * BESIDE
+                note(axes, text, (x, y), offset, fontsize=size, color=colour, zorder=4, **align)
                 break
     return len(taken)
 
 
-def _overlap(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> bool:
-    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
-
-
 def spread(positions: Sequence[float], gap: float) -> list[float]:
-    """Return the positions moved as little as needed to lie at least `gap` apart, in the same order.
-
-    Neighbours that are too close form a group around their mean (pool adjacent violators).
-    """
-    order = sorted(range(len(positions)), key=lambda index: positions[index])
-    groups: list[list[int]] = []
-    for index in order:
-        groups.append([index])
-        while len(groups) > 1 and _too_close(groups[-2], groups[-1], positions, gap):
-            groups[-2:] = [groups[-2] + groups[-1]]
-    moved = [0.0] * len(positions)
-    for group in groups:
-        start = _first(group, positions, gap)
-        for rank, index in enumerate(group):
-            moved[index] = start + rank * gap
-    return moved
-
-
-def _first(group: list[int], positions: Sequence[float], gap: float) -> float:
-    mean = sum(positions[index] for index in group) / len(group)
-    return mean - gap * (len(group) - 1) / 2
-
-
-def _too_close(lower: list[int], upper: list[int], positions: Sequence[float], gap: float) -> bool:
-    last = _first(lower, positions, gap) + gap * (len(lower) - 1)
-    return _first(upper, positions, gap) - last < gap
+    """Return the positions moved as little as needed to lie at least `gap` apart, in the same order."""
+    if not positions:
+        return []
+    order = np.argsort(positions, kind="stable")
+    gaps = gap * np.arange(len(order))
+    moved = np.empty(len(order))
+    moved[order] = isotonic_regression(np.asarray(positions)[order] - gaps).x + gaps
+    return [float(position) for position in moved]

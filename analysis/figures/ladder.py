@@ -1,32 +1,18 @@
 """A ladder as a waterfall: each rung from the time of the rung before to its own, a panel a scene."""
 
 import math
-from collections.abc import Hashable, Mapping
-from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analysis.derived.ladder import claims, factors, named, rungs, scene_title, speed_up, totals
+from analysis.derived.ladder import RUNG, claims, factors, rungs, scene_title, speed_up, tables_of, totals
 from analysis.figures.hover import Told, tell
-from analysis.figures.style import (
-    FAINT,
-    GREEN,
-    INK,
-    VERMILLION,
-    WIDTH,
-    Cell,
-    Data,
-    Drawing,
-    Table,
-    lighten,
-    logarithmic_ticks,
-)
+from analysis.figures.labels import logarithmic_ticks
+from analysis.figures.style import FAINT, GREEN, INK, VERMILLION, WIDTH, Data, Drawing, lighten
 from analysis.statistics.verdicts import MARGIN
+from analysis.support.values import Row, Table, table_of
 from analysis.support.wording import count, interval_of, number, share
-
-Row = Mapping[Hashable, Any]
 
 COLUMNS = 2
 ROW_HEIGHT = 0.2
@@ -34,14 +20,11 @@ COLOURS = {"faster": GREEN, "slower": VERMILLION}
 
 
 def waterfall(data: Data, experiment: str, subject: str) -> Drawing | None:
-    """Draw an experiment's series in the order of its question, each against the one before, on every
-    scene.
-    """
-    runs, times = (
-        named(table[table["experiment"] == experiment]) for table in (data.study.runs, data.study.times)
-    )
-    if times.empty or times["series_number"].isna().any():
+    """Draw an experiment's series in the order of its question, each against the one before, by scene."""
+    tables = tables_of(data.study, experiment)
+    if tables is None:
         return None
+    runs, times = tables
     table = rungs(runs, times, data.study.counters)
     steps, whole = factors(times), totals(times).set_index("scene_name")
     scenes = list(dict.fromkeys(table.sort_values(["particles", "radius", "scene_name"])["scene_name"]))
@@ -53,27 +36,24 @@ def waterfall(data: Data, experiment: str, subject: str) -> Drawing | None:
         _bars(axes, rows, names, total is not None)
         _figures(margin, rows, names, total)
         axes.set_title(scene_title(runs, scene), pad=13)
-    failed = data.study.failed_checks(experiment)
-    caption = _caption(subject, runs, times, table, failed)
+    caption = _caption(subject, runs, times, table, data.study.failed_checks(experiment))
     return Drawing(figure, caption, _verdicts(steps, table, runs), [_short_names(table)])
 
 
-def _short_names(table: pd.DataFrame) -> Table:
+def _short_names(rungs: pd.DataFrame) -> Table:
     """Return the short name of each rung beside what it changes and the name of its variant."""
-    rows = table.drop_duplicates("series_number").sort_values("series_number")
-    columns = ["series", "change", "variant"]
-    cells = [[Cell(str(row[column])) for column in columns] for row in rows.to_dict("records")]
+    rows = rungs.drop_duplicates("series_number").sort_values("series_number")
+    cells = rows[["series", "change", "variant"]].astype(str).to_numpy()
     title = "The rungs by their short names, with the names by which the program knows them:"
-    return Table(title, ["Rung", "Changes", "Variant (carom list)"], cells)
+    return table_of(title, ["Rung", "Changes", "Variant (carom list)"], cells)
 
 
 def _rows(table: pd.DataFrame, steps: pd.DataFrame, scene: str, names: pd.Series) -> list[Row]:
     """Return the scene's rungs in order, with the `before` of each and its `verdict` against the rung
     before, where that was measured.
     """
-    judged = steps[["scene_name", "series_number", "ratio", "low", "high", "verdict"]]
-    judged = judged.rename(columns={"low": "ratio_low", "high": "ratio_high"})
-    rows = table[table["scene_name"] == scene].merge(judged, on=["scene_name", "series_number"], how="left")
+    judged = steps[[*RUNG, "ratio", "verdict"]]
+    rows = table[table["scene_name"] == scene].merge(judged, on=RUNG, how="left")
     rows = rows.sort_values("series_number")
     before = rows.set_index("series_number")["nanoseconds"].reindex(names.index).shift()
     return list(rows.assign(before=rows["series_number"].map(before)).to_dict("records"))
@@ -126,9 +106,8 @@ def _figures(axes: Axes, rows: list[Row], names: pd.Series, total: pd.Series | N
     for heading, end in columns.items():
         _write(axes, end, 0.75, heading, FAINT, "bottom")
     for row in rows:
-        cells = [_time(row), _factor(row), number(row["resolves"]), number(row["sweeps"]), _check(row)]
         wrong = row["passed"] < row["records"] or pd.isna(row["nanoseconds"])
-        for end, text in zip(columns.values(), cells, strict=True):
+        for end, text in zip(columns.values(), _cells(row), strict=True):
             _write(axes, end, heights[row["series_number"]], text, VERMILLION if wrong else INK, "center")
     for rung in set(names.index) - {row["series_number"] for row in rows}:
         _write(axes, columns["sweeps"], heights[rung], "no result", VERMILLION, "center")
@@ -144,24 +123,17 @@ def _write(
     axes.text(end, height, text, fontsize=6, color=colour, weight=weight, ha="right", va=vertical)
 
 
-def _time(row: Row) -> str:
-    return number(row["nanoseconds"]) if pd.notna(row["nanoseconds"]) else "none"
-
-
-def _factor(row: Row) -> str:
-    return f"× {number(1 / row['ratio'])}" if pd.notna(row["ratio"]) else ""
-
-
-def _check(row: Row) -> str:
-    return "✓" if row["passed"] == row["records"] else "✗"
+def _cells(row: Row) -> list[str]:
+    time = number(row["nanoseconds"]) if pd.notna(row["nanoseconds"]) else "none"
+    factor = f"× {number(1 / row['ratio'])}" if pd.notna(row["ratio"]) else ""
+    checked = "✓" if row["passed"] == row["records"] else "✗"
+    return [time, factor, number(row["resolves"]), number(row["sweeps"]), checked]
 
 
 def _verdicts(steps: pd.DataFrame, table: pd.DataFrame, runs: pd.DataFrame) -> pd.DataFrame:
-    changes = table.set_index(["scene_name", "series_number"])["change"]
-    names = [
-        f"{scene_title(runs, row['scene_name'])}: {changes[row['scene_name'], row['series_number']]}"
-        for row in steps.to_dict("records")
-    ]
+    changes = table.set_index(RUNG)["change"]
+    places = steps[RUNG].itertuples(index=False, name=None)
+    names = [f"{scene_title(runs, scene)}: {changes[scene, rung]}" for scene, rung in places]
     return steps.assign(name=names)
 
 

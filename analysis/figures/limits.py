@@ -1,6 +1,5 @@
 """Each phase against the machine: the least that its unavoidable work could take, and what it took."""
 
-from collections.abc import Hashable, Mapping
 from typing import Any
 
 import pandas as pd
@@ -11,7 +10,9 @@ from analysis.derived.ladder import named, scene_title
 from analysis.derived.limits import ARITHMETIC, COPY, against_limits
 from analysis.derived.unavoidable import PHASES
 from analysis.figures.hover import Told, tell
-from analysis.figures.style import BLUE, FAINT, INK, ORANGE, WIDTH, Data, Drawing, key, lighten, plain_ticks
+from analysis.figures.labels import key, note, plain_ticks
+from analysis.figures.style import BLUE, FAINT, INK, ORANGE, WIDTH, Data, Drawing, lighten
+from analysis.support.values import Row
 from analysis.support.wording import count, number, share
 
 LIMITS = {COPY: (BLUE, "<"), ARITHMETIC: (ORANGE, "d")}
@@ -25,36 +26,25 @@ KEY = [
 
 
 def phases_against_limits(data: Data, experiment: str, subject: str) -> Drawing | None:
-    """Draw a row a series and phase, a panel a scene; None without profiled runs or without measured
-    limits.
-    """
-    study = data.study
-    runs, phases, threads = (
-        named(table[table["experiment"] == experiment]) for table in (study.runs, study.phases, study.threads)
-    )
-    if phases.empty or study.limits.empty:
-        return None
-    table = against_limits(runs, phases, threads, study.limits)
+    """Draw a row a series and phase, a panel a scene; None without profiled runs or measured limits."""
+    runs, phases, threads = map(named, data.study.of(experiment, "runs", "phases", "threads"))
+    table = against_limits(runs, phases, threads, data.study.limits)
     if table.empty:
         return None
     scenes = list(dict.fromkeys(table.sort_values(["particles", "scene_name"])["scene_name"]))
     series = list(dict.fromkeys(runs.sort_values("series_number")["series"]))
-    rows = [(name, phase) for name in series for phase in PHASES if _has(table, name, phase)]
+    known = set(zip(table["series"], table["phase"], strict=True))
+    rows = [(name, phase) for name in series for phase in PHASES if (name, phase) in known]
     figure = Figure(figsize=(WIDTH, 1.0 + 0.21 * len(rows) + 0.1 * len(series)))
     grid = figure.subplots(1, len(scenes), squeeze=False, sharey=True)[0]
     for axes, scene in zip(grid, scenes, strict=True):
         _panel(axes, table[table["scene_name"] == scene], rows)
         axes.set_title(" ", pad=16)
         axes.tick_params(axis="y", length=0)
-        above: Any = {"xycoords": "axes fraction", "textcoords": "offset points"}
-        axes.annotate(scene_title(runs, scene), (0, 1), xytext=(0, 4), **above)
+        note(axes, scene_title(runs, scene), (0, 1), (0, 4), xycoords="axes fraction")
     _names(grid[0], rows)
     key(grid[0], KEY, raised=16)
     return Drawing(figure, _caption(subject, table, runs))
-
-
-def _has(table: pd.DataFrame, series: str, phase: str) -> bool:
-    return bool(((table["series"] == series) & (table["phase"] == phase)).any())
 
 
 def _heights(rows: list[tuple[str, str]]) -> dict[tuple[str, str], float]:
@@ -68,25 +58,22 @@ def _panel(axes: Axes, table: pd.DataFrame, rows: list[tuple[str, str]]) -> None
     axes.set_xscale("log")
     for row in table.to_dict("records"):
         height = heights[row["series"], row["phase"]]
-        axes.plot(
-            [row["least"], row["wall"]], [height, height], color=lighten(FAINT), linewidth=2.5, zorder=1
-        )
+        ends = [row["least"], row["wall"]]
+        axes.plot(ends, [height, height], color=lighten(FAINT), linewidth=2.5, zorder=1)
         for limit, (colour, marker) in LIMITS.items():
             if row[limit] > 0:
                 _dot(axes, row, height, limit, marker, colour)
         _dot(axes, row, height, "wall", "o", INK)
-        beside: Any = {"xycoords": "data", "textcoords": "offset points", "va": "center", "fontsize": 6.5}
-        axes.annotate(_percent(row["reached"]), (row["wall"], height), xytext=(5, 0), **beside)
         waiting = 1 - row["busy"] / row["wall"]
-        axes.annotate(_percent(waiting), (row["wall"], height), xytext=(33, 0), color=FAINT, **beside)
+        for right, part, colour in ((5, row["reached"], "black"), (33, waiting, FAINT)):
+            at = row["wall"], height
+            note(axes, _percent(part), at, (right, 0), color=colour, va="center", fontsize=6.5)
     axes.set_xlim(axes.get_xlim()[0], axes.get_xlim()[1] * 6)
     axes.set_xlabel("time per disc and step, ns")
     plain_ticks(axes.xaxis)
 
 
-def _dot(
-    axes: Axes, row: Mapping[Hashable, Any], height: float, column: str, marker: str, colour: str
-) -> None:
+def _dot(axes: Axes, row: Row, height: float, column: str, marker: str, colour: str) -> None:
     (dot,) = axes.plot(row[column], height, marker, color=colour, markersize=4, zorder=4)
     tell(dot, [Told(f"{row['series']}, {row['phase']}: {NAMES[column]}", number(row[column]))])
 
@@ -101,17 +88,19 @@ def _names(axes: Axes, rows: list[tuple[str, str]]) -> None:
     axes.set_ylim(min(heights.values()) - 0.6, 0.6)
     for name in dict.fromkeys(name for name, _ in rows):
         middle = [height for (series, _), height in heights.items() if series == name]
-        axes.annotate(
-            name, (0, sum(middle) / len(middle)), xycoords=("axes fraction", "data"), xytext=(-48, 0),
-            textcoords="offset points", rotation=90, ha="center", va="center", fontsize=7,
-        )  # fmt: skip
+        look: Any = {"rotation": 90, "ha": "center", "va": "center", "fontsize": 7}
+        at = 0, sum(middle) / len(middle)
+        note(axes, name, at, (-48, 0), xycoords=("axes fraction", "data"), **look)
 
 
 def _caption(subject: str, table: pd.DataFrame, runs: pd.DataFrame) -> str:
     threads = count(int(table["threads"].iloc[0]), "thread")
     profiled = count(runs["file"].nunique(), "profiled run")
+    sizes = table.drop_duplicates(["scene_name", "size"]).to_dict("records")
     copies = "; ".join(
-        _copy(row, runs) for row in table.drop_duplicates(["scene_name", "size"]).to_dict("records")
+        f"{number(1e-9 * row['copy_rate'])} GB/s within {number(row['size'] / 2**20)} MiB ({row['level']}) "
+        f"for {scene_title(runs, row['scene_name'])}"
+        for row in sizes
     )
     peak = number(1e-9 * table["arithmetic_rate"].max())
     ordered = table.merge(runs[["series", "series_number"]].drop_duplicates(), on="series")
@@ -125,23 +114,17 @@ def _caption(subject: str, table: pd.DataFrame, runs: pd.DataFrame) -> str:
     )
 
 
-def _copy(row: Mapping[Hashable, Any], runs: pd.DataFrame) -> str:
-    within = f"within {number(row['size'] / 2**20)} MiB ({row['level']})"
-    return f"{number(1e-9 * row['copy_rate'])} GB/s {within} for {scene_title(runs, row['scene_name'])}"
-
-
 def _sentence(rows: pd.DataFrame, runs: pd.DataFrame) -> str:
     """Say how much of a whole step is unavoidable, and what fills the rest in its longest phase."""
     first = rows.iloc[0]
     longest: Any = rows.loc[rows["wall"].idxmax()]
     one = runs[(runs["scene_name"] == first["scene_name"]) & (runs["series"] == first["series"])]
-    steps = one["steps"] * one["substeps"]
+    work = one[["overlaps", "pair_resolves", "sweeps"]].div(one["steps"] * one["substeps"], axis=0).median()
     waiting = 1 - longest["busy"] / longest["wall"]
     return (
         f"{first['series']}, {scene_title(runs, first['scene_name'])}: {number(rows['wall'].sum())} ns per "
         f"disc and step, {share(rows['least'].sum() / rows['wall'].sum())} of it unavoidable; longest is "
         f"{longest['phase']} ({share(longest['reached'])} by {longest['bound']}, {share(waiting)} waiting), "
-        f"with {number((one['overlaps'] / steps).median())} overlaps, "
-        f"{number((one['pair_resolves'] / steps).median())} resolves and "
-        f"{number((one['sweeps'] / steps).median())} sweeps a step"
+        f"with {number(work['overlaps'])} overlaps, {number(work['pair_resolves'])} resolves and "
+        f"{number(work['sweeps'])} sweeps a step"
     )

@@ -2,19 +2,18 @@
 
 import pandas as pd
 
+from analysis.figures.captions import differing
 from analysis.figures.curves import dots
 from analysis.figures.style import BLUE, Data, Drawing, lighten, new_figure
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.unpaired import judge_unpaired
 from analysis.statistics.verdicts import corrected
-from analysis.support.wording import change, count, exact
+from analysis.support.wording import count, exact
 
 
 def machines(data: Data, experiment: str, subject: str) -> Drawing | None:
-    """Draw the time on each machine, a row a series: every study at this scale that measured the
-    experiment, never merged.
-    """
+    """Draw the time on each machine, a row a series: every study at this scale, never merged."""
     present = [study for study in data.studies if study.scale == data.study.scale]
     times = pd.concat([study.times_of(experiment).assign(machine=study.machine) for study in present])
     if times.empty:
@@ -25,19 +24,17 @@ def machines(data: Data, experiment: str, subject: str) -> Drawing | None:
     summary = summarise(times, ["name"]).sort_values("median", ascending=False)
     published = data.published.experiment(experiment).groupby("series")["seconds"].median().sort_values()
     caption = _caption(times, subject)
-    if published.empty:
-        figure, (axes,) = new_figure(0.7 + 0.42 * len(summary))
-        dots(axes, summary, "name")
-        axes.set_xlabel("time of the steps, s")
-        return Drawing(figure, caption)
-    theirs = published[::-1].rename("median").reset_index()
-    gigahertz = data.published.machines.set_index("machine")["maximum_gigahertz"]
-    theirs["name"] = [f"{name}\n{gigahertz[name]} GHz" for name in theirs["series"]]
-    figure, (left, right) = new_figure(0.7 + 0.42 * max(len(summary), len(theirs)), columns=2)
-    dots(left, summary, "name")
-    left.set(xlabel="time of the steps, s", title="measured")
-    dots(right, theirs, "name", lighten(BLUE, 0.4))
-    right.set(xlabel="time of the process, s", title="published, 16 threads")
+    rows = max(len(summary), len(published))
+    figure, axes = new_figure(0.7 + 0.42 * rows, columns=1 if published.empty else 2)
+    dots(axes[0], summary, "name")
+    axes[0].set_xlabel("time of the steps, s")
+    if not published.empty:
+        axes[0].set_title("measured")
+        theirs = published[::-1].rename("median").reset_index()
+        gigahertz = data.published.machines.set_index("machine")["maximum_gigahertz"]
+        theirs["name"] = [f"{name}\n{gigahertz[name]} GHz" for name in theirs["series"]]
+        dots(axes[1], theirs, "name", lighten(BLUE, 0.4))
+        axes[1].set(xlabel="time of the process, s", title="published, 16 threads")
     return Drawing(figure, caption)
 
 
@@ -56,11 +53,7 @@ def _caption(times: pd.DataFrame, subject: str) -> str:
     first = min(groups)
     others = [name for name in groups if name != first]
     table = corrected(pd.DataFrame([judge_unpaired(groups[first], groups[name]) for name in others]))
-    said = "; ".join(
-        f"{name} {change(row)} ({row['verdict']})"
-        for name, row in zip(others, table.to_dict("records"), strict=True)
-    )
-    return f"{caption} Against {first} (not interleaved, so unpaired): {said}."
+    return f"{caption} Against {first} (not interleaved, so unpaired): {differing(others, table)}."
 
 
 def _hosts(times: pd.DataFrame) -> str:

@@ -1,47 +1,31 @@
 """Resolve orders against each other: row against checkered over scene size, and the sequential orders."""
 
-import pandas as pd
-
 from analysis.derived.comparisons import differences, reference
 from analysis.derived.ladder import per_disc_step
-from analysis.figures.captions import opening
+from analysis.figures.captions import differing, opening
 from analysis.figures.comparisons import differences_sentence
-from analysis.figures.curves import curve, dots, faint_dots
-from analysis.figures.labels import label_ends
-from analysis.figures.style import (
-    BAND,
-    BLUE,
-    FAINT,
-    INK,
-    VERMILLION,
-    Data,
-    Drawing,
-    from_zero,
-    new_figure,
-    plain_ticks,
-)
+from analysis.figures.curves import curve, curves, dots, faint_dots
+from analysis.figures.labels import from_zero, label_ends, plain_ticks
+from analysis.figures.style import BAND, BLUE, FAINT, INK, VERMILLION, Data, Drawing, new_figure
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import process_medians, ratios_of
 from analysis.statistics.verdicts import MARGIN, judge
-from analysis.support.wording import change, exact
+from analysis.support.wording import exact
 
 COLOURS = {"checkered": BLUE, "row": VERMILLION}
 
 
 def row(data: Data) -> Drawing | None:
-    """Draw alternate rows against the checkered pattern over scene size: time per disc, and the paired
-    ratio.
-    """
+    """Draw alternate rows against the checkered pattern over scene size: time per disc, paired ratio."""
     times = data.study.times_of("row")
     if times.empty:
         return None
     figure, (left, right) = new_figure(2.6, columns=2)
     scaled = summarise(per_disc_step(times), ["series", "x"], value="nanoseconds")
-    for series, part in scaled.groupby("series"):
-        curve(left, part, COLOURS.get(str(series), INK))
+    ends = curves(left, scaled, {series: COLOURS.get(series, INK) for series in scaled["series"]})
     left.set(xscale="log", xlabel="discs", ylabel="time per disc and step, ns")
     from_zero(left)
-    table = _row_ratio(times)
+    table = judge(ratios_of(process_medians(times), "order", "checkered", "row", match=("x",)), ["x"])
     percent = table.assign(**{end: 100 * (table[end] - 1) for end in ("ratio", "low", "high")})
     right.axhspan(-100 * MARGIN, 100 * MARGIN, color=BAND, zorder=0, linewidth=0)
     right.axhline(0, color=FAINT, linewidth=0.7)
@@ -49,14 +33,8 @@ def row(data: Data) -> Drawing | None:
     right.set(xscale="log", xlabel="discs", ylabel="time of row against checkered, %")
     for axes in (left, right):
         plain_ticks(axes.xaxis)
-    ends = scaled.loc[scaled.groupby("series")["x"].idxmax()]
-    label_ends(
-        left,
-        [(one["series"], one["median"], COLOURS.get(one["series"], INK)) for one in ends.to_dict("records")],
-    )
-    said = "; ".join(
-        f"{exact(one['x'])} discs {change(one)} ({one['verdict']})" for one in table.to_dict("records")
-    )
+    label_ends(left, ends)
+    said = differing((f"{exact(x)} discs" for x in table["x"]), table)
     caption = (
         opening(times, "Alternate rows against the checkered pattern, over scene size at one density")
         + f" Time of row against checkered: {said} (Holm-corrected, margin shaded). The published study "
@@ -64,12 +42,6 @@ def row(data: Data) -> Drawing | None:
     )
     names = [f"row against checkered, {exact(x)} discs" for x in table["x"]]
     return Drawing(figure, caption, table.assign(name=names))
-
-
-def _row_ratio(times: pd.DataFrame) -> pd.DataFrame:
-    processes = process_medians(times)
-    checkered, alternate = (processes[processes["order"] == order] for order in ("checkered", "row"))
-    return judge(log_ratios(checkered, alternate, match=("x",)), ["x"])
 
 
 def sequential_orders(data: Data) -> Drawing | None:
@@ -87,22 +59,12 @@ def sequential_orders(data: Data) -> Drawing | None:
     }
     if "track" in medians:
         scale = medians["track"] / published["track"]
-        faint_dots(
-            axes,
-            [
-                (list(medians.index).index(name), seconds * scale)
-                for name, seconds in published.items()
-                if name in medians
-            ],
-        )
+        heights = {str(name): height for height, name in enumerate(medians.index)}
+        faint_dots(axes, [(heights[name], scale * one) for name, one in published.items() if name in heights])
     axes.set_xlabel("time of the steps, s")
     against = reference(times)
     table = differences(times, against)
-    said = differences_sentence(table, against)
-    caption = opening(times, "The sequential resolve orders") + said
-    return Drawing(
-        figure,
-        caption
-        + " Lighter: the published medians with self-contained resolves, scaled so that track is level.",
-        table.assign(name=[f"{series} against {against}" for series in table["series"]]),
-    )
+    caption = opening(times, "The sequential resolve orders") + differences_sentence(table, against)
+    caption += " Lighter: the published medians with self-contained resolves, scaled so that track is level."
+    names = [f"{series} against {against}" for series in table["series"]]
+    return Drawing(figure, caption, table.assign(name=names))

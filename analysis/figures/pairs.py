@@ -1,6 +1,5 @@
 """Two variants against each other: every block of the measurement, the published runs, and the ratio."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,20 +10,10 @@ from matplotlib.ticker import MaxNLocator
 
 from analysis.derived.comparisons import USUAL, Stated
 from analysis.figures.captions import PROCESSES, SCENES, opening, time_axis
+from analysis.figures.curves import bounded, difference, margin_band
 from analysis.figures.hover import Told, tell
-from analysis.figures.labels import label_ends
-from analysis.figures.style import (
-    BAND,
-    BLUE,
-    FAINT,
-    INK,
-    VERMILLION,
-    Data,
-    Drawing,
-    lighten,
-    new_figure,
-    plain_ticks,
-)
+from analysis.figures.labels import label_ends, note, plain_ticks
+from analysis.figures.style import BLUE, INK, VERMILLION, Data, Drawing, lighten, new_figure
 from analysis.records.tables import COUNTS
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge_one
@@ -58,14 +47,15 @@ def pair_drawing(
         return None
     if work and (times["question_kind"] == COUNTS).all():
         return _of_counts(data, sides)
-    published = data.published.experiment(sides.experiment)
-    extra = work or not published.empty
+    theirs = data.published.ratio(sides.experiment, sides.candidate, sides.reference)
+    extra = work or theirs is not None
     figure, axes = new_figure(2.4, columns=2 + extra, widths=[1.2, *([1.0] * extra), 1.1])
     _by_block(axes[0], {sides.names[0]: candidate, sides.names[1]: reference}, time_axis(times))
     pairs = log_ratios(reference, candidate)
     if row is None:
         row = judge_one(pairs["log_ratio"], by.margin, by.error, biases=pairs["bias"])
-    theirs = _published_panel(axes[1], published, sides) if not published.empty else None
+    if theirs:
+        _published_panel(axes[1], data.published.experiment(sides.experiment), sides)
     if work:
         _work(axes[1], data, sides)
     ratio_panel(axes[-1], row, theirs, sides.names, by.margin)
@@ -98,10 +88,10 @@ def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:
 def _by_block(axes: Axes, curves: dict[str, pd.DataFrame], label: str) -> None:
     axes.set(xlabel="block", ylabel=label, title="measured")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    labels = []
     both = pd.concat(curves)
     # Nodes number their blocks alike: they stand one after another.
     both["position"] = 1 + both.groupby(PAIR).ngroup()
+    labels = []
     for name, colour in zip(curves, (BLUE, VERMILLION), strict=True):
         ordered = both.loc[name].sort_values("position")
         _runs(axes, ordered["position"], ordered["steps_seconds"], name, colour)
@@ -112,24 +102,17 @@ def _by_block(axes: Axes, curves: dict[str, pd.DataFrame], label: str) -> None:
     label_ends(axes, labels)
 
 
-def _published_panel(axes: Axes, published: pd.DataFrame, sides: Sides) -> dict[str, float]:
-    """Draw the published runs and return their ratio as a row of `judge_one`; its runs are paired by
-    number.
-    """
+def _published_panel(axes: Axes, published: pd.DataFrame, sides: Sides) -> None:
     axes.set(xlabel="repetition", ylabel="time of the process, s", title="published")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    labels, runs = [], {}
-    for series, name, colour in zip(
-        (sides.candidate, sides.reference), sides.names, (BLUE, VERMILLION), strict=True
-    ):
+    labels = []
+    both = (sides.candidate, sides.reference)
+    for series, name, colour in zip(both, sides.names, (BLUE, VERMILLION), strict=True):
         run = published[published["series"] == series]
         _runs(axes, run["x"], run["seconds"], f"{name}, published", lighten(colour))
         labels.append((name, run["seconds"].iloc[-1], lighten(colour, 0.35)))
-        runs[series] = run.assign(node="", block=run["x"], session="")
     axes.margins(y=0.15)
     label_ends(axes, labels)
-    pairs = log_ratios(runs[sides.reference], runs[sides.candidate], value="seconds")
-    return judge_one(pairs["log_ratio"])
 
 
 def _runs(axes: Axes, x: pd.Series, seconds: pd.Series, name: str, colour: str) -> None:
@@ -138,50 +121,20 @@ def _runs(axes: Axes, x: pd.Series, seconds: pd.Series, name: str, colour: str) 
 
 
 def ratio_panel(
-    axes: Axes,
-    ours: dict[str, float],
-    theirs: dict[str, float] | None,
-    names: tuple[str, str],
+    axes: Axes, ours: dict[str, float], theirs: dict[str, float] | None, names: tuple[str, str],
     margin: float = MARGIN,
-) -> None:
+) -> None:  # fmt: skip
     """Draw the ratio as a dot with the interval on which the verdict rests."""
-    axes.axvspan(-100 * margin, 100 * margin, color=BAND, zorder=0, linewidth=0)
-    axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
+    margin_band(axes, margin)
     entries = [("measured", ours, INK)] + ([("published", theirs, lighten(INK))] if theirs else [])
     for height, (name, row, colour) in zip((1.0, 0.0), entries, strict=False):
-        interval_bar(axes, row, height, colour, 2.6)
-        estimate = 100 * (row["ratio"] - 1)
-        (dot,) = axes.plot(
-            estimate, height, "o", color=colour, markersize=5, markeredgecolor="white", zorder=3
-        )
-        tell(dot, [Told(f"{name}: {row['verdict']}", change(row))])
-        axes.annotate(
-            f"{name}: {row['verdict']}",
-            (0, height),
-            xycoords=("axes fraction", "data"),
-            xytext=(0, 9),
-            textcoords="offset points",
-            color=colour,
-            fontsize=7,
-        )
-    axes.set(ylim=(-0.6, 1.7), yticks=[], title="difference")
+        difference(axes, row, height, name, colour, 2.6, markeredgecolor="white", zorder=3)
+        said, beside = f"{name}: {row['verdict']}", ("axes fraction", "data")
+        note(axes, said, (0, height), (0, 9), xycoords=beside, color=colour, fontsize=7)
+    axes.set(ylim=(-0.6, 1.7), title="difference")
     axes.set_xlabel(f"time of {names[0]}\nagainst {names[1]}, %")
     axes.xaxis.set_major_locator(MaxNLocator(5))
-    axes.spines["left"].set_visible(False)
     bounded(axes, margin)
-
-
-def interval_bar(axes: Axes, row: Mapping[Any, Any], height: float, colour: str, width: float) -> None:
-    """Draw the interval of a ratio in per cent; nothing without one, whose ends would stretch the axis."""
-    if np.isfinite(row["high"]):
-        ends = [100 * (row[end] - 1) for end in ("low", "high")]
-        axes.plot(ends, [height, height], color=colour, linewidth=width, zorder=2)
-
-
-def bounded(axes: Axes, margin: float = MARGIN) -> None:
-    """Keep the margin in view, and an unbounded interval from stretching the axis."""
-    low, high = axes.get_xlim()
-    axes.set_xlim(max(min(low, -250 * margin), -100), min(max(high, 250 * margin), 300))
 
 
 def _work(axes: Axes, data: Data, sides: Sides) -> None:
@@ -198,14 +151,7 @@ def _work(axes: Axes, data: Data, sides: Sides) -> None:
         axes.barh(height, attempts if counted else 0, color=lighten(colour, 0.5), height=0.5)
         axes.barh(height, resolves, color=colour, height=0.5)
         said = f"{exact(round(resolves))} of {exact(round(attempts))}" if counted else exact(round(resolves))
-        axes.annotate(
-            f"{name}: {said}",
-            (0, height + 0.27),
-            xytext=(0, 2),
-            textcoords="offset points",
-            color=colour,
-            fontsize=7,
-        )
+        note(axes, f"{name}: {said}", (0, height + 0.27), (0, 2), color=colour, fontsize=7)
     axes.set(yticks=[], xlabel="resolves of attempts per step", title="work", ylim=(-0.6, 1.6))
     axes.xaxis.set_major_locator(MaxNLocator(3))
     plain_ticks(axes.xaxis)
@@ -222,9 +168,7 @@ def _sentences(row: dict[str, float], theirs: dict[str, float] | None, sides: Si
 
 
 def lost_by_turns(pairs: pd.DataFrame) -> str:
-    """Say how far cold caches at each turn move the ratio of `pairs` (see `log_ratios`); nothing where it is
-    not known.
-    """
+    """Say how far cold caches at each turn move the ratio of `pairs` (see `log_ratios`), if it is known."""
     known = pairs["bias"].dropna()
     if known.empty:
         return ""

@@ -1,32 +1,25 @@
 """Time, speed-up and efficiency over threads, with the machine's limits and the universal scalability law."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from analysis.figures.captions import opening
+from analysis.figures.captions import differing, opening
 from analysis.figures.curves import colours, curve, published_curve
-from analysis.figures.style import (
-    BLUE,
-    FAINT,
-    VERMILLION,
-    Data,
-    Drawing,
-    from_zero,
-    key,
-    lighten,
-    new_figure,
-    plain_ticks,
-)
+from analysis.figures.labels import from_zero, key, note, plain_ticks
+from analysis.figures.style import BLUE, FAINT, VERMILLION, Data, Drawing, lighten, new_figure
 from analysis.records.studies import Study
 from analysis.statistics import scalability
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.scalability import ScalabilityLaw
 from analysis.statistics.verdicts import judge
-from analysis.support.wording import change, count, exact, interval, interval_of, number
+from analysis.support.wording import count, exact, interval, interval_of, number
+
+THREADS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 
 
 def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -42,28 +35,25 @@ def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
     shades = colours(times)
     parts = {str(series): part for series, part in times.groupby("series")}
     measured = {series: _series(panels, part, shades[series]) for series, part in parts.items()}
-    laws = {
-        series: scalability.fit(process_medians(part), data.study.hardware_threads)
-        for series, part in parts.items()
-        if len(parts) == 1
-    }
+    law = scalability.fit(process_medians(times), data.study.hardware_threads) if len(parts) == 1 else None
     _published(panels, published)
     _ideal(panels, pd.concat(measured.values()), published)
-    for law in filter(None, laws.values()):
-        _law(panels, law, times["x"].max())
-    for axes in panels:
+    if law:
+        n = np.geomspace(1, times["x"].max(), 100)
+        for axes, y in zip(panels[1:], (law.speed_up(n), law.speed_up(n) / n), strict=True):
+            axes.plot(n, y, color=VERMILLION, linewidth=0.9, zorder=2.5)
+    first = count(int(times["x"].min()), "thread")
+    labels = f"time relative to {first}", f"speed-up over {first}", "efficiency"
+    for axes, label in zip(panels, labels, strict=True):
         _thread_axis(axes, [*times["x"], *published["x"]])
         from_zero(axes)
         limits(axes, data.study, named=axes is panels[0])
-    first = count(int(times["x"].min()), "thread")
-    for axes, label in zip(
-        panels, (f"time relative to {first}", f"speed-up over {first}", "efficiency"), strict=True
-    ):
         axes.set_ylabel(label)
-    key(panels[0], _entries(parts, shades, not published.empty, any(laws.values())))
+    key(panels[0], _entries(parts, shades, not published.empty, law is not None))
     cores = data.study.cores or data.study.hardware_threads
     said = "".join(_greatest(series, table, len(parts) > 1, cores) for series, table in measured.items())
-    return Drawing(figure, opening(times, subject) + said + _sentences(laws, data.study, not published.empty))
+    said += _sentences(data.study, not published.empty)
+    return Drawing(figure, opening(times, subject) + said + (_law_sentence(law) if len(parts) == 1 else ""))
 
 
 def _series(panels: Sequence[Axes], times: pd.DataFrame, colour: str) -> pd.DataFrame:
@@ -72,14 +62,11 @@ def _series(panels: Sequence[Axes], times: pd.DataFrame, colour: str) -> pd.Data
     summary = summarise(times, ["x"])
     scale = summary.loc[summary["x"] == first, "median"].iloc[0]
     relative = summary.assign(**{end: summary[end] / scale for end in ("median", "low", "high")})
-    efficiency = speed_ups.assign(
-        **{end: speed_ups[end] * first / speed_ups["x"] for end in ("speed_up", "low", "high")}
-    )
+    ends = ("speed_up", "low", "high")
+    efficiency = speed_ups.assign(**{end: speed_ups[end] * first / speed_ups["x"] for end in ends})
     series = times["series"].iloc[0]
-    for axes, table, value in zip(
-        panels, (relative, speed_ups, efficiency), ("median", "speed_up", "speed_up"), strict=True
-    ):
-        curve(axes, table.assign(series=series), colour, value)
+    for axes, table in zip(panels, (relative, speed_ups, efficiency), strict=True):
+        curve(axes, table.assign(series=series), colour, "median" if table is relative else "speed_up")
     return speed_ups
 
 
@@ -99,9 +86,7 @@ def _entries(
 
 
 def oversubscription(data: Data) -> Drawing | None:
-    """Draw time over threads in multiples of the machine's hardware threads, relative to as many as it
-    has.
-    """
+    """Draw time over threads in multiples of the machine's hardware threads, against as many as it has."""
     times = data.study.times_of("oversubscription")
     if times.empty:
         return None
@@ -115,10 +100,7 @@ def oversubscription(data: Data) -> Drawing | None:
     processes = process_medians(times)
     reference = processes[processes["x"] == processes.loc[processes["x"] <= hardware, "x"].max()]
     table = judge(log_ratios_by_x(reference, processes[processes["x"] > hardware]), ["x"])
-    said = "; ".join(
-        f"{row['x'] / hardware:g} times as many: {change(row)} ({row['verdict']})"
-        for row in table.to_dict("records")
-    )
+    said = differing((f"{x / hardware:g} times as many:" for x in table["x"]), table)
     caption = opening(times, "Time with more threads than the machine has hardware threads")
     against = f" Against {count(hardware, 'thread')}, as many as there are: {said}." if said else ""
     return Drawing(figure, caption + against)
@@ -151,24 +133,15 @@ def limits(axes: Axes, study: Study, named: bool) -> None:
             continue
         axes.axvline(position, color=FAINT, linewidth=0.7, linestyle=":", zorder=1)
         if named:
-            axes.annotate(
-                f"{position} {name}",
-                (position, 0.98),
-                xycoords=("data", "axes fraction"),
-                xytext=(2, 0),
-                textcoords="offset points",
-                rotation=90,
-                fontsize=6,
-                color=FAINT,
-                va="top",
-            )
+            look: Any = {"rotation": 90, "fontsize": 6, "color": FAINT, "va": "top"}
+            above = ("data", "axes fraction")
+            note(axes, f"{position} {name}", (position, 0.98), (2, 0), xycoords=above, **look)
 
 
-def _thread_axis(axes: Axes, values: list[float], ticks: "np.ndarray | None" = None) -> None:
+def _thread_axis(axes: Axes, values: list[float], ticks: Iterable[float] = THREADS) -> None:
     axes.set_xscale("log", base=2)
     axes.set_xlabel("threads")
-    chosen = ticks if ticks is not None else [1, 2, 4, 8, 16, 32, 64, 128, 256]
-    plain_ticks(axes.xaxis, [tick for tick in chosen if min(values) <= tick <= max(values)])
+    plain_ticks(axes.xaxis, [tick for tick in ticks if min(values) <= tick <= max(values)])
     axes.minorticks_off()
 
 
@@ -190,12 +163,6 @@ def _ideal(panels: Sequence[Axes], speed_ups: pd.DataFrame, published: pd.DataFr
     panels[2].axhline(1, color=FAINT, linestyle="--", linewidth=0.9, zorder=1)
 
 
-def _law(panels: Sequence[Axes], law: ScalabilityLaw, most: float) -> None:
-    n = np.geomspace(1, most, 100)
-    panels[1].plot(n, law.speed_up(n), color=VERMILLION, linewidth=0.9, zorder=2.5)
-    panels[2].plot(n, law.speed_up(n) / n, color=VERMILLION, linewidth=0.9, zorder=2.5)
-
-
 def _greatest(series: str, speed_ups: pd.DataFrame, named: bool, cores: int) -> str:
     best = speed_ups.loc[speed_ups["speed_up"].idxmax()]
     unlikely = scalability.doubt(best["speed_up"], min(best["x"], cores) / speed_ups["x"].min())
@@ -205,7 +172,7 @@ def _greatest(series: str, speed_ups: pd.DataFrame, named: bool, cores: int) -> 
     )
 
 
-def _sentences(laws: Mapping[str, ScalabilityLaw | None], study: Study, published: bool) -> str:
+def _sentences(study: Study, published: bool) -> str:
     said = (
         f" The machine has {study.cores or 'an unknown number of'} cores and {study.hardware_threads} "
         "hardware threads (dotted)."
@@ -215,11 +182,14 @@ def _sentences(laws: Mapping[str, ScalabilityLaw | None], study: Study, publishe
             " Lighter: the published series, relative to its own single thread (10 cores, 20 hardware "
             "threads)."
         )
-    for law in laws.values():
-        said += " The universal scalability law is " + (
-            f"fitted up to the hardware threads ({law.points} points): contention "
-            f"{interval(law.contention)}, coherency {interval(law.coherency)}."
-            if law
-            else "not fitted: it needs four thread counts up to the hardware threads."
-        )
     return said
+
+
+def _law_sentence(law: ScalabilityLaw | None) -> str:
+    said = " The universal scalability law is "
+    if law is None:
+        return f"{said}not fitted: it needs four thread counts up to the hardware threads."
+    return (
+        f"{said}fitted up to the hardware threads ({law.points} points): contention "
+        f"{interval(law.contention)}, coherency {interval(law.coherency)}."
+    )

@@ -1,33 +1,22 @@
 """Time against error: a figure an error measure, a panel a scene, all from the same records."""
 
 import re
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from analysis.derived import accuracy
 from analysis.derived.accuracy import SMALL, Choice, Measure, Race
 from analysis.figures.captions import opening
 from analysis.figures.hover import Told, tell
-from analysis.figures.labels import label_points
-from analysis.figures.style import (
-    FAINT,
-    INK,
-    PALETTE,
-    Cell,
-    Data,
-    Drawing,
-    Table,
-    key,
-    lighten,
-    new_figure,
-)
-from analysis.statistics.intervals import Interval
+from analysis.figures.labels import key, label_points, plain_ticks
+from analysis.figures.style import FAINT, INK, PALETTE, Data, Drawing, lighten, new_figure
+from analysis.support.values import Cell, Interval, Row, Table, table_of
 from analysis.support.wording import NO_BREAK, exact, interval, number
 
 Label = tuple[str, float, float]
@@ -52,31 +41,27 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     figure, panels = new_figure(3.0, columns=len(scenes))
     looks = _looks(table)
     outside = accuracy.outside(data.study, experiment, measure)
-    if not outside.empty:
-        outside = outside[outside["scene_name"].isin(scenes)]
+    outside = outside[outside["scene_name"].isin(scenes)]
     zero = 10 ** np.floor(np.log10(table.loc[table["error"] > 0, "error"].min()) - 1)
     labels: dict[str, list[Label]] = {}
     for axes, (scene, part) in zip(panels, scenes.items(), strict=True):
         labels[str(scene)] = _front(axes, part, zero)
         for series, line in part.groupby("series"):
             _line(axes, line, zero, *looks[str(series)])
-        if not outside.empty and scene in set(outside["scene_name"]):
-            labels[str(scene)] += _outside(axes, outside[outside["scene_name"] == scene], zero)
+        beside = outside[outside["scene_name"] == scene]
+        labels[str(scene)] += _outside(axes, beside, zero) if len(beside) else []
         axes.set(xscale="log", yscale="log")
-        axes.annotate(
-            _panel_name(str(scene), part), (1, 1), xycoords="axes fraction", ha="right", va="top",
-            fontsize=7, color=INK,
-        )  # fmt: skip
+        corner: Any = {"xycoords": "axes fraction", "ha": "right", "va": "top"}
+        axes.annotate(_panel_name(str(scene), part), (1, 1), fontsize=7, color=INK, **corner)
     _share_limits(panels, (table["error"] <= 0).any(), zero)
     panels[0].set_ylabel("time per unit of simulated time, ms")
     figure.supxlabel(measure.label, fontsize=8, color=INK)
     entries = [(f"{mark} {series}", colour) for series, (colour, mark) in looks.items()]
-    if not outside.empty:
-        entries += [(f"◆ {engine}", INK) for engine in outside["engine"].unique()]
+    entries += [(f"◆ {engine}", INK) for engine in outside["engine"].unique()]
     key(panels[0], [*entries, ("▬ Pareto front (substeps)", FAINT)])
     figure.draw_without_rendering()
-    for axes, beside in zip(panels, labels.values(), strict=True):
-        label_points(axes, beside, INK)
+    for axes, texts in zip(panels, labels.values(), strict=True):
+        label_points(axes, texts, INK)
     tables = [_advice(table, accuracy.races(data.study, experiment), measure)]
     if measure.converges:
         tables.append(_orders(table))
@@ -85,9 +70,7 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
 
 
 def _looks(table: pd.DataFrame) -> dict[str, tuple[str, str]]:
-    """Return colour and mark of each series: one colour for the precisions of a variant, filled marks for
-    double.
-    """
+    """Return colour and mark of each series: one colour for a variant's precisions, filled for double."""
     families: dict[str, str] = {}
     looks = {}
     for row in table.drop_duplicates("series").to_dict("records"):
@@ -111,16 +94,14 @@ def _line(axes: Axes, part: pd.DataFrame, zero: float, colour: str, mark: str) -
     tell(points, [_told(row) for row in rows.to_dict("records")])
 
 
-def _told(row: Mapping[Hashable, Any]) -> Told:
+def _told(row: Row) -> Told:
     """Say a point's error and time."""
     time, low, high = (number(MILLI * row[end]) for end in ("median", "low", "high"))
     return Told(run_label(str(row["series"]), row["x"]), f"{row['error']:.2g}", f"{time} [{low}, {high}]")
 
 
 def _front(axes: Axes, part: pd.DataFrame, zero: float) -> list[Label]:
-    """Draw the Pareto front as a broad line behind the curves; return the substeps of each point, from the
-    cheapest, as labels.
-    """
+    """Draw the Pareto front behind the curves; return its points' substeps as labels, cheapest first."""
     rows = part[part["on_front"]].sort_values("error")
     x, y = rows["error"].clip(lower=zero), MILLI * rows["median"]
     axes.plot(x, y, color=lighten(FAINT, 0.6), linewidth=5, solid_capstyle="round", zorder=1)
@@ -131,9 +112,7 @@ def _front(axes: Axes, part: pd.DataFrame, zero: float) -> list[Label]:
 
 
 def _outside(axes: Axes, rows: pd.DataFrame, zero: float) -> list[Label]:
-    """Draw a general engine's points, a dotted line of diamonds; return its least and most substeps as
-    labels.
-    """
+    """Draw a general engine's points as diamonds; return its least and most substeps as labels."""
     rows = rows.sort_values("substeps")
     x, y = rows["error"].clip(lower=zero), MILLI * rows["median"]
     spread = [MILLI * (rows["median"] - rows["low"]), MILLI * (rows["high"] - rows["median"])]
@@ -151,7 +130,7 @@ def _outside(axes: Axes, rows: pd.DataFrame, zero: float) -> list[Label]:
 def _outside_sentence(outside: pd.DataFrame, table: pd.DataFrame) -> str:
     """Say what a general engine takes and loses with one substep, beside the cheapest choice there."""
     said = []
-    for scene, rows in outside.groupby("scene_name", sort=False) if len(outside) else ():
+    for scene, rows in outside.groupby("scene_name", sort=False):
         first = rows.sort_values("substeps").iloc[0]
         cheapest = table[table["scene_name"] == scene].sort_values("median").iloc[0]
         times = number(first["median"] / cheapest["median"])
@@ -186,12 +165,11 @@ def _share_limits(panels: list[Axes], has_zero: bool, zero: float) -> None:
         axes.set(xlim=(limits[0][0] * 0.7, limits[0][1] * 1.2), ylim=(limits[1][0], limits[1][1] * 1.6))
         axes.tick_params(labelleft=axes is panels[0])
         axes.set_xticks([zero, *ticks] if has_zero else ticks)
+        plain_ticks(axes.yaxis)
+        plain_ticks(axes.xaxis)
         axes.xaxis.set_major_formatter(
-            FuncFormatter(lambda value, _: "0" if has_zero and value <= zero else power_of_ten(value))
+            lambda value, _: "0" if has_zero and value <= zero else power_of_ten(value)
         )
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: exact(value)))
-        axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.yaxis.set_minor_formatter(NullFormatter())
 
 
 def power_of_ten(value: float) -> str:
@@ -202,11 +180,11 @@ def power_of_ten(value: float) -> str:
     return f"10{str(power).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"
 
 
-def _advice(table: pd.DataFrame, races: Mapping[str, Race], measure: Measure) -> Table:
-    scenes = dict(list(table.groupby("scene_name", sort=False)))
-    rows = [
-        [Cell(power_of_ten(bound)), *(_choice(choices[str(scene)]) for scene in scenes)]
-        for bound, choices in accuracy.advice(table, races)
+def _advice(points: pd.DataFrame, races: Mapping[str, Race], measure: Measure) -> Table:
+    scenes = dict(list(points.groupby("scene_name", sort=False)))
+    rows: list[list[Cell | str]] = [
+        [power_of_ten(bound), *(_choice(choices[str(scene)]) for scene in scenes)]
+        for bound, choices in accuracy.advice(points, races)
     ]
     columns = ["For an error below", *(_panel_name(str(scene), part) for scene, part in scenes.items())]
     title = (
@@ -214,7 +192,7 @@ def _advice(table: pd.DataFrame, races: Mapping[str, Race], measure: Measure) ->
         "time costs with it. All intervals of a scene, and all that was found slower, hold together in 95 % "
         "of studies, since the choice was made by looking:"
     )
-    return Table(title, columns, rows)
+    return table_of(title, columns, rows)
 
 
 def _choice(choice: Choice | None) -> Cell:
@@ -224,10 +202,7 @@ def _choice(choice: Choice | None) -> Cell:
     if len(choice.others) > OTHERS:
         named.append(f"{len(choice.others) - OTHERS} more")
     said = f"; not found slower: {', '.join(named)}" if named else ""
-    milliseconds = [
-        MILLI * value for value in (choice.seconds.estimate, choice.seconds.low, choice.seconds.high)
-    ]
-    estimate, low, high = (number(value) for value in milliseconds)
+    estimate, low, high = (number(MILLI * end) for end in choice.seconds)
     return Cell(f"{run_label(choice.series, choice.substeps)}: {estimate}{NO_BREAK}ms [{low}, {high}]{said}")
 
 
@@ -238,45 +213,40 @@ def run_label(series: str, substeps: float) -> str:
     return f"{series}, dt{NO_BREAK}={NO_BREAK}{'1' if substeps == 1 else f'1/{substeps:g}'}"
 
 
-def _orders(table: pd.DataFrame) -> Table:
-    found = accuracy.orders(table)
+def _orders(points: pd.DataFrame) -> Table:
+    found = accuracy.orders(points)
     scenes = list(dict.fromkeys(found["scene_name"]))
-    rows = []
+    rows: list[list[Cell | str]] = []
     for series, part in found.groupby("series", sort=False):
         fitted = part.set_index("scene_name")["order"]
-        cells = [_order(fitted.get(scene)) for scene in scenes]
-        rows.append([Cell(str(series)), *cells])
+        rows.append([str(series), *(_order(fitted.get(scene)) for scene in scenes)])
     title = (
         f"Order of convergence: p in error = c dt^p, over the errors below {SMALL:g}, with its 95 % interval "
         "from the scatter about the line (an error at the level of rounding does not fall and pulls p down):"
     )
-    return Table(title, ["Series", *(scene or "order" for scene in scenes)], rows)
+    return table_of(title, ["Series", *(scene or "order" for scene in scenes)], rows)
 
 
-def _order(fitted: object) -> Cell:
+def _order(fitted: object) -> Cell | str:
     if not isinstance(fitted, Interval) or np.isnan(fitted.estimate):
         return Cell(f"fewer than three errors below {SMALL:g}", "open")
-    return Cell(interval(fitted))
+    return interval(fitted)
 
 
 def _caption(table: pd.DataFrame, data: Data, experiment: str, subject: str, measure: Measure) -> str:
     opened = opening(data.study.times_of(experiment), f"{subject}: {measure.title}")
-    varying = (table["error_low"] != table["error_high"]).any()
-    certain = (
-        "Bars across are the range of the errors."
-        if varying
-        else "A point's error is the same in every run, to the last bit, and has no interval; its time has."
-    )
-    without_steps = _exact_sentence(table)
+    certain = "A point's error is the same in every run, to the last bit, and has no interval; its time has."
+    if (table["error_low"] != table["error_high"]).any():
+        certain = "Bars across are the range of the errors."
     zeros = " Errors of exactly 0 stand at the left edge." if (table["error"] <= 0).any() else ""
     fronts = "; ".join(
         f"{_panel_name(str(scene), part)}: {front_in_words(part)}"
         for scene, part in table.groupby("scene_name", sort=False)
     )
     return (
-        f"{opened} The error is {measure.meaning}; down and to the left is better. {certain}{without_steps}"
-        f"{zeros} By the medians, no other choice has at most the error and at most the time of one on the "
-        f"Pareto front (grey): {fronts}."
+        f"{opened} The error is {measure.meaning}; down and to the left is better. {certain}"
+        f"{_exact_sentence(table)}{zeros} By the medians, no other choice has at most the error and at most "
+        f"the time of one on the Pareto front (grey): {fronts}."
     )
 
 
@@ -294,16 +264,10 @@ def _exact_sentence(table: pd.DataFrame) -> str:
 def front_in_words(part: pd.DataFrame) -> str:
     """Say who is on the front, from the cheapest: `row with 1, 2 and 4 substeps, then track with 8`."""
     rows = part[part["on_front"]].sort_values("median")
-    runs = [
-        (series, [f"{row['substeps']:g}" for row in group])
-        for series, group in groupby(rows.to_dict("records"), key=lambda row: str(row["series"]))
-    ]
-    return ", then ".join(
-        series if steps == ["0"] else f"{series} with {_listed(steps)}" for series, steps in runs
-    )
-
-
-def _listed(steps: list[str]) -> str:
-    noun = "substep" if steps == ["1"] else "substeps"
-    listed = steps[0] if len(steps) == 1 else f"{', '.join(steps[:-1])} and {steps[-1]}"
-    return f"{listed} {noun}"
+    said = []
+    for series, group in groupby(zip(rows["series"], rows["substeps"], strict=True), key=itemgetter(0)):
+        *most, last = (f"{substeps:g}" for _, substeps in group)
+        listed = f"{', '.join(most)} and {last}" if most else last
+        noun = "substep" if listed == "1" else "substeps"
+        said.append(str(series) if listed == "0" else f"{series} with {listed} {noun}")
+    return ", then ".join(said)

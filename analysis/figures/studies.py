@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from analysis.figures import Drawn, draw, experiments
+from analysis.figures import Drawn, draw, titles
 from analysis.figures.style import FORMATS, Data
 from analysis.records import published
 from analysis.records.reading import load
@@ -13,13 +13,12 @@ from support.errors import InputError
 
 
 def draw_all(results: Path, wanted: Sequence[str] = (), formats: Sequence[str] = FORMATS) -> list[Drawn]:
-    """Load a results folder and draw into its `figures/`, all experiments or those wanted; return what was
-    drawn.
+    """Load a results folder and draw into its `figures/`, all experiments or those wanted.
 
     Raises InputError for an experiment that is neither one of the published questions nor in the records.
     """
     records = load(results)
-    names = list(dict.fromkeys([*experiments(), *sorted(records.runs["experiment"])]))
+    names = list(dict.fromkeys([*titles(), *sorted(records.runs["experiment"])]))
     for name in wanted:
         if name not in names:
             raise InputError(f"--experiment: found {name!r}, expected one of {', '.join(names)}")
@@ -28,12 +27,9 @@ def draw_all(results: Path, wanted: Sequence[str] = (), formats: Sequence[str] =
 
 
 def draw_study(
-    study: Study,
-    studies: Sequence[Study],
-    results: Path,
-    wanted: Sequence[str] = (),
+    study: Study, studies: Sequence[Study], results: Path, wanted: Sequence[str] = (),
     formats: Sequence[str] = FORMATS,
-) -> list[Drawn]:
+) -> list[Drawn]:  # fmt: skip
     """Draw one study; the files of any but the first carry its name."""
     prefix = "" if study is studies[0] else f"{slug(study.name)}-"
     data = Data(study, studies, published.load(), results)

@@ -9,38 +9,25 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
-from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea, VPacker
-from matplotlib.textpath import TextPath
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-from matplotlib.transforms import ScaledTranslation
 
 from analysis.figures.hover import identify, with_titles
 from analysis.records.plans import planned_runs
 from analysis.records.published import Published
 from analysis.records.studies import Study
-from analysis.support.wording import exact
+from analysis.support.values import Table
 from support.files import replacing
 
-BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = (
-    "#0072B2",
-    "#D55E00",
-    "#009E73",
-    "#CC79A7",
-    "#E69F00",
-    "#56B4E9",
-)
-PALETTE = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY]
+PALETTE = BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = (
+    "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9",
+)  # fmt: skip
 """The colour-blind safe palette of Okabe and Ito (2008) without its yellow, too pale for lines."""
 
 INK, FAINT, BAND = "#222222", "#8a8a8a", "#ececec"
 FORMATS = ("svg", "png", "pdf")
 WIDTH = 7.0
-KEY_SIZE, KEY_GAP, KEY_WIDTH = 7, 9, 72 * WIDTH - 50
-"""In points: of the letters of a key, between its entries, and the most of a line, beside an axis."""
 SETTINGS: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 8,
@@ -72,31 +59,12 @@ SETTINGS: Any = {
 
 @dataclass(frozen=True)
 class Data:
-    """What a figure may draw from: the study shown, all studies, the published one, and the results
-    folder.
-    """
+    """What a figure may draw from: the study shown, all studies, the published one, the results folder."""
 
     study: Study
     studies: Sequence[Study]
     published: Published
     folder: Path
-
-
-@dataclass(frozen=True)
-class Cell:
-    """What stands in one place of a table; `mark` is its class in the style sheet: holds, fails, open."""
-
-    text: str
-    mark: str = ""
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table of the report: what it says, its columns, and a row of cells each."""
-
-    title: str
-    columns: Sequence[str]
-    rows: Sequence[Sequence[Cell]]
 
 
 @dataclass(frozen=True)
@@ -131,72 +99,6 @@ def new_figure(
     figure = Figure(figsize=(WIDTH, height))
     axes = figure.subplots(1, columns, squeeze=False, gridspec_kw={"width_ratios": widths or [1] * columns})
     return figure, list(axes[0])
-
-
-def key(axes: Axes, entries: Sequence[tuple[str, str]], raised: float = 4) -> None:
-    """Name the curves above the axes, each in its own colour, in as many lines as it takes; `entries` are
-    text and colour, `raised` is in points.
-    """
-    lines: list[Artist] = [
-        HPacker(
-            children=[TextArea(text, textprops={"color": to, "fontsize": KEY_SIZE}) for text, to in line],
-            pad=0,
-            sep=KEY_GAP,
-            align="baseline",
-        )
-        for line in _lines_of_key(entries)
-    ]
-    figure = axes.figure.get_figure(root=True)
-    anchored = AnchoredOffsetbox(
-        "lower left",
-        child=VPacker(children=lines, pad=0, sep=3, align="left"),
-        pad=0,
-        borderpad=0,
-        frameon=False,
-        bbox_to_anchor=(0, 1),
-        bbox_transform=axes.transAxes + ScaledTranslation(0, raised / 72, figure.dpi_scale_trans),
-    )
-    # Wide keys run on over the neighbouring axes: only their height may count in the layout.
-    anchored.set_in_layout(False)
-    axes.set_title("\n".join(" " for _ in lines), pad=raised)
-    axes.add_artist(anchored)
-
-
-def _lines_of_key(entries: Sequence[tuple[str, str]]) -> list[list[tuple[str, str]]]:
-    """Share the entries out to lines that end before the figure does."""
-    lines: list[list[tuple[str, str]]] = [[]]
-    left = KEY_WIDTH
-    for text, colour in entries:
-        width = TextPath((0, 0), text, size=KEY_SIZE).get_extents().width + KEY_GAP
-        if width > left and lines[-1]:
-            lines.append([])
-            left = KEY_WIDTH
-        lines[-1].append((text, colour))
-        left -= width
-    return lines
-
-
-def plain_ticks(axis: mpl.axis.Axis, values: Sequence[float] | None = None) -> None:
-    """Write the ticks as plain numbers, thousands grouped, also on a logarithmic axis."""
-    if values is not None:
-        axis.set_ticks(list(values))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: exact(value)))
-    axis.set_minor_formatter(NullFormatter())
-
-
-def logarithmic_ticks(axis: mpl.axis.Axis) -> None:
-    """Put plain numbers at the powers of ten of a logarithmic axis and between them, over about a decade at
-    2 and 5 times them, over two at 3 times. Call it when the limits of the axis are settled.
-    """
-    low, high = axis.get_view_interval()
-    between = (1.0, 2.0, 5.0) if high < 12 * low else (1.0, 3.0) if high < 200 * low else (1.0,)
-    axis.set_major_locator(LogLocator(subs=between))
-    plain_ticks(axis)
-
-
-def from_zero(axes: Axes) -> None:
-    """Let the vertical axis begin at zero, with room above the highest point."""
-    axes.set_ylim(0, axes.get_ylim()[1] * 1.02)
 
 
 def partial(data: Data, experiment: str) -> str | None:
@@ -236,9 +138,7 @@ def mark_partial(figure: Figure, text: str | None) -> None:
 
 
 def save(drawing: Drawing, folder: Path, name: str, formats: Sequence[str] = FORMATS) -> list[Path]:
-    """Write the figure in these formats; return the files. Earlier ones in other formats would be outdated,
-    and are removed.
-    """
+    """Write the figure in these formats and return the files; outdated ones in other formats are removed."""
     files = []
     with styled(name):
         # The layout is settled once, not once a format.

@@ -7,8 +7,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from analysis.figures.labels import key, name_rows, note
 from analysis.figures.phases import PHASE_COLOURS
-from analysis.figures.style import FAINT, INK, WIDTH, Data, Drawing, key, lighten
+from analysis.figures.style import FAINT, INK, WIDTH, Data, Drawing, lighten
 from analysis.records import timelines
 from analysis.support.wording import count, number, scene_in_words, share
 
@@ -31,26 +32,22 @@ def timeline(data: Data) -> Drawing | None:
     longest = 1e3 * max(step["end"].max() for step in steps)
     rows = [int(step["thread"].nunique()) for step in steps]
     figure = Figure(figsize=(WIDTH, 0.6 + sum(0.45 + 0.22 * count for count in rows)))
-    grid = figure.subplots(len(found), 1, squeeze=False, sharex=True, gridspec_kw={"height_ratios": rows})[
-        :, 0
-    ]
+    ratios = {"height_ratios": rows}
+    grid = figure.subplots(len(found), 1, squeeze=False, sharex=True, gridspec_kw=ratios)[:, 0]
     for axes, title, step in zip(grid, titles, steps, strict=True):
         _gantt(axes, step, longest)
         axes.set_title(" ", pad=3)
-        axes.annotate(title, (0, 1), xycoords="axes fraction", xytext=(0, 3), textcoords="offset points")
+        note(axes, title, (0, 1), (0, 3), xycoords="axes fraction")
     entries = [(f"■ {phase}", colour) for phase, colour in PHASE_COLOURS.items()]
     key(grid[0], [*entries, ("■ waiting", FAINT), ("pale: serial part of the phase", INK)], raised=16)
     grid[-1].set_xlabel("time since the step began, ms")
     said = "; ".join(f"{title}: {_sentence(step)}" for title, step in zip(titles, steps, strict=True))
-    return Drawing(
-        figure, f"The step of median length of {count(len(found), 'profiled run')}, thread by thread. {said}."
-    )
+    runs = count(len(found), "profiled run")
+    return Drawing(figure, f"The step of median length of {runs}, thread by thread. {said}.")
 
 
 def _in_words(title: str, runs: pd.DataFrame) -> str:
-    """Return a timeline's title with what other figures call its scene, instead of its file, where the
-    records know it.
-    """
+    """Return a timeline's title with its scene in words instead of its file, where the records know it."""
     variant, _, rest = title.partition(", ")
     file, _, threads = rest.rpartition(", ")
     known = runs.loc[runs["scene"] == file, ["particles", "area_fraction"]].drop_duplicates()
@@ -76,8 +73,7 @@ def _gantt(axes: Axes, step: pd.DataFrame, longest: float) -> None:
             edged = np.median([width for _, width in bars]) > EDGED_FROM * longest
             style |= {"facecolor": colour, "edgecolor": "white", "linewidth": 0.3 if edged else 0}
             axes.broken_barh(bars, (row - 0.35, 0.7), zorder=2, **style)
-    axes.set_yticks(range(len(threads)), [f"thread {thread}" for thread in threads[::-1]])
-    axes.tick_params(axis="y", length=0)
+    name_rows(axes, [f"thread {thread}" for thread in threads[::-1]])
     axes.set_ylim(-0.5, len(threads) - 0.5)
     axes.spines["left"].set_visible(False)
 

@@ -2,6 +2,8 @@
 either knows them. And programs that are stopped now and then, against the same ones without a pause.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -11,18 +13,9 @@ from analysis.derived.pauses import ratios as pause_ratios
 from analysis.derived.ways import APART, TURNS, Comparison, comparisons, overall, said
 from analysis.figures.captions import PROCESSES, opening
 from analysis.figures.hover import Told, tell
-from analysis.figures.style import (
-    BLUE,
-    FAINT,
-    VERMILLION,
-    Cell,
-    Data,
-    Drawing,
-    Table,
-    key,
-    logarithmic_ticks,
-    new_figure,
-)
+from analysis.figures.labels import key, logarithmic_ticks, name_rows
+from analysis.figures.style import BLUE, FAINT, VERMILLION, Data, Drawing, new_figure
+from analysis.support.values import Interval, Table, table_of
 from analysis.support.wording import number
 
 COLOURS = {TURNS: BLUE, APART: VERMILLION}
@@ -47,50 +40,51 @@ def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
 
 
 def _ratios(axes: Axes, found: list[Comparison]) -> None:
-    axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
+    _rows(axes, [one.name.replace(": ", "\n") for one in reversed(found)])
     for height, one in enumerate(reversed(found)):
         for way, aside in ((TURNS, 0.13), (APART, -0.13)):
-            value = one.log_ratio(way)
-            estimate, low, high = (100 * (np.exp(end) - 1) for end in (value.estimate, value.low, value.high))
-            axes.plot([low, high], [height + aside] * 2, color=COLOURS[way], linewidth=1.4)
-            (dot,) = axes.plot(estimate, height + aside, "o", color=COLOURS[way], markersize=4)
-            tell(dot, [Told(f"{one.name}, {way}", said(value))])
-    axes.set_yticks(range(len(found)), [one.name.replace(": ", "\n") for one in reversed(found)])
-    axes.tick_params(axis="y", length=0)
-    axes.set(ylim=(-0.5, len(found) - 0.5), xlabel="time against the other, %")
+            _interval(axes, one.log_ratio(way), height + aside, f"{one.name}, {way}", COLOURS[way])
+    axes.set_xlabel("time against the other, %")
+
+
+def _rows(axes: Axes, names: Sequence[str]) -> None:
+    axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
+    name_rows(axes, names)
+    axes.set_ylim(-0.5, len(names) - 0.5)
+
+
+def _interval(axes: Axes, value: Interval, height: float, name: str, colour: str, inside: str = "") -> None:
+    """Draw a log ratio in per cent."""
+    estimate, low, high = 100 * (np.exp(value) - 1)
+    axes.plot([low, high], [height, height], color=colour, linewidth=1.4)
+    (dot,) = axes.plot(estimate, height, "o", color=colour, mfc=inside or colour, markersize=4)
+    tell(dot, [Told(name, said(value))])
 
 
 def _widths(axes: Axes, found: list[Comparison]) -> None:
     axes.set(xscale="log", yscale="log", xlabel="time spent, s", ylabel="half of the interval, %")
     for way, colour in COLOURS.items():
         for one in found:
-            table = one.half_widths(way)
-            (line,) = axes.plot(table["seconds"], 100 * table["half"], color=colour, linewidth=0.9)
-            tell(line, [_told(one, way, row) for _, row in table.iterrows()])
+            widths = one.half_widths(way)
+            (line,) = axes.plot(widths["seconds"], 100 * widths["half"], color=colour, linewidth=0.9)
+            spent = [f"{number(seconds)} s" for seconds in widths["seconds"]]
+            half = [f"{number(100 * part)} %" for part in widths["half"]]
+            tell(line, [Told(f"{one.name}, {way}", *both) for both in zip(spent, half, strict=True)])
     for axis in (axes.xaxis, axes.yaxis):
         logarithmic_ticks(axis)
-
-
-def _told(one: Comparison, way: str, row: pd.Series) -> Told:
-    return Told(f"{one.name}, {way}", f"{number(row['seconds'])} s", f"{number(100 * row['half'])} %")
 
 
 def _table(found: list[Comparison]) -> Table:
     rows = [
         [
-            Cell(one.name),
-            *(Cell(said(one.log_ratio(way))) for way in (TURNS, APART)),
-            Cell(said(one.bias)),
-            Cell(str(len(one.pairs))),
-            *(Cell(number(one.seconds[way])) for way in (TURNS, APART)),
+            one.name, *(said(one.log_ratio(way)) for way in (TURNS, APART)), said(one.bias),
+            str(len(one.pairs)), *(number(one.seconds[way]) for way in (TURNS, APART)),
         ]
         for one in found
-    ]
-    columns = [
-        "comparison", TURNS, APART, "by turns against apart", "blocks",
-        f"s a block, {TURNS}", f"s a block, {APART}",
     ]  # fmt: skip
-    return Table("The same comparisons both ways, with 95 % intervals over the blocks", columns, rows)
+    spent = (f"s a block, {way}" for way in (TURNS, APART))
+    columns = ["comparison", TURNS, APART, "by turns against apart", "blocks", *spent]
+    return table_of("The same comparisons both ways, with 95 % intervals over the blocks", columns, rows)
 
 
 def pauses(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -111,38 +105,24 @@ def pauses(data: Data, experiment: str, subject: str) -> Drawing | None:
 
 
 def _pause_ratios(axes: Axes, found: pd.DataFrame, programs: list[str]) -> None:
-    axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
+    _rows(axes, programs[::-1])
     for height, program in enumerate(reversed(programs)):
         for aside, (label, name) in zip((0.15, -0.15), STOPPED_BY.items(), strict=True):
-            colour = _COLOUR_OF_STOP[label]
             for row in found[(found["series"] == program) & (found["label"] == label)].itertuples():
-                value = row.ratio
-                ends = [100 * (np.exp(end) - 1) for end in (value.low, value.high, value.estimate)]
-                axes.plot(ends[:2], [height + aside] * 2, color=colour, linewidth=1.4)
-                inside = colour if row.sliced else "white"
-                (dot,) = axes.plot(ends[2], height + aside, "o", color=colour, mfc=inside, markersize=4)
-                tell(dot, [Told(f"{program}, {name}", said(value))])
-    axes.set_yticks(range(len(programs)), list(reversed(programs)))
-    axes.tick_params(axis="y", length=0)
-    axes.set(ylim=(-0.5, len(programs) - 0.5), xlabel="time in slices against time without a pause, %")
+                inside, colour = "" if row.sliced else "white", _COLOUR_OF_STOP[label]
+                _interval(axes, row.ratio, height + aside, f"{program}, {name}", colour, inside)
+    axes.set_xlabel("time in slices against time without a pause, %")
 
 
 def _pause_table(found: pd.DataFrame, programs: list[str]) -> Table:
     rows = []
     for program in programs:
         of_it = found[found["series"] == program].set_index("label")
-        rows.append(
-            [
-                Cell(program),
-                Cell(number(of_it["seconds"].iloc[0])),
-                *(Cell(_pause_told(of_it, label)) for label in STOPPED_BY),
-                Cell(str(of_it["blocks"].max())),
-            ]
-        )
+        ratios = [_pause_told(of_it, label) for label in STOPPED_BY]
+        rows.append([program, number(of_it["seconds"].iloc[0]), *ratios, str(of_it["blocks"].max())])
     columns = ["program", "s without a pause", *STOPPED_BY.values(), "blocks"]
-    return Table(
-        "Time in slices against time without a pause, with 95 % intervals over the blocks", columns, rows
-    )
+    title = "Time in slices against time without a pause, with 95 % intervals over the blocks"
+    return table_of(title, columns, rows)
 
 
 def _pause_told(of_it: pd.DataFrame, label: str) -> str:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from analysis.records.tables import Named, machine_of
+from analysis.records.tables import Named, place
 
 NUMBERS = ["error_below", "promised", "delivered", "seconds", "trial_seconds", "methods", "ratio"]
 COLUMNS = [
@@ -22,10 +22,7 @@ def table(records: Named) -> pd.DataFrame:
     """
     rows = [
         {
-            "file": name,
-            "machine": machine_of(record["provenance"]),
-            "experiment": record["tags"].get("experiment"),
-            **{column: str(record["tags"].get(column, "")) for column in ("scale", "scene_name", "session")},
+            **place(name, record),
             "particles": record["scene"]["particles"],
             "threads": record["axes"]["threads"],
             **_row(row),

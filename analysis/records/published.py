@@ -8,6 +8,9 @@ from typing import Any
 
 import pandas as pd
 
+from analysis.statistics.pairs import log_ratios
+from analysis.statistics.verdicts import judge_one
+
 PUBLISHED_FILE = Path(__file__).parent / "published.toml"
 
 
@@ -31,6 +34,21 @@ class Published:
         """Return the rows of one experiment, in the order of the file; empty if the study has none."""
         return self.times[self.times["experiment"] == name]
 
+    def curve(self, experiment: str) -> pd.DataFrame:
+        """Return a sweep in the shape of records: a process a point, all in one block; empty without one."""
+        times = self.experiment(experiment)
+        columns = {"file": times["x"].astype(str), "steps_seconds": times["seconds"]}
+        return times.assign(**columns, node="published", block=0, session="")
+
+    def ratio(self, experiment: str, candidate: str, reference: str) -> dict[str, Any] | None:
+        """Return the row of `judge_one` of two series, paired by repetition; None without both."""
+        times = self.experiment(experiment)
+        times = times.assign(node="published", block=times["x"], session="")
+        first, second = (times[times["series"] == series] for series in (reference, candidate))
+        if first.empty or second.empty:
+            return None
+        return judge_one(log_ratios(first, second, value="seconds")["log_ratio"])
+
 
 def load() -> Published:
     """Read the published measurements."""
@@ -40,18 +58,13 @@ def load() -> Published:
     degenerate = {
         name: table["degenerate"] for name, table in content["experiments"].items() if "degenerate" in table
     }
-    return Published(pd.DataFrame(times), machines, degenerate)
+    columns = ["experiment", "series", "x_name", "x", "seconds"]
+    return Published(pd.DataFrame(times, columns=columns), machines, degenerate)
 
 
-def _rows(experiment: str, table: Mapping[str, Any]) -> list[dict[str, Any]]:
+def _rows(experiment: str, table: Mapping[str, Any]) -> list[tuple[str, str, str, float, float]]:
     return [
-        {
-            "experiment": experiment,
-            "series": series,
-            "x_name": table["x_name"],
-            "x": float(x),
-            "seconds": float(seconds),
-        }
+        (experiment, series, table["x_name"], float(x), float(seconds))
         for series, points in table["series"].items()
         for x, seconds in zip(points["x"], points["seconds"], strict=True)
     ]

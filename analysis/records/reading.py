@@ -4,7 +4,7 @@ import hashlib
 import json
 import sys
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -22,15 +22,18 @@ NUMERIC_TAGS = ["x", "block"]
 TEXT_TAGS = ["experiment"]
 
 
-@dataclass(frozen=True)
-class Records:
-    """One results folder as tables; `analysis.records.tables` names the columns of each.
+MEASURED = ["runs", "times", "trajectory", "phases", "threads", "counters"]
+"""The tables of what was measured of a variant or a program, each made by the function of that name."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Tables:
+    """Records as tables, each with the columns that the function of its name tells.
 
     `runs` has a row per record, `times` per repetition of a timed run, `trajectory` per comparison with the
     reference, `phases` per phase and `threads` per phase and thread of a profiled run, `counters` per counter
     and thread, `limits` per rate that a machine reached at most, `outside` per run of a general engine
-    beside the variants, `failures` per failed point.
-    `skipped` holds one line for every file that could not be counted.
+    beside the variants, `promises` per bound of an error, `failures` per failed point.
     """
 
     runs: pd.DataFrame
@@ -43,7 +46,13 @@ class Records:
     outside: pd.DataFrame
     promises: pd.DataFrame
     failures: pd.DataFrame
-    skipped: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True, eq=False)
+class Records(Tables):
+    """One results folder as tables; `skipped` holds one line for every file that could not be counted."""
+
+    skipped: list[str]
 
 
 def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
@@ -61,28 +70,20 @@ def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
         for record in _readable(results, results / folder, folder == "failures", skipped)
     ]
     for line in skipped:
-        (warn or _warn_on_standard_error)(line)
+        warn(line) if warn else print(line, file=sys.stderr)
     measured, limits, outside, promised, failed = (
         [(path, record) for path, record in records if record["kind"] in kinds]
         for kinds in (("bench", "profile", "process"), ("limits",), ("outside",), ("promises",), ("failure",))
     )
+    placed = [(tables.context(name, record), record) for name, record in measured]
     return Records(
-        runs=tables.runs(measured),
-        times=tables.times(measured),
-        trajectory=tables.trajectory(measured),
-        phases=tables.phases(measured),
-        threads=tables.threads(measured),
-        counters=tables.counters(measured),
+        **{name: getattr(tables, name)(placed) for name in MEASURED},
         limits=tables.limits(limits),
         outside=tables.outside(outside),
         promises=promises.table(promised),
         failures=tables.failures(failed),
         skipped=skipped,
     )
-
-
-def _warn_on_standard_error(line: str) -> None:
-    print(line, file=sys.stderr)
 
 
 def _readable(

@@ -2,40 +2,31 @@
 no series with two programs.
 """
 
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 import pandas as pd
 
-from analysis.records.reading import Records
+from analysis.records.reading import MEASURED, Records, Tables
 
 SCALES = ["paper", "quick"]
-TABLES = ["runs", "times", "trajectory", "phases", "threads", "counters"]
 
 CHECK_FAILED = 2
 """The program's exit code when a result fails its check."""
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
-    """The tables of one machine, source revision and scale; nothing here may be merged with another study."""
+class Study(Tables):
+    """The tables of one machine, source revision and scale; nothing here may be merged with another study.
+
+    `limits` are of the machine, whatever the revision and the scale, `outside` and `promises` of the machine
+    and the scale. `program` are the hashes of its programs, where another study has others on the machine.
+    """
 
     machine: str
     revision: str
     scale: str
     program: str
-    """The hashes of its programs, where another study has others on the same machine."""
-    runs: pd.DataFrame
-    times: pd.DataFrame
-    trajectory: pd.DataFrame
-    phases: pd.DataFrame
-    threads: pd.DataFrame
-    counters: pd.DataFrame
-    failures: pd.DataFrame
-    limits: pd.DataFrame
-    """What the machine can do at most, whatever the revision and the scale."""
-    outside: pd.DataFrame
-    promises: pd.DataFrame
-    """Runs of a general engine on the machine at that scale, whatever the revision."""
 
     @property
     def name(self) -> str:
@@ -54,6 +45,11 @@ class Study:
         """Hardware threads of the machine."""
         return int(self.runs["hardware_threads"].iloc[0])
 
+    def of(self, experiment: str, *names: str) -> Iterator[pd.DataFrame]:
+        """Yield the rows of one experiment in each of the tables named."""
+        tables = (getattr(self, name) for name in names)
+        return (table[table["experiment"] == experiment] for table in tables)
+
     def times_of(self, experiment: str) -> pd.DataFrame:
         """Return the timed repetitions of one experiment."""
         return self.times[self.times["experiment"] == experiment]
@@ -66,11 +62,8 @@ class Study:
         """Return how many results failed their check, in one experiment or in all: records that say so, and
         points without one for that reason.
         """
-        tables = (
-            table if experiment is None else table[table["experiment"] == experiment]
-            for table in (self.runs, self.failures)
-        )
-        runs, failures = tables
+        both = (self.runs, self.failures)
+        runs, failures = both if experiment is None else self.of(experiment, "runs", "failures")
         return int((runs["check_verdict"] == "failed").sum() + (failures["exit_code"] == CHECK_FAILED).sum())
 
 
@@ -85,24 +78,19 @@ def split(records: Records) -> list[Study]:
     keys = ["machine", "revision", "scale"]
     studies = [
         Study(
-            machine,
-            revision,
-            scale,
-            program,
-            **_parts(records, runs),
-            failures=_failures(records, machine, scale, runs),
-            limits=records.limits[records.limits["machine"] == machine],
-            outside=records.outside[
-                (records.outside["machine"] == machine) & (records.outside["scale"] == scale)
-            ],
-            promises=records.promises[
-                (records.promises["machine"] == machine) & (records.promises["scale"] == scale)
-            ],
+            **dict(zip(keys, key, strict=True)),
+            program=program,
+            **{name: _part(getattr(records, name), file=runs["file"]) for name in MEASURED},
+            failures=_failures(records, key[0], key[2], runs),
+            limits=_part(records.limits, machine=key[:1]),
+            outside=_part(records.outside, machine=key[:1], scale=key[2:]),
+            promises=_part(records.promises, machine=key[:1], scale=key[2:]),
         )
-        for (machine, revision, scale), alike in records.runs.groupby(keys)
+        for key, alike in records.runs.groupby(keys)
         for program, runs in _by_program(alike)
     ]
-    return sorted(studies, key=lambda study: (_scale_order(study.scale), -len(study.runs)))
+    order = {scale: place for place, scale in enumerate(SCALES)}
+    return sorted(studies, key=lambda study: (order.get(study.scale, len(SCALES)), -len(study.runs)))
 
 
 def _by_program(runs: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
@@ -118,21 +106,17 @@ def _by_program(runs: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     return [(", ".join(sorted(part["binary_sha256"].str[:8].unique())), part) for part in parts]
 
 
-def _scale_order(scale: str) -> int:
-    return SCALES.index(scale) if scale in SCALES else len(SCALES)
-
-
 def _failures(records: Records, machine: str, scale: str, runs: pd.DataFrame) -> pd.DataFrame:
     table = records.failures[records.failures["scale"] == scale]
     owner, program = table["owner"], table["program_sha256"]
     here = (owner == machine.partition(": ")[0]) | (owner.isna() & table["site"].isin(runs["site"]))
-    alike = records.runs[(records.runs["machine"] == machine) & (records.runs["scale"] == scale)]
+    alike = _part(records.runs, machine=[machine], scale=[scale])
     nowhere = program.isna() | ~program.isin(alike["binary_sha256"])
     return table[here & (nowhere | program.isin(runs["binary_sha256"]))].reset_index(drop=True)
 
 
-def _parts(records: Records, runs: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    tables = {name: getattr(records, name) for name in TABLES}
-    return {
-        name: table[table["file"].isin(runs["file"])].reset_index(drop=True) for name, table in tables.items()
-    }
+def _part(table: pd.DataFrame, **values: Collection[str]) -> pd.DataFrame:
+    """Return the rows whose columns have one of these values each."""
+    for column, chosen in values.items():
+        table = table[table[column].isin(chosen)]
+    return table.reset_index(drop=True)

@@ -2,13 +2,17 @@
 
 import re
 import shlex
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import pandas as pd
 
 from analysis.statistics.returning import excess
 
-Named = list[tuple[str, dict[str, Any]]]
+Record = dict[str, Any]
+Named = list[tuple[str, Record]]
+Placed = list[tuple[dict[str, Any], Record]]
+"""Records with their context."""
 
 COUNTS = "counts"
 """The kind of questions whose runs are counted alone: nothing was warmed up, their times are not compared."""
@@ -24,9 +28,8 @@ AXES = [
 ]  # fmt: skip
 SCENE = ["particles", "side", "radius", "steps", "area_fraction"]
 PROVENANCE = [
-    "host", "cpu_model", "cores", "hardware_threads", "affinity", "affinity_count", "oversubscribed",
-    "memory_bytes", "virtualised", "governor", "operating_system", "compiler", "compiler_flags",
-    "build_type", "commit", "dirty", "diff_sha256", "binary_sha256",
+    "cpu_model", "cores", "hardware_threads", "affinity", "memory_bytes", "virtualised", "governor",
+    "operating_system", "compiler", "compiler_flags", "build_type", "binary_sha256",
 ]  # fmt: skip
 LATER_AXES = {
     "storage": "numbered", "box_side": "wide", "overlaps": "lists", "search": "exact", "worklist": "all",
@@ -36,7 +39,7 @@ LATER_AXES = {
 COLUMN_OF = {"overlaps": "overlaps_kept"}
 """The columns of axes whose name in the record is that of a count, too."""
 LATER_COLUMNS = [COLUMN_OF.get(name, name) for name in LATER_AXES]
-WORK = ["overlaps", "pair_resolves", "wall_resolves", "pair_attempts", "sweeps"]
+WORK = ["overlaps", "pair_resolves", "pair_attempts", "sweeps"]
 """Totals over the S steps; `pair_attempts` is NaN where they were not counted."""
 ERRORS = [
     "energy_drift", "discs_outside", "unresolved_pairs", "momentum_drift", "penetration_worst",
@@ -54,15 +57,15 @@ OUTSIDE = [
 NO_SCENE: dict[str, Any] = {"name": "", "sha256": "", **dict.fromkeys(SCENE)}
 """Of a program that is about something else than discs."""
 _OLD_REPLICATE = re.compile(r"(?:(.*) )?replicate (\d+)")
-IDENTITY = ["compiler_family", "node", "machine", "revision"]
 CONTEXT = [
     "file", "kind", "question_kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene",
     "scene_sha256", *SCENE, *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment",
-    "warm_ups", "in_turns", "time_from", "undisturbed", "command", *IDENTITY,
+    "warm_ups", "in_turns", "time_from", "undisturbed", "command", "compiler_family", "node", "machine",
+    "revision",
 ]  # fmt: skip
 
 
-def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
+def context(name: str, record: Record) -> dict[str, Any]:
     """Return where a record stands: its tags, axes, scene and origin, one column each.
 
     `machine` is what may be compared as one machine: the host with its CPU model or, under Slurm, the
@@ -104,6 +107,17 @@ def context(name: str, record: dict[str, Any]) -> dict[str, Any]:
     }
 
 
+def place(name: str, record: Record) -> dict[str, Any]:
+    """Return where a record stands that is of no variant or program: a few columns of `context`."""
+    tags = record["tags"]
+    return {
+        "file": name,
+        "machine": machine_of(record["provenance"]),
+        "experiment": tags.get("experiment"),
+        **{column: str(tags.get(column, "")) for column in ("scale", "scene_name", "session")},
+    }
+
+
 def _replicate(tags: dict[str, Any]) -> dict[str, Any]:
     """Return the label and the number of the replicate, which was a word of the label before it was a tag."""
     label = tags.get("label")
@@ -133,99 +147,89 @@ def _compiler_family(compiler: str) -> str:
     return next(iter(compiler.split()), "unknown")
 
 
-def runs(records: Named) -> pd.DataFrame:
+def runs(records: Placed) -> pd.DataFrame:
     """One row a record: context, work totals over the S steps, the check's verdict, and the error measures,
     NaN for those that were not asked for or not possible; `has_errors` tells who was asked.
     """
     rows = [
         {
-            **context(name, record),
+            **context,
             **{column: record.get("work", {}).get(column) for column in WORK},
             **{column: (record.get("errors") or {}).get(column) for column in ERRORS},
-            "has_errors": _has_errors(record),
+            "has_errors": "trajectory" in (record.get("errors") or {}),
             "check_verdict": record["check"]["verdict"],
             "check_scope": record["check"]["scope"],
             "check_reason": record["check"]["reason"],
             "repetitions": len(record["repetitions"]),
-            "parse_seconds": record.get("parse_seconds"),
             "process_seconds": record["process_seconds"],
-            "profile_cost": record.get("profile", {}).get("cost"),
         }
-        for name, record in records
+        for context, record in records
     ]
-    extra = [
-        "has_errors", "check_verdict", "check_scope", "check_reason", "repetitions", "parse_seconds",
-        "process_seconds", "profile_cost",
-    ]  # fmt: skip
-    return _table(rows, [*WORK, *ERRORS, *extra]).astype(dict.fromkeys([*ERRORS, "pair_attempts"], float))
+    checks = ["has_errors", "check_verdict", "check_scope", "check_reason", "repetitions", "process_seconds"]
+    table = pd.DataFrame(rows, columns=[*CONTEXT, *WORK, *ERRORS, *checks])
+    return table.astype(dict.fromkeys([*ERRORS, "pair_attempts"], float))
 
 
-def trajectory(records: Named) -> pd.DataFrame:
+def _table(records: Placed, parts: Callable[[Record], Iterable[Record]], *columns: str) -> pd.DataFrame:
+    """One row a part of a record: context, and these columns of the part."""
+    rows = [{**context, **part} for context, record in records for part in parts(record)]
+    return pd.DataFrame(rows, columns=[*CONTEXT, *columns])
+
+
+def trajectory(records: Placed) -> pd.DataFrame:
     """One row a time at which a run was compared with the exact reference: context, `time`, `rms_distance`
     (in units of the radius).
     """
-    rows = [
-        {**context(name, record), **row}
-        for name, record in records
-        if _has_errors(record)
-        for row in record["errors"]["trajectory"] or []
-    ]
-    return _table(rows, ["time", "rms_distance"]).astype({"rms_distance": float})
+    table = _table(
+        records, lambda record: (record.get("errors") or {}).get("trajectory") or [], "time", "rms_distance"
+    )
+    return table.astype({"rms_distance": float})
 
 
-def _has_errors(record: dict[str, Any]) -> bool:
-    return "trajectory" in (record.get("errors") or {})
-
-
-def times(records: Named) -> pd.DataFrame:
-    """One row a repetition of every timed run: context, `repetition`, `steps_seconds`, `cpu_seconds`, and
-    `lost_by_turns`, the share of the process's time that coming back to cold caches took, NaN where not
-    known. Of a whole process these are its time, as seen from outside or as it says itself, and its CPU time.
+def times(records: Placed) -> pd.DataFrame:
+    """One row a repetition of every timed run: context, `repetition`, `steps_seconds`, and `lost_by_turns`,
+    the share of the process's time that coming back to cold caches took, NaN where not known. Of a whole
+    process the seconds are its own, as seen from outside or as it says itself.
     """
-    rows = [
-        {
-            **context(name, record),
-            "repetition": number,
-            "lost_by_turns": _lost_by_turns(record) if number == 0 else None,
-            **repetition,
-        }
-        for name, record in records
-        if record["kind"] in ("bench", "process")
-        for number, repetition in enumerate(record["repetitions"])
-    ]
-    table = _table(rows, ["repetition", "steps_seconds", "cpu_seconds", "lost_by_turns"])
-    return table.astype({"lost_by_turns": float})
+
+    def timed(record: Record) -> Iterable[Record]:
+        if record["kind"] not in ("bench", "process"):
+            return
+        for number, repetition in enumerate(record["repetitions"]):
+            lost = _lost_by_turns(record) if number == 0 else None
+            yield {"repetition": number, "lost_by_turns": lost, **repetition}
+
+    columns = ("repetition", "steps_seconds", "lost_by_turns")
+    return _table(records, timed, *columns).astype({"lost_by_turns": float})
 
 
-def _lost_by_turns(record: dict[str, Any]) -> float | None:
+def _lost_by_turns(record: Record) -> float | None:
     turns = record.get("turns") or {}
     if "returning_seconds" not in turns:
         return None
     steps, rounds = record["scene"]["steps"], turns["rounds"]
     found = excess(turns["seconds"], turns["returning_seconds"], steps, rounds)
-    return found.share if found is not None else None
+    return found.share if found else None
 
 
-def phases(records: Named) -> pd.DataFrame:
+def phases(records: Placed) -> pd.DataFrame:
     """One row a phase of every profiled run: context, `phase`, `wall_seconds`, `serial_seconds`."""
-    return _table(_profile_rows(records, "phases"), ["phase", "wall_seconds", "serial_seconds"])
+    return _table(records, _profiled("phases"), "phase", "wall_seconds", "serial_seconds")
 
 
-def threads(records: Named) -> pd.DataFrame:
-    """One row a phase and thread of every profiled run: context, seconds busy and waiting, iterations,
-    chunks.
-    """
-    columns = ["phase", "thread", "busy_seconds", "waiting_seconds", "iterations", "chunks", "loops"]
-    return _table(_profile_rows(records, "threads"), columns)
+def threads(records: Placed) -> pd.DataFrame:
+    """One row a phase and thread of every profiled run: context, seconds busy and waiting."""
+    return _table(records, _profiled("threads"), "phase", "thread", "busy_seconds", "waiting_seconds")
 
 
-def counters(records: Named) -> pd.DataFrame:
-    """One row a counter and thread of every profiled run: context, `name`, `value`, `source`, `reason`,
-    `remedy`.
-    """
-    return _table(
-        _profile_rows(records, "counters"), ["name", "thread", "value", "source", "reason", "remedy"]
-    )
+def counters(records: Placed) -> pd.DataFrame:
+    """One row a counter and thread of every profiled run: context, `name`, `value` or `reason`, `remedy`."""
+    columns = ("name", "thread", "value", "source", "reason", "remedy")
+    return _table(records, _profiled("counters"), *columns)
+
+
+def _profiled(part: str) -> Callable[[Record], Iterable[Record]]:
+    return lambda record: record.get("profile", {}).get(part, []) if record["kind"] == "profile" else []
 
 
 def limits(records: Named) -> pd.DataFrame:
@@ -256,10 +260,8 @@ def outside(records: Named) -> pd.DataFrame:
     """
     rows = [
         {
-            "file": name,
-            "machine": machine_of(record["provenance"]),
-            **{column: record["tags"].get(column) for column in ("experiment", "block")},
-            **{column: str(record["tags"].get(column, "")) for column in ("scale", "scene_name", "session")},
+            **place(name, record),
+            "block": record["tags"].get("block"),
             "scene_sha256": record["scene"]["sha256"],
             "substeps": record["axes"]["substeps"],
             "engine": f"{record['engine']['name']} {record['engine']['version']}",
@@ -269,11 +271,8 @@ def outside(records: Named) -> pd.DataFrame:
         for name, record in records
         for run in record["repetitions"]
     ]
-    return (
-        pd.DataFrame(rows, columns=OUTSIDE)
-        .astype({"energy_drift": float})
-        .assign(energy_drift=lambda table: table["energy_drift"].abs())
-    )
+    table = pd.DataFrame(rows, columns=OUTSIDE)
+    return table.assign(energy_drift=table["energy_drift"].astype(float).abs())
 
 
 def failures(records: Named) -> pd.DataFrame:
@@ -295,16 +294,3 @@ def failures(records: Named) -> pd.DataFrame:
     ]
     columns = ["command", "exit_code", "reason", "recorded_at", "owner", "program_sha256"]
     return pd.DataFrame(rows, columns=["file", *TAGS, *columns])
-
-
-def _profile_rows(records: Named, part: str) -> list[dict[str, Any]]:
-    return [
-        {**context(name, record), **row}
-        for name, record in records
-        if record["kind"] == "profile" and "profile" in record
-        for row in record["profile"][part]
-    ]
-
-
-def _table(rows: list[dict[str, Any]], columns: list[str]) -> pd.DataFrame:
-    return pd.DataFrame(rows, columns=[*CONTEXT, *columns])

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from analysis.support.values import Floats
 from support.errors import InputError
-
-Floats = NDArray[np.float64]
 
 COLUMNS = "step i x y vx vy"
 

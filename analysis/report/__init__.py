@@ -35,19 +35,32 @@ def write(results: Path, asked: Sequence[str] = (), *, pdf: bool = True) -> list
         if name not in present:
             print(f"study: found no records of {name}, which does not lead the report", file=sys.stderr)
     gathered = content(records, results, asked, formats=SHOWN if pdf else SHOWN[:1])
+    if not pdf:
+        return [_write_html_alone(gathered, results)]
+    return [_write_html(_page(gathered), results), *_write_pdf(gathered, results)]
+
+
+def _write_html(page: str, results: Path) -> Path:
     html = results / "report.html"
     with replacing(html) as part:
-        part.write_text(_page(gathered), encoding="utf-8")
-    if not pdf:
-        (results / "report.pdf").unlink(missing_ok=True)
-        return [html]
-    return [html, *_write_pdf(gathered, results)]
+        part.write_text(page, encoding="utf-8")
+    return html
+
+
+def _write_html_alone(gathered: dict[str, Any], results: Path, goes_on: str = "") -> Path:
+    html = _write_html(_page(gathered, goes_on=goes_on), results)
+    (results / "report.pdf").unlink(missing_ok=True)
+    return html
 
 
 def _write_pdf(gathered: dict[str, Any], results: Path) -> list[Path]:
     pdf = results / "report.pdf"
     try:
-        document = _pdf(_page(gathered, images=True), results)
+        # Imported late, and in silence: without Pango the import fails, and prints a banner first.
+        with redirect_stdout(StringIO()):
+            from weasyprint import HTML
+        base = f"{results.resolve().as_uri()}/"
+        document = HTML(string=_page(gathered, images=True), base_url=base).write_pdf()
     except (ImportError, OSError) as error:
         if getattr(error, "errno", None) is not None:
             raise  # of the disk: that a library cannot be loaded has no number
@@ -64,21 +77,8 @@ def write_meanwhile(results: Path, asked: Sequence[str], how_far: str) -> Path:
     """Write `report.html` alone, with what a study that goes on has so far, and say when and `how_far` it
     was; return it. An earlier PDF would be outdated, and is removed.
     """
-    gathered = content(load(results), results, asked, formats=("svg",))
-    html = results / "report.html"
-    with replacing(html) as part:
-        moment = f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC"
-        part.write_text(_page(gathered, goes_on=f"{moment}, {how_far}"), encoding="utf-8")
-    (results / "report.pdf").unlink(missing_ok=True)
-    return html
-
-
-def _pdf(page: str, folder: Path) -> bytes:
-    # Imported late, and in silence: without Pango the import fails, and prints a banner first.
-    with redirect_stdout(StringIO()):
-        from weasyprint import HTML
-    data: bytes = HTML(string=page, base_url=f"{folder.resolve().as_uri()}/").write_pdf()
-    return data
+    gathered = content(load(results), results, asked, formats=SHOWN[:1])
+    return _write_html_alone(gathered, results, f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC, {how_far}")
 
 
 def render(results: Path, asked: Sequence[str] = ()) -> str:

@@ -11,7 +11,7 @@ from analysis import claims
 from analysis.claims import missing
 from analysis.claims.entry import CLAIMS_FILE, questions_folder
 from analysis.derived.ladder import headlines
-from analysis.figures import FIGURES, Drawn, experiments
+from analysis.figures import Drawn, titles
 from analysis.figures.studies import draw_study
 from analysis.figures.style import FORMATS
 from analysis.records import published
@@ -128,9 +128,7 @@ def control_sentence(study: Study) -> str:
 
 
 def _speeds(processes: pd.DataFrame) -> str:
-    """Say that the machine has two speeds, or one that shifts, if the control's times show it: no count of
-    bursts does.
-    """
+    """Say that the machine has two speeds, or one that shifts, if the control's times show it."""
     times = in_order(processes)
     found = levels(times)
     if found is not None:
@@ -191,6 +189,5 @@ def _scale(runs: pd.DataFrame) -> str:
 
 def _unmeasured(runs: pd.DataFrame) -> list[dict[str, str]]:
     """Return the name and the title of each published question without any record."""
-    titles = {entry.experiment: entry.title for entry in reversed(FIGURES)}
     present = set(runs["experiment"])
-    return [{"name": name, "title": titles[name]} for name in experiments() if name not in present]
+    return [{"name": name, "title": title} for name, title in titles().items() if name not in present]

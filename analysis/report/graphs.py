@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from analysis.figures import FIGURES
+from analysis.figures import titles
 
 GRAPHS_FILE = Path(__file__).parent / "graphs.toml"
 
@@ -34,17 +34,17 @@ def appendix() -> list[str]:
 
 
 def rows(anchors: Mapping[str, str]) -> list[dict[str, Any]]:
-    """Return a row a graph for the report: its questions with their titles and, where `anchors` has one, the
-    place of the figure.
-    """
-    titles = {entry.experiment: entry.title for entry in reversed(FIGURES)}
+    """Return a row a graph for the report, its questions with their titles and, if any, their `anchors`."""
+    known = titles()
+
+    def question(name: str) -> dict[str, Any]:
+        return {"name": name, "title": known[name], "anchor": anchors.get(name)}
+
     return [
         {
             "name": graph.name,
             "showed": graph.showed,
-            "questions": [
-                {"name": name, "title": titles[name], "anchor": anchors.get(name)} for name in graph.questions
-            ],
+            "questions": [question(name) for name in graph.questions],
         }
         for graph in load()
     ]

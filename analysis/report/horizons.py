@@ -1,7 +1,5 @@
 """How far single paths can be compared with the exact ones before chaos ends it."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -27,17 +25,14 @@ def horizons(study: Study, experiment: str) -> str:
 
 
 def _horizon(runs: pd.DataFrame) -> str:
-    coarse, fine = (
-        runs.loc[runs["substeps"] == runs["substeps"].agg(end), "time_to_tenth_radius"]
-        for end in ("min", "max")
-    )
-    steps: Mapping[str, float] = {"min": runs["substeps"].min(), "max": runs["substeps"].max()}
+    least, most = runs["substeps"].min(), runs["substeps"].max()
+    coarse, fine = (runs.loc[runs["substeps"] == end, "time_to_tenth_radius"] for end in (least, most))
     rate = runs["collision_rate_reference"].median()
     collisions = "" if np.isnan(rate) else f" ({number(rate, 2)} collisions per disc and unit of time)"
     first = _when(coarse)
-    if steps["min"] == steps["max"]:
-        return f"{first} with {count(int(steps['min']), 'substep')}{collisions}"
-    return f"{first} with {steps['min']:g} and {_when(fine)} with {steps['max']:g} substeps{collisions}"
+    if least == most:
+        return f"{first} with {count(int(least), 'substep')}{collisions}"
+    return f"{first} with {least:g} and {_when(fine)} with {most:g} substeps{collisions}"
 
 
 def _when(times: pd.Series) -> str:

@@ -81,18 +81,13 @@ def _figure(figure: Drawn) -> dict[str, Any]:
         "name": figure.files[0].stem,
         "title": figure.entry.title,
         "caption": figure.caption,
-        "verdicts": _verdicts(figure),
+        "verdicts": [
+            {"name": row["name"], "change": change(row), "blocks": blocks(row), "verdict": row["verdict"]}
+            for row in ([] if figure.verdicts is None else figure.verdicts.to_dict("records"))
+        ],
         "tables": figure.tables,
         "svg": Markup(inline(figure.files[0].read_text(encoding="utf-8"), figure.files[0].stem)),
     }
-
-
-def _verdicts(figure: Drawn) -> list[dict[str, str]]:
-    rows = [] if figure.verdicts is None else figure.verdicts.to_dict("records")
-    return [
-        {"name": row["name"], "change": change(row), "blocks": blocks(row), "verdict": row["verdict"]}
-        for row in rows
-    ]
 
 
 def inline(svg: str, name: str) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.claims.entry import setting
-from analysis.figures import experiments
+from analysis.figures import titles
 from analysis.figures.captions import by_series
 from analysis.records.reading import Records
 from analysis.records.studies import Study
@@ -19,9 +19,7 @@ UNTOLD = "not told by the system"
 
 
 def machine(study: Study) -> list[tuple[str, str]]:
-    """Return what is known of the machine and the programs, as names and values; several values are all
-    named.
-    """
+    """Return what is known of the machine and the programs, as names and (all) values."""
     runs = study.runs
     memory = runs["memory_bytes"].iloc[0] / 2**30
     virtual = {True: "yes (shares its hardware with others)", False: "no"}[bool(runs["virtualised"].iloc[0])]
@@ -62,10 +60,8 @@ def in_the_clock(study: Study) -> str:
 
 
 def _values(column: pd.Series) -> str:
-    values = sorted(
-        {exact(value) if isinstance(value, float) else str(value) for value in column.dropna()} - {""}
-    )
-    return "; ".join(values) if values else UNTOLD
+    values = {exact(one) if isinstance(one, float) else str(one) for one in column.dropna().unique()} - {""}
+    return "; ".join(sorted(values)) or UNTOLD
 
 
 def checks(study: Study) -> str:
@@ -130,7 +126,7 @@ def _study(records: Records, scale: str) -> str:
     """
     tables = (records.runs, records.failures)
     present = {name for table in tables for name in table.loc[table["scale"] == scale, "experiment"]}
-    if present.issuperset(experiments()):
+    if present.issuperset(titles()):
         return ""
     asked = sorted(present - {CONTROL}) or [CONTROL]
     return f" STUDY={','.join(asked)}"
@@ -152,14 +148,8 @@ def _command(row: dict[str, Any]) -> str:
     if row["kind"] == "process":
         return f"{row['environment']} {row['command']}".strip()
     words = [f"build/{row['compiler_family']}/carom", row["kind"], row["scene"], "--variant", row["variant"]]
-    words += [
-        "--threads",
-        str(row["threads"]),
-        "--substeps",
-        str(row["substeps"]),
-        "--tolerance",
-        row["tolerance"],
-    ]
+    for option in ("threads", "substeps", "tolerance"):
+        words += [f"--{option}", str(row[option])]
     for option in ("find_chunk", "resolve_chunk"):
         if not pd.isna(row[option]):
             words += [f"--{option.replace('_', '-')}", f"{row[option]:g}"]

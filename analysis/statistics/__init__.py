@@ -1,3 +1,1 @@
-"""Estimates with intervals, verdicts against a margin, trends, scalability and noise; tables in, tables
-out.
-"""
+"""Estimates with intervals, verdicts against a margin, trends, scalability, noise; tables in, tables out."""

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy import stats
 
-Floats = NDArray[np.float64]
+from analysis.support.values import Floats
 
 REPLICATES = 2000
 SEED = 20240229
@@ -31,18 +30,8 @@ def summarise(
         padded = _padded(group, value)
         medians = _row_medians(padded.reshape(-1, padded.shape[2]))
         median, processes = float(_row_medians(medians[np.newaxis])[0]), group["file"].nunique()
-        low, high = _widened(padded, median, processes, level)
-        rows.append(
-            {
-                **dict(zip(by, key, strict=True)),
-                "median": median,
-                "low": low,
-                "high": high,
-                "sessions": padded.shape[0],
-                "processes": processes,
-                "samples": len(group),
-            }
-        )
+        ends = _widened(padded, median, processes, level)
+        rows.append((*key, median, *ends, padded.shape[0], processes, len(group)))
     return pd.DataFrame(rows, columns=[*by, "median", "low", "high", "sessions", "processes", "samples"])
 
 
@@ -60,9 +49,7 @@ def _widened(padded: Floats, median: float, processes: int, level: float) -> tup
 
 
 def _padded(group: pd.DataFrame, value: str) -> Floats:
-    """Arrange the samples as sessions x processes x repetitions, NaN where a row is shorter than the
-    longest.
-    """
+    """Arrange the samples as sessions x processes x repetitions, NaN where there are fewer than the most."""
     session = pd.factorize(group["session"])[0]
     process = group.groupby("session")["file"].transform(lambda files: pd.factorize(files)[0]).to_numpy()
     repetition = group.groupby(["session", "file"]).cumcount().to_numpy()
@@ -101,12 +88,9 @@ def _replicates(padded: Floats) -> Floats:
 
 
 def _row_medians(rows: Floats) -> Floats:
-    """Return the median of each row without its NaN; NaN for a row of nothing else. Faster than
-    np.nanmedian.
-    """
+    """Return the median of each row without its NaN, if it has more; faster than np.nanmedian."""
     ordered = np.sort(rows, axis=1)
     count = (~np.isnan(ordered)).sum(axis=1)
     index = np.arange(len(ordered))
     lower, upper = np.maximum((count - 1) // 2, 0), np.minimum(count // 2, ordered.shape[1] - 1)
-    medians: Floats = (ordered[index, lower] + ordered[index, upper]) / 2
-    return medians
+    return (ordered[index, lower] + ordered[index, upper]) / 2

@@ -1,11 +1,9 @@
 """The break point of a curve that falls and rises."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from analysis.statistics.intervals import FEWEST, Interval, centre
-
-Floats = NDArray[np.float64]
+from analysis.statistics.intervals import FEWEST, centre
+from analysis.support.values import Floats, Interval
 
 CANDIDATES = 202
 
@@ -27,13 +25,10 @@ def break_point(x: Floats, curves: Floats) -> Interval:
 
 
 def _breaks(x: Floats, curves: Floats) -> Floats:
-    """Return for each curve the break, over a fine grid inside x, of the two-piece line with the least
-    squares.
-    """
+    """Return for each curve the break, on a fine grid inside x, of the two-piece line of least squares."""
     candidates = np.linspace(x[0], x[-1], CANDIDATES)[1:-1]
     designs = np.stack(
         [np.column_stack([np.ones_like(x), x, np.maximum(x - candidate, 0)]) for candidate in candidates]
     )
     fitted = designs @ (np.linalg.pinv(designs) @ curves.T)
-    breaks: Floats = candidates[((curves.T - fitted) ** 2).sum(axis=1).argmin(axis=0)]
-    return breaks
+    return candidates[((curves.T - fitted) ** 2).sum(axis=1).argmin(axis=0)]

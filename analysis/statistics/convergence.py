@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
-from analysis.statistics.intervals import Interval
+from analysis.support.values import Interval
 
 FEWEST = 3
 """Points that a fitted order needs: two always lie on a line and tell nothing of its error."""

@@ -13,9 +13,8 @@ autocorrelation is Kendall's (Biometrika 41, 1954).
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from analysis.support.values import Floats
 
 DOUBT = 1.6
 """Standard errors between the estimated autocorrelation and the one that is allowed for. Chosen by

@@ -5,7 +5,7 @@ import math
 from scipy import stats
 
 from analysis.statistics.dependence import widening_of_independent
-from analysis.statistics.looks import ERROR, LOOKS, next_look, share
+from analysis.statistics.looks import ERROR, LOOKS, looks_up_to, next_look, share
 
 MOST_BLOCKS = 1000
 """Of more, an estimate would say nothing."""
@@ -24,11 +24,11 @@ def blocks_to_decide(p: float, blocks: int, family: int = 1) -> float:
     if not 0 < alone < 1:
         return math.inf if alone else next_look(blocks)
     per_block = stats.t.isf(alone / 2, blocks - 1) * _error(blocks)
-    look = next_look(blocks)
-    while look <= MOST_BLOCKS:
-        if per_block >= stats.t.isf(ERROR * share(look) / family / 2, look - 1) * _error(look):
+    for look in looks_up_to(MOST_BLOCKS):
+        if look > blocks and per_block >= stats.t.isf(ERROR * share(look) / family / 2, look - 1) * _error(
+            look
+        ):
             return look
-        look = next_look(look)
     return math.inf
 
 

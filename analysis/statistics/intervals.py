@@ -20,14 +20,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import stats
 
 from analysis.statistics import ranks
 from analysis.statistics.dependence import widening
 from analysis.statistics.looks import ERROR, LOOKS, seen, share
-
-Floats = NDArray[np.float64]
+from analysis.support.values import Floats, Interval
 
 FEWEST = LOOKS[0]
 """Blocks below which nothing is decided: of fewer a single disturbed one makes any answer, and their
@@ -43,15 +42,6 @@ RANKS_FROM = 14
 
 _ROUNDING = 1e-12
 """Log ratios of equal counts are equal up to this."""
-
-
-@dataclass(frozen=True)
-class Interval:
-    """An estimate with its interval; infinite ends where too few samples allow none."""
-
-    estimate: float
-    low: float
-    high: float
 
 
 @dataclass(frozen=True)
@@ -109,7 +99,9 @@ def measure(differences: ArrayLike, *, independent: bool = False) -> Centre:
     count = len(values)
     if count == 0:
         return Centre(np.nan, np.nan, 0)
-    averages = _averages(values)
+    # The averages of any two of the values, each with itself too (Walsh averages).
+    first, second = np.triu_indices(len(values))
+    averages = np.sort((values[first] + values[second]) / 2)
     estimate = float(np.median(averages))
     if np.ptp(values) <= _ROUNDING and count > 1:
         return Centre(estimate, 0.0, count - 1)
@@ -133,13 +125,6 @@ def centre(differences: ArrayLike, level: float | None = None, *, independent: b
         values = seen(values)
         level = 1 - ERROR * share(len(values))
     return measure(values, independent=independent).interval(level)
-
-
-def _averages(values: Floats) -> Floats:
-    """Return the averages of any two of the values, each with itself too, sorted (Walsh averages)."""
-    first, second = np.triu_indices(len(values))
-    averages: Floats = np.sort((values[first] + values[second]) / 2)
-    return averages
 
 
 def _error(averages: Floats, count: int) -> float:

@@ -1,16 +1,13 @@
-"""Whether a machine has two speeds, or one that shifts: noise that no count of bursts shows, since much of
-all
-is slow.
-"""
+"""Whether a machine has two speeds, or one that shifts: noise that no count of bursts shows."""
 
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import stats
 
-Floats = NDArray[np.float64]
+from analysis.support.values import Floats
 
 FEWEST_TIMES = 8
 FACTOR = 1.25
@@ -50,17 +47,12 @@ def levels(times: ArrayLike) -> Levels | None:
     if between[best] < EXPLAINED * logs.var() or gaps[best] < np.log(FACTOR):
         return None
     slow = logs > (ordered[sizes[best] - 1] + ordered[sizes[best]]) / 2
-    return Levels(
-        factor=float(np.exp(gaps[best])),
-        slow=int(slow.sum()),
-        times=len(logs),
-        changes=int((slow[1:] != slow[:-1]).sum()),
-    )
+    changes = int((slow[1:] != slow[:-1]).sum())
+    return Levels(float(np.exp(gaps[best])), int(slow.sum()), len(logs), changes)
 
 
 def shifting(times: ArrayLike) -> bool:
-    """Tell whether times of the same thing, given in the order in which they were measured, are of a speed
-    that
+    """Tell whether times of the same thing, in the order in which they were measured, are of a speed that
     shifts: a factor of `FACTOR` apart, and neighbours more alike than chance would have it.
 
     That is von Neumann's ratio, of the mean square of successive differences to the variance, at 1 %, of

@@ -12,8 +12,7 @@ Intervals that hold at any time (Howard, Ramdas, McAuliffe and Sekhon, Ann. Stat
 they cost is in docs/method.md.
 """
 
-import numpy as np
-from numpy.typing import NDArray
+from analysis.support.values import Floats
 
 ERROR = 0.05
 """The error of one comparison, over all looks."""
@@ -46,16 +45,19 @@ def next_look(blocks: int) -> int:
     return look
 
 
+def looks_up_to(most: float) -> list[int]:
+    """Return the planned looks at no more than so many blocks."""
+    looks = [LOOKS[0]]
+    while looks[-1] <= most:
+        looks.append(next_look(looks[-1]))
+    return looks[:-1]
+
+
 def last_look(blocks: int) -> int:
-    """Return the greatest number of blocks, at most `blocks`, at which there is a look; `blocks` before the
-    first.
-    """
-    look = blocks if blocks < LOOKS[0] else LOOKS[0]
-    while LOOKS[0] <= next_look(look) <= blocks:
-        look = next_look(look)
-    return look
+    """Return the greatest number of at most `blocks` blocks with a look; `blocks` before the first."""
+    return max(looks_up_to(blocks), default=blocks)
 
 
-def seen(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def seen(values: Floats) -> Floats:
     """Return the first of the values (blocks, in the order of time), up to the last planned look."""
     return values[: last_look(len(values))]

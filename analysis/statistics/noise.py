@@ -4,21 +4,18 @@ from collections.abc import Collection
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy import stats
 
 from analysis.statistics.dependence import widening_of_independent
-from analysis.statistics.intervals import FEWEST
-from analysis.statistics.looks import ERROR, next_look
+from analysis.statistics.forecast import MOST_BLOCKS
+from analysis.statistics.looks import ERROR, looks_up_to
 from analysis.statistics.looks import share as share_of_error
 from analysis.statistics.pairs import PAIR, process_medians
 from analysis.statistics.verdicts import MARGIN
+from analysis.support.values import Floats
 from analysis.support.wording import count, listed, share
 
-Floats = NDArray[np.float64]
-
 BURST = 4.0
-MOST_BLOCKS = 1000
 LARGE_EFFECTS = (
     "trend", "scaling", "machine", "phases", "speed_against_error", "hard_cases", "promises", "counts",
 )  # fmt: skip
@@ -50,23 +47,12 @@ def process_noise(times: pd.DataFrame) -> pd.DataFrame:
         if min(table.shape) < 2:
             continue
         logs = np.log(table.to_numpy())
-        noise = typical_deviation(logs)
+        noise, blocks = typical_deviation(logs), len(table)
+        needed, small = blocks_needed(noise), str(group["question_kind"].iloc[0]) not in LARGE_EFFECTS
         bursts = count_bursts(logs, noise)
-        needed = blocks_needed(noise)
-        rows.append(
-            {
-                "experiment": experiment,
-                "noise": noise,
-                "bursts": bursts,
-                "blocks": len(table),
-                "needed": needed,
-                "enough": len(table) >= needed,
-                "small": str(group["question_kind"].iloc[0]) not in LARGE_EFFECTS,
-            }
-        )
-    return pd.DataFrame(
-        rows, columns=["experiment", "noise", "bursts", "blocks", "needed", "enough", "small"]
-    )
+        rows.append((experiment, noise, bursts, blocks, needed, blocks >= needed, small))
+    columns = ["experiment", "noise", "bursts", "blocks", "needed", "enough", "small"]
+    return pd.DataFrame(rows, columns=columns)
 
 
 def typical_deviation(logs: Floats) -> float:
@@ -84,9 +70,7 @@ def typical_deviation(logs: Floats) -> float:
 
 
 def count_bursts(logs: Floats, noise: float) -> int:
-    """Return how many cells lie more than `BURST` deviations above what their block and configuration
-    explain.
-    """
+    """Return how many cells lie more than `BURST` deviations above what block and configuration explain."""
     centred = logs - np.median(logs, axis=0)
     excess = [
         centred[:, column] - np.median(np.delete(centred, column, axis=1), axis=1)
@@ -99,12 +83,8 @@ def blocks_needed(noise: float, margin: float = MARGIN, rate: float = 0.95) -> f
     """Return the planned look at which two equal configurations come out equivalent at the given rate;
     infinite if `MOST_BLOCKS` are too few, of which an estimate would say nothing. `noise` is per process.
     """
-    look = FEWEST
-    while look <= MOST_BLOCKS:
-        if equivalence_rate(noise, look, margin) >= rate:
-            return look
-        look = next_look(look)
-    return np.inf
+    looks = looks_up_to(MOST_BLOCKS)
+    return next((look for look in looks if equivalence_rate(noise, look, margin) >= rate), np.inf)
 
 
 def needed_said(needed: float) -> str:

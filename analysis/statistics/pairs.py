@@ -2,11 +2,9 @@
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from analysis.statistics.returning import bias
-
-Floats = NDArray[np.float64]
+from analysis.support.values import Floats
 
 PAIR = ["node", "block", "session"]
 """What two records of a pair have in common: nothing else was measured together."""
@@ -34,11 +32,8 @@ def join_replicates(times: pd.DataFrame) -> pd.DataFrame:
     if not processes.duplicated(keys).any():
         return times
     logs = np.log(processes["steps_seconds"]).groupby([processes[key] for key in keys]).transform("mean")
-    return (
-        processes.assign(steps_seconds=np.exp(logs))
-        .drop_duplicates(keys)
-        .drop(columns=_runs_of("steps_seconds"), errors="ignore")
-    )
+    joined = processes.assign(steps_seconds=np.exp(logs)).drop_duplicates(keys)
+    return joined.drop(columns=_runs_of("steps_seconds"))
 
 
 def log_ratios(
@@ -60,14 +55,18 @@ def log_ratios(
     keys = [*match, *PAIR]
     sides = (_per_block(side, keys, value) for side in (reference, candidate))
     joined = pd.merge(*sides, on=keys, suffixes=("_reference", "_candidate"))
-    ratios = [
-        _block_ratio(*logs) for logs in zip(joined["logs_reference"], joined["logs_candidate"], strict=True)
-    ]
-    biases = [
-        bias(*shares) for shares in zip(joined["lost_reference"], joined["lost_candidate"], strict=True)
-    ]
+    ratios = list(map(_block_ratio, joined["logs_reference"], joined["logs_candidate"]))
+    biases = list(map(bias, joined["lost_reference"], joined["lost_candidate"]))
     found = joined[[*keys, "at_reference"]].assign(log_ratio=np.array(ratios, dtype=float), bias=biases)
     return found.sort_values(["at_reference", *PAIR], kind="stable").drop(columns="at_reference")
+
+
+def ratios_of(
+    processes: pd.DataFrame, column: str, reference: object, candidate: object, match: tuple[str, ...] = ()
+) -> pd.DataFrame:
+    """Return `log_ratios` of the processes with one value in a column against those with another."""
+    sides = [processes[processes[column] == value] for value in (reference, candidate)]
+    return log_ratios(sides[0], sides[1], match)
 
 
 def without_partner(runs: pd.DataFrame) -> pd.DataFrame:
@@ -105,8 +104,7 @@ def _of_replicates(logs: pd.Series) -> Floats:
     """Return the mean of the replicates' logs, by run if they have as many runs, else of their medians."""
     if len({len(one) for one in logs}) > 1:
         logs = logs.map(lambda one: np.array([np.median(one)]))
-    mean: Floats = np.mean(np.stack(list(logs)), axis=0)
-    return mean
+    return np.mean(np.stack(list(logs)), axis=0)
 
 
 def _block_ratio(reference: Floats, candidate: Floats) -> float:

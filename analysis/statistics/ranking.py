@@ -29,8 +29,7 @@ def ranking(times: pd.DataFrame, margin: float = MARGIN) -> pd.DataFrame:
     for name in names:
         better = sum((other, name) in apart for other in names)
         worse = sum((name, other) in apart for other in names)
-        place = (1 + better, len(names) - worse)
-        rows.append({"series": name, "seconds": seconds[name], "bracket": letters[name], "place": place})
+        rows.append((name, seconds[name], letters[name], (1 + better, len(names) - worse)))
     return pd.DataFrame(rows, columns=["series", "seconds", "bracket", "place"])
 
 
@@ -51,9 +50,7 @@ def _apart(processes: pd.DataFrame, names: Sequence[str], margin: float) -> set[
 
 
 def brackets(names: Sequence[str], apart: Collection[tuple[str, str]]) -> dict[str, str]:
-    """Return letters for each of the names, which are in order: a letter for each longest stretch in which no
-    two are apart.
-    """
+    """Return letters for each of the ordered names, one a longest stretch in which no two are apart."""
     different = {frozenset(pair) for pair in apart}
     stretches: list[tuple[int, int]] = []
     for first in range(len(names)):
@@ -64,13 +61,9 @@ def brackets(names: Sequence[str], apart: Collection[tuple[str, str]]) -> dict[s
             last += 1
         if not stretches or last > stretches[-1][1]:
             stretches.append((first, last))
+    letters = [f"{letter}{rounds or ''}" for rounds in range(len(stretches)) for letter in ascii_lowercase]
+    named = list(zip(letters, stretches, strict=False))
     return {
-        name: "".join(_letter(k) for k, (first, last) in enumerate(stretches) if first <= number <= last)
+        name: "".join(letter for letter, (first, last) in named if first <= number <= last)
         for number, name in enumerate(names)
     }
-
-
-def _letter(number: int) -> str:
-    """Return a, b ... z, then a1, b1 ..."""
-    rounds, letter = divmod(number, len(ascii_lowercase))
-    return f"{ascii_lowercase[letter]}{rounds or ''}"

@@ -3,9 +3,8 @@
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from analysis.support.values import Floats
 
 
 def p_value(count: int, positive: float) -> float:
@@ -31,5 +30,4 @@ def _at_least(count: int) -> Floats:
     for rank in range(1, count + 1):
         chances[rank:] = (chances[rank:] + chances[:-rank]) / 2
         chances[:rank] /= 2
-    sums: Floats = np.minimum(np.cumsum(chances[::-1])[::-1], 1.0)
-    return sums
+    return np.minimum(np.cumsum(chances[::-1])[::-1], 1.0)

@@ -4,21 +4,17 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from analysis.statistics.intervals import FEWEST, Interval, centre
+from analysis.statistics.intervals import FEWEST, centre
 from analysis.statistics.pairs import PAIR
+from analysis.support.values import Floats, Interval
 from analysis.support.wording import number
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class ScalabilityLaw:
-    """Speed-up n / (1 + contention (n - 1) + coherency n (n - 1)) over `seconds` on one thread, fitted to
-    `points`.
-    """
+    """Speed-up n / (1 + contention (n - 1) + coherency n (n - 1)) over `seconds`, fitted to `points`."""
 
     seconds: float
     contention: Interval
@@ -27,10 +23,8 @@ class ScalabilityLaw:
 
     def speed_up(self, threads: Floats) -> Floats:
         """Return the speed-up over one thread that the law gives."""
-        slowdown = (
-            1 + self.contention.estimate * (threads - 1) + self.coherency.estimate * threads * (threads - 1)
-        )
-        return threads / slowdown
+        contention, coherency = self.contention.estimate, self.coherency.estimate
+        return threads / (1 + contention * (threads - 1) + coherency * threads * (threads - 1))
 
 
 def fit(processes: pd.DataFrame, most_threads: int) -> ScalabilityLaw | None:
@@ -52,9 +46,7 @@ def fit(processes: pd.DataFrame, most_threads: int) -> ScalabilityLaw | None:
     blocks = curves.to_numpy()
     seconds, *estimates = _coefficients(threads, blocks.mean(axis=0))
     free = np.array([_coefficients(threads, curve, condition=False)[1:] for curve in blocks])
-    contention, coherency = (
-        _interval(estimate, each) for estimate, each in zip(estimates, free.T, strict=True)
-    )
+    contention, coherency = map(_interval, estimates, free.T)
     return ScalabilityLaw(seconds, contention, coherency, len(threads))
 
 
@@ -66,9 +58,7 @@ def _interval(estimate: float, each: Floats) -> Interval:
 
 
 def _coefficients(threads: Floats, seconds: Floats, condition: bool = True) -> tuple[float, float, float]:
-    """Return t(1), contention and coherency that fit with the least relative error; with the condition none
-    is negative.
-    """
+    """Return t(1), contention and coherency of the least relative error; by the condition none negative."""
     design = np.column_stack([np.ones_like(threads), threads - 1, threads * (threads - 1)])
     work = threads * seconds
     scaled, ones = design / work[:, None], np.ones_like(work)

@@ -2,16 +2,12 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import permutations
+from itertools import combinations, permutations
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
-from analysis.statistics.intervals import Centre, Interval, measure
+from analysis.statistics.intervals import Centre, measure
 from analysis.statistics.looks import ERROR, share
-
-Floats = NDArray[np.float64]
+from analysis.support.values import Floats, Interval
 
 SHAPES = ("falls then rises", "rises only", "falls only", "flat")
 """Of these at most one is true of a curve."""
@@ -35,8 +31,7 @@ class Curves:
     @cached_property
     def means(self) -> Floats:
         """The mean of each point over the blocks."""
-        means: Floats = self.logs.mean(axis=0)
-        return means
+        return self.logs.mean(axis=0)
 
     @property
     def lowest(self) -> int:
@@ -67,8 +62,7 @@ class Curves:
             "rises only": self._only_away_from(0, self.points - 1, bound),
             "falls only": self._only_away_from(self.points - 1, 0, bound),
             "flat": max(
-                (self._p(one, other, bound, "less") for one, other in permutations(range(self.points), 2)),
-                default=1.0,
+                (self._p(*two, bound, "less") for two in permutations(range(self.points), 2)), default=1.0
             ),
         }
         best = min(SHAPES, key=lambda shape: p[shape])
@@ -96,8 +90,5 @@ class Curves:
 
     @cached_property
     def _differences(self) -> dict[tuple[int, int], Centre]:
-        return {
-            (one, other): measure(self.logs[:, one] - self.logs[:, other])
-            for one in range(self.points)
-            for other in range(one + 1, self.points)
-        }
+        pairs = combinations(range(self.points), 2)
+        return {(one, other): measure(self.logs[:, one] - self.logs[:, other]) for one, other in pairs}

@@ -8,17 +8,15 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy import stats
 
 from analysis.statistics.breaks import break_point
-from analysis.statistics.intervals import FEWEST, Interval, centre, measure
+from analysis.statistics.intervals import FEWEST, centre, measure
 from analysis.statistics.looks import ERROR, last_look, seen
-from analysis.statistics.pairs import PAIR, log_ratios
+from analysis.statistics.pairs import PAIR, ratios_of
 from analysis.statistics.simultaneous import Curves
 from analysis.statistics.verdicts import MARGIN, judge_one, two_sided, verdict_row
-
-Floats = NDArray[np.float64]
+from analysis.support.values import Floats, Interval
 
 TOO_FEW_BLOCKS = "too few blocks"
 LINEAR_WITHIN = (0.9, 1.1)
@@ -27,9 +25,7 @@ EXPONENTS = (0.3, 2.5, 441)
 
 @dataclass(frozen=True)
 class Growth:
-    """How a time grows with x: `exponent` of x, `change` from the first x to the last (a row of
-    `judge_one`).
-    """
+    """How a time grows with x: its `exponent`, and the `change` from first to last (as of `judge_one`)."""
 
     exponent: Interval
     change: dict[str, Any]
@@ -72,7 +68,7 @@ def growth(processes: pd.DataFrame, margin: float = MARGIN) -> Growth:
     otherwise.
     """
     first, last = float(processes["x"].min()), float(processes["x"].max())
-    change = judge_one(_ratio(processes, first, last), margin)
+    change = judge_one(ratios_of(processes, "x", first, last)["log_ratio"], margin)
     exponents = seen(_block_exponents(processes))
     found = measure(exponents)
     p = {
@@ -129,12 +125,6 @@ def minimum(processes: pd.DataFrame, margin: float = MARGIN) -> Minimum:
     return Minimum(break_point(x, whole.to_numpy()), float(x[curves.lowest]), fall, rise, verdict, p)
 
 
-def _ratio(processes: pd.DataFrame, reference: float, candidate: float) -> Floats:
-    pairs = log_ratios(processes[processes["x"] == reference], processes[processes["x"] == candidate])
-    ratios: Floats = pairs["log_ratio"].to_numpy()
-    return ratios
-
-
 def _block_exponents(processes: pd.DataFrame) -> Floats:
     """Return the log-log slope of every block that has all x, at least two; none if an x is not positive.
 
@@ -160,5 +150,4 @@ def _offset_exponents(x: Floats, curves: Floats) -> Floats:
     for row, exponent in enumerate(candidates):
         design = np.column_stack([np.ones_like(x), x**exponent]) * weights[:, None]
         errors[row] = ((weighted - design @ (np.linalg.pinv(design) @ weighted)) ** 2).sum(axis=0)
-    exponents: Floats = candidates[errors.argmin(axis=0)]
-    return exponents
+    return candidates[errors.argmin(axis=0)]

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
-from analysis.statistics.intervals import Interval
 from analysis.statistics.looks import ERROR, share
 from analysis.statistics.verdicts import MARGIN, decide, denials, verdict_row
+from analysis.support.values import Interval
 
 
 def judge_unpaired(reference: ArrayLike, candidate: ArrayLike, margin: float = MARGIN) -> dict[str, Any]:

@@ -5,12 +5,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from analysis.statistics.intervals import FEWEST, Interval, measure
+from analysis.statistics.intervals import FEWEST, measure
 from analysis.statistics.looks import ERROR, seen, share
-
-Floats = NDArray[np.float64]
+from analysis.support.values import Floats, Interval
 
 MARGIN = 0.02
 COLUMNS = ["ratio", "low", "high", "blocks", "p", "verdict", "alone"]
@@ -32,18 +31,17 @@ def judge(pairs: pd.DataFrame, by: list[str], margin: float = MARGIN, error: flo
     1979). What is not established, and anything from fewer than `FEWEST` blocks, is *inconclusive*. The
     pairs of a group are in the order of time. With another `error` than 5 % the intervals are of its level.
     """
-    rows: list[dict[str, Any]] = []
-    for key, group in pairs.groupby(by, sort=True):
-        row = judge_one(group["log_ratio"], margin, error, biases=group.get("bias"))
-        rows.append({**dict(zip(by, key, strict=True)), **row})
+    rows = [
+        dict(zip(by, key, strict=True))
+        | judge_one(group["log_ratio"], margin, error, biases=group.get("bias"))
+        for key, group in pairs.groupby(by, sort=True)
+    ]
     table = pd.DataFrame(rows, columns=[*by, *COLUMNS])
     return corrected(table, error)
 
 
 def corrected(table: pd.DataFrame, error: float = ERROR) -> pd.DataFrame:
-    """Return the table with its p-values Holm-corrected and its verdicts withdrawn where they no longer
-    stand.
-    """
+    """Return the table with p-values Holm-corrected and verdicts withdrawn where they no longer stand."""
     p = holm(table["p"])
     verdicts = np.where(np.array(p) <= error, table["verdict"], "inconclusive")
     return table.assign(p=p, verdict=verdicts)
@@ -70,11 +68,9 @@ def judge_one(
     known = np.empty(0) if biases is None else np.asarray(biases, dtype=float)[: len(values)]
     known = known[~np.isnan(known)]
     row = _judged(values, margin, error, once)
-    return (
-        row
-        if not 0 < len(values) <= 2 * known.size
-        else _both(row, _judged(values - np.median(known), margin, error, once))
-    )
+    if not 0 < len(values) <= 2 * known.size:
+        return row
+    return _both(row, _judged(values - np.median(known), margin, error, once))
 
 
 def _judged(values: Floats, margin: float, error: float, once: bool) -> dict[str, Any]:
@@ -104,16 +100,7 @@ def error_of_picked(candidates: int) -> float:
 
 def verdict_row(log_ratio: Interval, blocks: int, p: float, verdict: str) -> dict[str, Any]:
     """Return the columns that `judge` adds, of an interval of a log ratio."""
-    ratio, low, high = (float(np.exp(one)) for one in (log_ratio.estimate, log_ratio.low, log_ratio.high))
-    return {
-        "ratio": ratio,
-        "low": low,
-        "high": high,
-        "blocks": blocks,
-        "p": p,
-        "verdict": verdict,
-        "alone": p,
-    }
+    return dict(zip(COLUMNS, (*np.exp(log_ratio).tolist(), blocks, p, verdict, p), strict=True))
 
 
 def denials(
@@ -136,8 +123,7 @@ def decide(
 ) -> tuple[str, float]:
     """Return the verdict and its p-value, given the one-sided p-value against each of the three being untrue.
 
-    They are doubled: at most `error` then is where the two-sided interval lies wholly within what the verdict
-    says.
+    They are doubled: at most `error` is where the two-sided interval lies within what the verdict says.
     """
     support = {"faster": faster, "slower": slower, "equivalent": equivalent}
     best = min(support, key=lambda verdict: support[verdict])

@@ -1,29 +1,15 @@
 """How numbers are said: one way for captions, claims, the report and the terminal."""
 
 import math
-from collections.abc import Hashable, Iterable, Mapping
-from typing import Any, Protocol
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import pandas as pd
 
+from analysis.support.values import Interval, Row
+
 NO_BREAK = "\u00a0"
 NO_INTERVAL = "(too few blocks for an interval)"
-
-
-class Estimated(Protocol):
-    """An estimate between two ends, as `statistics.intervals.Interval` is."""
-
-    @property
-    def estimate(self) -> float:
-        """The middle."""
-
-    @property
-    def low(self) -> float:
-        """The lower end."""
-
-    @property
-    def high(self) -> float:
-        """The upper end."""
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -64,20 +50,15 @@ def share(fraction: float, digits: int = 0) -> str:
     return f"{fraction * 100:.{digits}f}{NO_BREAK}%"
 
 
-def interval(value: Estimated, digits: int = 3) -> str:
+def interval(value: Interval) -> str:
     """Return an estimate with its 95 % interval, if it has one, e.g. `0.98 [0.95, 1.01]`."""
-    return _between(value.estimate, value.low, value.high, digits)
+    estimate, low, high = (number(end) for end in value)
+    return f"{estimate} [{low}, {high}]" if math.isfinite(value.high) else f"{estimate} {NO_INTERVAL}"
 
 
-def interval_of(row: Mapping[Hashable, Any] | pd.Series, value: str = "median") -> str:
+def interval_of(row: Row | pd.Series, value: str = "median") -> str:
     """Return the columns `value`, `low`, `high` of a row as an estimate with its interval."""
-    return _between(row[value], row["low"], row["high"], 3)
-
-
-def _between(estimate: float, low: float, high: float, digits: int) -> str:
-    if not math.isfinite(high):
-        return f"{number(estimate, digits)} {NO_INTERVAL}"
-    return f"{number(estimate, digits)} [{number(low, digits)}, {number(high, digits)}]"
+    return interval(Interval(row[value], row["low"], row["high"]))
 
 
 def scene_in_words(particles: float, area_fraction: float) -> str:
@@ -86,9 +67,7 @@ def scene_in_words(particles: float, area_fraction: float) -> str:
 
 
 def change(row: Mapping[str, Any]) -> str:
-    """Return a row of `verdicts.judge` as a change with its 95 % interval, e.g. `−4.6 % [−5.1 %, −4.0 %]`,
-    if it has one.
-    """
+    """Return a row of `verdicts.judge` as a change with its interval, e.g. `−4.6 % [−5.1 %, −4.0 %]`."""
     if not math.isfinite(row["high"]):
         return f"{percent(row['ratio'] - 1)} {NO_INTERVAL}"
     low, high = (percent(row[end] - 1) for end in ("low", "high"))
@@ -98,6 +77,12 @@ def change(row: Mapping[str, Any]) -> str:
 def blocks(row: Mapping[str, Any]) -> str:
     """Return on how many pairs of processes a row rests."""
     return count(row["blocks"], "block")
+
+
+def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table in Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
 def count(amount: int, noun: str) -> str:

@@ -17,11 +17,11 @@ from analysis.calibration.studies import (
     comparisons,
     disjoint,
     is_wrong,
-    looks_up_to,
     overlapping,
 )
 from analysis.calibration.tables import OURS, errors, ours_and_theirs, power
 from analysis.calibration.usual_ways import WAYS, all_ways
+from analysis.statistics.looks import looks_up_to
 from analysis.tests.statistics.unkind_noise import dependent
 from support.errors import InputError
 

@@ -46,7 +46,7 @@ def test_what_was_not_counted_is_not_drawn(data: Data, name: str) -> None:
 
 
 def test_every_experiment_has_a_figure() -> None:
-    assert set(figures.experiments()) == set(EXPERIMENTS)
+    assert set(figures.titles()) == set(EXPERIMENTS)
 
 
 @pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.name)
