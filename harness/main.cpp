@@ -43,6 +43,7 @@ void add_group(CLI::App& program, const char* group, std::initializer_list<AddVe
 
 void add_verbs(CLI::App& program) {
     using namespace carom;
+    add_group(program, groups::measure, {add_compare_commands});
     add_group(program, groups::simulate,
               {add_run_command, add_check_command, add_reference_command, add_generate_command,
                add_list_command, add_movie_command});

@@ -64,7 +64,7 @@ std::string group_text(const CLI::App& app, const std::string& name, const std::
 
 std::string verbs_text(const CLI::App& app, const std::string& name, bool whole) {
     std::string text;
-    for (const char* group : {groups::simulate, groups::study, groups::machine}) {
+    for (const char* group : {groups::measure, groups::simulate, groups::study, groups::machine}) {
         text += group_text(app, name, group, whole);
     }
     return whole ? text + group_text(app, name, groups::none, whole) : text;

@@ -48,7 +48,7 @@ std::string man_page(const CLI::App& program, const std::string& version) {
                        escaped(program.get_description()) +
                        "\n.SH SYNOPSIS\n.B carom\nVERB [OPTIONS]\n.SH VERBS\n";
     std::string details = ".SH EACH VERB\n";
-    for (const char* group : {groups::simulate, groups::study, groups::machine}) {
+    for (const char* group : {groups::measure, groups::simulate, groups::study, groups::machine}) {
         text += ".SS " + escaped(group) + "\n";
         for (const CLI::App* verb : verbs_of(program, group)) {
             text += entry({verb->get_name(), verb->get_description()});

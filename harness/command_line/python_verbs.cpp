@@ -17,24 +17,30 @@
 namespace carom {
 namespace {
 
-/// A verb, the package that does it, whether that takes the verb's name as a word, and what it is for.
+constexpr const char* movie = "movie";
+
+/// A verb, what it is for, its group in the help, the package or part of one that does it, and whether that
+/// takes the verb's name as a word.
 struct PythonVerb {
     const char* name;
+    const char* told;
+    const char* group;
     const char* package;
     bool is_word;
-    const char* told;
 };
 
 constexpr std::array python_verbs{
-    PythonVerb{"movie", "analysis", true, "Draw a run as an animation, or one step of it"},
-    PythonVerb{"study", "experiments", false,
-               "Plan, run and look after a study, here or on a cluster; has verbs of its own"},
-    PythonVerb{"report", "analysis", true, "Write the report of whatever was measured"},
-    PythonVerb{"claims", "analysis", true, "Print each claim with its verdict"},
-    PythonVerb{"figures", "analysis", true, "Draw the figures of whatever was measured"},
+    PythonVerb{"compare", "Run commands in turns until it is settled which is faster", groups::measure,
+               "experiments.compare", true},
+    PythonVerb{"gate", "Tell by an exit code whether a commit is slower than another", groups::measure,
+               "experiments.compare", true},
+    PythonVerb{movie, "Draw a run as an animation, or one step of it", groups::simulate, "analysis", true},
+    PythonVerb{"study", "Plan, run and look after a study, here or on a cluster; has verbs of its own",
+               groups::study, "experiments", false},
+    PythonVerb{"report", "Write the report of whatever was measured", groups::study, "analysis", true},
+    PythonVerb{"claims", "Print each claim with its verdict", groups::study, "analysis", true},
+    PythonVerb{"figures", "Draw the figures of whatever was measured", groups::study, "analysis", true},
 };
-
-constexpr const PythonVerb& movie = python_verbs[0];
 
 const PythonVerb* find_verb(std::string_view name) {
     const auto* const found =
@@ -42,8 +48,12 @@ const PythonVerb* find_verb(std::string_view name) {
     return found == python_verbs.end() ? nullptr : found;
 }
 
-void add_verb(CLI::App& program, const PythonVerb& verb) {
-    program.add_subcommand(verb.name, verb.told)->prefix_command();
+void add_verbs_of(CLI::App& program, std::string_view group) {
+    for (const PythonVerb& verb : python_verbs) {
+        if (verb.group == group) {
+            program.add_subcommand(verb.name, verb.told)->prefix_command();
+        }
+    }
 }
 
 /// The program's own file, all links followed.
@@ -61,14 +71,16 @@ std::filesystem::path own_file() {
 std::vector<std::string> python_words(const PythonVerb& verb, const std::vector<std::string>& words) {
     const std::filesystem::path root = own_file().parent_path().parent_path().parent_path();
     const std::filesystem::path python = root / ".venv" / "bin" / "python";
-    if (access(python.c_str(), X_OK) != 0 || !std::filesystem::is_directory(root / verb.package)) {
+    const std::string_view module = verb.package;
+    const std::string_view package = module.substr(0, module.find('.'));
+    if (access(python.c_str(), X_OK) != 0 || !std::filesystem::is_directory(root / package)) {
         throw InputError(std::string(verb.name) + ": needs Carom's Python parts, which are not in " +
                          root.string() +
                          ", expected there as in a checkout after `make setup`, or installed");
     }
     std::vector<std::string> all{python.string(), "-I", "-m", verb.package};
     all.insert(all.end(), words.begin() + (verb.is_word ? 0 : 1), words.end());
-    if (&verb == &movie) {
+    if (verb.name == std::string_view(movie)) {
         all.insert(all.end(), {"--program", own_file().string()});
     }
     return all;
@@ -76,15 +88,11 @@ std::vector<std::string> python_words(const PythonVerb& verb, const std::vector<
 
 } // namespace
 
-void add_movie_command(CLI::App& program) { add_verb(program, movie); }
+void add_compare_commands(CLI::App& program) { add_verbs_of(program, groups::measure); }
 
-void add_study_commands(CLI::App& program) {
-    for (const PythonVerb& verb : python_verbs) {
-        if (&verb != &movie) {
-            add_verb(program, verb);
-        }
-    }
-}
+void add_movie_command(CLI::App& program) { add_verbs_of(program, groups::simulate); }
+
+void add_study_commands(CLI::App& program) { add_verbs_of(program, groups::study); }
 
 void hand_over(const std::vector<std::string>& words) {
     const bool asks_help = words.size() > 1 && words.front() == "help";

@@ -8,6 +8,7 @@
 namespace carom {
 
 /// Add the verbs that Carom's Python packages do, so that help and completion know them.
+void add_compare_commands(CLI::App& program);
 void add_movie_command(CLI::App& program);
 void add_study_commands(CLI::App& program);
 
