@@ -27,6 +27,7 @@ class Difference:
     verdict: str
     blocks: int
     differs: bool
+    case: int = 0
     needed: int | None = None
 
     @property
@@ -36,11 +37,24 @@ class Difference:
 
 
 @dataclass(frozen=True)
+class Place:
+    """The places that a command may have among all; those with a letter in common cannot be told apart."""
+
+    name: str
+    first: int
+    last: int
+    bracket: str
+
+
+@dataclass(frozen=True)
 class Answer:
-    """All differences, that of the reference from itself, and the number of blocks of the next look."""
+    """All differences, those of the reference from itself, the places of many commands, and the number of
+    blocks of the next look.
+    """
 
     commands: tuple[Difference, ...] = ()
-    control: Difference | None = None
+    controls: tuple[Difference, ...] = ()
+    places: tuple[Place, ...] = ()
     next: int = FIRST_LOOK
     looked_at: int = field(default=0)
 
@@ -61,10 +75,16 @@ class Answer:
             one.high is not None and one.high < 1 + margin for one in self.commands
         )
 
+    def is_enough(self, margin: float, *, one_sided: bool) -> bool:
+        """Whether what is asked is known: a verdict on each; or only whether one is slower by more than the
+        margin, or none is.
+        """
+        return self.is_settled or (one_sided and (self.is_not_slower(margin) or self.is_slower(margin)))
+
     @property
     def is_withdrawn(self) -> bool:
         """Whether the reference differs from itself, so that no verdict stands."""
-        return self.control is not None and self.control.differs
+        return any(one.differs for one in self.controls)
 
     @property
     def needed(self) -> int | None:
@@ -80,11 +100,11 @@ def ask(analysis: Coprocess) -> Answer:
     if done.exit_code != 0:
         raise InputError(f"what was measured cannot be judged: {done.reason}")
     told = json.loads(done.output)
-    rows = tuple(_difference(row) for row in told["commands"])
-    control = _difference(told["control"]) if told["control"] else None
-    return Answer(rows, control, told["next"], max((one.blocks for one in rows), default=0))
+    rows, controls = (tuple(map(_difference, told[key])) for key in ("commands", "controls"))
+    places = tuple(Place(one["series"], one["first"], one["last"], one["bracket"]) for one in told["places"])
+    return Answer(rows, controls, places, told["next"], max((one.blocks for one in rows), default=0))
 
 
 def _difference(row: dict[str, Any]) -> Difference:
     told = {key: row[key] for key in ("ratio", "low", "high", "verdict", "blocks", "differs")}
-    return Difference(name=row["series"], needed=row.get("needed"), **told)
+    return Difference(name=row["series"], case=row["x"], needed=row.get("needed"), **told)

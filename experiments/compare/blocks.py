@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from experiments.plan.plan import Experiment
+from experiments.plan.point import Point
 from experiments.results.store import Store
 from experiments.run.runner import Runner, Task
 from experiments.run.together import together
@@ -38,8 +39,17 @@ class Runs:
         return statistics.median(getattr(self, name))
 
 
+Key = tuple[str, int]
+"""The name of a command, and the number of a case of a Google Benchmark, 0 where whole commands are run."""
+
+
+def key_of(point: Point) -> Key:
+    """Whose run it is."""
+    return point.series, int(point.x)
+
+
 class Blocks:
-    """Runs one block after the other; `runs` holds what came of each command, by its name."""
+    """Runs one block after the other; `runs` holds what came of each command, or of each case of it."""
 
     def __init__(self, experiment: Experiment, store: Store, runner: Runner) -> None:
         self._experiment = experiment
@@ -48,7 +58,7 @@ class Blocks:
         self._random = random.Random(experiment.order_seed)
         self.done = 0
         self.began = time.monotonic()
-        self.runs: dict[str, Runs] = {point.series: Runs() for point in experiment.points}
+        self.runs: dict[Key, Runs] = {key_of(point): Runs() for point in experiment.points}
 
     def begin(self) -> None:
         """Let the time count from here."""
@@ -60,9 +70,9 @@ class Blocks:
         return time.monotonic() - self.began
 
     @property
-    def failed(self) -> Mapping[str, str]:
-        """The commands that failed, each with its reason."""
-        return {name: one.reason for name, one in self.runs.items() if one.reason}
+    def failed(self) -> Mapping[Key, str]:
+        """What failed, with its reason."""
+        return {key: one.reason for key, one in self.runs.items() if one.reason}
 
     def run(self, *, vary_layout: bool) -> bool:
         """Run a block; returns whether all of it succeeded."""
@@ -74,19 +84,16 @@ class Blocks:
             tasks = [Task(self._experiment, point, block, at, block + 1, size) for at, point in group]
             for task, outcome in zip(tasks, self._runner.run(tasks), strict=True):
                 if outcome.seconds is None:
-                    self.runs[task.point.series].reason = outcome.reason
+                    self.runs[key_of(task.point)].reason = outcome.reason
                 else:
                     self._take_in(task)
         self.done += not self.failed
         return not self.failed
 
     def _take_in(self, task: Task) -> None:
-        record, runs = (
-            read_json(self._store.record_path(task.point, task.block)),
-            self.runs[task.point.series],
-        )
-        process, repetition = record["process"], record["repetitions"][0]
-        runs.seconds.append(repetition["steps_seconds"])
+        record = read_json(self._store.record_path(task.point, task.block))
+        runs, process = self.runs[key_of(task.point)], record["process"]
+        runs.seconds.append(statistics.median(one["steps_seconds"] for one in record["repetitions"]))
         busy = process["user_seconds"] + process["system_seconds"]
         runs.cores.append(busy / max(process["wall_seconds"], 1e-9))
         if process["peak_memory_bytes"] is not None:

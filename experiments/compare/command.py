@@ -12,7 +12,7 @@ from experiments.compare.answer import Answer, ask
 from experiments.compare.blocks import Blocks, keep_addresses, shell_seconds
 from experiments.compare.options import Asked, parse
 from experiments.compare.question import experiment_of
-from experiments.compare.texts import change, duration, result
+from experiments.compare.texts import blocks_said, change, duration, result
 from experiments.plan.plan import Surroundings
 from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.scale import find_scale
@@ -66,8 +66,9 @@ def _measured(asked: Asked, folder: Path) -> tuple[int, Answer]:
     for text in [*said, *_remarks(asked)]:
         print(text)
     exports.write(asked, answer, blocks.runs, around.machine.name, said)
-    for name, reason in blocks.failed.items():
-        runs = len(blocks.runs[name].seconds)
+    for key, reason in blocks.failed.items():
+        runs = len(blocks.runs[key].seconds)
+        name = f"{key[0]}, {asked.cases[key[1]]}" if asked.cases else key[0]
         warn(f"carom: {name}: failed after {runs} run{'' if runs == 1 else 's'}: {reason}")
     if stopped is not None:
         return 128 + stopped, answer
@@ -83,7 +84,7 @@ def _until_settled(
         while blocks.run(vary_layout=not asked.fixed_layout):
             if blocks.done == answer.next:
                 answer = ask(judge)
-                if _is_enough(asked, answer):
+                if answer.is_enough(asked.margin, one_sided=asked.one_sided):
                     break
             line.show(_so_far(asked, blocks, answer))
             if blocks.seconds * (1 + 1 / blocks.done) > asked.seconds:
@@ -93,21 +94,15 @@ def _until_settled(
     return answer, None
 
 
-def _is_enough(asked: Asked, answer: Answer) -> bool:
-    """Whether what is asked is known."""
-    one_sided = asked.one_sided and (answer.is_not_slower(asked.margin) or answer.is_slower(asked.margin))
-    return one_sided or answer.is_settled
-
-
 def _so_far(asked: Asked, blocks: Blocks, answer: Answer) -> str:
     """In one line: what is known, and when more will be."""
     left = asked.seconds - blocks.seconds
-    told = f"{blocks.done} blocks, {blocks.seconds:.0f} s"
+    told = f"{blocks_said(blocks.done)}, {blocks.seconds:.0f} s"
     if not answer.commands:
         until = (answer.next - blocks.done) * blocks.seconds / blocks.done
         return f"{told}; a first interval in {about(until)}"
     worst = min(answer.commands, key=lambda one: one.is_settled)
-    known = f"{told}; {worst.name} {change(worst)}"
+    known = f"{told}; {asked.cases[worst.case] if asked.cases else worst.name} {change(worst)}"
     if answer.needed is None:
         return f"{known}; {about(left)} left"
     until = (answer.needed - blocks.done) * blocks.seconds / blocks.done

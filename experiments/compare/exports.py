@@ -8,7 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from experiments.compare.answer import Answer
-from experiments.compare.blocks import Runs
+from experiments.compare.blocks import Key, Runs
 from experiments.compare.options import Asked
 from experiments.compare.texts import markdown
 from support.errors import InputError
@@ -25,26 +25,20 @@ def require_places(exports: Mapping[str, Path]) -> None:
             raise InputError(f"--export-{kind}: found {path}, which is a folder, expected a place for a file")
 
 
-def write(
-    asked: Asked,
-    answer: Answer,
-    runs: Mapping[str, Runs],
-    machine: str,
-    said: Sequence[str],
-) -> None:
+def write(asked: Asked, answer: Answer, runs: Mapping[Key, Runs], machine: str, said: Sequence[str]) -> None:
     """Write what was asked for, each file whole or not at all."""
     for kind, path in asked.exports.items():
         text = {
             "json": lambda: _json(asked, answer, runs, machine),
-            "csv": lambda: _csv(runs),
+            "csv": lambda: _csv(asked, runs),
             "markdown": lambda: markdown(asked, answer, runs, machine, said),
         }[kind]()
         with replacing(path) as part:
             part.write_text(text, encoding="utf-8")
 
 
-def _json(asked: Asked, answer: Answer, runs: Mapping[str, Runs], machine: str) -> str:
-    """Seconds and bytes; ratios of times, command over reference."""
+def _json(asked: Asked, answer: Answer, runs: Mapping[Key, Runs], machine: str) -> str:
+    """Seconds and bytes, a value a block; ratios are of times, command over reference."""
     content = {
         "schema_version": SCHEMA_VERSION,
         "machine": machine,
@@ -52,39 +46,26 @@ def _json(asked: Asked, answer: Answer, runs: Mapping[str, Runs], machine: str) 
         "margin": asked.margin,
         "error": asked.error,
         "withdrawn": answer.is_withdrawn,
-        "commands": [
-            {"name": one.name, "line": one.line, "words": one.words, **_of(runs[one.name])}
-            for one in asked.commands
-        ],
+        "cases": asked.cases,
+        "commands": [{"name": one.name, "line": one.line, "words": one.words} for one in asked.commands],
         "differences": [asdict(one) for one in answer.commands],
-        "control": {
-            **(asdict(answer.control) if answer.control else {}),
-            **{
-                key: value
-                for name, one in runs.items()
-                for key, value in _of(one).items()
-                if _is_extra(name, asked)
-            },
-        },
+        "controls": [asdict(one) for one in answer.controls],
+        "places": [asdict(one) for one in answer.places],
+        "runs": [
+            {"command": name, "case": case, "seconds": one.seconds, "cores": one.cores, "bytes": one.bytes}
+            for (name, case), one in runs.items()
+        ],
     }
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
-def _is_extra(name: str, asked: Asked) -> bool:
-    return name not in {one.name for one in asked.commands}
-
-
-def _of(runs: Runs) -> dict[str, list[float]]:
-    return {"seconds": runs.seconds, "cores": runs.cores, "bytes": runs.bytes}
-
-
-def _csv(runs: Mapping[str, Runs]) -> str:
-    """A row a run: `command`, `block`, `seconds`, `cores`."""
+def _csv(asked: Asked, runs: Mapping[Key, Runs]) -> str:
+    """A row a run."""
     output = io.StringIO()
     writer = csv.writer(output, lineterminator="\n")
-    writer.writerow(["command", "block", "seconds", "cores"])
-    for name, one in runs.items():
-        writer.writerows(
-            [name, *row] for row in zip(range(len(one.seconds)), one.seconds, one.cores, strict=True)
-        )
+    writer.writerow(["command", "case", "block", "seconds", "cores"])
+    for (name, case), one in runs.items():
+        called = asked.cases[case] if asked.cases else ""
+        for block, row in enumerate(zip(one.seconds, one.cores, strict=True)):
+            writer.writerow([name, called, block, *row])
     return output.getvalue()

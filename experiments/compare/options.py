@@ -5,9 +5,10 @@ import itertools
 import re
 import shlex
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from experiments.compare.benchmarks import common_cases
 from experiments.plan.pattern import PatternError, groups_of
 from support.command_line import Parser
 from support.errors import InputError, quoted
@@ -61,6 +62,8 @@ class Asked:
     turns: bool | None = None
     threads: int | None = None
     fixed_layout: bool = False
+    cases: tuple[str, ...] = ()
+    """Of Google Benchmarks: what all of them have; empty where whole commands are run."""
     one_sided: bool = False
     """Whether all that is asked is that nothing is slower by more than the margin."""
     setup: str | None = None
@@ -78,7 +81,8 @@ def parse(arguments: Sequence[str]) -> Asked:
         words, after = words[:at], words[at + 1 :]
     options = _parser().parse_args(words)
     commands = _commands(options, _split(after))
-    return asked_of(options, commands, _reference(options.reference, [one.name for one in commands]))
+    asked = asked_of(options, commands, _reference(options.reference, [one.name for one in commands]))
+    return replace(asked, cases=common_cases(commands, options.filter)) if options.gb else asked
 
 
 def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], reference: str) -> Asked:
@@ -131,6 +135,10 @@ def _parser() -> argparse.ArgumentParser:
     add("-L", "--list", action="append", nargs=2, default=[], metavar=("NAME", "A,B"), help=told)
     told = "the same for whole numbers from A to B"
     add("-P", "--range", action="append", nargs=3, default=[], metavar=("NAME", "A", "B"), help=told)
+    told = "the commands are Google Benchmarks: compare their cases, paired by name"
+    add("--gb", action="store_true", help=told)
+    told = "the cases whose names match (default: all)"
+    add("--filter", default=".", metavar="REGEX", help=told)
     add_measuring(parser)
     return parser
 

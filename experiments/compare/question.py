@@ -9,7 +9,7 @@ from experiments.plan.plan import Experiment, Surroundings, plan
 from experiments.plan.point import Point
 from experiments.plan.question import NamedScene, Question
 from experiments.plan.scenes import NoScene
-from experiments.plan.series import PrintedTime, Series
+from experiments.plan.series import Benchmark, PrintedTime, Series
 from support.errors import InputError
 
 NAME = "compare"
@@ -22,7 +22,11 @@ _OPENMP = ("OMP_", "GOMP_", "KMP_")
 def experiment_of(asked: Asked, around: Surroundings) -> Experiment:
     """What is run. Raises InputError for a command that is not there or cannot be run."""
     commands = (*asked.commands, again(asked))
-    points = [_point(one, number, asked, around) for number, one in enumerate(commands, start=1)]
+    points = [
+        _point(one, number, (case, name), asked, around)
+        for number, one in enumerate(commands, start=1)
+        for case, name in enumerate(asked.cases or [None])
+    ]
     question = _question(commands, asked)
     return Experiment(question, tuple(points), f"{around.seed} {NAME}")
 
@@ -33,7 +37,7 @@ def again(asked: Asked) -> Compared:
     return replace(first, name=first.name + AGAIN)
 
 
-def _question(commands: Sequence[Compared], asked: Asked) -> Question:
+def _question(commands: Sequence[Compared], asked: Asked, case: str | None = None) -> Question:
     return Question(
         name=NAME,
         file=commands[0].folder / NAME,
@@ -41,7 +45,7 @@ def _question(commands: Sequence[Compared], asked: Asked) -> Question:
         kind="comparison",
         figure="comparison",
         scenes=(NamedScene(NoScene()),),
-        series=tuple(_series(one, asked) for one in commands),
+        series=tuple(_series(one, asked, case) for one in commands),
         margin=asked.margin,
         error=asked.error,
         reference=asked.reference,
@@ -51,20 +55,23 @@ def _question(commands: Sequence[Compared], asked: Asked) -> Question:
     )
 
 
-def _point(command: Compared, number: int, asked: Asked, around: Surroundings) -> Point:
-    """That of one command, which has a folder of its own."""
+def _point(
+    command: Compared, number: int, case: tuple[int, str | None], asked: Asked, around: Surroundings
+) -> Point:
+    """That of one command, which has a folder of its own, or of a case of it, with its number."""
     try:
-        [point] = plan(_question([command], asked), around).points
+        [point] = plan(_question([command], asked, case[1]), around).points
     except InputError as error:
         # What is wrong with a series of a file here is wrong with a command.
         raise InputError(
             str(error).replace(f"{command.folder / NAME}: series[1].", f"{command.name}: ")
         ) from error
     environment = _environment(asked, point.openmp, command.environment)
-    return replace(point, series_number=number, openmp=environment)
+    return replace(point, series_number=number, openmp=environment, x=case[0], x_name="case")
 
 
-def _series(command: Compared, asked: Asked) -> Series:
+def _series(command: Compared, asked: Asked, case: str | None) -> Series:
+    [named] = _plain((case or "",))
     return Series(
         name=command.name,
         label=command.name,
@@ -74,6 +81,7 @@ def _series(command: Compared, asked: Asked) -> Series:
         exit_codes=() if asked.exit_codes == (0,) else asked.exit_codes,
         turns=asked.turns,
         time=PrintedTime(asked.time_from, asked.time_unit) if asked.time_from else None,
+        benchmark=Benchmark(command.words[0], named) if case else None,
     )
 
 

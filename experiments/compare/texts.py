@@ -2,10 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-from experiments.compare.answer import Answer, Difference
-from experiments.compare.blocks import Runs
+from experiments.compare.answer import Answer, Difference, Place
+from experiments.compare.blocks import Key, Runs
 from experiments.compare.options import Asked
-from experiments.compare.question import AGAIN
 from experiments.run.progress import about
 
 _UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
@@ -50,43 +49,57 @@ def memory(amount: float) -> str:
     return f"{amount / 1e6:.0f} MB" if amount < 9.5e8 else f"{amount / 1e9:.2g} GB"
 
 
-def result(asked: Asked, answer: Answer, runs: Mapping[str, Runs], blocks: int, seconds: float) -> list[str]:
+def result(asked: Asked, answer: Answer, runs: Mapping[Key, Runs], blocks: int, seconds: float) -> list[str]:
     """The lines of the result."""
-    lines = _table(
-        [
-            [
-                f"{one.name} against {asked.reference}",
-                change(one),
-                "withdrawn" if answer.is_withdrawn else verdict(one, asked),
-            ]
-            for one in _in_order(answer.commands)
-        ]
-    )
-    if answer.control is not None:
-        lines.append(f"  {_control(asked, answer.control)}")
-    lines.append(f"  {_how_long(answer, blocks, seconds)}")
-    lines += _table([[name, *_resources(runs[name])] for name in _measured(asked, runs)])
+    lines = _table([_row(one, asked, answer, runs) for one in _in_order(answer.commands, asked)])
+    lines += [f"  {_control(asked, answer)}"] if answer.controls else []
+    lines.append(f"  {_how_long(asked, answer, blocks, seconds)}")
+    if asked.cases:
+        return lines
+    measured = [one.name for one in asked.commands if runs[one.name, 0].seconds]
+    lines += _table([[name, *_resources(runs[name, 0])] for name in measured])
+    if answer.places:
+        lines += ["  in the order of their times; those with a letter in common cannot be told apart:"]
+        lines += _table([[_place(one), one.name, one.bracket] for one in answer.places])
     return lines
 
 
-def _in_order(commands: Sequence[Difference]) -> list[Difference]:
-    return sorted(commands, key=lambda one: one.ratio) if len(commands) > 1 else list(commands)
+def _in_order(commands: Sequence[Difference], asked: Asked) -> list[Difference]:
+    """By their times; cases as the program lists them."""
+    return sorted(commands, key=lambda one: (one.case, one.ratio) if asked.cases else (0, one.ratio))
 
 
-def _control(asked: Asked, control: Difference) -> str:
-    said = f"control: {asked.reference} against itself {change(control)}"
+def _row(one: Difference, asked: Asked, answer: Answer, runs: Mapping[Key, Runs]) -> list[str]:
+    said = "withdrawn" if answer.is_withdrawn else verdict(one, asked)
+    if not asked.cases:
+        return [f"{one.name} against {asked.reference}", change(one), said]
+    times = [duration(runs[name, one.case].median("seconds")) for name in (asked.reference, one.name)]
+    whose = f" ({one.name})" if len(asked.commands) > 2 else ""
+    return [asked.cases[one.case] + whose, " → ".join(times), change(one), said]
+
+
+def _place(one: Place) -> str:
+    return str(one.first) if one.first == one.last else f"{one.first} to {one.last}"
+
+
+def _control(asked: Asked, answer: Answer) -> str:
+    control = max(answer.controls, key=lambda one: (one.differs, abs(one.ratio - 1)))
+    case = f", {asked.cases[control.case]}" if asked.cases and control.differs else ""
     if control.differs:
         return (
-            f"{said}: a difference where there is none. All verdicts are withdrawn: "
-            "something on this machine favours one place in the order; `carom doctor` may say what"
+            f"control: {asked.reference} against itself{case} {change(control)}: a difference where there is "
+            "none. All verdicts are withdrawn: something on this machine favours one of two equals; "
+            "`carom doctor` may say what"
         )
-    return f"{said}: no difference, as it must be"
+    if asked.cases:
+        return f"control: {asked.reference} against itself: no difference in any case, as it must be"
+    return f"control: {asked.reference} against itself {change(control)}: no difference, as it must be"
 
 
-def _how_long(answer: Answer, blocks: int, seconds: float) -> str:
-    if answer.is_settled:
-        return f"settled after {seconds:.0f} s, {blocks} blocks"
-    said = f"measured for {seconds:.0f} s, {blocks} blocks"
+def _how_long(asked: Asked, answer: Answer, blocks: int, seconds: float) -> str:
+    if answer.is_enough(asked.margin, one_sided=asked.one_sided):
+        return f"settled after {seconds:.0f} s, {blocks_said(blocks)}"
+    said = f"measured for {seconds:.0f} s, {blocks_said(blocks)}"
     if not blocks or not answer.commands:
         return f"{said}: an interval needs {answer.next} blocks"
     if answer.needed is None:
@@ -95,8 +108,9 @@ def _how_long(answer: Answer, blocks: int, seconds: float) -> str:
     return f"{said}: {answer.needed} blocks would settle it, {more} more: `--time` gives them"
 
 
-def _measured(asked: Asked, runs: Mapping[str, Runs]) -> list[str]:
-    return [one.name for one in asked.commands if runs[one.name].seconds]
+def blocks_said(number: int) -> str:
+    """So many blocks."""
+    return f"{number} block{'' if number == 1 else 's'}"
 
 
 def _resources(runs: Runs) -> list[str]:
@@ -118,28 +132,31 @@ def _table(rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def markdown(
-    asked: Asked, answer: Answer, runs: Mapping[str, Runs], machine: str, said: Sequence[str]
+    asked: Asked, answer: Answer, runs: Mapping[Key, Runs], machine: str, said: Sequence[str]
 ) -> str:
     """The result as a table for a page or a comment: the verdict first, the machine and how last."""
-    first = answer.commands[0] if answer.commands else None
-    title = "nothing was settled"
-    if answer.is_withdrawn:
-        title = f"withdrawn: {asked.reference} differs from itself"
-    elif first is not None and len(answer.commands) == 1:
-        title = f"{first.name} against {asked.reference}: {verdict(first, asked)}"
-    elif answer.commands:
-        title = f"{len(answer.commands)} commands against {asked.reference}"
-    rows = ["| command | time | change of time | verdict |", "|---|---|---|---|"]
-    for name in _measured(asked, runs):
-        own = next((one for one in answer.commands if one.name == name), None)
-        told = (change(own), verdict(own, asked)) if own else ("", "reference")
-        rows.append(f"| {_cell(name)} | {duration(runs[name].median('seconds'))} | {told[0]} | {told[1]} |")
-    if answer.control is not None:
-        rows.append(f"| {_cell(asked.reference + AGAIN)} | | {change(answer.control)} | control |")
-    lines = "\n".join(f"    {one.strip()}" for one in said)
+    rows = [_row(one, asked, answer, runs) for one in _in_order(answer.commands, asked)]
+    columns = (
+        ["case", "time", "change of time", "verdict"] if asked.cases else ["", "change of time", "verdict"]
+    )
+    table = [columns, ["---"] * len(columns), *([_cell(one) for one in row] for row in rows)]
+    lines = "\n".join(f"| {' | '.join(row)} |" for row in table)
     commands = "\n".join(f"    {one.name}: {one.line}" for one in asked.commands)
-    folded = f"<details><summary>Machine and commands</summary>\n\n    {machine}\n{commands}\n{lines}"
-    return f"**{title}**\n\n" + "\n".join(rows) + f"\n\n{folded}\n\n</details>\n"
+    told = "\n".join(f"    {one.strip()}" for one in said)
+    folded = (
+        f"<details><summary>Machine and commands</summary>\n\n    {machine}\n{commands}\n{told}\n\n</details>"
+    )
+    return f"**{_title(asked, answer)}**\n\n{lines}\n\n{folded}\n"
+
+
+def _title(asked: Asked, answer: Answer) -> str:
+    if answer.is_withdrawn:
+        return f"withdrawn: {asked.reference} differs from itself"
+    if len(answer.commands) == 1:
+        [one] = answer.commands
+        return f"{one.name} against {asked.reference}: {verdict(one, asked)}"
+    number = sum(one.is_settled for one in answer.commands)
+    return f"{number} of {len(answer.commands)} comparisons with {asked.reference} are settled"
 
 
 def _cell(text: str) -> str:

@@ -78,8 +78,9 @@ def test_the_result_is_written_as_files(folder: Path) -> None:
     rows = list(csv.DictReader((folder / "a.csv").open(encoding="utf-8")))
     assert {row["command"] for row in rows} == {"a|b", "a|b again", "c"}
     seconds = [float(row["seconds"]) for row in rows if row["command"] == "c"]
-    assert seconds == told["commands"][1]["seconds"]
-    assert "| a\\|b |" in (folder / "a.md").read_text(encoding="utf-8")
+    [runs] = [one for one in told["runs"] if one["command"] == "c"]
+    assert seconds == runs["seconds"]
+    assert "c against a\\|b" in (folder / "a.md").read_text(encoding="utf-8")
 
 
 def test_the_same_under_two_names_is_never_told_apart(folder: Path) -> None:
@@ -213,3 +214,69 @@ def test_a_signal_ends_it_with_what_there_is(folder: Path, number: signal.Signal
     assert "short   " in output
     assert left_behind(folder) == []
     assert (folder / "rows.csv").exists()
+
+
+BENCHMARK = """
+list= filter=. output=
+for word; do
+    case $word in
+        --benchmark_list_tests=*) list=yes ;;
+        --benchmark_filter=*) filter=${{word#*=}} ;;
+        --benchmark_out=*) output=${{word#*=}} ;;
+    esac
+done
+names=$(printf '%s\\n' {names} | grep -E -- "$filter")
+[ -z "$list" ] || {{ printf '%s\\n' "$names"; exit; }}
+case="{{\\"name\\": \\"$names\\", \\"real_time\\": {time}, \\"time_unit\\": \\"ms\\"}}"
+echo "{{\\"benchmarks\\": [$case]}}" > "$output"
+"""
+"""Says of each case that it takes so long."""
+
+
+@pytest.fixture
+def benchmarks(folder: Path) -> Path:
+    script(folder / "bench_old", BENCHMARK.format(names="BM_a BM_b/8 BM_gone", time=4))
+    script(folder / "bench_new", BENCHMARK.format(names="BM_new BM_b/8 BM_a", time=3))
+    return folder
+
+
+def test_cases_of_benchmarks_are_paired_by_name(benchmarks: Path) -> None:
+    done = run(
+        benchmarks, "compare", "--gb", "./bench_old", "./bench_new", "--time", "60s", "--export-csv", "a.csv"
+    )
+    assert done.returncode == 0, done.stderr
+    assert "BM_a     4 ms → 3 ms   −25.0 % [−25.0, −25.0]   faster by more than 2 %" in done.stdout
+    assert "BM_b/8   4 ms → 3 ms   −25.0 %" in done.stdout
+    assert "control: bench_old against itself: no difference in any case" in done.stdout
+    assert "not all have it: BM_gone of bench_old" in done.stderr
+    assert "not all have it: BM_new of bench_new" in done.stderr
+    rows = list(csv.DictReader((benchmarks / "a.csv").open(encoding="utf-8")))
+    assert {row["case"] for row in rows} == {"BM_a", "BM_b/8"}
+
+
+def test_a_filter_picks_cases(benchmarks: Path) -> None:
+    done = run(benchmarks, "compare", "--gb", "--filter", "_b", "./bench_old", "./bench_new", "--time", "60s")
+    assert "BM_b/8" in done.stdout
+    assert "BM_a" not in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--filter", "gone"], 'carom: --gb: bench_new.filter: found "gone", which no case matches'),
+        (["--filter", "nothing"], 'found "nothing", which no case matches'),
+    ],
+)
+def test_without_a_common_case_nothing_is_run(benchmarks: Path, words: list[str], told: str) -> None:
+    done = run(benchmarks, "compare", "--gb", *words, "./bench_old", "./bench_new")
+    assert done.returncode == 1
+    assert told in done.stderr
+
+
+def test_three_commands_are_a_league(folder: Path) -> None:
+    for name, time_taken in (("a", 100), ("b", 50), ("c", 50)):
+        script(folder / name, f"echo took {time_taken} ms")
+    done = run(folder, "compare", "./a", "./b", "./c", "--time", "60s", "--time-from", "took ([0-9]+) ms")
+    assert "c against a   −50.0 %" in done.stdout
+    places = [line.split() for line in done.stdout.split("told apart:\n")[1].splitlines()]
+    assert [place[-2:] for place in places] == [["b", "a"], ["c", "a"], ["a", "b"]]
