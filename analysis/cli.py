@@ -90,11 +90,13 @@ def _figures(options: argparse.Namespace) -> int:
 
 
 def _follow(options: argparse.Namespace) -> int:
-    """Answer a line with a line of JSON: `open` with what is open; `report` with the files of the report,
-    `page` with its HTML alone, `report HOW FAR` with that of what is there so far.
+    """Answer a line with a line of JSON: `open` with what is open, `compared` with what `carom compare` asks;
+    `report` with the files of the report, `page` with its HTML alone, `report HOW FAR` with that of what is
+    there so far.
     """
     from analysis.claims import Tested
     from analysis.commands.open_questions import open_questions
+    from analysis.commands.programs_compared import programs_compared
     from analysis.report import write, write_meanwhile
 
     remembered: Tested = {}
@@ -102,13 +104,15 @@ def _follow(options: argparse.Namespace) -> int:
         match line.split():
             case ["open"]:
                 answer: object = open_questions(options.results, remembered)
+            case ["compared"]:
+                answer = programs_compared(options.results)
             case ["report" | "page" as wanted]:
                 written = write(options.results, _asked(options), pdf=wanted == "report")
                 answer = [str(path) for path in written]
             case ["report", *how_far]:
                 answer = [str(write_meanwhile(options.results, _asked(options), " ".join(how_far)))]
             case _:
-                expected = "expected `open`, `page`, `report` or `report ...`"
+                expected = "expected `open`, `compared`, `page`, `report` or `report ...`"
                 raise InputError(f"follow: found {line.strip()!r}, {expected}")
         print(json.dumps(answer), flush=True)
     return 0

@@ -1,14 +1,12 @@
 """`carom study`: plan, run and look after a study."""
 
 import argparse
-import signal
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import fields
 from functools import partial
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 from experiments.calibration.command import add_options as add_calibrate_options
@@ -28,27 +26,20 @@ from experiments.slurm.jobs import folders
 from experiments.slurm.status import show_cluster_status
 from experiments.slurm.submit import resume, submit
 from experiments.slurm.task import work
-from experiments.support.descendants import hear_of_ends
+from experiments.support.interrupts import stop_at_signals
 from experiments.support.places import analysis
 from support.command_line import Parser, exit_code_of, number_above_zero, print_anything
-from support.errors import InputError, Interrupted
+from support.errors import InputError
 from support.files import require_room_for_folder
 
 Run = Callable[[argparse.Namespace], int]
 Options = Callable[[argparse.ArgumentParser], None]
 
-# Slurm sends SIGUSR1 ahead of a task's time limit.
-_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)
-
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb; returns the exit code. Bad input is one line on standard error and 1."""
-    hear_of_ends()
+    stop_at_signals()
     print_anything()
-    for number in _SIGNALS:
-        # What is ignored stays ignored: `nohup` relies on it.
-        if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _interrupt)
     options = _parser().parse_args(arguments)
     kept = "what is finished is kept; the same command goes on with the rest"
     return exit_code_of(lambda: options.run(options), kept)
@@ -219,11 +210,6 @@ def positive_number(text: str) -> int:
 def minutes(text: str) -> float:
     """A number of minutes above 0, in seconds. Raises what the parser makes a line of."""
     return 60 * number_above_zero(text, "minutes")
-
-
-def _interrupt(number: int, frame: FrameType | None) -> None:
-    del frame
-    raise Interrupted(number)
 
 
 if __name__ == "__main__":

@@ -43,10 +43,12 @@ void add_group(CLI::App& program, const char* group, std::initializer_list<AddVe
 
 void add_verbs(CLI::App& program) {
     using namespace carom;
+    add_python_verbs(program, groups::measure);
     add_group(
         program, groups::simulate,
         {add_run_command, add_check_command, add_reference_command, add_generate_command, add_list_command});
-    add_python_verbs(program);
+    add_python_verbs(program, groups::simulate);
+    add_python_verbs(program, groups::study);
     add_group(program, groups::machine,
               {add_doctor_command, add_limits_command, add_bench_command, add_profile_command});
     add_group(program, groups::none,

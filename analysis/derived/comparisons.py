@@ -46,11 +46,12 @@ def reference(times: pd.DataFrame) -> str:
     return str(times.sort_values(["series_number", "series"], na_position="last")["series"].iloc[0])
 
 
-def differences(times: pd.DataFrame, against: str) -> pd.DataFrame:
+def differences(times: pd.DataFrame, against: str, by: Stated | None = None) -> pd.DataFrame:
     """Return a row of `verdicts.judge` for every other series and x, compared within blocks with the series
-    `against` at the same x, Holm-corrected over all of them, by the margin and the error that are stated.
+    `against` at the same x, Holm-corrected over all of them, by the margin and the error that are stated, or
+    by those given.
     """
-    processes, by = process_medians(times), stated(times)
+    processes, by = process_medians(times), by or stated(times)
     first, others = (processes[(processes["series"] == against) == side] for side in (True, False))
     pairs = [
         log_ratios(first, part, match=("x",)).assign(series=name) for name, part in others.groupby("series")

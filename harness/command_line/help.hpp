@@ -9,6 +9,7 @@ namespace carom {
 /// What the verbs of the program are for, in the order of its help. What has no group is called by the study
 /// alone: it can be called, and only `--help-all` tells of it.
 namespace groups {
+inline constexpr const char* measure = "Measure your programs";
 inline constexpr const char* simulate = "Simulate";
 inline constexpr const char* study = "The study";
 inline constexpr const char* machine = "This machine";

@@ -50,7 +50,7 @@ std::string man_page(const CLI::App& program, const std::string& version) {
                        escaped(program.get_description()) +
                        "\n.SH SYNOPSIS\n.B carom\nVERB [OPTIONS]\n.SH VERBS\n";
     std::string details = ".SH EACH VERB\n";
-    for (const char* group : {groups::simulate, groups::study, groups::machine}) {
+    for (const char* group : {groups::measure, groups::simulate, groups::study, groups::machine}) {
         text += ".SS " + escaped(group) + "\n";
         const auto is_in_group = [&](const CLI::App* verb) { return verb->get_group() == group; };
         for (const CLI::App* verb : program.get_subcommands(is_in_group)) {

@@ -19,13 +19,17 @@ namespace {
 struct PythonVerb {
     const char* name;
     const char* group;
-    const char* package;    ///< that does it
+    const char* package;    ///< that does it, or a part of one
     bool is_word;           ///< the package takes the verb's name as a word
     bool takes_the_program; ///< the package is told where this program is
     const char* told;
 };
 
 constexpr std::array python_verbs{
+    PythonVerb{"compare", groups::measure, "experiments.compare", true, false,
+               "Run commands in turns until it is settled which is faster"},
+    PythonVerb{"gate", groups::measure, "experiments.compare", true, false,
+               "Tell by an exit code whether a commit is slower than another"},
     PythonVerb{"movie", groups::simulate, "analysis", true, true,
                "Draw a run as an animation, or one step of it"},
     PythonVerb{"study", groups::study, "experiments", false, false,
@@ -51,7 +55,9 @@ std::filesystem::path own_file() {
 std::vector<std::string> python_words(const PythonVerb& verb, const std::vector<std::string>& words) {
     const std::filesystem::path root = own_file().parent_path().parent_path().parent_path();
     const std::filesystem::path python = root / ".venv" / "bin" / "python";
-    if (access(python.c_str(), X_OK) != 0 || !std::filesystem::is_directory(root / verb.package)) {
+    const std::string_view module = verb.package;
+    const std::string_view package = module.substr(0, module.find('.'));
+    if (access(python.c_str(), X_OK) != 0 || !std::filesystem::is_directory(root / package)) {
         throw InputError(std::string(verb.name) + ": needs Carom's Python parts, which are not in " +
                          root.string() +
                          ", expected there as in a checkout after `make setup`, or installed");
@@ -66,9 +72,11 @@ std::vector<std::string> python_words(const PythonVerb& verb, const std::vector<
 
 } // namespace
 
-void add_python_verbs(CLI::App& program) {
+void add_python_verbs(CLI::App& program, std::string_view group) {
     for (const PythonVerb& verb : python_verbs) {
-        program.add_subcommand(verb.name, verb.told)->prefix_command()->group(verb.group);
+        if (verb.group == group) {
+            program.add_subcommand(verb.name, verb.told)->prefix_command()->group(verb.group);
+        }
     }
 }
 

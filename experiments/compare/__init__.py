@@ -1,0 +1,1 @@
+"""Commands compared with one another, in a folder that is gone afterwards."""

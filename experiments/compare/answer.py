@@ -1,0 +1,110 @@
+"""What the analysis program says of the commands so far."""
+
+import json
+from dataclasses import dataclass, field
+from typing import Any
+
+from experiments.support.process import Coprocess
+from support.errors import InputError
+
+FIRST_LOOK = 6
+"""The blocks of which an interval can be made at all, by the analysis; its first answer says it again."""
+
+_LIMIT = 600.0
+"""Seconds after which an answer is given up."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A command against the reference: the ratio of their times with its interval, None where it has no end;
+    the blocks that it rests on, and those `needed` to settle it, None where that is not in sight.
+    """
+
+    name: str
+    ratio: float
+    low: float | None
+    high: float | None
+    verdict: str
+    blocks: int
+    differs: bool
+    case: int = 0
+    needed: int | None = None
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether there is a verdict."""
+        return self.verdict != "inconclusive"
+
+
+@dataclass(frozen=True)
+class Place:
+    """The places that a command may have among all; those with a letter in common cannot be told apart."""
+
+    name: str
+    first: int
+    last: int
+    bracket: str
+
+
+@dataclass(frozen=True)
+class Answer:
+    """All differences, those of the reference from itself, the places of many commands, and the number of
+    blocks of the next look.
+    """
+
+    commands: tuple[Difference, ...] = ()
+    controls: tuple[Difference, ...] = ()
+    places: tuple[Place, ...] = ()
+    next: int = FIRST_LOOK
+    looked_at: int = field(default=0)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether there is nothing left to be settled."""
+        return bool(self.commands) and all(one.is_settled for one in self.commands)
+
+    def is_slower(self, margin: float) -> bool:
+        """Whether any is established to be slower by more than the margin."""
+        return any(one.low is not None and one.low > 1 + margin for one in self.commands)
+
+    def is_not_slower(self, margin: float) -> bool:
+        """Whether each is established not to be slower by more than the margin, which takes fewer blocks than
+        to know that they are equivalent.
+        """
+        return bool(self.commands) and all(
+            one.high is not None and one.high < 1 + margin for one in self.commands
+        )
+
+    def is_enough(self, margin: float, *, one_sided: bool) -> bool:
+        """Whether what is asked is known: a verdict on each; or only whether one is slower by more than the
+        margin, or none is.
+        """
+        return self.is_settled or (one_sided and (self.is_not_slower(margin) or self.is_slower(margin)))
+
+    @property
+    def is_withdrawn(self) -> bool:
+        """Whether the reference differs from itself, so that no verdict stands."""
+        return any(one.differs for one in self.controls)
+
+    @property
+    def needed(self) -> int | None:
+        """The blocks that settle all of it; None where that is not in sight."""
+        of_open = [one.needed for one in self.commands if not one.is_settled]
+        known = [one for one in of_open if one is not None]
+        return max(known, default=None) if len(known) == len(of_open) else None
+
+
+def ask(analysis: Coprocess) -> Answer:
+    """Ask it. Raises InputError with its reason where it does not answer."""
+    done = analysis.ask("compared", _LIMIT)
+    if done.exit_code != 0:
+        raise InputError(f"what was measured cannot be judged: {done.reason}")
+    told = json.loads(done.output)
+    rows, controls = (tuple(map(_difference, told[key])) for key in ("commands", "controls"))
+    places = tuple(Place(one["series"], one["first"], one["last"], one["bracket"]) for one in told["places"])
+    return Answer(rows, controls, places, told["next"], max((one.blocks for one in rows), default=0))
+
+
+def _difference(row: dict[str, Any]) -> Difference:
+    told = {key: row[key] for key in ("ratio", "low", "high", "verdict", "blocks", "differs")}
+    return Difference(name=row["series"], case=row["x"], needed=row.get("needed"), **told)

@@ -1,0 +1,102 @@
+"""The verb `gate`: is this commit not slower than that one? The answer is an exit code."""
+
+import argparse
+import tempfile
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+
+from experiments.compare import exports
+from experiments.compare.answer import Answer
+from experiments.compare.command import measured
+from experiments.compare.options import WORDS, Compared, add_measuring, asked_of
+from experiments.compare.worktrees import build, repository
+from experiments.run.progress import warn
+from support.command_line import Parser
+from support.errors import InputError
+
+SLOWER, UNDECIDED = 3, 4
+
+
+def gate(arguments: Sequence[str]) -> int:
+    """Run the verb; returns 0 where it is established that the commit is not slower by more than the margin,
+    3 where it is slower, 4 where the time did not settle it, 2 where a command failed, 5 where the base
+    differs from itself. Raises InputError before anything is measured.
+    """
+    words, run = list(arguments), []
+    if WORDS in words:
+        at = words.index(WORDS)
+        words, run = words[:at], words[at + 1 :]
+    options = _parser().parse_args(words)
+    if not run:
+        raise InputError(
+            f"found no command, expected `{WORDS} WORDS` at the end: what is run of both commits"
+        )
+    accepted = _accepted(options.accept)
+    with tempfile.TemporaryDirectory(prefix="carom-gate-") as folder, ExitStack() as trees:
+        commands = _built(options, run, Path(folder), trees)
+        asked = replace(asked_of(options, commands, commands[0].name), one_sided=True)
+        exports.require_places(asked.exports)
+        code, answer = measured(asked)
+    return code or verdict(answer, asked.margin, accepted, options.fail_on)
+
+
+def _built(
+    options: argparse.Namespace, run: Sequence[str], folder: Path, trees: ExitStack
+) -> tuple[Compared, ...]:
+    """The command in each of the two commits, checked out and built."""
+    where = repository()
+    commits = {name: where.commit(getattr(options, name), f"--{name}") for name in ("base", "head")}
+    if where.is_changed:
+        warn("carom: what is not committed is not measured")
+    commands = []
+    for name, commit in commits.items():
+        tree = trees.enter_context(where.checked_out(commit, folder / name))
+        if options.build is not None:
+            build(options.build, tree, commit)
+        commands.append(Compared(f"{name} {commit.short}", tuple(run), " ".join(run), folder=tree))
+    return tuple(commands)
+
+
+def verdict(answer: Answer, margin: float, accepted: str, fail_on: str) -> int:
+    """What it comes to, said in a line; the exit code."""
+    if answer.is_not_slower(margin):
+        print("gate: passed: not slower by more than the margin")
+        return 0
+    if answer.is_slower(margin):
+        print(f"gate: passed: slower, as is accepted: {accepted}" if accepted else "gate: failed: slower")
+        return 0 if accepted else SLOWER
+    print("gate: the time did not settle it")
+    return UNDECIDED if fail_on == "undecided" else 0
+
+
+def _accepted(file: Path | None) -> str:
+    """The first line of the file that accepts a slower commit; empty without one."""
+    if file is None or not file.exists():
+        return ""
+    said = file.read_text(encoding="utf-8", errors="replace").strip().splitlines()
+    if not said:
+        raise InputError(f"--accept: {file}: is empty, expected the reason in a line")
+    return said[0]
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = Parser(
+        prog="carom gate",
+        usage="carom gate --base COMMIT [--build LINE] [OPTIONS] -- WORDS",
+        description="Build two commits, run a command of both in turns, and say whether one is slower.",
+        epilog="Exit codes: 0 not slower by more than the margin, which is established; 1 wrong usage, or a "
+        "build that failed; 2 a command failed; 3 slower by more than the margin, established; 4 not "
+        "settled within the time; 5 the base differs from itself, so that nothing is certain.",
+    )
+    add = parser.add_argument
+    add("--base", required=True, metavar="COMMIT", help="what it is compared with, such as origin/main")
+    add("--head", default="HEAD", metavar="COMMIT", help="what is judged (default: %(default)s)")
+    add("--build", metavar="LINE", help="a line for a shell that builds a commit, in its folder")
+    told = "what is a failure: slower alone, or undecided as well (default: %(default)s)"
+    add("--fail-on", choices=("slower", "undecided"), default="undecided", help=told)
+    told = "a file; where it is there, a slower commit passes, and its first line says why"
+    add("--accept", type=Path, metavar="FILE", help=told)
+    add_measuring(parser)
+    return parser

@@ -1,0 +1,282 @@
+"""`carom compare` and `carom gate` as a user calls them. Nothing here depends on how fast anything is."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from experiments.tests.conftest import ROOT
+
+CAROM = ROOT / "build" / "gcc" / "carom"
+
+pytestmark = pytest.mark.skipif(
+    not CAROM.is_file(), reason="build/gcc/carom is not built (`make build` builds it)"
+)
+
+LOOP = "i=0; while [ $i -lt {times} ]; do i=$((i+1)); done"
+"""A loop of a shell, some 30 ms for ten thousand times on any machine of today."""
+
+
+def run(folder: Path, *words: str, env: dict[str, str] | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [CAROM, *words],
+        cwd=folder,
+        env={**os.environ, "TMPDIR": str(folder / "tmp"), **(env or {})},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "tmp").mkdir()
+    script(tmp_path / "short", LOOP.format(times=4000))
+    script(tmp_path / "long", LOOP.format(times=12000))
+    return tmp_path
+
+
+def script(path: Path, text: str) -> None:
+    path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
+    path.chmod(0o755)
+
+
+def left_behind(folder: Path) -> list[str]:
+    """What a call has left in its temporary folder, but for the lock of the machine."""
+    return [one.name for one in (folder / "tmp").iterdir() if not one.name.endswith(".lock")]
+
+
+def test_what_takes_a_third_is_faster(folder: Path) -> None:
+    done = run(folder, "compare", "./long", "./short", "--time", "60s")
+    assert done.returncode in (0, 5), done.stderr
+    assert "short against long   −" in done.stdout
+    if done.returncode == 0:
+        assert "faster by more than 2 %" in done.stdout
+        assert "settled after" in done.stdout
+    assert left_behind(folder) == []
+
+
+def test_without_time_for_an_interval_nothing_is_settled(folder: Path) -> None:
+    done = run(folder, "compare", "./long", "./short", "--time", "1ms")
+    assert done.returncode == 0
+    assert "1 block" in done.stdout
+    assert "an interval needs 6 blocks" in done.stdout
+
+
+def test_the_result_is_written_as_files(folder: Path) -> None:
+    words = ["--export-json", "a.json", "--export-csv", "a.csv", "--export-markdown", "a.md"]
+    done = run(folder, "compare", "-n", "a|b", "-n", "c", "./short", "./long", "--time", "20s", *words)
+    assert done.returncode in (0, 5), done.stderr
+    told = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+    assert [one["name"] for one in told["commands"]] == ["a|b", "c"]
+    rows = list(csv.DictReader((folder / "a.csv").open(encoding="utf-8")))
+    assert {row["command"] for row in rows} == {"a|b", "a|b again", "c"}
+    seconds = [float(row["seconds"]) for row in rows if row["command"] == "c"]
+    [runs] = [one for one in told["runs"] if one["command"] == "c"]
+    assert seconds == runs["seconds"]
+    assert "c against a\\|b" in (folder / "a.md").read_text(encoding="utf-8")
+
+
+def test_the_same_under_two_names_is_never_told_apart(folder: Path) -> None:
+    done = run(
+        folder, "compare", "-n", "one", "-n", "two", "./short", "./short", "--time", "8s", "--margin", "40%"
+    )
+    assert "two against one" in done.stdout
+    assert "slower by more" not in done.stdout
+    assert "faster by more" not in done.stdout
+
+
+def test_a_command_that_fails_is_named_with_its_last_line(folder: Path) -> None:
+    script(folder / "fails", "echo first >&2; echo no such scene >&2; exit 3")
+    done = run(folder, "compare", "./short", "./fails", "--time", "5s")
+    assert done.returncode == 2
+    assert "carom: fails: failed after 0 runs" in done.stderr
+    assert "no such scene" in done.stderr
+    assert left_behind(folder) == []
+
+
+def test_a_command_that_fails_later_is_told_with_its_runs(folder: Path) -> None:
+    script(folder / "wears_out", 'echo x >> count; [ "$(wc -l < count)" -lt 12 ] || exit 1')
+    done = run(folder, "compare", "./short", "./wears_out", "--time", "20s", "--turns", "off")
+    assert done.returncode == 2
+    assert "wears_out: failed after" in done.stderr
+    assert "short   " in done.stdout, "what was measured of the others"
+
+
+def test_a_command_that_hangs_is_stopped(folder: Path) -> None:
+    script(folder / "hangs", "sleep 1000")
+    done = run(folder, "compare", "./short", "./hangs", "--timeout", "2s")
+    assert done.returncode == 2
+    assert "hangs: failed after 0 runs" in done.stderr
+
+
+def test_exit_codes_that_are_fine_are_no_failures(folder: Path) -> None:
+    script(folder / "ends_in_3", "exit 3")
+    done = run(folder, "compare", "./short", "./ends_in_3", "--time", "1ms", "--ignore-exit", "3")
+    assert done.returncode == 0, done.stderr
+
+
+def test_before_and_after_each_run_and_once_for_all(folder: Path) -> None:
+    script(folder / "needs", 'test -e prepared && test -e set_up && test "$A" = 1 && read x && test $x = y')
+    (folder / "input").write_text("y\n", encoding="utf-8")
+    done = run(
+        folder, "compare", "-n", "a", "-n", "b", "./needs", "./needs", "--time", "1ms",
+        "--prepare", "touch prepared", "--conclude", "rm prepared", "--setup", "touch set_up",
+        "--cleanup", "rm set_up; touch cleaned_up", "--input", "input", "--env", "A=1", "--turns", "off",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert not (folder / "set_up").exists()
+    assert not (folder / "prepared").exists()
+    assert (folder / "cleaned_up").exists()
+
+
+def test_what_once_comes_first_and_fails_is_said(folder: Path) -> None:
+    done = run(folder, "compare", "./short", "./long", "--setup", "echo no room >&2; false")
+    assert done.returncode == 1
+    assert "carom: --setup: " in done.stderr
+    assert "no room" in done.stderr
+
+
+def test_a_time_that_is_printed_counts(folder: Path) -> None:
+    script(folder / "prints_1", "echo took 100 ms")
+    script(folder / "prints_2", "echo took 50 ms")
+    done = run(
+        folder, "compare", "./prints_1", "./prints_2", "--time", "20s", "--time-from", "took ([0-9.]+) ms"
+    )
+    assert "prints_2 against prints_1   −50.0 % [−50.0, −50.0]   faster by more than 2 %" in done.stdout
+    assert "prints_1   100 ms" in done.stdout
+
+
+def test_threads_are_bound_or_the_environment_is_the_users(folder: Path) -> None:
+    for words, env, wanted in (
+        (["--threads", "1"], {"OMP_NUM_THREADS": "7"}, "1"),
+        ([], {"OMP_NUM_THREADS": "7"}, "7"),
+    ):
+        script(folder / "threads", f'test "$OMP_NUM_THREADS" = {wanted}')
+        done = run(folder, "compare", "./short", "./threads", "--time", "1ms", *words, env=env)
+        assert done.returncode == 0, done.stderr
+
+
+def test_the_layout_varies_from_block_to_block_or_is_fixed(folder: Path) -> None:
+    script(folder / "tells", 'echo "${#CAROM_PADDING}" >> paddings')
+    assert run(folder, "compare", "./short", "./tells", "--time", "3s", "--turns", "off").returncode in (0, 5)
+    paddings = (folder / "paddings").read_text(encoding="utf-8").split()
+    assert len(set(paddings)) > 1
+    (folder / "paddings").unlink()
+    done = run(folder, "compare", "./short", "./tells", "--time", "1s", "--turns", "off", "--fixed-layout")
+    assert done.returncode in (0, 5)
+    assert set((folder / "paddings").read_text(encoding="utf-8").split()) == {"0"}
+
+
+def test_a_shell_is_told_with_what_its_start_takes(folder: Path) -> None:
+    done = run(folder, "compare", "./short; true", "./long; true", "--time", "1ms")
+    assert "a shell starts lines" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["./short", "./not_there"], 'carom: not_there: command: found "./not_there", which is not there'),
+        (["./short"], "found 1 command, expected two or more"),
+        (["./short", "./long", "--export-json", "tmp"], "--export-json: found tmp, which is a folder"),
+        (["./short", "./long", "--frobnicate"], "unrecognized arguments: --frobnicate"),
+    ],
+)
+def test_what_is_wrong_is_said_before_anything_runs(folder: Path, words: list[str], told: str) -> None:
+    done = run(folder, "compare", *words)
+    assert done.returncode == 1
+    assert done.stdout == ""
+    assert told in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_it_with_what_there_is(folder: Path, number: signal.Signals) -> None:
+    child = subprocess.Popen(
+        [CAROM, "compare", "./short", "./long", "--margin", "0.0001%", "--export-csv", "rows.csv"],
+        cwd=folder,
+        env={**os.environ, "TMPDIR": str(folder / "tmp")},
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    until = time.monotonic() + 60
+    while time.monotonic() < until and not list(folder.glob("tmp/carom-compare-*/records/compare/*-b1.json")):
+        time.sleep(0.1)
+    child.send_signal(number)
+    output, _ = child.communicate(timeout=60)
+    assert child.returncode == 128 + number
+    assert "short   " in output
+    assert left_behind(folder) == []
+    assert (folder / "rows.csv").exists()
+
+
+BENCHMARK = """
+list= filter=. output=
+for word; do
+    case $word in
+        --benchmark_list_tests=*) list=yes ;;
+        --benchmark_filter=*) filter=${{word#*=}} ;;
+        --benchmark_out=*) output=${{word#*=}} ;;
+    esac
+done
+names=$(printf '%s\\n' {names} | grep -E -- "$filter")
+[ -z "$list" ] || {{ printf '%s\\n' "$names"; exit; }}
+case="{{\\"name\\": \\"$names\\", \\"real_time\\": {time}, \\"time_unit\\": \\"ms\\"}}"
+echo "{{\\"benchmarks\\": [$case]}}" > "$output"
+"""
+"""Says of each case that it takes so long."""
+
+
+@pytest.fixture
+def benchmarks(folder: Path) -> Path:
+    script(folder / "bench_old", BENCHMARK.format(names="BM_a BM_b/8 BM_gone", time=4))
+    script(folder / "bench_new", BENCHMARK.format(names="BM_new BM_b/8 BM_a", time=3))
+    return folder
+
+
+def test_cases_of_benchmarks_are_paired_by_name(benchmarks: Path) -> None:
+    done = run(
+        benchmarks, "compare", "--gb", "./bench_old", "./bench_new", "--time", "60s", "--export-csv", "a.csv"
+    )
+    assert done.returncode == 0, done.stderr
+    assert "BM_a     4 ms → 3 ms   −25.0 % [−25.0, −25.0]   faster by more than 2 %" in done.stdout
+    assert "BM_b/8   4 ms → 3 ms   −25.0 %" in done.stdout
+    assert "control: bench_old against itself: no difference in any case" in done.stdout
+    assert "not all have it: BM_gone of bench_old" in done.stderr
+    assert "not all have it: BM_new of bench_new" in done.stderr
+    rows = list(csv.DictReader((benchmarks / "a.csv").open(encoding="utf-8")))
+    assert {row["case"] for row in rows} == {"BM_a", "BM_b/8"}
+
+
+def test_a_filter_picks_cases(benchmarks: Path) -> None:
+    done = run(benchmarks, "compare", "--gb", "--filter", "_b", "./bench_old", "./bench_new", "--time", "60s")
+    assert "BM_b/8" in done.stdout
+    assert "BM_a" not in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--filter", "gone"], 'carom: --gb: bench_new.filter: found "gone", which no case matches'),
+        (["--filter", "nothing"], 'found "nothing", which no case matches'),
+    ],
+)
+def test_without_a_common_case_nothing_is_run(benchmarks: Path, words: list[str], told: str) -> None:
+    done = run(benchmarks, "compare", "--gb", *words, "./bench_old", "./bench_new")
+    assert done.returncode == 1
+    assert told in done.stderr
+
+
+def test_three_commands_are_a_league(folder: Path) -> None:
+    for name, time_taken in (("a", 100), ("b", 50), ("c", 50)):
+        script(folder / name, f"echo took {time_taken} ms")
+    done = run(folder, "compare", "./a", "./b", "./c", "--time", "60s", "--time-from", "took ([0-9]+) ms")
+    assert "c against a   −50.0 %" in done.stdout
+    places = [line.split() for line in done.stdout.split("told apart:\n")[1].splitlines()]
+    assert [place[-2:] for place in places] == [["b", "a"], ["c", "a"], ["a", "b"]]
