@@ -127,8 +127,7 @@ def _study(records: Records, scale: str) -> str:
     present = {name for table in tables for name in table.loc[table["scale"] == scale, "experiment"]}
     if present.issuperset(titles()):
         return ""
-    asked = sorted(present - {CONTROL}) or [CONTROL]
-    return f" STUDY={','.join(asked)}"
+    return f" STUDY={','.join(sorted(present - {CONTROL}) or [CONTROL])}"
 
 
 def commands(runs: pd.DataFrame) -> list[dict[str, Any]]:
