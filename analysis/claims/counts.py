@@ -9,10 +9,10 @@ import pandas as pd
 
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, directed, judged, no_records, told
-from analysis.records.tables import COUNTS
 from analysis.statistics.pairs import PAIR, process_medians, ratios_of
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, count
+from support.vocabulary import COUNTS
 
 OF_COUNTS = {"faster": "fewer", "slower": "more", "not faster": "not fewer"}
 """The verdicts on a ratio in words for a number of things; the others are the same."""

@@ -9,8 +9,9 @@ from typing import Any
 
 from analysis.derived.comparisons import stated
 from analysis.records.published import Published
-from analysis.records.studies import SCALES, Study
+from analysis.records.studies import Study
 from support.errors import InputError
+from support.vocabulary import SCALES
 
 CLAIMS_FILE = Path(__file__).parent / "claims.toml"
 

@@ -9,7 +9,6 @@ from analysis.claims.alternatives import alternatives
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, directed, judged, no_records, told
-from analysis.records.published import Published
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.support.wording import blocks, change, count, exact, number, percent
 
@@ -57,8 +56,10 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
         f"best other, {best['name']}: {change(best)} of time, {blocks(best)}"
     )
     theirs = _best_other(evidence, experiment, schedule, chunk)
+    medians = processes.groupby(["series", "x"], as_index=False)["steps_seconds"].median()
+    fastest = _least(evidence.published.experiment(experiment), "seconds"), _least(medians, "steps_seconds")
     figures = (
-        Compared("fastest measured", *_fastest(evidence.published, experiment, processes)),
+        Compared("fastest measured", *fastest),
         Compared("best other against the choice", theirs, f"{best['name']}: {change(best)}"),
     )
     against = f"against the others on average {change(average)} of time, {blocks(average)}"
@@ -66,12 +67,6 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     if matters.verdict == FAILS:
         matters = replace(matters, why=NOT_BETTER[told(average, "faster")])
     return replace(both([found.outcome(measured), matters]), figures=figures)
-
-
-def _fastest(published: Published, experiment: str, processes: pd.DataFrame) -> tuple[str, str]:
-    """Return the schedule with the least time in the study, and that with the least median here."""
-    ours = processes.groupby(["series", "x"], as_index=False)["steps_seconds"].median()
-    return _least(published.experiment(experiment), "seconds"), _least(ours, "steps_seconds")
 
 
 def _least(table: pd.DataFrame, value: str) -> str:

@@ -65,14 +65,11 @@ def _kind_of_time(times: pd.DataFrame) -> str:
         return ""
     own = sorted(processes.loc[processes["time_from"] != "outside", "series"].unique())
     stated = f"; those of {listed(own)} are what the program says itself" if own else ""
-    return f" Times are of whole processes, from outside{stated}.{_undisturbed(processes)}"
-
-
-def _undisturbed(processes: pd.DataFrame) -> str:
-    """Say which series had no turns where others did, and why."""
+    # Which series had no turns where others did, and why.
     alone = processes.dropna(subset=["undisturbed"]).drop_duplicates("series")
     said = "; ".join(f"{row.series} ({row.undisturbed})" for row in alone.sort_values("series").itertuples())
-    return f" Measured without a pause, in a stretch of its own instead of in turns: {said}." if said else ""
+    pause = f" Measured without a pause, in a stretch of its own instead of in turns: {said}." if said else ""
+    return f" Times are of whole processes, from outside{stated}.{pause}"
 
 
 def growth_sentence(times: pd.DataFrame) -> str:

@@ -14,10 +14,10 @@ from analysis.figures.curves import bounded, difference, margin_band
 from analysis.figures.hover import Told, tell
 from analysis.figures.labels import label_ends, note, plain_ticks
 from analysis.figures.style import BLUE, INK, VERMILLION, Data, Drawing, lighten, new_figure
-from analysis.records.tables import COUNTS
 from analysis.statistics.pairs import PAIR, log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.wording import blocks, change, count, exact, number, percent
+from support.vocabulary import COUNTS
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import json
 from collections.abc import Collection
 from pathlib import Path
 
-PLAN = "plan.json"
+from support.vocabulary import PLAN
 
 
 def planned_runs(results: Path, scale: str, experiment: str, points: Collection[str]) -> int | None:

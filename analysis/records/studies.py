@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from analysis.records.reading import MEASURED, Records, Tables
-
-SCALES = ["paper", "quick"]
+from support.vocabulary import SCALES
 
 CHECK_FAILED = 2
 """The program's exit code when a result fails its check."""

@@ -14,9 +14,6 @@ Named = list[tuple[str, Record]]
 Placed = list[tuple[dict[str, Any], Record]]
 """Records with their context."""
 
-COUNTS = "counts"
-"""The kind of questions whose runs are counted alone: nothing was warmed up, their times are not compared."""
-
 TAGS = [
     "experiment", "series", "x_name", "x", "block", "position", "session", "scale", "site", "point",
     "label", "scene_name", "series_number", "figure", "title", "points_planned", "blocks_planned",

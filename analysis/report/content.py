@@ -19,13 +19,13 @@ from analysis.records.reading import Records
 from analysis.records.studies import Study, split
 from analysis.report import graphs, provenance
 from analysis.report.parts import contents, parts
-from analysis.report.provenance import CONTROL
 from analysis.statistics.levels import in_order, levels, shifting
 from analysis.statistics.looks import ERROR
 from analysis.statistics.noise import needed_said, process_noise, warning
 from analysis.statistics.pairs import log_ratios, process_medians
 from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.wording import blocks, change, count, number, share
+from support.vocabulary import CONTROL
 
 STYLE = Path(__file__).parent / "report.css"
 

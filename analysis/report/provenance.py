@@ -10,11 +10,10 @@ from analysis.figures import titles
 from analysis.figures.captions import by_series
 from analysis.records.reading import Records
 from analysis.records.studies import Study
-from analysis.records.tables import COUNTS
 from analysis.statistics.pairs import without_partner
 from analysis.support.wording import count, exact, number, share
+from support.vocabulary import CONTROL, COUNTS
 
-CONTROL = "control"
 UNTOLD = "not told by the system"
 
 
@@ -128,8 +127,7 @@ def _study(records: Records, scale: str) -> str:
     present = {name for table in tables for name in table.loc[table["scale"] == scale, "experiment"]}
     if present.issuperset(titles()):
         return ""
-    asked = sorted(present - {CONTROL}) or [CONTROL]
-    return f" STUDY={','.join(asked)}"
+    return f" STUDY={','.join(sorted(present - {CONTROL}) or [CONTROL])}"
 
 
 def commands(runs: pd.DataFrame) -> list[dict[str, Any]]:
