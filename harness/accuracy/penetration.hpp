@@ -6,8 +6,8 @@
 #include <unordered_set>
 #include <vector>
 
-#include "harness/verify/overlapping_pairs.hpp"
 #include "harness/verify/disc_states.hpp"
+#include "harness/verify/overlapping_pairs.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {
