@@ -11,3 +11,6 @@ COUNTS = "counts"
 
 PLAN = "plan.json"
 """The file of a results folder that tells how many blocks each experiment was given."""
+
+AGAIN = " again"
+"""Behind the name of the reference where `carom compare` runs it under a second one."""

@@ -12,12 +12,10 @@ from analysis.records.studies import split
 from analysis.statistics.forecast import blocks_to_decide
 from analysis.statistics.looks import ERROR, next_look
 from analysis.statistics.ranking import ranking
+from support.vocabulary import AGAIN
 
 LEAGUE = 3
 """So many commands are a league, in which every pair is compared."""
-
-AGAIN = " again"
-"""Behind the name of the reference where it was run under a second one."""
 
 
 def programs_compared(results: Path) -> dict[str, Any]:

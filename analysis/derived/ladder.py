@@ -15,7 +15,7 @@ from analysis.records.tables import COLUMN_OF, LATER_AXES
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import process_medians, ratios_of
 from analysis.statistics.verdicts import COLUMNS, judge
-from analysis.support.wording import number, scene_in_words
+from analysis.support.wording import NO_INTERVAL, number, scene_in_words
 
 RUNG = ["scene_name", "series_number"]
 POLICIES = [
@@ -74,9 +74,12 @@ def totals(times: pd.DataFrame) -> pd.DataFrame:
 
 
 def speed_up(row: pd.Series | dict[str, float], digits: int = 3) -> str:
-    """Return a row of `verdicts.judge` as the factor by which it is faster, e.g. `9.87 × [9.52, 10.2]`."""
-    ends = (row[end] for end in ("ratio", "high", "low"))
-    factor, low, high = (number(1 / end if end > 0 else math.inf, digits) for end in ends)
+    """Return a row of `verdicts.judge` as the factor by which it is faster, e.g. `9.87 × [9.52, 10.2]`, with
+    its interval if it has one.
+    """
+    if not math.isfinite(row["high"]):
+        return f"{number(1 / row['ratio'], digits)} × {NO_INTERVAL}"
+    factor, low, high = (number(1 / row[end], digits) for end in ("ratio", "high", "low"))
     return f"{factor} × [{low}, {high}]"
 
 

@@ -1,14 +1,11 @@
 """What the analysis program says of the commands so far."""
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from experiments.support.process import Coprocess
 from support.errors import InputError
-
-FIRST_LOOK = 6
-"""The blocks of which an interval can be made at all, by the analysis; its first answer says it again."""
 
 _LIMIT = 600.0
 """Seconds after which an answer is given up."""
@@ -55,8 +52,8 @@ class Answer:
     commands: tuple[Difference, ...] = ()
     controls: tuple[Difference, ...] = ()
     places: tuple[Place, ...] = ()
-    next: int = FIRST_LOOK
-    looked_at: int = field(default=0)
+    next: int = 0
+    looked_at: int = 0
 
     @property
     def is_settled(self) -> bool:

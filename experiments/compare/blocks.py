@@ -29,6 +29,8 @@ class Runs:
     seconds: list[float] = field(default_factory=list)
     cores: list[float] = field(default_factory=list)
     bytes: list[float] = field(default_factory=list)
+    memory: str = ""
+    """Of what the bytes are the peak, or what is known without them."""
     reason: str = ""
     """Why it failed, if it did."""
     undisturbed: str = ""
@@ -98,7 +100,8 @@ class Blocks:
         runs.cores.append(busy / max(process["wall_seconds"], 1e-9))
         if process["peak_memory_bytes"] is not None:
             runs.bytes.append(process["peak_memory_bytes"])
-        runs.undisturbed = process["undisturbed"] or ""
+        runs.memory = process["peak_memory_reason"]
+        runs.undisturbed = process["undisturbed"] or runs.undisturbed
 
 
 def keep_addresses() -> None:

@@ -10,7 +10,8 @@ from pathlib import Path
 from experiments.compare import exports
 from experiments.compare.answer import Answer
 from experiments.compare.command import measured
-from experiments.compare.options import WORDS, Compared, add_measuring, asked_of
+from experiments.compare.commands import WORDS, Compared, split_off
+from experiments.compare.options import add_measuring, asked_of
 from experiments.compare.worktrees import build, repository
 from experiments.run.progress import warn
 from support.command_line import Parser
@@ -24,10 +25,7 @@ def gate(arguments: Sequence[str]) -> int:
     3 where it is slower, 4 where the time did not settle it, 2 where a command failed, 5 where the base
     differs from itself. Raises InputError before anything is measured.
     """
-    words, run = list(arguments), []
-    if WORDS in words:
-        at = words.index(WORDS)
-        words, run = words[:at], words[at + 1 :]
+    words, run = split_off(arguments)
     options = _parser().parse_args(words)
     if not run:
         raise InputError(

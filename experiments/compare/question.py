@@ -4,18 +4,17 @@ import os
 from collections.abc import Sequence
 from dataclasses import replace
 
-from experiments.compare.options import Asked, Compared
+from experiments.compare.commands import Compared
+from experiments.compare.options import Asked
 from experiments.plan.plan import Experiment, Surroundings, plan
 from experiments.plan.point import Point
 from experiments.plan.question import NamedScene, Question
 from experiments.plan.scenes import NoScene
 from experiments.plan.series import Benchmark, PrintedTime, Series
 from support.errors import InputError
+from support.vocabulary import AGAIN
 
 NAME = "compare"
-AGAIN = " again"
-"""Behind the name of the reference where it is run under a second one."""
-
 _OPENMP = ("OMP_", "GOMP_", "KMP_")
 
 

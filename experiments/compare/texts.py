@@ -115,7 +115,7 @@ def blocks_said(number: int) -> str:
 
 def _resources(runs: Runs) -> list[str]:
     told = [duration(runs.median("seconds")), f"{runs.median('cores'):.1f} cores"]
-    told.append(memory(max(runs.bytes)) if runs.bytes else "memory not known")
+    told.append(memory(max(runs.bytes)) if runs.bytes else runs.memory.partition(",")[0])
     if runs.undisturbed:
         told.append(f"never stopped: {runs.undisturbed}")
     return told

@@ -142,7 +142,7 @@ def _of_table(path: Path, key: str, table: dict[str, Any]) -> Iterator[Series]:
     fine = () if codes == (0,) else codes
     series = Series(**{"name": "", **table, **words}, time=time, benchmark=benchmark, exit_codes=fine)
     if time is not None:
-        _require_one_group(f"{key}.time.stdout", time.stdout)
+        require_one_group(f"{key}.time.stdout", time.stdout)
     if time is not None and series.turns:
         told = "found true for a program that times itself, which would count its pauses; expected false"
         raise InputError(f"{key}.turns: {told}")
@@ -167,7 +167,8 @@ def _require_no_zero_byte(key: str, value: object) -> None:
                 _require_no_zero_byte(key, one)
 
 
-def _require_one_group(key: str, pattern: str) -> None:
+def require_one_group(key: str, pattern: str) -> None:
+    """Raises InputError, which begins with `key`, for a pattern that is not allowed or has not one group."""
     try:
         groups = groups_of(pattern)
     except PatternError as error:

@@ -1,5 +1,6 @@
 """The ladder's table, figure and sentences, from synthetic records whose factors are known."""
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -7,11 +8,12 @@ import pandas as pd
 import pytest
 
 from analysis import report
-from analysis.derived.ladder import claims, factors, headlines, named, rungs, totals
+from analysis.derived.ladder import claims, factors, headlines, named, rungs, speed_up, totals
 from analysis.figures.ladder import waterfall
 from analysis.figures.style import Data, Drawing, styled
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
+from analysis.support.wording import NO_INTERVAL
 from analysis.tests.synthetic import Machine, failure, profile, write
 from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_points import LADDER
@@ -170,3 +172,8 @@ def test_records_of_several_machines_do_not_meet(tmp_path: Path) -> None:
 def moved_to(host: str, record: dict[str, Any]) -> dict[str, Any]:
     tags = record["tags"] | {"point": f"{record['tags']['point']}-{host}"}
     return record | {"tags": tags, "provenance": Machine(host=host).provenance("g++ 12.2.0", 2)}
+
+
+def test_a_factor_without_an_interval_says_so() -> None:
+    assert speed_up({"ratio": 0.25, "low": 0.0, "high": math.inf}) == f"4.00 × {NO_INTERVAL}"
+    assert speed_up({"ratio": 0.5, "low": 0.4, "high": 0.625}) == "2.00 × [1.60, 2.50]"

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from experiments.compare.options import parse, unit_of, words_of
+from experiments.compare.commands import words_of
+from experiments.compare.options import parse
+from experiments.compare.values import unit_of
 from support.errors import InputError
 
 
@@ -110,6 +112,12 @@ def test_the_unit_stands_behind_the_group(pattern: str, unit: str) -> None:
         (["-P", "x", "a", "b", "a {x}"], "expected a name and two whole numbers"),
         (["--env", "1=2", "a", "b"], "expected VARIABLE=VALUE"),
         (["--prepare", "x", "--prepare", "y", "a", "b", "c"], "--prepare: found 2 for 3 commands"),
+        (["-n", "a", "-n", "a again", "x", "y"], 'found "a again", which the control is called'),
+        (["--turns", "on", "--time-from", "took (.*)", "a", "b"], "--turns: found on, of commands that time"),
+        (
+            ["-P", "n", "1", "99999999999", "a {n}"],
+            "found 101 commands, expected two or more to compare, 100",
+        ),
         (["--input", "/not/there", "a", "b"], "--input: found /not/there, expected a file"),
     ],
 )
@@ -124,6 +132,7 @@ def test_what_is_wrong_is_said_in_a_line(arguments: list[str], told: str) -> Non
     "arguments",
     [
         ["--margin", "60%"], ["--margin", "x"], ["--time", "0s"], ["--time", "1d"], ["--warmup", "-1"],
+        ["--threads", "0"],
         ["--ignore-exit", "300"], ["--time-from", "took"], ["--time-from", "(a)(b)"], ["--turns", "maybe"],
     ],
 )  # fmt: skip

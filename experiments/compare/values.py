@@ -1,0 +1,76 @@
+"""Values of options: shares, times, numbers, patterns. Each raises what the parser makes a line of."""
+
+import argparse
+import re
+from collections.abc import Callable
+
+from experiments.plan.series import require_one_group
+from support.errors import InputError
+
+_SECONDS_OF = {"ms": 1e-3, "s": 1.0, "m": 60.0, "min": 60.0, "h": 3600.0}
+_MOST_DIGITS = 6
+
+
+def unit_of(pattern: str) -> str:
+    """The unit that stands behind the group of a pattern; seconds where none does."""
+    behind = re.search(r"\)\s*(?:\\s\S?)?\s*(ns|us|ms|s)\b", pattern)
+    return behind[1] if behind else "s"
+
+
+def pattern(text: str) -> str:
+    """A regular expression with one group."""
+    try:
+        require_one_group("it", text)
+    except InputError as error:
+        raise argparse.ArgumentTypeError(str(error).removeprefix("it: ")) from error
+    return text
+
+
+def _typed(convert: Callable[[str], float], expected: str, text: str) -> float:
+    try:
+        return convert(text)
+    except (ValueError, KeyError) as error:
+        raise argparse.ArgumentTypeError(f"found {text}, expected {expected}") from error
+
+
+def fraction(text: str) -> float:
+    """A share below a half, with or without a sign of per cent."""
+
+    def convert(value: str) -> float:
+        number = float(value.removesuffix("%")) / (100 if value.endswith("%") else 1)
+        if not 0 < number < 0.5:
+            raise ValueError
+        return number
+
+    return _typed(convert, "a share such as 2% or 0.02, above 0 and below 50%", text)
+
+
+def duration(text: str) -> float:
+    """Seconds, of a number with a unit or without."""
+
+    def convert(value: str) -> float:
+        parts = re.fullmatch(r"([0-9.]+)\s*(ms|s|min|m|h)?", value)
+        if parts is None or not 0 < float(parts[1]) < 1e6:
+            raise ValueError
+        return float(parts[1]) * _SECONDS_OF[parts[2] or "s"]
+
+    return _typed(convert, "a time such as 60s or 5min", text)
+
+
+def count(text: str, least: int = 0) -> int:
+    """A whole number, of at most six digits."""
+    if not (text.isascii() and text.isdigit()) or len(text) > _MOST_DIGITS or int(text) < least:
+        raise argparse.ArgumentTypeError(f"found {text}, expected a whole number from {least} on")
+    return int(text)
+
+
+def positive(text: str) -> int:
+    """A whole number of at least 1."""
+    return count(text, 1)
+
+
+def codes(text: str) -> tuple[int, ...]:
+    """Exit codes between commas."""
+    if not re.fullmatch(r"\d{1,3}(,\d{1,3})*", text) or any(int(one) > 255 for one in text.split(",")):
+        raise argparse.ArgumentTypeError(f"found {text}, expected exit codes between commas, 0 to 255")
+    return tuple(int(one) for one in text.split(","))
