@@ -142,7 +142,7 @@ std::optional<std::string> ContactChecker::wrong_exchange(const Collision<double
     const Disc& one = disc(collision.first);
     const Disc& two = disc(collision.second);
     const double epsilon = rules_.epsilon();
-    if (const Found violation = wrong_velocities(collision, one, two, d, epsilon, 8 * uncertain)) {
+    if (const Found violation = wrong_velocities(collision, one, two, d, epsilon, 8 * uncertain, false)) {
         return *violation + when(collision);
     }
     const double speeds = speed_of(one) + speed_of(two);

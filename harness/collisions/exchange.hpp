@@ -35,11 +35,12 @@ std::string told_velocities(const Collision<Real>& collision, const BasicDisc<Re
 /// What is wrong with the velocities that two discs, `one` and `two` before, get in a collision, or nothing:
 /// they keep their momentum and their energy and exchange what they have along the line of centres, of which
 /// `d` is the second seen from the first, to 16 roundings of their speeds, and to `direction` of these, by
-/// which that line is uncertain. Centres that coincide have none.
+/// which that line is uncertain. Centres that coincide have none: whatever they exchange is wrong, unless
+/// they `may_coincide`.
 template <class Real>
 std::optional<std::string> wrong_velocities(const Collision<Real>& collision, const BasicDisc<Real>& one,
                                             const BasicDisc<Real>& two, const BasicDisc<Real>& d,
-                                            Real epsilon, Real direction) {
+                                            Real epsilon, Real direction, bool may_coincide) {
     const BasicDisc<Real>& one_after = collision.first_after;
     const BasicDisc<Real>& two_after = collision.second_after;
     const auto wrong = [&](const char* what) { return told_velocities(collision, one, two, what); };
@@ -59,7 +60,7 @@ std::optional<std::string> wrong_velocities(const Collision<Real>& collision, co
     const Real exchanged = parting_of(d) / distance;
     const Real off = std::hypot(one.vx + exchanged * (d.x / distance) - one_after.vx,
                                 one.vy + exchanged * (d.y / distance) - one_after.vy);
-    if (distance > 0 && !(off <= roundings + speeds * direction)) {
+    if (!(may_coincide && distance == 0) && !(off <= roundings + speeds * direction)) {
         return wrong("do not exchange what they have along the line of centres");
     }
     return std::nullopt;

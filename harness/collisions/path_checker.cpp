@@ -114,7 +114,7 @@ std::optional<std::string> PathChecker<Real>::wrong_pair(const Collision<Real>& 
                at_time(time);
     }
     Found violation = wrong_velocities(collision, first.start, second.start, d, PathRounding<Real>::epsilon,
-                                       4 * (place / distance));
+                                       4 * (place / distance), true);
     return violation ? *violation + at_time(time) : violation;
 }
 
