@@ -90,9 +90,9 @@ def _figures(options: argparse.Namespace) -> int:
 
 
 def _follow(options: argparse.Namespace) -> int:
-    """Answer a line with a line of JSON: `open` with what is open, `compared` with what `carom compare` asks;
-    `report` with the files of the report, `page` with its HTML alone, `report HOW FAR` with that of what is
-    there so far.
+    """Answer a line with a line of JSON: `open` with what is open; `compared N` with what `carom compare`
+    asks, whose error N calls share; `picture` with the file of its picture; `report` with the files of the
+    report, `page` with its HTML alone, `report HOW FAR` with that of what is there so far.
     """
     from analysis.claims import Tested
     from analysis.commands.open_questions import open_questions
@@ -104,15 +104,19 @@ def _follow(options: argparse.Namespace) -> int:
         match line.split():
             case ["open"]:
                 answer: object = open_questions(options.results, remembered)
-            case ["compared"]:
-                answer = programs_compared(options.results)
+            case ["compared", many] if many.isdigit():
+                answer = programs_compared(options.results, int(many))
+            case ["picture"]:
+                from analysis.commands.programs_picture import programs_picture
+
+                answer = str(programs_picture(options.results))
             case ["report" | "page" as wanted]:
                 written = write(options.results, _asked(options), pdf=wanted == "report")
                 answer = [str(path) for path in written]
             case ["report", *how_far]:
                 answer = [str(write_meanwhile(options.results, _asked(options), " ".join(how_far)))]
             case _:
-                expected = "expected `open`, `compared`, `page`, `report` or `report ...`"
+                expected = "expected `open`, `compared N`, `picture`, `page`, `report` or `report ...`"
                 raise InputError(f"follow: found {line.strip()!r}, {expected}")
         print(json.dumps(answer), flush=True)
     return 0

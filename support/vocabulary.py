@@ -14,3 +14,9 @@ PLAN = "plan.json"
 
 AGAIN = " again"
 """Behind the name of the reference where `carom compare` runs it under a second one."""
+
+ASKED = "asked.json"
+"""The file of a results folder with what `carom compare` asks beside its questions: `cases`, the names of the
+cases in the order of their numbers, and `contrasts`, the sums of logarithms that are to be judged, each with
+a `name` and with `weights` by series.
+"""

@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from analysis.derived.comparisons import Stated, differences, reference, stated
@@ -11,40 +12,81 @@ from analysis.records.reading import load
 from analysis.records.studies import split
 from analysis.statistics.forecast import blocks_to_decide
 from analysis.statistics.looks import ERROR, next_look
+from analysis.statistics.pairs import process_medians
 from analysis.statistics.ranking import ranking
+from analysis.statistics.verdicts import corrected, judge_one
 from support.vocabulary import AGAIN
 
 LEAGUE = 3
 """So many commands are a league, in which every pair is compared."""
 
 
-def programs_compared(results: Path) -> dict[str, Any]:
+def programs_compared(results: Path, many: int = 1) -> dict[str, Any]:
     """Return `commands`: a row of `verdicts.judge` for each command but the reference and each case `x`, with
-    the number of blocks that are `needed` to settle it, None where that is not in sight; `controls`: the same
-    of the reference under its second name, a row a case, and whether it `differs` from itself; `places`: with
-    three commands or more, in the order of their times, the places and the bracket of each; and `next`, the
-    number of blocks at which to look again.
+    the number of blocks that are `needed` to settle it, None where that is not in sight, and `low_of_all`,
+    the lower end of the interval that holds together with those of all rows, in `many` calls; `controls`: the
+    same of the reference under its second name, a row a case, and whether it `differs` from itself; `places`:
+    with three commands or more, in the order of their times, the places and the bracket of each; `effects`:
+    rows of the sums of logarithms that `asked.json` asks for; and `next`, the number of blocks at which
+    to look again.
     """
-    studies = split(load(results))
-    times = studies[0].times if studies else pd.DataFrame()
+    times = times_of(results)
     if times.empty:
-        return {"commands": [], "controls": [], "places": [], "next": next_look(0)}
-    against, error = reference(times), stated(times).error
+        nothing: dict[str, Any] = {key: [] for key in ("commands", "controls", "places", "effects")}
+        return {**nothing, "next": next_look(0)}
+    against, by = reference(times), stated(times)
     is_control = times["series"] == against + AGAIN
-    rows = [_row(row) for row in differences(times[~is_control], against).to_dict("records")]
+    found = differences(times[~is_control], against)
+    together = Stated(by.margin, by.error / (max(1, len(found)) * many))
+    of_all = differences(times[~is_control], against, together).set_index(["series", "x"])["low"]
+    rows = [
+        {**_row(row), "low_of_all": _end(of_all[row["series"], row["x"]])} for row in found.to_dict("records")
+    ]
     open_ones = max(1, sum(row["verdict"] == "inconclusive" for row in rows))
     for row in rows:
         if row["verdict"] == "inconclusive":
-            needed = blocks_to_decide(row["alone"], row["blocks"], max(1, round(open_ones * ERROR / error)))
+            needed = blocks_to_decide(
+                row["alone"], row["blocks"], max(1, round(open_ones * ERROR / by.error))
+            )
             row["needed"] = int(needed) if math.isfinite(needed) else None
-    blocks = max((row["blocks"] for row in rows), default=0)
     controls = _controls(times[is_control | (times["series"] == against)], against)
     return {
         "commands": rows,
         "controls": controls,
         "places": _places(times[~is_control]),
-        "next": next_look(blocks),
+        "effects": _effects(times, by, asked(results)["contrasts"]),
+        "next": next_look(max((row["blocks"] for row in rows), default=0)),
     }
+
+
+def asked(results: Path) -> dict[str, Any]:
+    """Return the names of the `cases` and the `contrasts` that the caller has written down."""
+    found = read_json(results / ASKED)
+    return {"cases": [], "contrasts": [], **(found if isinstance(found, dict) else {})}
+
+
+def times_of(results: Path) -> pd.DataFrame:
+    """Return the times of what is compared; an empty table before anything is measured."""
+    studies = split(load(results))
+    return studies[0].times if studies else pd.DataFrame()
+
+
+def _effects(times: pd.DataFrame, by: Stated, contrasts: Any) -> list[dict[str, Any]]:  # noqa: ANN401 - JSON
+    """Return a row for each contrast: the sum of the logarithms of the series' times in a block, each with
+    its weight, judged as a log ratio is, Holm-corrected over all contrasts.
+    """
+    if not contrasts:
+        return []
+    processes = process_medians(times)
+    logs = np.log(processes.pivot_table("steps_seconds", ["block", "session"], "series")).dropna()
+    rows = []
+    for one in contrasts:
+        weights = pd.Series(one["weights"], dtype=float)
+        if set(weights.index) <= set(logs.columns):
+            sums = logs[weights.index].to_numpy() @ weights.to_numpy()
+            rows.append({"series": one["name"], "x": 0, **judge_one(sums, by.margin, by.error)})
+    table = pd.DataFrame(rows)
+    return [_row(row) for row in corrected(table, by.error).to_dict("records")] if rows else []
 
 
 def _controls(times: pd.DataFrame, against: str) -> list[dict[str, Any]]:
@@ -67,8 +109,12 @@ def _places(times: pd.DataFrame) -> list[dict[str, Any]]:
 
 def _row(row: dict[Any, Any]) -> dict[str, Any]:
     """Return the row as JSON has it; what reaches without end is None."""
-    ends = {key: float(row[key]) if math.isfinite(row[key]) else None for key in ("low", "high")}
+    ends = {key: _end(row[key]) for key in ("low", "high")}
     told = {"series": str(row["series"]), "verdict": row["verdict"], "x": int(row["x"])}
     numbers = {key: float(row[key]) for key in ("ratio", "alone", "p")}
     differs = ends["low"] is not None and ends["high"] is not None and not ends["low"] <= 1 <= ends["high"]
     return {**told, **numbers, **ends, "blocks": int(row["blocks"]), "differs": differs}
+
+
+def _end(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

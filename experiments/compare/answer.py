@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from experiments.support.process import Coprocess
@@ -24,6 +25,8 @@ class Difference:
     verdict: str
     blocks: int
     differs: bool
+    low_of_all: float | None = None
+    """The lower end of the interval that holds together with those of all others, in all calls."""
     case: int = 0
     needed: int | None = None
 
@@ -52,6 +55,8 @@ class Answer:
     commands: tuple[Difference, ...] = ()
     controls: tuple[Difference, ...] = ()
     places: tuple[Place, ...] = ()
+    effects: tuple[Difference, ...] = ()
+    """What the values of lists change, by themselves and together."""
     next: int = 0
     looked_at: int = 0
 
@@ -61,8 +66,8 @@ class Answer:
         return bool(self.commands) and all(one.is_settled for one in self.commands)
 
     def is_slower(self, margin: float) -> bool:
-        """Whether any is established to be slower by more than the margin."""
-        return any(one.low is not None and one.low > 1 + margin for one in self.commands)
+        """Whether any is established to be slower by more than the margin, of however many."""
+        return any(one.low_of_all is not None and one.low_of_all > 1 + margin for one in self.commands)
 
     def is_not_slower(self, margin: float) -> bool:
         """Whether each is established not to be slower by more than the margin, which takes fewer blocks than
@@ -91,17 +96,32 @@ class Answer:
         return max(known, default=None) if len(known) == len(of_open) else None
 
 
-def ask(analysis: Coprocess) -> Answer:
-    """Ask it. Raises InputError with its reason where it does not answer."""
-    done = analysis.ask("compared", _LIMIT)
+def ask(analysis: Coprocess, many: int = 1) -> Answer:
+    """Ask it, `many` being the calls that share the error of a gate. Raises InputError with its reason where
+    it does not answer.
+    """
+    told = json.loads(_asked(analysis, f"compared {many}"))
+    rows, controls, effects = (
+        tuple(map(_difference, told[key])) for key in ("commands", "controls", "effects")
+    )
+    places = tuple(Place(one["series"], one["first"], one["last"], one["bracket"]) for one in told["places"])
+    blocks = max((one.blocks for one in rows), default=0)
+    return Answer(rows, controls, places, effects, told["next"], blocks)
+
+
+def draw(analysis: Coprocess) -> Path:
+    """Let it draw the intervals and the blocks; returns the file, an SVG in the folder of results."""
+    return Path(json.loads(_asked(analysis, "picture")))
+
+
+def _asked(analysis: Coprocess, line: str) -> str:
+    done = analysis.ask(line, _LIMIT)
     if done.exit_code != 0:
         raise InputError(f"what was measured cannot be judged: {done.reason}")
-    told = json.loads(done.output)
-    rows, controls = (tuple(map(_difference, told[key])) for key in ("commands", "controls"))
-    places = tuple(Place(one["series"], one["first"], one["last"], one["bracket"]) for one in told["places"])
-    return Answer(rows, controls, places, told["next"], max((one.blocks for one in rows), default=0))
+    return done.output
 
 
 def _difference(row: dict[str, Any]) -> Difference:
     told = {key: row[key] for key in ("ratio", "low", "high", "verdict", "blocks", "differs")}
-    return Difference(name=row["series"], case=row["x"], needed=row.get("needed"), **told)
+    needed, low_of_all = row.get("needed"), row.get("low_of_all")
+    return Difference(name=row["series"], case=row["x"], needed=needed, low_of_all=low_of_all, **told)

@@ -1,5 +1,6 @@
-"""The cases that several Google Benchmarks have in common."""
+"""Google Benchmarks: whether programs are some, and the cases that they have in common."""
 
+import mmap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
@@ -24,6 +25,26 @@ class Named(Protocol):
     @property
     def folder(self) -> Path:
         """Where it is run."""
+
+
+_PROGRAM = b"\x7fELF"
+_MARKS = (b"benchmark_list_tests", b"libbenchmark.so")
+"""What stands in a program that has the library in it, or that loads it."""
+
+
+def are_benchmarks(commands: Sequence[Named]) -> bool:
+    """Whether all commands are programs alone, without arguments, that have Google Benchmark in them. None of
+    them is run to find out.
+    """
+    return all(len(one.words) == 1 and _has_library(found(one.words[0], one.folder)) for one in commands)
+
+
+def _has_library(program: Path) -> bool:
+    try:
+        with program.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+            return content[: len(_PROGRAM)] == _PROGRAM and any(content.find(mark) >= 0 for mark in _MARKS)
+    except (OSError, ValueError):
+        return False  # it is not there, or is empty
 
 
 def common_cases(commands: Sequence[Named], pattern: str) -> tuple[str, ...]:

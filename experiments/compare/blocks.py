@@ -1,19 +1,21 @@
 """Block after block of an experiment, and what the records say of each command."""
 
 import ctypes
+import itertools
 import os
 import random
 import statistics
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
-from experiments.results.store import Store
+from experiments.results.store import Store, unusable
 from experiments.run.runner import Runner, Task
 from experiments.run.together import together
-from support.files import read_json
+from support.files import read_json, write_json
 
 PADDING = "CAROM_PADDING"
 MOST_PADDING = 4096
@@ -29,6 +31,8 @@ class Runs:
     seconds: list[float] = field(default_factory=list)
     cores: list[float] = field(default_factory=list)
     bytes: list[float] = field(default_factory=list)
+    counts: dict[str, list[float]] = field(default_factory=dict)
+    """What was counted of a run, by name: page faults, context switches, and what the machine counts."""
     memory: str = ""
     """Of what the bytes are the peak, or what is known without them."""
     reason: str = ""
@@ -54,22 +58,68 @@ class Blocks:
     """Runs one block after the other; `runs` holds what came of each command, or of each case of it."""
 
     def __init__(self, experiment: Experiment, store: Store, runner: Runner) -> None:
-        self._experiment = experiment
         self._store = store
         self._runner = runner
-        self._random = random.Random(experiment.order_seed)
-        self.done = 0
         self.began = time.monotonic()
+        self._plan(experiment, 1)
+
+    def _plan(self, experiment: Experiment, in_a_row: int) -> None:
+        self.experiment = experiment
+        self.in_a_row = in_a_row
+        self.done = 0
+        self.before = 0
+        """Blocks that an earlier call measured."""
         self.runs: dict[Key, Runs] = {key_of(point): Runs() for point in experiment.points}
 
     def begin(self) -> None:
         """Let the time count from here."""
         self.began = time.monotonic()
 
+    def repeat(self, experiment: Experiment, in_a_row: int) -> None:
+        """Begin again with the experiment in which so many runs count as one, as if nothing had been run."""
+        for point in self.experiment.points:
+            self._store.record_path(point, 0).unlink(missing_ok=True)
+        self._plan(experiment, in_a_row)
+
+    def take_up(self, records: Sequence[Mapping[str, Any]]) -> str:
+        """Count what an earlier call measured; returns why it cannot be counted, and then counts nothing."""
+        points = {point.id: point for point in self.experiment.points}
+        of_block: dict[int, set[str]] = {}
+        for record in records:
+            point, block = points.get(str(record["tags"].get("point"))), int(record["tags"].get("block", -1))
+            wrong = "other commands" if point is None else unusable(record, point, block)
+            if point is None or wrong is not None:
+                return str(wrong)
+            of_block.setdefault(block, set()).add(point.id)
+        whole = next(block for block in itertools.count() if of_block.get(block) != set(points))
+        for record in records:
+            point, block = points[record["tags"]["point"]], record["tags"]["block"]
+            if block < whole:
+                write_json(self._store.record_path(point, block), record, self._store.temporary)
+        for block in range(whole):
+            for point in self.experiment.points:
+                self._take_in(point, block)
+        self.done = self.before = whole
+        return ""
+
+    @property
+    def records(self) -> list[Any]:
+        """All records of whole blocks."""
+        return [
+            read_json(self._store.record_path(point, block))
+            for block in range(self.done)
+            for point in self.experiment.points
+        ]
+
     @property
     def seconds(self) -> float:
         """Since the first block began."""
         return time.monotonic() - self.began
+
+    @property
+    def seconds_each(self) -> float:
+        """What a block of this call took, in the mean."""
+        return self.seconds / max(1, self.done - self.before)
 
     @property
     def failed(self) -> Mapping[Key, str]:
@@ -78,28 +128,33 @@ class Blocks:
 
     def run(self, *, vary_layout: bool) -> bool:
         """Run a block; returns whether all of it succeeded."""
+        block, size = self.done, len(self.experiment.points)
         if vary_layout:
-            os.environ[PADDING] = "x" * self._random.randrange(MOST_PADDING)
-        block, size = self.done, len(self._experiment.points)
-        order = list(enumerate(self._experiment.block(block)))
-        for group in together(self._experiment, block, order):
-            tasks = [Task(self._experiment, point, block, at, block + 1, size) for at, point in group]
+            padding = random.Random(f"{self.experiment.order_seed} {block}").randrange(MOST_PADDING)
+            os.environ[PADDING] = "x" * padding
+        order = list(enumerate(self.experiment.block(block)))
+        for group in together(self.experiment, block, order):
+            tasks = [Task(self.experiment, point, block, at, block + 1, size) for at, point in group]
             for task, outcome in zip(tasks, self._runner.run(tasks), strict=True):
                 if outcome.seconds is None:
                     self.runs[key_of(task.point)].reason = outcome.reason
                 else:
-                    self._take_in(task)
+                    self._take_in(task.point, block)
         self.done += not self.failed
         return not self.failed
 
-    def _take_in(self, task: Task) -> None:
-        record = read_json(self._store.record_path(task.point, task.block))
-        runs, process = self.runs[key_of(task.point)], record["process"]
-        runs.seconds.append(statistics.median(one["steps_seconds"] for one in record["repetitions"]))
+    def _take_in(self, point: Point, block: int) -> None:
+        record = read_json(self._store.record_path(point, block))
+        runs, process = self.runs[key_of(point)], record["process"]
+        seconds = statistics.median(one["steps_seconds"] for one in record["repetitions"])
+        runs.seconds.append(seconds / self.in_a_row)
         busy = process["user_seconds"] + process["system_seconds"]
         runs.cores.append(busy / max(process["wall_seconds"], 1e-9))
         if process["peak_memory_bytes"] is not None:
             runs.bytes.append(process["peak_memory_bytes"])
+        for name, amount in process.get("counted", {}).items():
+            if amount is not None:
+                runs.counts.setdefault(name, []).append(amount / self.in_a_row)
         runs.memory = process["peak_memory_reason"]
         runs.undisturbed = process["undisturbed"] or runs.undisturbed
 

@@ -2,31 +2,36 @@
 
 import contextlib
 import os
-import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from experiments.compare import exports
-from experiments.compare.answer import Answer, ask
+from experiments.compare.answer import Answer, draw
 from experiments.compare.blocks import Blocks, keep_addresses, shell_seconds
+from experiments.compare.course import Course, Line
+from experiments.compare.earlier import Earlier
+from experiments.compare.found import Found
 from experiments.compare.options import Asked, parse
-from experiments.compare.question import experiment_of
-from experiments.compare.texts import blocks_said, change, duration, result
+from experiments.compare.sweeps import contrasts
+from experiments.compare.texts import duration, result
 from experiments.plan.plan import Surroundings
 from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.scale import find_scale
 from experiments.plan.scenes import SceneFolder
 from experiments.plan.site import load_site, this_machine
 from experiments.results.store import Store, new_session
-from experiments.run.progress import about, warn
+from experiments.run.progress import warn
 from experiments.run.runner import Runner
 from experiments.support import process
 from experiments.support.places import BUILDS, analysis
 from experiments.support.process import Coprocess
-from support.errors import InputError, Interrupted
+from support.errors import InputError
+from support.vocabulary import ASKED
 
 COMMAND_FAILED, WITHDRAWN = 2, 5
+
+Say = Callable[[Answer], str]
 
 
 def compare(arguments: Sequence[str]) -> int:
@@ -38,83 +43,73 @@ def compare(arguments: Sequence[str]) -> int:
     return measured(asked)[0]
 
 
-def measured(asked: Asked) -> tuple[int, Answer]:
-    """Measure and tell the result; returns the exit code and what the last look found."""
+def measured(asked: Asked, say: Say = lambda _: "") -> tuple[int, Answer]:
+    """Measure and tell the result, with the line that `say` makes of it at the head of exported pages;
+    returns the exit code and what the last look found.
+    """
+    earlier = Earlier(asked.earlier)
     if asked.fixed_layout:
         keep_addresses()
     with tempfile.TemporaryDirectory(prefix="carom-compare-") as folder, _set_up(asked):
-        return _measured(asked, Path(folder))
+        return _measured(asked, earlier, Path(folder), say)
 
 
-def _measured(asked: Asked, folder: Path) -> tuple[int, Answer]:
+def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[int, Answer]:
     where = load_site("local")
-    programs = find_programs(where, BUILDS)
-    generator = programs[GENERATOR]
+    around = Surroundings(where, this_machine(), find_programs(where, BUILDS), find_scale("paper"))
+    generator = around.programs[GENERATOR]
     if generator.sha256 is None:
         raise InputError(generator.remedy)
-    around = Surroundings(where, this_machine(), programs, find_scale("paper"))
-    experiment = experiment_of(asked, around)
     store = Store(folder, new_session())
     with store.opened(), Coprocess(analysis("follow", "--results", str(folder))) as judge:
+        _write_down(asked, store)
         scenes = SceneFolder(folder / "scenes", store.temporary, str(generator.sha256))
-        blocks = Blocks(experiment, store, Runner(store, scenes, generator, asked.most_seconds))
-        with _Line(asked.quiet) as line:
+        runner = Runner(store, scenes, generator, asked.most_seconds, asked.slice_seconds)
+        course = Course(asked, around, store, runner)
+        with Line(asked.quiet) as line:
             line.show("making ready")
-            answer = ask(judge)  # it takes seconds to load what it needs
-            answer, stopped = _until_settled(asked, blocks, judge, answer, line)
-    said = result(asked, answer, blocks.runs, blocks.done, blocks.seconds)
-    for text in [*said, *_remarks(asked)]:
-        print(text)
-    exports.write(asked, answer, blocks.runs, around.machine.name, said)
-    for key, reason in blocks.failed.items():
-        runs = len(blocks.runs[key].seconds)
-        name = f"{key[0]}, {asked.cases[key[1]]}" if asked.cases else key[0]
-        warn(f"carom: {name}: failed after {runs} run{'' if runs == 1 else 's'}: {reason}")
+            stopped = course.run(judge, earlier, line)
+        found = course.found(_remarks(course.asked))
+        said = result(found)
+        print(*said, sep="\n")
+        exports.write(found, said, say(found.answer), lambda: draw(judge))
+        earlier.keep(course.blocks)
+    return _exit_code(course.blocks, found, stopped), found.answer
+
+
+def _exit_code(blocks: Blocks, found: Found, stopped: int | None) -> int:
+    """What the end comes to; says what failed."""
+    cases = found.asked.cases
+    for (name, case), reason in blocks.failed.items():
+        runs = len(blocks.runs[name, case].seconds)
+        whose = f"{name}, {cases[case]}" if cases else name
+        warn(f"carom: {whose}: failed after {runs} run{'' if runs == 1 else 's'}: {reason}")
     if stopped is not None:
-        return 128 + stopped, answer
-    return COMMAND_FAILED if blocks.failed else WITHDRAWN if answer.is_withdrawn else 0, answer
+        return 128 + stopped
+    return COMMAND_FAILED if blocks.failed else WITHDRAWN if found.answer.is_withdrawn else 0
 
 
-def _until_settled(
-    asked: Asked, blocks: Blocks, judge: Coprocess, answer: Answer, line: "_Line"
-) -> tuple[Answer, int | None]:
-    """Measure; returns the last answer, and the signal that stopped it before its end, if one did."""
-    blocks.begin()
-    try:
-        while blocks.run(vary_layout=not asked.fixed_layout):
-            if blocks.done == answer.next:
-                answer = ask(judge)
-                if answer.is_enough(asked.margin, one_sided=asked.one_sided):
-                    break
-            line.show(_so_far(asked, blocks, answer))
-            if blocks.seconds * (1 + 1 / blocks.done) > asked.seconds:
-                break
-    except Interrupted as stopped:
-        return answer, stopped.signal_number
-    return answer, None
+def _write_down(asked: Asked, store: Store) -> None:
+    """What the analysis has to know beside the records."""
+    levels = {one.name: one.levels for one in asked.commands}
+    told = [{"name": one.name, "weights": dict(one.weights)} for one in contrasts(levels)]
+    store.keep_note(ASKED, {"cases": asked.cases, "contrasts": told})
 
 
-def _so_far(asked: Asked, blocks: Blocks, answer: Answer) -> str:
-    """In one line: what is known, and when more will be."""
-    left = asked.seconds - blocks.seconds
-    told = f"{blocks_said(blocks.done)}, {blocks.seconds:.0f} s"
-    if not answer.commands:
-        until = (answer.next - blocks.done) * blocks.seconds / blocks.done
-        return f"{told}; a first interval in {about(until)}"
-    worst = min(answer.commands, key=lambda one: one.is_settled)
-    known = f"{told}; {asked.cases[worst.case] if asked.cases else worst.name} {change(worst)}"
-    if answer.needed is None:
-        return f"{known}; {about(left)} left"
-    until = (answer.needed - blocks.done) * blocks.seconds / blocks.done
-    return f"{known}; {about(min(until, left))} left"
-
-
-def _remarks(asked: Asked) -> list[str]:
+def _remarks(asked: Asked) -> tuple[str, ...]:
     """What is to be known of how it was measured."""
+    remarks = []
+    if asked.in_a_row > 1:
+        remarks.append(
+            f"each time is of {asked.in_a_row} runs in a row, which a shell starts one after the other, "
+            "divided by their number: single runs are short"
+        )
     if any(one.has_shell for one in asked.commands):
         took = duration(shell_seconds())
-        return [f"  a shell starts lines that are more than plain words; its start takes {took}, and counts"]
-    return []
+        remarks.append(
+            f"a shell starts lines that are more than plain words; its start takes {took}, and counts"
+        )
+    return tuple(remarks)
 
 
 @contextlib.contextmanager
@@ -132,23 +127,3 @@ def _once(option: str, line: str | None) -> None:
         done = process.run(("sh", "-c", line), dict(os.environ))
         if done.exit_code != 0:
             raise InputError(f"{option}: {line}: {done.reason}")
-
-
-class _Line:
-    """One line on a terminal that tells how far it is, drawn between blocks only; a context manager."""
-
-    def __init__(self, quiet: bool) -> None:
-        self._is_shown = sys.stderr.isatty() and not quiet
-
-    def __enter__(self) -> "_Line":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.show("")
-
-    def show(self, text: str) -> None:
-        """Put the text in the place of the one before."""
-        if self._is_shown:
-            width = os.get_terminal_size(sys.stderr.fileno()).columns
-            sys.stderr.write(f"\r\x1b[K{text[: max(1, width - 1)]}")
-            sys.stderr.flush()

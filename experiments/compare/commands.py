@@ -1,13 +1,13 @@
 """The commands that are compared: from lines or words to words, names and surroundings."""
 
 import argparse
-import itertools
 import re
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from experiments.compare.sweeps import Levels, combinations, filled
 from support.errors import InputError, quoted
 from support.vocabulary import AGAIN
 
@@ -33,6 +33,8 @@ class Compared:
     environment: tuple[tuple[str, str], ...] = ()
     folder: Path = field(default_factory=Path.cwd)
     """Where it is run."""
+    levels: Levels = ()
+    """The value of each list that its line has."""
 
     @property
     def has_shell(self) -> bool:
@@ -51,11 +53,13 @@ def commands_of(options: argparse.Namespace, words_behind: Sequence[str]) -> tup
     split = _split(words_behind)
     if options.lines and split:
         raise InputError(f"found lines and words behind {WORDS}, expected either")
-    swept = _combinations(options)
+    swept = combinations(options.list, options.range, MOST_COMMANDS)
+    levels: list[Levels] = [()] * len(split)
     if split:
         texts = [(shlex.join(words), tuple(words)) for words in split]
     else:
-        texts = [(line, words_of(line)) for line in _filled(options.lines, swept)]
+        lines = filled(options.lines, swept)
+        texts, levels = [(line, words_of(line)) for line, _ in lines], [one for _, one in lines]
     if not 1 < len(texts) <= MOST_COMMANDS:
         told = f"expected two or more to compare, {MOST_COMMANDS} at most"
         raise InputError(f"found {_commands_said(len(texts))}, {told}")
@@ -66,7 +70,9 @@ def commands_of(options: argparse.Namespace, words_behind: Sequence[str]) -> tup
     before, after = (_beside(options, key, len(texts)) for key in ("prepare", "conclude"))
     own = _environments(options.env, names)
     return tuple(
-        Compared(name, _with_input(words, options.input), line, before[at], after[at], own[name])
+        Compared(
+            name, _with_input(words, options.input), line, before[at], after[at], own[name], levels=levels[at]
+        )
         for at, (name, (line, words)) in enumerate(zip(names, texts, strict=True))
     )
 
@@ -175,40 +181,6 @@ def _with_input(words: tuple[str, ...], file: Path | None) -> tuple[str, ...]:
     if not file.is_file():
         raise InputError(f"--input: found {file}, expected a file that is there")
     return ("sh", "-c", f'exec "$@" < {shlex.quote(str(file.absolute()))}', "sh", *words)
-
-
-def _combinations(options: argparse.Namespace) -> list[dict[str, str]]:
-    """The values of each combination of the lists."""
-    values: dict[str, list[str]] = {}
-    for name, text in options.list:
-        values[name] = text.split(",")
-    for name, first, last in options.range:
-        try:
-            numbers = range(int(first), int(last) + 1)
-            values[name] = [str(one) for one in numbers[: MOST_COMMANDS + 1]]
-        except ValueError as error:
-            raise InputError(
-                f"-P: found {name} {first} {last}, expected a name and two whole numbers"
-            ) from error
-        if not values[name]:
-            raise InputError(f"-P: found {name} from {first} to {last}, expected numbers that rise")
-    combinations = itertools.islice(itertools.product(*values.values()), MOST_COMMANDS + 1)
-    return [dict(zip(values, one, strict=True)) for one in combinations]
-
-
-def _filled(lines: Sequence[str], combinations: Sequence[dict[str, str]]) -> list[str]:
-    """Each line with each combination of values. Raises InputError for a value that no line uses."""
-    for name in combinations[0]:
-        if not any(f"{{{name}}}" in line for line in lines):
-            raise InputError(f"found values for {name}, expected {{{name}}} in a command")
-    filled = []
-    for line in lines:
-        for values in combinations:
-            text = line
-            for name, value in values.items():
-                text = text.replace(f"{{{name}}}", value)
-            filled.append(text)
-    return list(dict.fromkeys(filled)) if combinations[0] else filled
 
 
 def _commands_said(number: int) -> str:

@@ -4,14 +4,14 @@ import argparse
 import tempfile
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from experiments.compare import exports
+from experiments.compare import exports, values
 from experiments.compare.answer import Answer
-from experiments.compare.command import measured
+from experiments.compare.command import WITHDRAWN, measured
 from experiments.compare.commands import WORDS, Compared, split_off
-from experiments.compare.options import add_measuring, asked_of
+from experiments.compare.options import add_measuring, asked_of, cases_of
 from experiments.compare.worktrees import build, repository
 from experiments.run.progress import warn
 from support.command_line import Parser
@@ -32,12 +32,21 @@ def gate(arguments: Sequence[str]) -> int:
             f"found no command, expected `{WORDS} WORDS` at the end: what is run of both commits"
         )
     accepted = _accepted(options.accept)
+
+    def end(answer: Answer) -> End:
+        return verdict(answer, options.margin, accepted, options.fail_on)
+
     with tempfile.TemporaryDirectory(prefix="carom-gate-") as folder, ExitStack() as trees:
         commands = _built(options, run, Path(folder), trees)
-        asked = replace(asked_of(options, commands, commands[0].name), one_sided=True)
+        asked = asked_of(options, commands, commands[0].name)
         exports.require_places(asked.exports)
-        code, answer = measured(asked)
-    return code or verdict(answer, asked.margin, accepted, options.fail_on)
+        asked = replace(asked, one_sided=True, many=options.many, cases=cases_of(options, commands))
+        warn(f"carom: {promise(asked.error, options.many)}")
+        code, answer = measured(asked, lambda answer: end(answer).said)
+    if code:
+        return code
+    print(end(answer).said)
+    return end(answer).code
 
 
 def _built(
@@ -57,16 +66,33 @@ def _built(
     return tuple(commands)
 
 
-def verdict(answer: Answer, margin: float, accepted: str, fail_on: str) -> int:
-    """What it comes to, said in a line; the exit code."""
+@dataclass(frozen=True)
+class End:
+    """What it comes to, in a line and as an exit code."""
+
+    said: str
+    code: int
+
+
+def verdict(answer: Answer, margin: float, accepted: str, fail_on: str) -> End:
+    """What it comes to."""
+    if answer.is_withdrawn:
+        return End("gate: nothing is certain: the base differs from itself", WITHDRAWN)
     if answer.is_not_slower(margin):
-        print("gate: passed: not slower by more than the margin")
-        return 0
+        return End("gate: passed: not slower by more than the margin", 0)
     if answer.is_slower(margin):
-        print(f"gate: passed: slower, as is accepted: {accepted}" if accepted else "gate: failed: slower")
-        return 0 if accepted else SLOWER
-    print("gate: the time did not settle it")
-    return UNDECIDED if fail_on == "undecided" else 0
+        if accepted:
+            return End(f"gate: passed: slower, as is accepted: {accepted}", 0)
+        return End("gate: failed: slower", SLOWER)
+    return End("gate: the time did not settle it", UNDECIDED if fail_on == "undecided" else 0)
+
+
+def promise(error: float, many: int) -> str:
+    """How often a commit that changes nothing is called slower, which one side of the error allows."""
+    share = f"{error * 50:g} %"
+    if many == 1:
+        return f"a commit that changes nothing is called slower in at most {share} of calls"
+    return f"of {many} commits that change nothing, the chance that any is called slower is at most {share}"
 
 
 def _accepted(file: Path | None) -> str:
@@ -94,6 +120,8 @@ def _parser() -> argparse.ArgumentParser:
     add("--build", metavar="LINE", help="a line for a shell that builds a commit, in its folder")
     told = "what is a failure: slower alone, or undecided as well (default: %(default)s)"
     add("--fail-on", choices=("slower", "undecided"), default="undecided", help=told)
+    told = "so many calls share the error, such as those of a year (default: %(default)s)"
+    add("--many", type=values.positive, default=1, metavar="N", help=told)
     told = "a file; where it is there, a slower commit passes, and its first line says why"
     add("--accept", type=Path, metavar="FILE", help=told)
     add_measuring(parser)

@@ -6,10 +6,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from experiments.compare import values
-from experiments.compare.benchmarks import common_cases
+from experiments.compare.benchmarks import are_benchmarks, common_cases
 from experiments.compare.commands import Compared, commands_of, reference_of, split_off
+from experiments.run.progress import warn
 from support.command_line import Parser
 from support.errors import InputError
+
+EXPORTS = ("json", "csv", "markdown", "html")
+"""The formats of files."""
 
 LEAST_TIMEOUT = 60.0
 """Seconds that a run may take, whatever time there is for all of them."""
@@ -31,16 +35,24 @@ class Asked:
     time_from: str | None = None
     time_unit: str = "s"
     turns: bool | None = None
+    slice_seconds: float | None = None
+    """How long one runs before the next does; the program's own rule without it."""
+    in_a_row: int = 1
+    """Runs of each command that count as one."""
     threads: int | None = None
     fixed_layout: bool = False
     cases: tuple[str, ...] = ()
     """Of Google Benchmarks: what all of them have; empty where whole commands are run."""
     one_sided: bool = False
     """Whether all that is asked is that nothing is slower by more than the margin."""
+    many: int = 1
+    """Of so many calls together a slower one may be called slower wrongly in no more than the error."""
     setup: str | None = None
     cleanup: str | None = None
     exports: dict[str, Path] = field(default_factory=dict)
     """The files to write, by format."""
+    earlier: Path | None = None
+    """A file of what earlier calls measured, which is gone on with."""
     quiet: bool = False
 
 
@@ -50,16 +62,28 @@ def parse(arguments: Sequence[str]) -> Asked:
     options = _parser().parse_args(own)
     commands = commands_of(options, words)
     asked = asked_of(options, commands, reference_of(options.reference, [one.name for one in commands]))
-    return replace(asked, cases=common_cases(commands, options.filter)) if options.gb else asked
+    return replace(asked, cases=cases_of(options, commands))
+
+
+def cases_of(options: argparse.Namespace, commands: Sequence[Compared]) -> tuple[str, ...]:
+    """The cases to compare, if the commands are Google Benchmarks, and nobody says that they are none.
+    Raises InputError.
+    """
+    is_asked = options.gb is True or options.filter is not None
+    if options.gb is None and not is_asked and not options.time_from and are_benchmarks(commands):
+        warn("carom: these are Google Benchmarks: their cases are compared (`--no-gb`: whole programs)")
+        is_asked = True
+    return common_cases(commands, options.filter or ".") if is_asked else ()
 
 
 def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], reference: str) -> Asked:
     """What the options of `add_measuring` ask for, of these commands. Raises InputError for two that exclude
     each other.
     """
-    if options.time_from and options.turns == "on":
+    turns, slice_seconds = options.turns
+    if options.time_from and turns:
         told = "of commands that time themselves, which would count their pauses"
-        raise InputError(f"--turns: found on, {told}; expected off or auto")
+        raise InputError(f"--turns: found turns, {told}; expected off or auto")
     return Asked(
         commands=commands,
         reference=reference,
@@ -71,16 +95,14 @@ def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], refere
         exit_codes=tuple(sorted({0, *options.ignore_exit})),
         time_from=options.time_from,
         time_unit=values.unit_of(options.time_from) if options.time_from else "s",
-        turns={"on": True, "off": False, "auto": None}[options.turns],
+        turns=turns,
+        slice_seconds=slice_seconds,
         threads=options.threads,
         fixed_layout=options.fixed_layout,
         setup=options.setup,
         cleanup=options.cleanup,
-        exports={
-            kind: path
-            for kind in ("json", "csv", "markdown")
-            if (path := getattr(options, f"export_{kind}")) is not None
-        },
+        exports={kind: path for kind in EXPORTS if (path := getattr(options, f"export_{kind}")) is not None},
+        earlier=options.append,
         quiet=options.quiet,
     )
 
@@ -108,10 +130,6 @@ def _parser() -> argparse.ArgumentParser:
     add("-L", "--list", action="append", nargs=2, default=[], metavar=("NAME", "A,B"), help=told)
     told = "the same for whole numbers from A to B"
     add("-P", "--range", action="append", nargs=3, default=[], metavar=("NAME", "A", "B"), help=told)
-    told = "the commands are Google Benchmarks: compare their cases, paired by name"
-    add("--gb", action="store_true", help=told)
-    told = "the cases whose names match (default: all)"
-    add("--filter", default=".", metavar="REGEX", help=told)
     add_measuring(parser)
     return parser
 
@@ -140,12 +158,18 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
     )
     told = "a regular expression with one group: the time that a command prints, in the unit behind it"
     add("--time-from", type=values.pattern, metavar="REGEX", help=told)
-    told = "stop the others while one runs, a slice of time each; auto: unless a command minds it"
-    add("--turns", choices=("auto", "on", "off"), default="auto", help=told)
+    told = "the commands are Google Benchmarks, whose cases are paired by name (default: it is found out)"
+    add("--gb", action=argparse.BooleanOptionalAction, help=told)
+    add("--filter", metavar="REGEX", help="the cases whose names match (default: all)")
+    told = "stop the others while one runs, in slices so long; auto: unless a command minds it; on, off"
+    add("--turns", type=values.turns, default=(None, None), metavar="auto|50ms|off", help=told)
     told = "OMP_NUM_THREADS and the binding of a study (default: your own environment)"
     add("--threads", type=values.positive, metavar="N", help=told)
     told = "leave addresses and the size of the environment as they are; else each block varies them"
     add("--fixed-layout", action="store_true", help=told)
-    for kind in ("json", "csv", "markdown"):
-        add(f"--export-{kind}", type=Path, metavar="FILE", help=f"write the result as {kind}, too")
+    for kind in EXPORTS:
+        also = ("--html",) if kind == "html" else ()
+        add(f"--export-{kind}", *also, type=Path, metavar="FILE", help=f"write the result as {kind}, too")
+    told = "go on with what earlier calls measured, and keep all in this file"
+    add("--append", type=Path, metavar="FILE", help=told)
     add("-q", "--quiet", action="store_true", help="print the result alone")

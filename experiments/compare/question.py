@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from experiments.compare.commands import Compared
 from experiments.compare.options import Asked
+from experiments.compare.short import in_a_row
 from experiments.plan.plan import Experiment, Surroundings, plan
 from experiments.plan.point import Point
 from experiments.plan.question import NamedScene, Question
@@ -74,7 +75,7 @@ def _series(command: Compared, asked: Asked, case: str | None) -> Series:
     return Series(
         name=command.name,
         label=command.name,
-        command=_plain(command.words),
+        command=_plain(in_a_row(command.words, asked.in_a_row, asked.exit_codes)),
         prepare=_plain(command.prepare),
         conclude=_plain(command.conclude),
         exit_codes=() if asked.exit_codes == (0,) else asked.exit_codes,

@@ -1,9 +1,11 @@
-"""The result in words, for a terminal and as Markdown."""
+"""The result in words, as lines for a terminal."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from experiments.compare.answer import Answer, Difference, Place
-from experiments.compare.blocks import Key, Runs
+from experiments.compare.answer import Difference, Place
+from experiments.compare.blocks import Runs
+from experiments.compare.counts import counted
+from experiments.compare.found import Found
 from experiments.compare.options import Asked
 from experiments.run.progress import about
 
@@ -49,41 +51,76 @@ def memory(amount: float) -> str:
     return f"{amount / 1e6:.0f} MB" if amount < 9.5e8 else f"{amount / 1e9:.2g} GB"
 
 
-def result(asked: Asked, answer: Answer, runs: Mapping[Key, Runs], blocks: int, seconds: float) -> list[str]:
+def result(found: Found) -> list[str]:
     """The lines of the result."""
-    lines = _table([_row(one, asked, answer, runs) for one in _in_order(answer.commands, asked)])
-    lines += [f"  {_control(asked, answer)}"] if answer.controls else []
-    lines.append(f"  {_how_long(asked, answer, blocks, seconds)}")
-    if asked.cases:
-        return lines
-    measured = [one.name for one in asked.commands if runs[one.name, 0].seconds]
-    lines += _table([[name, *_resources(runs[name, 0])] for name in measured])
+    asked, answer = found.asked, found.answer
+    lines = table([row(one, found) for one in in_order(found)])
+    lines += [f"  {_control(found)}"] if answer.controls else []
+    lines.append(f"  {_how_long(found)}")
+    if not asked.cases:
+        measured = [one.name for one in asked.commands if found.runs[one.name, 0].seconds]
+        lines += table([[name, *_resources(found.runs[name, 0])] for name in measured])
+    lines += _counts(found)
     if answer.places:
         lines += ["  in the order of their times; those with a letter in common cannot be told apart:"]
-        lines += _table([[_place(one), one.name, one.bracket] for one in answer.places])
-    return lines
+        lines += table([[_place(one), one.name, one.bracket] for one in answer.places])
+    lines += effects(found)
+    return lines + [f"  {one}" for one in found.remarks]
 
 
-def _in_order(commands: Sequence[Difference], asked: Asked) -> list[Difference]:
+def in_order(found: Found) -> list[Difference]:
     """By their times; cases as the program lists them."""
-    return sorted(commands, key=lambda one: (one.case, one.ratio) if asked.cases else (0, one.ratio))
+    cases = found.asked.cases
+    return sorted(found.answer.commands, key=lambda one: (one.case, one.ratio) if cases else (0, one.ratio))
 
 
-def _row(one: Difference, asked: Asked, answer: Answer, runs: Mapping[Key, Runs]) -> list[str]:
-    said = "withdrawn" if answer.is_withdrawn else verdict(one, asked)
+def row(one: Difference, found: Found) -> list[str]:
+    """What is compared, by how much it differs, and the verdict; of a case its times beside that."""
+    asked = found.asked
+    said = "withdrawn" if found.answer.is_withdrawn else verdict(one, asked)
     if not asked.cases:
         return [f"{one.name} against {asked.reference}", change(one), said]
-    times = [duration(runs[name, one.case].median("seconds")) for name in (asked.reference, one.name)]
+    times = [duration(found.runs[name, one.case].median("seconds")) for name in (asked.reference, one.name)]
     whose = f" ({one.name})" if len(asked.commands) > 2 else ""
     return [asked.cases[one.case] + whose, " → ".join(times), change(one), said]
+
+
+def effects(found: Found) -> list[str]:
+    """What the values of lists change, each in the mean over the others, and what two change together beyond
+    that.
+    """
+    told = [[one.name, change(one), _effect(one, found.asked)] for one in found.answer.effects]
+    if not told or found.answer.is_withdrawn:
+        return []
+    return ["  what each value changes, and what two change together beyond what each does:", *table(told)]
+
+
+def _counts(found: Found) -> list[str]:
+    """What was counted of two commands, which may tell why one is faster."""
+    asked = found.asked
+    if asked.cases or len(asked.commands) != 2:
+        return []
+    [other] = [one.name for one in asked.commands if one.name != asked.reference]
+    rows = counted(found.runs[asked.reference, 0], found.runs[other, 0])
+    return [f"  counted of each run, {asked.reference} → {other}:", *table(rows)] if rows else []
+
+
+def _effect(one: Difference, asked: Asked) -> str:
+    return {
+        "faster": f"less time, by more than {margin_said(asked)}",
+        "slower": f"more time, by more than {margin_said(asked)}",
+        "equivalent": f"below {margin_said(asked)}",
+        "inconclusive": "not settled",
+    }[one.verdict]
 
 
 def _place(one: Place) -> str:
     return str(one.first) if one.first == one.last else f"{one.first} to {one.last}"
 
 
-def _control(asked: Asked, answer: Answer) -> str:
-    control = max(answer.controls, key=lambda one: (one.differs, abs(one.ratio - 1)))
+def _control(found: Found) -> str:
+    asked, controls = found.asked, found.answer.controls
+    control = max(controls, key=lambda one: (one.differs, abs(one.ratio - 1)))
     case = f", {asked.cases[control.case]}" if asked.cases and control.differs else ""
     if control.differs:
         return (
@@ -96,15 +133,18 @@ def _control(asked: Asked, answer: Answer) -> str:
     return f"control: {asked.reference} against itself {change(control)}: no difference, as it must be"
 
 
-def _how_long(asked: Asked, answer: Answer, blocks: int, seconds: float) -> str:
+def _how_long(found: Found) -> str:
+    answer, asked = found.answer, found.asked
+    earlier = f", {found.before} of them earlier" if found.before else ""
+    blocks = f"{blocks_said(found.blocks)}{earlier}"
     if answer.is_enough(asked.margin, one_sided=asked.one_sided):
-        return f"settled after {seconds:.0f} s, {blocks_said(blocks)}"
-    said = f"measured for {seconds:.0f} s, {blocks_said(blocks)}"
-    if not blocks or not answer.commands:
+        return f"settled after {found.seconds:.0f} s, {blocks}"
+    said = f"measured for {found.seconds:.0f} s, {blocks}"
+    if not found.blocks or not answer.commands:
         return f"{said}: an interval needs {answer.next} blocks"
     if answer.needed is None:
         return f"{said}: no number of blocks in sight would settle it; the difference may lie on the margin"
-    more = about((answer.needed - answer.looked_at) * seconds / blocks)
+    more = about((answer.needed - answer.looked_at) * found.seconds_each)
     return f"{said}: {answer.needed} blocks would settle it, {more} more: `--time` gives them"
 
 
@@ -121,7 +161,7 @@ def _resources(runs: Runs) -> list[str]:
     return told
 
 
-def _table(rows: Sequence[Sequence[str]]) -> list[str]:
+def table(rows: Sequence[Sequence[str]]) -> list[str]:
     """The rows with their columns below one another, two spaces in front."""
     columns = max((len(row) for row in rows), default=0)
     widths = [max(len(row[at]) for row in rows if at < len(row)) for at in range(columns)]
@@ -129,35 +169,3 @@ def _table(rows: Sequence[Sequence[str]]) -> list[str]:
         "  " + "   ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False)).rstrip()
         for row in rows
     ]
-
-
-def markdown(
-    asked: Asked, answer: Answer, runs: Mapping[Key, Runs], machine: str, said: Sequence[str]
-) -> str:
-    """The result as a table for a page or a comment: the verdict first, the machine and how last."""
-    rows = [_row(one, asked, answer, runs) for one in _in_order(answer.commands, asked)]
-    columns = (
-        ["case", "time", "change of time", "verdict"] if asked.cases else ["", "change of time", "verdict"]
-    )
-    table = [columns, ["---"] * len(columns), *([_cell(one) for one in row] for row in rows)]
-    lines = "\n".join(f"| {' | '.join(row)} |" for row in table)
-    commands = "\n".join(f"    {one.name}: {one.line}" for one in asked.commands)
-    told = "\n".join(f"    {one.strip()}" for one in said)
-    folded = (
-        f"<details><summary>Machine and commands</summary>\n\n    {machine}\n{commands}\n{told}\n\n</details>"
-    )
-    return f"**{_title(asked, answer)}**\n\n{lines}\n\n{folded}\n"
-
-
-def _title(asked: Asked, answer: Answer) -> str:
-    if answer.is_withdrawn:
-        return f"withdrawn: {asked.reference} differs from itself"
-    if len(answer.commands) == 1:
-        [one] = answer.commands
-        return f"{one.name} against {asked.reference}: {verdict(one, asked)}"
-    number = sum(one.is_settled for one in answer.commands)
-    return f"{number} of {len(answer.commands)} comparisons with {asked.reference} are settled"
-
-
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|")

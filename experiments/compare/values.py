@@ -10,6 +10,9 @@ from support.errors import InputError
 _SECONDS_OF = {"ms": 1e-3, "s": 1.0, "m": 60.0, "min": 60.0, "h": 3600.0}
 _MOST_DIGITS = 6
 
+SHORTEST_SLICE, LONGEST_SLICE = 1e-3, 10.0
+"""Seconds that a command may run before the next one does."""
+
 
 def unit_of(pattern: str) -> str:
     """The unit that stands behind the group of a pattern; seconds where none does."""
@@ -55,6 +58,21 @@ def duration(text: str) -> float:
         return float(parts[1]) * _SECONDS_OF[parts[2] or "s"]
 
     return _typed(convert, "a time such as 60s or 5min", text)
+
+
+def turns(text: str) -> tuple[bool | None, float | None]:
+    """Whether there are turns, None where it is to be found out, and how long a slice is, if that is said."""
+    words: dict[str, bool | None] = {"auto": None, "on": True, "off": False}
+    if text in words:
+        return words[text], None
+    try:
+        seconds = duration(text)
+    except argparse.ArgumentTypeError:
+        seconds = 0.0
+    if not SHORTEST_SLICE <= seconds <= LONGEST_SLICE:
+        expected = "auto, on, off or the length of a slice, 1ms to 10s"
+        raise argparse.ArgumentTypeError(f"found {text}, expected {expected}")
+    return None, seconds
 
 
 def count(text: str, least: int = 0) -> int:

@@ -51,12 +51,18 @@ class Left:
 
 
 class Processes:
-    """Runs `carom processes`, which lets them run in turn and leaves a record, or a failure, of each."""
+    """Runs `carom processes`, which lets them run in turn and leaves a record, or a failure, of each.
 
-    def __init__(self, store: Store, instrument: Program, time_limit: float) -> None:
+    `slice_seconds`: how long the longest runs before the next does; the program's own rule without it.
+    """
+
+    def __init__(
+        self, store: Store, instrument: Program, time_limit: float, slice_seconds: float | None = None
+    ) -> None:
         self._store = store
         self._instrument = instrument
         self._time_limit = time_limit
+        self._slice = () if slice_seconds is None else ("--slice", str(slice_seconds))
         self._behaviours = Behaviours(store)
         self._written = Written(store)
 
@@ -132,7 +138,7 @@ class Processes:
     def _call(self, described: Sequence[dict[str, Any]], seed: int, seconds: float) -> Completed:
         file = self._store.temporary / "processes" / "processes.json"
         file.write_text(json.dumps(described), encoding="utf-8")
-        command = (str(self._instrument.path), "processes", str(file), "--seed", str(seed))
+        command = (str(self._instrument.path), "processes", str(file), "--seed", str(seed), *self._slice)
         # The instrument itself is bound nowhere: what it starts would inherit that.
         return run_alone(command, (), seconds + MARGIN_SECONDS)
 

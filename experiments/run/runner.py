@@ -74,12 +74,19 @@ Ready = tuple[Task, SceneFile | None]
 class Runner:
     """Runs tasks, one process at a time; each leaves a record or a failure in the store."""
 
-    def __init__(self, store: Store, scenes: SceneFolder, generator: Program, time_limit: float) -> None:
+    def __init__(
+        self,
+        store: Store,
+        scenes: SceneFolder,
+        generator: Program,
+        time_limit: float,
+        slice_seconds: float | None = None,
+    ) -> None:
         self._store = store
         self._scenes = scenes
         self._generator = generator
         self._time_limit = time_limit
-        self._processes = Processes(store, generator, time_limit)
+        self._processes = Processes(store, generator, time_limit, slice_seconds)
         self._verifier = Verifier(store, generator, self._processes, time_limit)
         self._written = Written(store)
         self._beside = BesideRecords(store, time_limit)

@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,7 @@
 #include <unistd.h>
 
 #include "harness/processes/descendants.hpp"
+#include "harness/processes/event_counts.hpp"
 #include "harness/processes/kept_program.hpp"
 #include "harness/processes/output_tail.hpp"
 #include "harness/support/json.hpp"
@@ -62,6 +65,9 @@ class Keeping {
             program_ = fork_program(command, group != nullptr ? group->entrance() : -1, *beginning_, pipes_);
         }
         error_of_fork_ = program_ > 0 ? 0 : errno;
+        if (program_ > 0) {
+            events_ = std::make_unique<EventCounts>(program_);
+        }
     }
 
     /// From the word to begin to the end of all of it.
@@ -151,11 +157,20 @@ class Keeping {
             user_seconds_ += seconds_of(usage.ru_utime);
             system_seconds_ += seconds_of(usage.ru_stime);
             most_kilobytes_ = std::max(most_kilobytes_, usage.ru_maxrss);
+            count(usage);
             if (ended == program_) {
                 status_ = status;
                 program_has_ended_ = true;
             }
         }
+    }
+
+    /// What getrusage(2) tells of one that ended.
+    void count(const rusage& usage) {
+        counted_["minor_page_faults"] += static_cast<double>(usage.ru_minflt);
+        counted_["major_page_faults"] += static_cast<double>(usage.ru_majflt);
+        counted_["voluntary_context_switches"] += static_cast<double>(usage.ru_nvcsw);
+        counted_["involuntary_context_switches"] += static_cast<double>(usage.ru_nivcsw);
     }
 
     /// Again and again, since some may be starting others. What cannot be ended, as it waits for a broken
@@ -198,6 +213,9 @@ class Keeping {
     }
 
     Json report() {
+        if (events_ != nullptr && has_ended_) {
+            counted_.merge(events_->read());
+        }
         const int error = program_ > 0 ? beginning_->error : error_of_fork_;
         return {{"error", error},
                 {"known", program_has_ended_},
@@ -209,6 +227,7 @@ class Keeping {
                 {"system_seconds", system_seconds_},
                 {"most_kilobytes", most_kilobytes_},
                 {"inherited_kilobytes", program_ > 0 ? beginning_->inherited_kilobytes : 0},
+                {"counted", counted_},
                 {"began_at", program_ > 0 ? beginning_->at : 0.0},
                 {"ended_at", ended_at_},
                 {"output", printed_json(output_)},
@@ -232,6 +251,8 @@ class Keeping {
     double user_seconds_ = 0;
     double system_seconds_ = 0;
     long most_kilobytes_ = 0;
+    std::unique_ptr<EventCounts> events_;
+    std::map<std::string, double> counted_;
     std::string went_on_; ///< the names of what did so after the program's own end
 };
 

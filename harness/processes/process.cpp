@@ -136,6 +136,7 @@ void Process::take_report(double slice_began) {
     end_.went_on = report["went_on"];
     end_.user_seconds = report["user_seconds"];
     end_.system_seconds = report["system_seconds"];
+    end_.counted = report["counted"];
     end_.output = printed_of(report["output"]);
     end_.error = printed_of(report["error_output"]);
     set_memory(end_, report);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -29,6 +30,8 @@ struct ProcessEnd {
     double system_seconds = 0;
     std::optional<std::int64_t> peak_memory_bytes; ///< of all together, or of the largest (see memory_of)
     std::string memory_of;                         ///< of what that is the peak, or why it is not known
+    std::map<std::string, double> counted;         ///< by name: page faults, context switches, and what the
+                                                   ///< hardware counts (event_counts.hpp)
     std::vector<double> seconds;                   ///< wall time of each slice in which it was let run
     int ran_on = 0;                                ///< slices that were longer since it did not stand still
     std::string kept_by;                           ///< what kept all of it together: cgroup or subreaper

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string_view>
 
@@ -79,6 +80,21 @@ Json repetitions_json(const ProcessMeasurement& measurement) {
     return repetitions;
 }
 
+/// The mean of each over the runs that have it.
+Json counted_json(const std::vector<ProcessEnd>& runs) {
+    std::map<std::string, std::vector<double>> amounts;
+    for (const ProcessEnd& run : runs) {
+        for (const auto& [name, amount] : run.counted) {
+            amounts[name].push_back(amount);
+        }
+    }
+    Json counted = Json::object();
+    for (const auto& [name, all] : amounts) {
+        counted[name] = std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
+    }
+    return counted;
+}
+
 /// Of the last run; what adds up is that of all runs.
 Json ends_json(const Measured& measured) {
     const ProcessEnd& last = measured.runs.back();
@@ -99,6 +115,7 @@ Json ends_json(const Measured& measured) {
             {"output_bytes", last.output.bytes + last.error.bytes},
             {"tree", last.kept_by},
             {"ran_on", last.ran_on},
+            {"counted", counted_json(measured.runs)},
             {"undisturbed", text_or_null(measured.undisturbed)}};
 }
 

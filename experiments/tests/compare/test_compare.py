@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from experiments.compare.benchmarks import are_benchmarks
+from experiments.compare.commands import Compared
 from experiments.tests.conftest import ROOT
 
 CAROM = ROOT / "build" / "gcc" / "carom"
@@ -185,6 +187,7 @@ def test_a_shell_is_told_with_what_its_start_takes(folder: Path) -> None:
         (["./short", "./not_there"], 'carom: not_there: command: found "./not_there", which is not there'),
         (["./short"], "found 1 command, expected two or more"),
         (["./short", "./long", "--export-json", "tmp"], "--export-json: found tmp, which is a folder"),
+        (["./short", "./long", "--turns", "0.1ms"], "--turns: found 0.1ms, expected auto, on, off or"),
         (["./short", "./long", "--frobnicate"], "unrecognized arguments: --frobnicate"),
     ],
 )
@@ -214,6 +217,113 @@ def test_a_signal_ends_it_with_what_there_is(folder: Path, number: signal.Signal
     assert "short   " in output
     assert left_behind(folder) == []
     assert (folder / "rows.csv").exists()
+
+
+def printed(folder: Path) -> None:
+    """Programs that say how long they took: `prints A B` took A times B ms."""
+    script(folder / "prints", 'echo took "$(($1 * $2))" ms')
+
+
+TOOK = ("--time-from", "took ([0-9]+) ms")
+
+
+def test_products_of_lists_have_a_table_of_effects(folder: Path) -> None:
+    printed(folder)
+    lists = ("-L", "a", "100,200", "-L", "b", "1,3")
+    done = run(folder, "compare", *lists, "./prints {a} {b}", *TOOK, "--time", "60s")
+    assert done.returncode == 0, done.stderr
+    told = done.stdout.split("what each value changes")[1]
+    assert "a 200 instead of 100                          +100.0 % [+100.0, +100.0]   more time" in told
+    assert "b 3 instead of 1                              +200.0 %" in told
+    assert "a 200 instead of 100 and b 3 instead of 1   +0.0 %" in told.replace("   +0", "   +0")
+    assert "below 2 %" in told
+
+
+def test_short_commands_are_repeated(folder: Path) -> None:
+    script(folder / "quick", "echo x >> runs")
+    script(folder / "quicker", "exit 0")
+    files = ("--export-json", "a.json")
+    done = run(folder, "compare", "./quick", "./quicker", "--time", "1ms", "--turns", "off", *files)
+    assert done.returncode == 0, done.stderr
+    told = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+    times = told["in_a_row"]
+    assert times > 1
+    assert f"each time is of {times} runs in a row" in done.stdout
+    # Itself and under its second name: once in the block that shows how short it is, then in a row.
+    runs = (folder / "runs").read_text(encoding="utf-8").count("x")
+    assert runs == 2 + 2 * times * told["blocks"]
+
+
+def test_a_short_command_that_fails_is_named_with_its_code(folder: Path) -> None:
+    script(folder / "quick", "exit 0")
+    script(folder / "wears_out", 'echo x >> count; [ "$(wc -l < count)" -lt 9 ] || { echo worn >&2; exit 4; }')
+    done = run(folder, "compare", "./quick", "./wears_out", "--time", "20s", "--turns", "off")
+    assert done.returncode == 2
+    assert "exit code 4: worn" in done.stderr
+
+
+def test_what_is_prepared_is_never_repeated(folder: Path) -> None:
+    script(folder / "needs", "rm prepared")
+    words = ("--prepare", "touch prepared", "--turns", "off", "--time", "1ms", "--export-json", "a.json")
+    done = run(folder, "compare", "-n", "a", "-n", "b", "./needs", "./needs", *words)
+    assert done.returncode == 0, done.stderr
+    assert json.loads((folder / "a.json").read_text(encoding="utf-8"))["in_a_row"] == 1
+
+
+def test_a_file_goes_on_with_what_is_in_it(folder: Path) -> None:
+    printed(folder)
+    words = ("compare", "./prints 100 1", "./prints 50 1", *TOOK, "--append", "kept.json", "--time", "1ms")
+    assert "1 block:" in run(folder, *words).stdout
+    assert "2 blocks, 1 of them earlier" in run(folder, *words).stdout
+    done = run(folder, *words[:-1], "60s")
+    assert "settled after" in done.stdout
+    assert "6 blocks, 2 of them earlier" in done.stdout
+    assert "6 blocks, 6 of them earlier" in run(folder, *words).stdout, "all is known: nothing is measured"
+    script(folder / "prints", 'echo took "$(($1 * $2))" ms # changed')
+    done = run(folder, *words)
+    assert "a new session begins" in done.stderr
+    assert "measured with another program" in done.stderr
+    assert "1 block:" in done.stdout
+    sessions = json.loads((folder / "kept.json").read_text(encoding="utf-8"))["sessions"]
+    assert [len(one["records"]) for one in sessions] == [18, 3]
+
+
+def test_a_file_of_something_else_is_no_earlier_call(folder: Path) -> None:
+    (folder / "kept.json").write_text('{"sessions": 1}', encoding="utf-8")
+    done = run(folder, "compare", "./short", "./long", "--append", "kept.json")
+    assert done.returncode == 1
+    assert "--append: kept.json: is no file of an earlier call" in done.stderr
+    assert (folder / "kept.json").read_text(encoding="utf-8") == '{"sessions": 1}'
+
+
+def test_a_page_has_the_verdict_and_its_picture(folder: Path) -> None:
+    printed(folder)
+    words = ("./prints 100 1", "./prints 50 1", "-n", "<old>", "-n", "new", *TOOK, "--time", "60s")
+    assert run(folder, "compare", *words, "--html", "a.html").returncode == 0
+    page = (folder / "a.html").read_text(encoding="utf-8")
+    assert "<h1>new against &lt;old&gt;: faster by more than 2 %</h1>" in page
+    assert "<svg" in page
+    assert "http" not in page.replace("http://www.w3.org", ""), "it asks nothing of any other place"
+    assert left_behind(folder) == []
+
+
+def test_slices_are_as_long_as_asked(folder: Path) -> None:
+    slices = {}
+    for length in ("5ms", "10s"):
+        words = ("./long", "./long; true", "--turns", length, "--time", "1ms", "--append", length)
+        assert run(folder, "compare", *words).returncode == 0
+        [session] = json.loads((folder / length).read_text(encoding="utf-8"))["sessions"]
+        slices[length] = [len((one["turns"] or {"seconds": []})["seconds"]) for one in session["records"]]
+    assert max(slices["5ms"]) > max(slices["10s"])
+
+
+def test_what_is_counted_stands_beside_the_times(folder: Path) -> None:
+    done = run(folder, "compare", "./short", "./long", "--time", "1ms", "--export-json", "a.json")
+    assert "counted of each run, short → long:" in done.stdout
+    assert "page faults" in done.stdout
+    told = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+    for one in told["runs"]:
+        assert len(one["counts"]["minor_page_faults"]) == told["blocks"]
 
 
 BENCHMARK = """
@@ -271,6 +381,28 @@ def test_without_a_common_case_nothing_is_run(benchmarks: Path, words: list[str]
     done = run(benchmarks, "compare", "--gb", *words, "./bench_old", "./bench_new")
     assert done.returncode == 1
     assert told in done.stderr
+
+
+def test_benchmarks_are_known_by_what_stands_in_them(tmp_path: Path) -> None:
+    for name, content in (
+        ("benchmark", b"\x7fELF...--benchmark_list_tests..."),
+        ("loads_it", b"\x7fELF...libbenchmark.so.1..."),
+        ("program", b"\x7fELF..."),
+        ("script", b"#!/bin/sh\n./benchmark --benchmark_list_tests\n"),
+        ("empty", b""),
+    ):
+        (tmp_path / name).write_bytes(content)
+
+    def are(*words: str) -> bool:
+        return are_benchmarks(
+            [Compared(word, tuple(word.split()), word, folder=tmp_path) for word in words]
+        )
+
+    assert are("./benchmark", "./loads_it")
+    assert not are("./benchmark", "./program")
+    assert not are("./script", "./benchmark")
+    assert not are("./benchmark --verbose", "./benchmark")
+    assert not are("./empty", "./missing")
 
 
 def test_three_commands_are_a_league(folder: Path) -> None:

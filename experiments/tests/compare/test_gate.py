@@ -8,6 +8,7 @@ import pytest
 
 from experiments.compare.answer import Answer, Difference
 from experiments.compare.gate import SLOWER, UNDECIDED, verdict
+from experiments.tests.compare.test_compare import BENCHMARK
 from experiments.tests.conftest import ROOT
 
 CAROM = ROOT / "build" / "gcc" / "carom"
@@ -124,8 +125,40 @@ def test_what_is_wrong_is_said_before_anything_runs(repository: Path, words: lis
     require_untouched(repository)
 
 
-def answer(low: float, high: float) -> Answer:
-    return Answer((Difference("head", (low + high) / 2, low, high, "inconclusive", 9, differs=False),))
+@needs_the_program
+def test_cases_of_a_benchmark_are_judged_together(repository: Path) -> None:
+    (repository / "sub" / "program.in").write_text(
+        "#!/bin/sh\n" + BENCHMARK.format(names="BM_a BM_b", time=4), encoding="utf-8"
+    )
+    git(repository, "commit", "-q", "-a", "-m", "benchmark")
+    git(repository, "tag", "benchmark")
+    page = repository / "sub" / "program.in"
+    page.write_text(page.read_text(encoding="utf-8").replace(": 4,", ": 5,"), encoding="utf-8")
+    git(repository, "commit", "-q", "-a", "-m", "slower benchmark")
+    words = ["gate", "--base", "benchmark", "--build", "sh -e build.sh", "--gb", "--many", "250"]
+    done = subprocess.run(
+        [CAROM, *words, "--export-markdown", "told.md", "--", "./program"],
+        cwd=repository / "sub",
+        env={**os.environ, "TMPDIR": str(repository.parent / "tmp")},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 3, done.stderr
+    assert "of 250 commits that change nothing, the chance that any is called slower is at most" in done.stderr
+    assert "BM_b   4 ms → 5 ms   +25.0 % [+25.0, +25.0]   slower by more than 2 %" in done.stdout
+    told = (repository / "sub" / "told.md").read_text(encoding="utf-8").splitlines()
+    assert told[0] == "**gate: failed: slower**"
+    assert "again: carom gate --base benchmark" in "\n".join(told)
+    (repository / "sub" / "told.md").unlink()
+    require_untouched(repository)
+
+
+def answer(low: float, high: float, low_of_all: float | None = None) -> Answer:
+    of_all = low if low_of_all is None else low_of_all
+    middle = (low + high) / 2
+    return Answer((Difference("head", middle, low, high, "inconclusive", 9, False, low_of_all=of_all),))
 
 
 @pytest.mark.parametrize(
@@ -138,4 +171,56 @@ def answer(low: float, high: float) -> Answer:
     ],
 )
 def test_only_an_interval_beyond_the_margin_decides(low: float, high: float, fail_on: str, code: int) -> None:
-    assert verdict(answer(low, high), 0.02, "", fail_on) == code
+    assert verdict(answer(low, high), 0.02, "", fail_on).code == code
+
+
+def test_one_of_many_is_slower_only_where_the_interval_of_all_says_so() -> None:
+    assert verdict(answer(1.03, 1.1, low_of_all=1.01), 0.02, "", "undecided").code == UNDECIDED
+    assert verdict(answer(1.03, 1.1, low_of_all=1.025), 0.02, "", "undecided").code == SLOWER
+
+
+@needs_the_program
+@pytest.mark.parametrize(("head", "label", "code"), [("equal", "", 0), ("slower", "", 3), ("slower", "fine", 0)])
+def test_the_action_ends_as_the_gate_and_writes_a_summary(
+    repository: Path, tmp_path: Path, head: str, label: str, code: int
+) -> None:
+    git(repository, "checkout", "-q", head)
+    home = tmp_path / "home" / ".local" / "bin"
+    home.mkdir(parents=True)
+    (home / "carom").symlink_to(CAROM)
+    settings = {
+        "BASE": "base",
+        "BUILD": "sh -e build.sh",
+        "WORDS": "./program",
+        "OPTIONS": "--turns off --time-from ([0-9]+).ms",
+        "LABEL": label,
+        "HOME": str(tmp_path / "home"),
+        "RUNNER_TEMP": str(tmp_path),
+        "GITHUB_STEP_SUMMARY": str(tmp_path / "summary"),
+        "GITHUB_OUTPUT": str(tmp_path / "output"),
+        "TMPDIR": str(tmp_path / "tmp"),
+    }
+    (tmp_path / "summary").write_text("before\n", encoding="utf-8")
+    done = subprocess.run(
+        [ROOT / ".github" / "actions" / "gate" / "gate.sh"],
+        cwd=repository / "sub",
+        env={**os.environ, **settings},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == code, done.stderr
+    summary = (tmp_path / "summary").read_text(encoding="utf-8").splitlines()
+    said = {0: "passed: not slower", 3: "failed: slower"}[code] if not label else f"label {label}"
+    assert summary[0] == "before"
+    assert said in summary[1]
+    assert (tmp_path / "output").read_text(encoding="utf-8") == f"report={tmp_path}/carom-gate.md\n"
+
+
+def test_the_action_passes_every_setting_on() -> None:
+    action = (ROOT / ".github" / "actions" / "gate" / "action.yml").read_text(encoding="utf-8")
+    script = (ROOT / ".github" / "actions" / "gate" / "gate.sh").read_text(encoding="utf-8")
+    for name in ("BASE", "BUILD", "WORDS", "OPTIONS", "LABEL"):
+        assert f"        {name}: ${{{{" in action
+        assert f"${name}" in script

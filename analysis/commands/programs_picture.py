@@ -1,0 +1,104 @@
+"""The picture of what `carom compare` finds: intervals on one axis, and each block of them."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from analysis.commands.programs_compared import asked, times_of
+from analysis.derived.comparisons import Stated, differences, reference, stated
+from analysis.figures.curves import bounded, difference, margin_band
+from analysis.figures.labels import name_rows, note
+from analysis.figures.style import BAND, FAINT, INK, PALETTE, WIDTH, Drawing, lighten, save, styled
+from analysis.statistics.pairs import log_ratios, process_medians
+from support.errors import InputError
+from support.vocabulary import AGAIN
+
+_ROW, _BLOCKS_PANEL = 0.36, 1.9
+"""Inches: a row of the intervals, and the panel of the blocks."""
+
+
+def programs_picture(results: Path) -> Path:
+    """Draw what a results folder says of compared commands; return the SVG, a file in that folder. Raises
+    InputError where nothing is measured yet.
+    """
+    times = times_of(results)
+    if times.empty:
+        raise InputError(f"{results}: holds no comparison to draw")
+    against = reference(times)
+    table = _rows(times, against, asked(results)["cases"])
+    with styled("compared"):
+        drawing = Drawing(_figure(times, table, against, stated(times)), "")
+        [file] = save(drawing, results, "compared", ("svg",))
+    return file
+
+
+def _rows(times: pd.DataFrame, against: str, cases: Sequence[str]) -> pd.DataFrame:
+    """Return a row a comparison, the control's first, with the `name` and the `colour` of each."""
+    table = differences(times, against)
+    table["is_control"] = table["series"] == against + AGAIN
+    table = table.sort_values(["is_control", "x", "series"], ascending=[False, False, False])
+    names = list(dict.fromkeys(table.loc[~table["is_control"], "series"]))
+    shades = {name: PALETTE[number % len(PALETTE)] for number, name in enumerate(reversed(names))}
+    labels = [f"{cases[int(row.x)]}, {row.series}" if cases else row.series for row in table.itertuples()]
+    return table.assign(name=labels, colour=[shades.get(name, FAINT) for name in table["series"]])
+
+
+def _figure(times: pd.DataFrame, table: pd.DataFrame, against: str, by: Stated) -> Figure:
+    is_one_case = times["x"].nunique() == 1
+    heights = [0.6 + _ROW * len(table)] + ([_BLOCKS_PANEL] if is_one_case else [])
+    figure = Figure(figsize=(WIDTH, sum(heights)))
+    panels = figure.subplots(len(heights), 1, squeeze=False, gridspec_kw={"height_ratios": heights})[:, 0]
+    pairs = _pairs(times, against)
+    _intervals(panels[0], table, pairs, by)
+    panels[0].set_xlabel(f"change of time against {against}, %; dots: blocks; shaded: the margin")
+    if is_one_case:
+        _blocks(panels[1], table, pairs, by)
+        panels[1].set(xlabel="block, in the order of time", ylabel="change of time, %")
+    return figure
+
+
+def _pairs(times: pd.DataFrame, against: str) -> dict[tuple[str, float], pd.Series]:
+    """Return the change of each block in per cent, in the order of time, by series and x."""
+    processes = process_medians(times)
+    first, others = (processes[(processes["series"] == against) == side] for side in (True, False))
+    return {
+        (str(name), float(x)): 100 * np.expm1(part["log_ratio"])
+        for name, of_series in others.groupby("series")
+        for x, part in log_ratios(first, of_series, match=("x",)).groupby("x")
+    }
+
+
+def _intervals(
+    axes: Axes, table: pd.DataFrame, pairs: dict[tuple[str, float], pd.Series], by: Stated
+) -> None:
+    margin_band(axes, by.margin)
+    for height, row in enumerate(table.to_dict("records")):
+        blocks = pairs[row["series"], row["x"]]
+        at = difference(axes, row, height, row["name"], row["colour"], 2.2, zorder=4)
+        pale = lighten(row["colour"], 0.6)
+        axes.plot(blocks, np.full(len(blocks), height - 0.28), "o", color=pale, markersize=2, zorder=2)
+        said = "control" if row["is_control"] else row["verdict"]
+        note(axes, said, (at, height), (0, 5), ha="center", fontsize=7, color=INK)
+    name_rows(axes, list(table["name"]))
+    axes.set_ylim(-0.7, len(table) - 0.2)
+    bounded(axes, by.margin)
+
+
+def _blocks(axes: Axes, table: pd.DataFrame, pairs: dict[tuple[str, float], pd.Series], by: Stated) -> None:
+    axes.axhspan(-100 * by.margin, 100 * by.margin, color=BAND, zorder=0, linewidth=0)
+    axes.axhline(0, color=FAINT, linewidth=0.7, zorder=1)
+    for row in table.to_dict("records"):
+        blocks = pairs[row["series"], row["x"]]
+        label = f"{row['name']} (control)" if row["is_control"] else row["name"]
+        axes.plot(
+            range(1, len(blocks) + 1), blocks, marker="o", markersize=2.5, linewidth=0.8,
+            color=row["colour"], label=label,
+        )  # fmt: skip
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.legend(fontsize=7, frameon=False, ncols=min(4, len(table)), loc="upper left")
+    axes.margins(y=0.25)

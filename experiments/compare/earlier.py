@@ -1,0 +1,71 @@
+"""A file with what earlier calls measured: the records of each session, the last of which may go on."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from experiments.compare.blocks import Blocks
+from support.errors import InputError
+from support.files import read_json, replacing
+from support.record_schema import is_record
+
+SCHEMA_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Session:
+    """What was measured of the same commands and programs, runs `in_a_row` counted as one."""
+
+    in_a_row: int
+    records: list[Any]
+
+
+class Earlier:
+    """The sessions of a file; of no file there are none."""
+
+    def __init__(self, path: Path | None) -> None:
+        """Reads it. Raises InputError for what is no such file."""
+        self._path = path
+        self._sessions = _read(path) if path is not None and path.exists() else []
+        self._goes_on = False
+
+    @property
+    def in_a_row(self) -> int:
+        """Of the last session; 1 if there is none."""
+        return self._sessions[-1].in_a_row if self._sessions else 1
+
+    def go_on(self, blocks: Blocks) -> str:
+        """Count the last session's blocks; returns why they cannot be counted, if so."""
+        if not self._sessions:
+            return ""
+        wrong = blocks.take_up(self._sessions[-1].records)
+        self._goes_on = not wrong
+        return wrong
+
+    def keep(self, blocks: Blocks) -> None:
+        """Write all sessions, that of these blocks in the place of the one that it goes on with."""
+        if self._path is None:
+            return
+        now = Session(blocks.in_a_row, blocks.records)
+        sessions = [*(self._sessions[:-1] if self._goes_on else self._sessions), now]
+        content = {
+            "schema_version": SCHEMA_VERSION,
+            "sessions": [{"in_a_row": one.in_a_row, "records": one.records} for one in sessions],
+        }
+        with replacing(self._path) as part:
+            part.write_text(json.dumps(content, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def _read(path: Path) -> list[Session]:
+    match read_json(path):
+        case {"schema_version": version, "sessions": [*sessions]} if version == SCHEMA_VERSION:
+            return [_session(path, one) for one in sessions]
+    raise InputError(f"--append: {path}: is no file of an earlier call, expected one, or none")
+
+
+def _session(path: Path, session: object) -> Session:
+    match session:
+        case {"in_a_row": int(in_a_row), "records": [*records]} if all(map(is_record, records)):
+            return Session(in_a_row, records)
+    raise InputError(f"--append: {path}: is damaged, expected what an earlier call has written")

@@ -1,0 +1,42 @@
+"""What one call has measured and found, ready to be told."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from experiments.compare.answer import Answer
+from experiments.compare.blocks import Key, Runs
+from experiments.compare.options import Asked
+
+
+@dataclass(frozen=True)
+class Look:
+    """What was known after so many blocks and seconds: the seconds at which all would be settled, None where
+    that was not in sight.
+    """
+
+    blocks: int
+    seconds: float
+    foretold_seconds: float | None
+
+
+@dataclass(frozen=True)
+class Found:
+    """Everything that a result is told from. `before` of the blocks are of earlier calls; the seconds are
+    this call's.
+    """
+
+    asked: Asked
+    answer: Answer
+    runs: Mapping[Key, Runs]
+    blocks: int
+    before: int
+    seconds: float
+    machine: str
+    looks: tuple[Look, ...] = ()
+    remarks: tuple[str, ...] = field(default=())
+    """Lines on how it was measured."""
+
+    @property
+    def seconds_each(self) -> float:
+        """What a block of this call took, in the mean."""
+        return self.seconds / max(1, self.blocks - self.before)
