@@ -39,7 +39,9 @@ def main() -> int:
 def _run(options: argparse.Namespace) -> int:
     missing = [tool for tool in ("c++", "hyperfine", "perf") if shutil.which(tool) is None]
     if options.rounds and missing:
-        raise InputError(f"found no {', '.join(missing)}, expected them: apt-get install hyperfine linux-perf")
+        raise InputError(
+            f"found no {', '.join(missing)}, expected them: apt-get install hyperfine linux-perf"
+        )
     with tempfile.TemporaryDirectory() as folder, _beside(options.busy):
         program = build_loop(Path(folder)) if options.rounds else Path()
         for _ in range(options.rounds):

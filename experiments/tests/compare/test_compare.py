@@ -256,7 +256,9 @@ def test_short_commands_are_repeated(folder: Path) -> None:
 
 def test_a_short_command_that_fails_is_named_with_its_code(folder: Path) -> None:
     script(folder / "quick", "exit 0")
-    script(folder / "wears_out", 'echo x >> count; [ "$(wc -l < count)" -lt 9 ] || { echo worn >&2; exit 4; }')
+    script(
+        folder / "wears_out", 'echo x >> count; [ "$(wc -l < count)" -lt 9 ] || { echo worn >&2; exit 4; }'
+    )
     done = run(folder, "compare", "./quick", "./wears_out", "--time", "20s", "--turns", "off")
     assert done.returncode == 2
     assert "exit code 4: worn" in done.stderr
@@ -394,9 +396,7 @@ def test_benchmarks_are_known_by_what_stands_in_them(tmp_path: Path) -> None:
         (tmp_path / name).write_bytes(content)
 
     def are(*words: str) -> bool:
-        return are_benchmarks(
-            [Compared(word, tuple(word.split()), word, folder=tmp_path) for word in words]
-        )
+        return are_benchmarks([Compared(word, tuple(word.split()), word, folder=tmp_path) for word in words])
 
     assert are("./benchmark", "./loads_it")
     assert not are("./benchmark", "./program")

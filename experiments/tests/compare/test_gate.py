@@ -146,7 +146,9 @@ def test_cases_of_a_benchmark_are_judged_together(repository: Path) -> None:
         check=False,
     )
     assert done.returncode == 3, done.stderr
-    assert "of 250 commits that change nothing, the chance that any is called slower is at most" in done.stderr
+    assert (
+        "of 250 commits that change nothing, the chance that any is called slower is at most" in done.stderr
+    )
     assert "BM_b   4 ms → 5 ms   +25.0 % [+25.0, +25.0]   slower by more than 2 %" in done.stdout
     told = (repository / "sub" / "told.md").read_text(encoding="utf-8").splitlines()
     assert told[0] == "**gate: failed: slower**"
@@ -180,7 +182,9 @@ def test_one_of_many_is_slower_only_where_the_interval_of_all_says_so() -> None:
 
 
 @needs_the_program
-@pytest.mark.parametrize(("head", "label", "code"), [("equal", "", 0), ("slower", "", 3), ("slower", "fine", 0)])
+@pytest.mark.parametrize(
+    ("head", "label", "code"), [("equal", "", 0), ("slower", "", 3), ("slower", "fine", 0)]
+)
 def test_the_action_ends_as_the_gate_and_writes_a_summary(
     repository: Path, tmp_path: Path, head: str, label: str, code: int
 ) -> None:
