@@ -15,7 +15,8 @@ from analysis.statistics.looks import ERROR, next_look
 from analysis.statistics.pairs import process_medians
 from analysis.statistics.ranking import ranking
 from analysis.statistics.verdicts import corrected, judge_one
-from support.vocabulary import AGAIN
+from support.files import read_json
+from support.vocabulary import AGAIN, ASKED
 
 LEAGUE = 3
 """So many commands are a league, in which every pair is compared."""

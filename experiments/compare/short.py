@@ -1,6 +1,7 @@
 """Short commands: several runs in a row count as one, so that starting them does not drown them."""
 
 import math
+import shutil
 from collections.abc import Iterable
 
 from experiments.compare.options import Asked
@@ -38,8 +39,11 @@ def runs_in_a_row(asked: Asked, medians: Iterable[float]) -> int:
 
 
 def in_a_row(words: tuple[str, ...], times: int, exit_codes: Iterable[int]) -> tuple[str, ...]:
-    """The words of a shell that runs these words so many times."""
+    """The words of a shell that runs these words so many times, as a program, also where it has a command of
+    its own of that name.
+    """
     if times == 1:
         return words
+    program = shutil.which(words[0]) or words[0]
     fine = f" {' '.join(map(str, exit_codes))} "
-    return ("sh", "-c", _IN_A_ROW, "sh", str(times), fine, *words)
+    return ("sh", "-c", _IN_A_ROW, "sh", str(times), fine, program, *words[1:])

@@ -72,7 +72,7 @@ def turns(text: str) -> tuple[bool | None, float | None]:
     if not SHORTEST_SLICE <= seconds <= LONGEST_SLICE:
         expected = "auto, on, off or the length of a slice, 1ms to 10s"
         raise argparse.ArgumentTypeError(f"found {text}, expected {expected}")
-    return None, seconds
+    return True, seconds
 
 
 def count(text: str, least: int = 0) -> int:

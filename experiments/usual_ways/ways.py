@@ -64,7 +64,7 @@ def hyperfine(_: str, first: Words, second: Words) -> Answer:
 
 
 def u_test(_: str, first: Words, second: Words) -> Answer:
-    """Ten runs, then ten runs, and the U test of Mann and Whitney at 5 %, as Google Benchmark's compare.py."""
+    """Ten runs, then ten runs, and Mann and Whitney's U test at 5 %, as Google Benchmark's compare.py."""
     began = time.monotonic()
     one, other = ([_seconds(words) for _ in range(RUNS)] for words in (first, second))
     p = float(stats.mannwhitneyu(one, other, alternative="two-sided").pvalue)

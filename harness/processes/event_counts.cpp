@@ -22,8 +22,8 @@ int open_event(const CountedEvent& event, pid_t process) {
     attributes.read_format = PERF_FORMAT_TOTAL_TIME_ENABLED | PERF_FORMAT_TOTAL_TIME_RUNNING;
     constexpr int any_processor = -1;
     constexpr int no_group = -1;
-    return static_cast<int>(syscall(SYS_perf_event_open, &attributes, process, any_processor, no_group,
-                                    PERF_FLAG_FD_CLOEXEC));
+    return static_cast<int>(
+        syscall(SYS_perf_event_open, &attributes, process, any_processor, no_group, PERF_FLAG_FD_CLOEXEC));
 }
 
 } // namespace

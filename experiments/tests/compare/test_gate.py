@@ -130,6 +130,9 @@ def test_cases_of_a_benchmark_are_judged_together(repository: Path) -> None:
     (repository / "sub" / "program.in").write_text(
         "#!/bin/sh\n" + BENCHMARK.format(names="BM_a BM_b", time=4), encoding="utf-8"
     )
+    (repository / "sub" / "build.sh").write_text(
+        "cp program.in program; chmod +x program\n", encoding="utf-8"
+    )
     git(repository, "commit", "-q", "-a", "-m", "benchmark")
     git(repository, "tag", "benchmark")
     page = repository / "sub" / "program.in"

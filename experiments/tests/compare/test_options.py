@@ -113,7 +113,11 @@ def test_the_unit_stands_behind_the_group(pattern: str, unit: str) -> None:
         (["--env", "1=2", "a", "b"], "expected VARIABLE=VALUE"),
         (["--prepare", "x", "--prepare", "y", "a", "b", "c"], "--prepare: found 2 for 3 commands"),
         (["-n", "a", "-n", "a again", "x", "y"], 'found "a again", which the control is called'),
-        (["--turns", "on", "--time-from", "took (.*)", "a", "b"], "--turns: found on, of commands that time"),
+        (
+            ["--turns", "on", "--time-from", "took (.*)", "a", "b"],
+            "--turns: found turns, of commands that time",
+        ),
+        (["--turns", "5ms", "--time-from", "took (.*)", "a", "b"], "--turns: found turns, of commands that"),
         (
             ["-P", "n", "1", "99999999999", "a {n}"],
             "found 101 commands, expected two or more to compare, 100",

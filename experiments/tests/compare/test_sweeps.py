@@ -22,7 +22,7 @@ def test_a_line_that_lacks_a_list_is_there_once() -> None:
 
 
 def test_a_list_that_no_line_has_is_refused() -> None:
-    with pytest.raises(InputError, match="expected {n} in a command"):
+    with pytest.raises(InputError, match=r"expected \{n\} in a command"):
         filled(["./old"], combinations([["n", "1,2"]], [], 100))
 
 
