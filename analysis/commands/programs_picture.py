@@ -82,7 +82,8 @@ def _intervals(
         at = difference(axes, row, height, row["name"], row["colour"], 2.2, zorder=4)
         pale = lighten(row["colour"], 0.6)
         axes.plot(blocks, np.full(len(blocks), height - 0.28), "o", color=pale, markersize=2, zorder=2)
-        said = "control" if row["is_control"] else row["verdict"]
+        known = row["verdict"] if row["verdict"] != "inconclusive" else "not settled"
+        said = "control" if row["is_control"] else known
         note(axes, said, (at, height), (0, 5), ha="center", fontsize=7, color=INK)
     name_rows(axes, list(table["name"]))
     axes.set_ylim(-0.7, len(table) - 0.2)
