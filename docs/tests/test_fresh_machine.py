@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from documents import ROOT, shell
+from documents import ROOT, document, shell, write_file
 
 pytestmark = pytest.mark.slow
 
@@ -164,3 +164,39 @@ def test_the_two_commands_as_a_user_with_sudo(machine: Machine) -> None:
     assert machine.succeed("sudoer", "cd carom && git status --porcelain") == ""
     machine.succeed("sudoer", "cd carom && make distclean")
     assert machine.succeed("sudoer", "cd carom && git status --porcelain --ignored") in ("", "!! results/\n")
+
+
+INSTALLED = ("docs/compare.md", "docs/your_program.md", "docs/tutorial.md")
+"""The pages whose quick commands need no checkout."""
+
+
+def test_installed_it_works_in_an_empty_folder_and_leaves_without_a_trace(machine: Machine) -> None:
+    machine.succeed("sudoer", "rm -rf carom anywhere && mkdir anywhere")
+    clone(machine, "sudoer")
+    machine.succeed("sudoer", "cd carom && make setup install")
+    anywhere = machine.root / "home" / "sudoer" / "anywhere"
+    for name in INSTALLED:
+        for block in document(name):
+            if block.language == "sh" and block.word == "":
+                installed = 'export PATH="$HOME/.local/bin:$PATH"; cd anywhere'
+                machine.succeed("sudoer", f"{installed}; {block.text}")
+            elif block.language not in ("sh", "diff") and block.word.startswith("mine/"):
+                write_file(block, anywhere)
+                machine.succeed("root", f"chown -R sudoer /home/sudoer/anywhere/{Path(block.word).parent}")
+    machine.succeed("sudoer", "cd carom && make uninstall")
+    assert machine.succeed("sudoer", "find .local -type f -o -type l") == ""
+
+
+def test_the_package_is_installed_and_removed(machine: Machine) -> None:
+    """After the one above, which has cloned and built."""
+    before = machine.succeed("root", FILES)
+    machine.succeed("sudoer", "cd carom && make package")
+    machine.succeed("root", "apt-get install --yes /home/sudoer/carom/build/package/*.deb")
+    told = machine.succeed("plain", "carom compare --time 1s 'sleep 0.01' 'sleep 0.02'")
+    assert "0.02 against" in told
+    machine.succeed("root", "apt-get purge --yes carom && apt-get autoremove --purge --yes")
+    assert machine.succeed("root", FILES) == before
+
+
+FILES = "find /usr /etc /opt -path /usr/share/doc -prune -o -name '*carom*' -print | sort"
+"""What of the system's files is called after Carom."""
