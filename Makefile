@@ -7,7 +7,7 @@
 .SILENT:
 .PHONY: help setup environment build build-gcc build-clang build-gcc-libomp install uninstall package calibration-gcc \
         tests-gcc tests-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files experiments appendix calibrate \
-        usual-ways lint lint-quick format clean distclean settings
+        usual-ways bench-records lint lint-quick format clean distclean settings
 
 export COMPILER ?= gcc
 CXX_gcc := g++
@@ -171,6 +171,9 @@ calibration-gcc: calibration-%: settings
 
 calibrate: environment settings calibration-gcc ## measure how often verdicts are wrong on this machine (TIME=60 RESULTS=results/calibration)
 	$(python) experiments calibrate $(results) $${TIME:+--seconds "$$TIME"}
+
+bench-records: environment settings build-gcc ## how long it takes to read up to 100 000 made-up records
+	$(python) experiments.records_benchmark
 
 usual-ways: environment settings build-gcc ## hold `carom compare` against hyperfine, perf stat and others (ROUNDS=10)
 	$(python) experiments.usual_ways --rounds $${ROUNDS:-10} --output results/usual_ways.csv >/dev/null

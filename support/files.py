@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import orjson
+
 from support.errors import InputError, require_text
 
 
@@ -25,9 +27,19 @@ def require_room_for_folder(what: str, folder: Path) -> None:
 def read_json(path: Path) -> Any:  # noqa: ANN401 - JSON is any value
     """The content of a JSON file, or None if it is missing or not JSON, which has no NaN and no infinity."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"), parse_float=finite, parse_constant=finite)
-    except (OSError, ValueError, RecursionError):
+        return of_json(path.read_bytes())
+    except (OSError, ValueError):
         return None
+
+
+def of_json(text: bytes) -> Any:  # noqa: ANN401 - JSON is any value
+    """The content of a text. Raises ValueError for what is not JSON, such as NaN."""
+    return orjson.loads(text)
+
+
+def to_json(content: object) -> bytes:
+    """The content as JSON in as few bytes as may be."""
+    return orjson.dumps(content)
 
 
 def finite(text: str) -> float:

@@ -12,7 +12,8 @@ from typing import Any
 
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
-from experiments.results.store import Store, unusable
+from experiments.results.store import Store
+from experiments.results.summary import summary_of, unusable
 from experiments.run.runner import Runner, Task
 from experiments.run.together import together
 from support.files import read_json, write_json
@@ -87,7 +88,7 @@ class Blocks:
         of_block: dict[int, set[str]] = {}
         for record in records:
             point, block = points.get(str(record["tags"].get("point"))), int(record["tags"].get("block", -1))
-            wrong = "other commands, or changed programs" if point is None else unusable(record, point, block)
+            wrong = "other commands, or changed programs" if point is None else unusable(summary_of(record), point, block)
             if point is None or wrong is not None:
                 return str(wrong)
             of_block.setdefault(block, set()).add(point.id)

@@ -4,7 +4,7 @@ import contextlib
 import os
 import re
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -13,6 +13,8 @@ from typing import Any
 
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point, Tags
+from experiments.results.index import Index
+from experiments.results.summary import Summary, summary_of, unusable
 from experiments.support.process import Completed
 from support.files import locked, move, read_json, write_json
 from support.record_schema import is_record
@@ -27,7 +29,7 @@ class Found:
 
     seconds: dict[Key, float] = field(default_factory=dict)
     """Whole-process wall time of each finished process."""
-    runs: dict[Key, tuple[float, ...]] = field(default_factory=dict)
+    runs: dict[Key, Sequence[float]] = field(default_factory=dict)
     """The seconds of each of its timed runs, in their order: what of the process was in the clock."""
     sessions: dict[Key, str] = field(default_factory=dict)
     """Which session measured it."""
@@ -35,6 +37,12 @@ class Found:
     """Reason of each failed process that has not been measured since."""
     stale: list[Path] = field(default_factory=list)
     """Files that no longer belong to the plan."""
+
+    def take(self, key: Key, summary: Summary) -> None:
+        """Count a process by what its record says."""
+        self.seconds[key] = summary.seconds
+        self.runs[key] = summary.runs
+        self.sessions[key] = str(summary.tags.get("session", ""))
 
 
 class Store:
@@ -44,6 +52,7 @@ class Store:
         self.root = root
         self.session = session
         self.temporary = root / ".running" / session
+        self._index = Index(root)
 
     @contextmanager
     def opened(self) -> Iterator[None]:
@@ -77,27 +86,44 @@ class Store:
         """What is there of an experiment; reads only."""
         points = {point.id: point for point in experiment.points}
         found = Found()
-        for path in sorted((self.root / "records" / experiment.name).glob("*.json")):
-            record, key = read_json(path), _key(path)
+        for name, summary in self._index.summaries("records", experiment.name).items():
+            path = self.root / "records" / experiment.name / name
+            key = _key(path)
             point = points.get(key[0]) if key else None
-            if key is None or point is None or unusable(record, point, key[1]):
+            if key is None or point is None or unusable(summary, point, key[1]):
                 found.stale.append(path)
             else:
-                found.seconds[key] = float(record["process_seconds"])
-                found.runs[key] = timed_runs(record)
-                found.sessions[key] = str(record["tags"].get("session", ""))
-        for path in sorted((self.root / "failures" / experiment.name).glob("*.json")):
-            failure, key = read_json(path), _key(path)
-            is_failure = is_record(failure) and failure["kind"] == "failure"
+                assert summary is not None
+                found.take(key, summary)
+        for name, summary in self._index.summaries("failures", experiment.name).items():
+            path = self.root / "failures" / experiment.name / name
+            key = _key(path)
+            is_failure = summary is not None and summary.kind == "failure"
             if key is None or key[0] not in points or key in found.seconds or not is_failure:
                 found.stale.append(path)
             else:
-                found.failures[key] = failure["reason"]
+                assert summary is not None
+                found.failures[key] = summary.reason
+        return found
+
+    def find_block(self, experiment: Experiment, block: int) -> Found:
+        """What is there of one block: only files of its own names are read, however many others there are."""
+        found = Found()
+        for point in experiment.points:
+            key = (point.id, block)
+            summary = summary_of(read_json(self.record_path(point, block)))
+            if unusable(summary, point, block) is None:
+                assert summary is not None
+                found.take(key, summary)
+                continue
+            failure = summary_of(read_json(self.failure_path(point, block)))
+            if failure is not None and failure.kind == "failure":
+                found.failures[key] = failure.reason
         return found
 
     def has(self, point: Point, block: int) -> bool:
         """Whether one process has been measured by now, perhaps by someone else."""
-        return unusable(read_json(self.record_path(point, block)), point, block) is None
+        return unusable(summary_of(read_json(self.record_path(point, block))), point, block) is None
 
     def settle(self, experiment: Experiment) -> Found:
         """Move what is stale out of the way and bring back what fits the plan again; say what is there then.
@@ -106,14 +132,15 @@ class Store:
         """
         for path in self.find(experiment).stale:
             self.retire(path)
-        for point in experiment.points:
-            folder = self.root / "stale" / "records" / experiment.name
-            for path in folder.glob(f"{point.id}-b*.json"):
-                key = _key(path)
-                if key and not unusable(read_json(path), point, key[1]):
-                    target = self.record_path(point, key[1])
-                    if not target.exists():
-                        move(path, target)
+        points = {point.id: point for point in experiment.points}
+        for path in (self.root / "stale" / "records" / experiment.name).glob("*.json"):
+            key = _key(path)
+            point = points.get(key[0]) if key else None
+            if key is None or point is None:
+                continue
+            target = self.record_path(point, key[1])
+            if not target.exists() and not unusable(summary_of(read_json(path)), point, key[1]):
+                move(path, target)
         return self.find(experiment)
 
     def retire(self, path: Path) -> None:
@@ -180,35 +207,11 @@ def new_session() -> str:
     return f"{datetime.now(UTC):%Y%m%dT%H%M%S.%f}-{os.uname().nodename}-{os.getpid()}"
 
 
-def unusable(record: Any, point: Point, block: int) -> str | None:  # noqa: ANN401 - read from a file
-    """Why a record does not stand for this process of this point; None if it does."""
-    if not is_record(record):
-        return "it does not match the record schema"
-    if record["kind"] not in ("bench", "profile", "process"):
-        return f"it is of the kind {record['kind']}"
-    if record["check"]["verdict"] == "failed":
-        return "its result failed the check"
-    if record["provenance"]["binary_sha256"] != point.program.sha256:
-        return "it was measured with another program"
-    if point.measures_errors(block) and "trajectory" not in (record["errors"] or {}):
-        return "it lacks the error measures"
-    tags = record["tags"]
-    for key, value in (point.tags | {"block": block}).items():
-        if tags.get(key) != value:
-            return f"its tag {key} is {tags.get(key)!r}, not {value!r}"
-    return None
-
-
-def timed_runs(record: Any) -> tuple[float, ...]:  # noqa: ANN401 - read from a file
-    """The seconds of each timed run in a record; none of a profile, which times phases instead."""
-    return tuple(float(one["steps_seconds"]) for one in record["repetitions"])
-
-
-def measured_by_point(found: Iterable[Found]) -> dict[str, list[tuple[float, tuple[float, ...]]]]:
+def measured_by_point(found: Iterable[Found]) -> dict[str, list[tuple[float, Sequence[float]]]]:
     """Wall time of each whole process and its timed runs, by point id over all experiments: equal ids are the
     same measurement.
     """
-    measured: dict[str, list[tuple[float, tuple[float, ...]]]] = {}
+    measured: dict[str, list[tuple[float, Sequence[float]]]] = {}
     for one in found:
         for key, value in one.seconds.items():
             measured.setdefault(key[0], []).append((value, one.runs.get(key, ())))

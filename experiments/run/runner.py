@@ -10,7 +10,8 @@ from experiments.plan.plan import Experiment
 from experiments.plan.point import PROCESS, Point, Tags
 from experiments.plan.program import CHECK_FAILED, Program, generate
 from experiments.plan.scenes import AnyScene, NoScene, SceneFile, SceneFolder
-from experiments.results.store import Store, timed_runs, unusable
+from experiments.results.store import Store
+from experiments.results.summary import summary_of, unusable
 from experiments.run.beside import BesideRecords
 from experiments.run.host_lock import run_alone
 from experiments.run.processes import Asked, Left, Processes
@@ -64,7 +65,7 @@ class ProcessResult:
     seconds: float | None
     reason: str = ""
     exit_code: int = 0
-    runs: tuple[float, ...] = ()
+    runs: Sequence[float] = ()
 
 
 Ready = tuple[Task, SceneFile | None]
@@ -232,10 +233,12 @@ class Runner:
             )
         if done.exit_code not in (0, CHECK_FAILED) and task.point.verb != PROCESS:
             return self._fail(task, done)
-        wrong = unusable(record, task.point, task.block)
+        summary = summary_of(record)
+        wrong = unusable(summary, task.point, task.block)
         if wrong is None:
+            assert summary is not None
             self._store.keep_record(task.point, task.block, scratch)
-            return ProcessResult(float(record["process_seconds"]), runs=timed_runs(record))
+            return ProcessResult(summary.seconds, runs=summary.runs)
         violation = _violation(record)
         if done.exit_code == CHECK_FAILED and (violation or record is None):
             return self._fail(task, Completed(done.command, CHECK_FAILED, "", violation or done.reason))

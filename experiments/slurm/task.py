@@ -13,7 +13,8 @@ from experiments.run.repeats import process_runs
 from experiments.run.runner import ProcessResult, Runner, Task
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import together
-from experiments.slurm.jobs import PartitionFolder, Unit, blocks_of, folders, read_job
+from experiments.run.whole_blocks import WholeBlocks
+from experiments.slurm.jobs import PartitionFolder, Unit, folders, read_job
 from support.errors import InputError
 
 
@@ -49,7 +50,7 @@ class _Worker:
         self._failed: set[tuple[str, str]] = set()
         # What this task has seen itself: others may measure elsewhere.
         self._costs = Costs({}, {})
-        self._runs: dict[Key, tuple[float, ...]] = {}
+        self._runs: dict[Key, Sequence[float]] = {}
 
     def run(self, own: Sequence[Unit]) -> int:
         experiments = {one.name: one for one in self._study.experiments}
@@ -59,7 +60,9 @@ class _Worker:
         return POINTS_FAILED if self._failed else 0
 
     def _block(self, experiment: Experiment, block: int) -> None:
-        missing = blocks_of(self._study, experiment).missing_if_given(block)
+        found = self._study.store.find_block(experiment, block)
+        given, session = experiment.question.blocks.minimum, self._study.store.session
+        missing = WholeBlocks(experiment, given, found, session).missing_if_given(block)
         hopeful = [one for one in missing if (experiment.name, one[1].id) not in self._failed]
         blocks, size = experiment.question.blocks.minimum, len(experiment.points)
         for group in together(experiment, block, hopeful):

@@ -1,0 +1,94 @@
+"""What is to be known of a record without reading it again."""
+
+from array import array
+from base64 import b64decode, b64encode
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from experiments.plan.point import Point, Tags
+from support.record_schema import is_record
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Of a record of any kind; what its kind does not have is empty."""
+
+    kind: str
+    tags: Tags
+    program: str = ""
+    """The hash of the program that it was measured with."""
+    verdict: str = ""
+    """Of its check."""
+    has_trajectory: bool = False
+    """Whether its errors were measured."""
+    seconds: float = 0.0
+    """Of the whole process."""
+    runs: Sequence[float] = ()
+    """The seconds of each of its timed runs, in their order: what of the process was in the clock."""
+    reason: str = ""
+    """Of a failure."""
+
+
+def summary_of(record: Any) -> Summary | None:  # noqa: ANN401 - read from a file
+    """Return what is to be known of it; None for what is no record."""
+    if not is_record(record):
+        return None
+    return Summary(
+        kind=record["kind"],
+        tags=record["tags"],
+        program=record.get("provenance", {}).get("binary_sha256") or "",
+        verdict=record.get("check", {}).get("verdict", ""),
+        has_trajectory="trajectory" in (record.get("errors") or {}),
+        seconds=float(record.get("process_seconds", 0.0)),
+        runs=_runs(record),
+        reason=record.get("reason") or "",
+    )
+
+
+def _runs(record: Any) -> Sequence[float]:  # noqa: ANN401 - read from a file
+    """None of a profile, which times phases instead."""
+    if record["kind"] not in ("bench", "process"):
+        return ()
+    return array("d", (float(one["steps_seconds"]) for one in record["repetitions"]))
+
+
+def unusable(found: Summary | None, point: Point, block: int) -> str | None:
+    """Why a record does not stand for this process of this point; None if it does."""
+    if found is None:
+        return "it does not match the record schema"
+    if found.kind not in ("bench", "profile", "process"):
+        return f"it is of the kind {found.kind}"
+    if found.verdict == "failed":
+        return "its result failed the check"
+    if found.program != point.program.sha256:
+        return "it was measured with another program"
+    if point.measures_errors(block) and not found.has_trajectory:
+        return "it lacks the error measures"
+    for key, value in (point.tags | {"block": block}).items():
+        if found.tags.get(key) != value:
+            return f"its tag {key} is {found.tags.get(key)!r}, not {value!r}"
+    return None
+
+
+def packed(found: Summary | None) -> list[Any] | None:
+    """Return it as JSON has it, the runs as one text."""
+    if found is None:
+        return None
+    runs = b64encode(array("d", found.runs).tobytes()).decode("ascii")
+    told = [found.kind, found.tags, found.program, found.verdict, found.has_trajectory]
+    return [*told, found.seconds, runs, found.reason]
+
+
+def unpacked(told: Any) -> Summary | None:  # noqa: ANN401 - read from a file
+    """Return what was packed. Raises ValueError for anything else."""
+    match told:
+        case None:
+            return None
+        case [str() as kind, dict() as tags, str() as program, str() as verdict, bool() as has_trajectory, *more]:
+            match more:
+                case [float() | int() as seconds, str() as text, str() as reason]:
+                    runs = array("d")
+                    runs.frombytes(b64decode(text, validate=True))
+                    return Summary(kind, tags, program, verdict, has_trajectory, float(seconds), runs, reason)
+    raise ValueError("is no summary of a record")
