@@ -1,5 +1,6 @@
 """Reads a results folder: every record validated, unreadable ones named and left out, the rest as tables."""
 
+import contextlib
 import hashlib
 import json
 import sys
@@ -14,7 +15,7 @@ from jsonschema.exceptions import best_match
 
 from analysis.records import promises, tables
 from support.errors import InputError
-from support.files import finite
+from support.files import finite, of_json
 from support.record_schema import definition, is_record
 
 NEEDED_TAGS = ["experiment", "series", "x_name", "x", "block"]
@@ -114,7 +115,9 @@ def _parse(content: bytes, failures: bool) -> tuple[str | None, dict[str, Any]]:
 
     Remembered by content: whoever loads a growing folder again and again pays for what is new.
     """
-    try:
+    with contextlib.suppress(ValueError):
+        return _checked(of_json(content), failures)
+    try:  # more slowly, for what is to be said of it
         return _checked(json.loads(content, parse_float=finite, parse_constant=finite), failures)
     except UnicodeDecodeError:
         return "not UTF-8 text", {}

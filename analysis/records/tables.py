@@ -1,10 +1,12 @@
 """From validated records to flat tables; every table carries the same columns of context (see `context`)."""
 
+import math
 import re
 import shlex
 from collections.abc import Callable, Iterable
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from analysis.statistics.returning import excess
@@ -189,24 +191,27 @@ def times(records: Placed) -> pd.DataFrame:
     process the seconds are its own, as seen from outside or as it says itself.
     """
 
-    def timed(record: Record) -> Iterable[Record]:
-        if record["kind"] not in ("bench", "process"):
-            return
-        for number, repetition in enumerate(record["repetitions"]):
-            lost = _lost_by_turns(record) if number == 0 else None
-            yield {"repetition": number, "lost_by_turns": lost, **repetition}
+    timed = [(context, record) for context, record in records if record["kind"] in ("bench", "process")]
+    counts = [len(record["repetitions"]) for _, record in timed]
+    # A context is made once a record and repeated as rows: there may be hundreds of repetitions in each.
+    contexts = pd.DataFrame([context for context, _ in timed], columns=CONTEXT)
+    table = contexts.take(np.repeat(np.arange(len(timed)), counts)).reset_index(drop=True)
+    first = np.cumsum([0, *counts])[:-1]
+    lost = np.full(len(table), np.nan)
+    lost[first] = [_lost_by_turns(record) for _, record in timed]
+    seconds = [float(one["steps_seconds"]) for _, record in timed for one in record["repetitions"]]
+    numbers = np.arange(len(table)) - np.repeat(first, counts)
+    return table.assign(repetition=numbers, steps_seconds=np.array(seconds, dtype=float), lost_by_turns=lost)
 
-    columns = ("repetition", "steps_seconds", "lost_by_turns")
-    return _table(records, timed, *columns).astype({"lost_by_turns": float})
 
-
-def _lost_by_turns(record: Record) -> float | None:
+def _lost_by_turns(record: Record) -> float:
+    """Return the share of a process's time, NaN where it is not known."""
     turns = record.get("turns") or {}
     if "returning_seconds" not in turns:
-        return None
+        return math.nan
     steps, rounds = record["scene"]["steps"], turns["rounds"]
     found = excess(turns["seconds"], turns["returning_seconds"], steps, rounds)
-    return found.share if found else None
+    return found.share if found else math.nan
 
 
 def phases(records: Placed) -> pd.DataFrame:
