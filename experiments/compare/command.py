@@ -72,8 +72,8 @@ def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[i
         found = course.found(_remarks(course.asked))
         said = result(found)
         print(*said, sep="\n")
-        exports.write(found, said, say(found.answer), lambda: draw(judge))
         earlier.keep(course.blocks)
+        exports.write(found, said, say(found.answer), lambda: draw(judge))
     return _exit_code(course.blocks, found, stopped), found.answer
 
 

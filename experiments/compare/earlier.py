@@ -7,7 +7,7 @@ from typing import Any
 
 from experiments.compare.blocks import Blocks
 from support.errors import InputError
-from support.files import read_json, replacing
+from support.files import read_json, replacing, require_room_for_folder
 from support.record_schema import is_record
 
 SCHEMA_VERSION = 1
@@ -25,7 +25,9 @@ class Earlier:
     """The sessions of a file; of no file there are none."""
 
     def __init__(self, path: Path | None) -> None:
-        """Reads it. Raises InputError for what is no such file."""
+        """Reads it. Raises InputError for what is no such file, and where there is no place for one."""
+        if path is not None:
+            require_room_for_folder("--append", path.absolute().parent)
         self._path = path
         self._sessions = _read(path) if path is not None and path.exists() else []
         self._goes_on = False

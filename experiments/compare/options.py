@@ -62,7 +62,7 @@ def parse(arguments: Sequence[str]) -> Asked:
     options = _parser().parse_args(own)
     commands = commands_of(options, words)
     asked = asked_of(options, commands, reference_of(options.reference, [one.name for one in commands]))
-    return replace(asked, cases=cases_of(options, commands))
+    return replace(asked, cases=cases_of(options, commands), earlier=options.append)
 
 
 def cases_of(options: argparse.Namespace, commands: Sequence[Compared]) -> tuple[str, ...]:
@@ -102,7 +102,6 @@ def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], refere
         setup=options.setup,
         cleanup=options.cleanup,
         exports={kind: path for kind in EXPORTS if (path := getattr(options, f"export_{kind}")) is not None},
-        earlier=options.append,
         quiet=options.quiet,
     )
 
@@ -130,6 +129,8 @@ def _parser() -> argparse.ArgumentParser:
     add("-L", "--list", action="append", nargs=2, default=[], metavar=("NAME", "A,B"), help=told)
     told = "the same for whole numbers from A to B"
     add("-P", "--range", action="append", nargs=3, default=[], metavar=("NAME", "A", "B"), help=told)
+    told = "go on with what earlier calls measured, and keep all in this file"
+    add("--append", type=Path, metavar="FILE", help=told)
     add_measuring(parser)
     return parser
 
@@ -170,6 +171,4 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
     for kind in EXPORTS:
         also = ("--html",) if kind == "html" else ()
         add(f"--export-{kind}", *also, type=Path, metavar="FILE", help=f"write the result as {kind}, too")
-    told = "go on with what earlier calls measured, and keep all in this file"
-    add("--append", type=Path, metavar="FILE", help=told)
     add("-q", "--quiet", action="store_true", help="print the result alone")
