@@ -5,7 +5,7 @@ import statistics
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from experiments.usual_ways.ways import EQUIVALENT, FASTER, NOTHING, SLOWER
+from experiments.usual_ways.ways import EQUIVALENT, FASTER, NOTHING, SLOWER, WAYS
 
 COLUMNS = ("machine", "commit", "date", "load", "more", "way", "said", "ratio", "seconds")
 """Of the raw data: `more` is the fraction of work that the second program has more."""
@@ -24,9 +24,12 @@ def table(rows: Iterable[Row]) -> str:
     groups: dict[tuple[str, float, str], list[Row]] = {}
     for row in rows:
         groups.setdefault((row["load"], float(row["more"]), row["way"]), []).append(row)
-    head = ["load", "more work", "way", "slower", "faster", "equivalent", "says nothing", "off", "seconds"]
-    loads = sorted({load for load, _, _ in groups}, key=lambda one: one != "quiet")
-    order = sorted(groups, key=lambda key: (loads.index(key[0]), key[1]))
+    head = [
+        "load", "more work", "way", "slower", "faster", "equivalent", "says nothing", "worst estimate off by",
+        "seconds",
+    ]  # fmt: skip
+    ways = list(WAYS)
+    order = sorted(groups, key=lambda key: (key[0] != "quiet", key[0], key[1], ways.index(key[2])))
     lines = [head, ["---"] * len(head), *(_cells(key, groups[key]) for key in order)]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
