@@ -81,7 +81,9 @@ class Answer:
         """Whether what is asked is known: a verdict on each; or only whether one is slower by more than the
         margin, or none is.
         """
-        return self.is_settled or (one_sided and (self.is_not_slower(margin) or self.is_slower(margin)))
+        if one_sided:
+            return self.is_not_slower(margin) or self.is_slower(margin)
+        return self.is_settled
 
     @property
     def is_withdrawn(self) -> bool:

@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -177,6 +178,13 @@ def answer(low: float, high: float, low_of_all: float | None = None) -> Answer:
 )
 def test_only_an_interval_beyond_the_margin_decides(low: float, high: float, fail_on: str, code: int) -> None:
     assert verdict(answer(low, high), 0.02, "", fail_on).code == code
+
+
+def test_a_gate_goes_on_until_its_own_question_is_answered() -> None:
+    """What is slower beyond doubt for one call is not yet so for all calls of a year."""
+    found = replace(answer(1.03, 1.1, low_of_all=1.01).commands[0], verdict="slower")
+    assert Answer((found,)).is_enough(0.02, one_sided=False)
+    assert not Answer((found,)).is_enough(0.02, one_sided=True)
 
 
 def test_one_of_many_is_slower_only_where_the_interval_of_all_says_so() -> None:

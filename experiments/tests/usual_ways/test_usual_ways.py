@@ -23,7 +23,9 @@ def test_three_times_as_long_is_slower_in_every_way(way: str) -> None:
     try:
         answer = ways.WAYS[way](str(CAROM), ["sleep", "0.02"], ["sleep", "0.06"])
     except RuntimeError as error:
-        pytest.skip(f"{way}: {error}")  # perf without the right to count, say
+        if not way.startswith("perf"):
+            raise
+        pytest.skip(f"{way}: {error}")  # without the right to count, say
     assert answer.said == ways.SLOWER
     assert 1.5 < answer.ratio < 4
     assert answer.seconds > 0
