@@ -88,7 +88,11 @@ class Blocks:
         of_block: dict[int, set[str]] = {}
         for record in records:
             point, block = points.get(str(record["tags"].get("point"))), int(record["tags"].get("block", -1))
-            wrong = "other commands, or changed programs" if point is None else unusable(summary_of(record), point, block)
+            wrong = (
+                "other commands, or changed programs"
+                if point is None
+                else unusable(summary_of(record), point, block)
+            )
             if point is None or wrong is not None:
                 return str(wrong)
             of_block.setdefault(block, set()).add(point.id)

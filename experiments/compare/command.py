@@ -64,7 +64,7 @@ def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[i
     with store.opened(), Coprocess(analysis("follow", "--results", str(folder))) as judge:
         _write_down(asked, store)
         scenes = SceneFolder(folder / "scenes", store.temporary, str(generator.sha256))
-        runner = Runner(store, scenes, generator, asked.most_seconds, asked.slice_seconds)
+        runner = Runner(store, scenes, generator, asked.most_seconds, asked.slice_seconds, tells=False)
         course = Course(asked, around, store, runner)
         with Line(asked.quiet) as line:
             line.show("making ready")

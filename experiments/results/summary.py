@@ -85,7 +85,14 @@ def unpacked(told: Any) -> Summary | None:  # noqa: ANN401 - read from a file
     match told:
         case None:
             return None
-        case [str() as kind, dict() as tags, str() as program, str() as verdict, bool() as has_trajectory, *more]:
+        case [
+            str() as kind,
+            dict() as tags,
+            str() as program,
+            str() as verdict,
+            bool() as has_trajectory,
+            *more,
+        ]:
             match more:
                 case [float() | int() as seconds, str() as text, str() as reason]:
                     runs = array("d")

@@ -53,16 +53,24 @@ class Left:
 class Processes:
     """Runs `carom processes`, which lets them run in turn and leaves a record, or a failure, of each.
 
-    `slice_seconds`: how long the longest runs before the next does; the program's own rule without it.
+    `slice_seconds`: how long the longest runs before the next does; the program's own rule without it. Where
+    it `tells`, a line says of a program why it is not stopped; the record says it in any case.
     """
 
     def __init__(
-        self, store: Store, instrument: Program, time_limit: float, slice_seconds: float | None = None
+        self,
+        store: Store,
+        instrument: Program,
+        time_limit: float,
+        slice_seconds: float | None = None,
+        *,
+        tells: bool = True,
     ) -> None:
         self._store = store
         self._instrument = instrument
         self._time_limit = time_limit
         self._slice = () if slice_seconds is None else ("--slice", str(slice_seconds))
+        self._tells = tells
         self._behaviours = Behaviours(store)
         self._written = Written(store)
 
@@ -92,7 +100,8 @@ class Processes:
         self._written.learn_created([one.point.program for one in asked])
         for one, there in zip(asked, left, strict=True):
             is_open = self._turns(one) is None
-            if said := self._behaviours.learn(one.point, read_json(there.record), found_out=is_open):
+            said = self._behaviours.learn(one.point, read_json(there.record), found_out=is_open)
+            if said and self._tells:
                 warn(f"{one.point.experiment}, {one.point.series}: measured without a pause: {said}")
         return done, left
 

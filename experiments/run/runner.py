@@ -82,12 +82,14 @@ class Runner:
         generator: Program,
         time_limit: float,
         slice_seconds: float | None = None,
+        *,
+        tells: bool = True,
     ) -> None:
         self._store = store
         self._scenes = scenes
         self._generator = generator
         self._time_limit = time_limit
-        self._processes = Processes(store, generator, time_limit, slice_seconds)
+        self._processes = Processes(store, generator, time_limit, slice_seconds, tells=tells)
         self._verifier = Verifier(store, generator, self._processes, time_limit)
         self._written = Written(store)
         self._beside = BesideRecords(store, time_limit)

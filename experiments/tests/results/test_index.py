@@ -56,7 +56,11 @@ def count_reads(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
 
     def reading(path: Path) -> Any:  # noqa: ANN401 - JSON is any value
         read.append(path)
-        return json.loads(path.read_text(encoding="utf-8")) if path.exists() and path.stat().st_size > 1 else None
+        return (
+            json.loads(path.read_text(encoding="utf-8"))
+            if path.exists() and path.stat().st_size > 1
+            else None
+        )
 
     monkeypatch.setattr(index, "read_json", reading)
     return read
@@ -142,8 +146,9 @@ def test_a_writer_that_is_killed_leaves_the_old_one(results: Path, monkeypatch: 
     assert [file.name for file in (results / FOLDER).iterdir()] == [kept(results).name]
 
 
+@pytest.mark.usefixtures("results")
 def test_a_block_is_found_by_its_own_names_alone(
-    results: Path, empty_workplace: Workplace, monkeypatch: pytest.MonkeyPatch
+    empty_workplace: Workplace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     study = Study(empty_workplace.settings)
     [experiment] = study.experiments
