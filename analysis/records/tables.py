@@ -191,7 +191,11 @@ def times(records: Placed) -> pd.DataFrame:
     process the seconds are its own, as seen from outside or as it says itself.
     """
 
-    timed = [(context, record) for context, record in records if record["kind"] in ("bench", "process")]
+    timed = [
+        (context, record)
+        for context, record in records
+        if record["kind"] in ("bench", "process") and record["repetitions"]
+    ]
     counts = [len(record["repetitions"]) for _, record in timed]
     # A context is made once a record and repeated as rows: there may be hundreds of repetitions in each.
     contexts = pd.DataFrame([context for context, _ in timed], columns=CONTEXT)

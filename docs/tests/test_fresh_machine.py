@@ -189,6 +189,7 @@ def test_installed_it_works_in_an_empty_folder_and_leaves_without_a_trace(machin
 
 def test_the_package_is_installed_and_removed(machine: Machine) -> None:
     """After the one above, which has cloned and built."""
+    machine.succeed("root", "apt-get install --yes dpkg-dev")
     before = machine.succeed("root", FILES)
     machine.succeed("sudoer", "cd carom && make package")
     machine.succeed("root", "apt-get install --yes /home/sudoer/carom/build/package/*.deb")

@@ -134,18 +134,26 @@ def test_bash_completes_what_the_help_tells(tmp_path: Path, words: tuple[str, ..
     assert [word for word in found if word in COMPLETED[words]] == COMPLETED[words], found
 
 
-def test_zsh_takes_the_completions(tmp_path: Path) -> None:
+IN_ZSH = """
+zmodload zsh/zpty
+zpty shell zsh -f -i
+zpty -w shell "fpath=($1 \\$fpath); PATH=$2:\\$PATH; autoload -U compinit; compinit -u -D; print rea''dy"
+zpty -r -m shell found "*ready*"
+zpty -w -n shell $'carom --vers\\t\\n'
+zpty -r -m shell found "*(commit|expected)*"
+print -r -- $found
+"""
+"""A shell with a terminal, in which somebody types the beginning of an option, the tabulator and return."""
+
+
+def test_zsh_completes_at_the_first_try(tmp_path: Path) -> None:
     if shutil.which("zsh") is None:
         pytest.skip("no zsh here")
     (tmp_path / "_carom").write_text(say("help", "--completion", "zsh", folder=tmp_path).stdout)
-    words = [
-        "zsh",
-        "-f",
-        "-c",
-        f"autoload -U compinit; compinit -u -D; source {tmp_path}/_carom; whence -w _carom",
-    ]
-    done = subprocess.run(words, capture_output=True, text=True, check=True)
-    assert (done.stdout, done.stderr) == ("_carom: function\n", "")
+    (tmp_path / "type.zsh").write_text(IN_ZSH)
+    words = ["zsh", "-f", tmp_path / "type.zsh", tmp_path, PROGRAM.parent]
+    done = subprocess.run(words, capture_output=True, text=True, check=True, timeout=60)
+    assert f"carom {(ROOT / 'VERSION').read_text().strip()}" in done.stdout, done.stdout
 
 
 @pytest.mark.slow

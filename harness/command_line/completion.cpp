@@ -38,7 +38,11 @@ _carom() {
         _files
     fi
 }
-compdef _carom carom
+if [[ $funcstack[1] == _carom ]]; then
+    _carom "$@"
+else
+    compdef _carom carom
+fi
 )script";
 
 } // namespace
