@@ -1,5 +1,6 @@
 """The result in words, as lines for a terminal."""
 
+import math
 from collections.abc import Sequence
 
 from experiments.compare.answer import Difference, Place
@@ -144,8 +145,9 @@ def _how_long(found: Found) -> str:
         return f"{said}: an interval needs {answer.next} blocks"
     if answer.needed is None:
         return f"{said}: no number of blocks in sight would settle it; the difference may lie on the margin"
-    more = about((answer.needed - answer.looked_at) * found.seconds_each)
-    return f"{said}: {answer.needed} blocks would settle it, {more} more: `--time` gives them"
+    seconds = (answer.needed - answer.looked_at) * found.seconds_each
+    option = f"`--time {math.ceil(found.seconds + seconds)}s`"
+    return f"{said}: {answer.needed} blocks would settle it, {about(seconds)} more: {option} gives them"
 
 
 def blocks_said(number: int) -> str:
