@@ -244,6 +244,57 @@ def test_products_of_lists_have_a_table_of_effects(folder: Path) -> None:
     ]
 
 
+def test_words_behind_dashes_and_another_reference(folder: Path) -> None:
+    printed(folder)
+    named = ("-q", "-n", "first", "-n", "second", "--reference", "second", "--time", "60s", *TOOK)
+    done = run(folder, "compare", *named, "--", "./prints", "100", "1", "--vs", "./prints", "50", "1")
+    assert done.returncode == 0, done.stderr
+    assert "first against second   +100.0 % [+100.0, +100.0]   slower by more than 2 %" in done.stdout
+    assert "control: second against itself" in done.stdout
+
+
+def test_a_range_of_numbers_is_a_league(folder: Path) -> None:
+    printed(folder)
+    done = run(folder, "compare", "-P", "n", "1", "3", "./prints {n} 100", "--time", "60s", *TOOK)
+    assert "./prints 2 100 against ./prints 1 100   +100.0 %" in done.stdout
+    assert "./prints 3 100 against ./prints 1 100   +200.0 %" in done.stdout
+    assert "those with a letter in common cannot be told apart" in done.stdout
+
+
+def test_a_smaller_error_is_stated_and_takes_more(folder: Path) -> None:
+    script(folder / "wobbles", 'echo took "$((100 + $(wc -l < blocks) % 3))" ms; echo x >> blocks')
+    script(folder / "longer", 'echo took "$((104 + $(wc -l < blocks) % 3))" ms; echo x >> blocks')
+    needed = {}
+    for error in ("5%", "0.01%"):
+        (folder / "blocks").write_text("", encoding="utf-8")
+        words = ("./wobbles", "./longer", *TOOK, "--error", error, "--time", "60s", "--export-json", "a.json")
+        run(folder, "compare", *words)
+        told = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+        [one] = told["differences"]
+        needed[error] = told["blocks"], one["high"] - one["low"]
+        assert told["error"] == float(error.removesuffix("%")) / 100
+    assert needed["0.01%"] > needed["5%"]
+
+
+def test_untimed_runs_come_before_each_timed_one(folder: Path) -> None:
+    script(folder / "counts", "echo x >> runs")
+    words = ("--warmup", "2", "--prepare", "true", "--turns", "off", "--time", "1ms")
+    assert run(folder, "compare", "-n", "a", "-n", "b", "./counts", "./counts", *words).returncode == 0
+    # Two commands and the control, in one block.
+    assert (folder / "runs").read_text(encoding="utf-8").count("x") == 3 * (2 + 1)
+
+
+def test_whole_programs_are_run_where_the_user_says_so(folder: Path) -> None:
+    for name in ("first", "second"):
+        program = (Path("/bin") / "true").read_bytes() + b"benchmark_list_tests"
+        (folder / name).write_bytes(program)
+        (folder / name).chmod(0o755)
+    done = run(folder, "compare", "./first", "./second", "--time", "1ms")
+    assert "these are Google Benchmarks" in done.stderr
+    assert done.returncode == 1, "they list no cases"
+    assert run(folder, "compare", "./first", "./second", "--time", "1ms", "--no-gb").returncode == 0
+
+
 def test_short_commands_are_repeated(folder: Path) -> None:
     script(folder / "quick", "echo x >> runs")
     script(folder / "quicker", "exit 0")

@@ -1,7 +1,9 @@
 """`carom gate` on a repository of a few commits: its exit codes, and that nothing stays behind."""
 
 import os
+import signal
 import subprocess
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -108,6 +110,28 @@ def test_what_is_not_committed_is_said(repository: Path) -> None:
     done = gate(repository, "--head", "equal")
     assert done.returncode == 0
     assert "carom: what is not committed is not measured" in done.stderr
+
+
+@needs_the_program
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_while_it_builds_leaves_nothing(repository: Path, number: signal.Signals) -> None:
+    child = subprocess.Popen(
+        [CAROM, "gate", "--base", "base", "--build", "echo $$ > ../pid; exec sleep 1000", "--", "./program"],
+        cwd=repository / "sub",
+        env={**os.environ, "TMPDIR": str(repository.parent / "tmp")},
+        stderr=subprocess.PIPE,
+    )
+    until, pids = time.monotonic() + 60, list[str]()
+    while time.monotonic() < until and not pids:
+        time.sleep(0.05)
+        pids = [
+            one.read_text() for one in repository.parent.glob("tmp/carom-gate-*/base/pid") if one.read_text()
+        ]
+    child.send_signal(number)
+    child.communicate(timeout=60)
+    assert child.returncode == 128 + number
+    require_untouched(repository)
+    assert not Path("/proc", pids[0].strip()).exists(), "what it built with goes on"
 
 
 @needs_the_program
