@@ -12,7 +12,7 @@ import pytest
 from experiments.compare.answer import Answer, Difference
 from experiments.compare.gate import SLOWER, UNDECIDED, verdict
 from experiments.tests.compare.test_compare import BENCHMARK
-from experiments.tests.conftest import ROOT
+from experiments.tests.conftest import ROOT, is_running
 
 CAROM = ROOT / "build" / "gcc" / "carom"
 
@@ -131,7 +131,7 @@ def test_a_signal_while_it_builds_leaves_nothing(repository: Path, number: signa
     child.communicate(timeout=60)
     assert child.returncode == 128 + number
     require_untouched(repository)
-    assert not Path("/proc", pids[0].strip()).exists(), "what it built with goes on"
+    assert not is_running(int(pids[0])), "what it built with goes on"
 
 
 @needs_the_program
