@@ -11,17 +11,11 @@ import pytest
 
 from experiments.compare.answer import Answer, Difference
 from experiments.compare.gate import SLOWER, UNDECIDED, verdict
-from experiments.tests.compare.test_compare import BENCHMARK
+from experiments.tests.compare.calls import BENCHMARK, CAROM, needs_the_program
 from experiments.tests.conftest import ROOT, is_running
-
-CAROM = ROOT / "build" / "gcc" / "carom"
 
 PRINTS = "#!/bin/sh\necho took $((100 + {more})) ms\n"
 """A program whose time is what it says, so that the verdict does not depend on the machine."""
-
-needs_the_program = pytest.mark.skipif(
-    not CAROM.is_file(), reason="build/gcc/carom is not built (`make build` builds it)"
-)
 
 
 def git(folder: Path, *words: str) -> str:

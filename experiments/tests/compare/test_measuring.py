@@ -1,0 +1,132 @@
+"""How `carom compare` measures: what is run before, after and between, how often, and for how long."""
+
+import json
+from pathlib import Path
+
+from experiments.tests.compare.calls import TOOK, needs_the_program, run, script
+
+pytestmark = needs_the_program
+
+
+def test_before_and_after_each_run_and_once_for_all(folder: Path) -> None:
+    script(folder / "needs", 'test -e prepared && test -e set_up && test "$A" = 1 && read x && test $x = y')
+    (folder / "input").write_text("y\n", encoding="utf-8")
+    done = run(
+        folder, "compare", "-n", "a", "-n", "b", "./needs", "./needs", "--time", "1ms",
+        "--prepare", "touch prepared", "--conclude", "rm prepared", "--setup", "touch set_up",
+        "--cleanup", "rm set_up; touch cleaned_up", "--input", "input", "--env", "A=1", "--turns", "off",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert not (folder / "set_up").exists()
+    assert not (folder / "prepared").exists()
+    assert (folder / "cleaned_up").exists()
+
+
+def test_what_once_comes_first_and_fails_is_said(folder: Path) -> None:
+    done = run(folder, "compare", "./short", "./long", "--setup", "echo no room >&2; false")
+    assert done.returncode == 1
+    assert "carom: --setup: " in done.stderr
+    assert "no room" in done.stderr
+
+
+def test_a_time_that_is_printed_counts(folder: Path) -> None:
+    script(folder / "prints_1", "echo took 100 ms")
+    script(folder / "prints_2", "echo took 50 ms")
+    done = run(
+        folder, "compare", "./prints_1", "./prints_2", "--time", "20s", "--time-from", "took ([0-9.]+) ms"
+    )
+    assert "prints_2 against prints_1   −50.0 % [−50.0, −50.0]   faster by more than 2 %" in done.stdout
+    assert "prints_1   100 ms" in done.stdout
+
+
+def test_threads_are_bound_or_the_environment_is_the_users(folder: Path) -> None:
+    for words, env, wanted in (
+        (["--threads", "1"], {"OMP_NUM_THREADS": "7"}, "1"),
+        ([], {"OMP_NUM_THREADS": "7"}, "7"),
+    ):
+        script(folder / "threads", f'test "$OMP_NUM_THREADS" = {wanted}')
+        done = run(folder, "compare", "./short", "./threads", "--time", "1ms", *words, env=env)
+        assert done.returncode == 0, done.stderr
+
+
+def test_the_layout_varies_from_block_to_block_or_is_fixed(folder: Path) -> None:
+    script(folder / "tells", 'echo "${#CAROM_PADDING}" >> paddings')
+    words = ("compare", "./short", "./tells", "--turns", "off")
+    assert run(folder, *words, "--time", "10s").returncode in (0, 5)
+    paddings = (folder / "paddings").read_text(encoding="utf-8").split()
+    assert len(set(paddings)) > 1
+    (folder / "paddings").unlink()
+    done = run(folder, *words, "--time", "1s", "--fixed-layout")
+    assert done.returncode in (0, 5)
+    assert set((folder / "paddings").read_text(encoding="utf-8").split()) == {"0"}
+
+
+def test_a_shell_is_told_with_what_its_start_takes(folder: Path) -> None:
+    done = run(folder, "compare", "./short; true", "./long; true", "--time", "1ms")
+    assert "a shell starts lines" in done.stdout
+
+
+def test_a_smaller_error_is_stated_and_takes_more(folder: Path) -> None:
+    script(folder / "wobbles", 'echo took "$((100 + $(wc -l < blocks) % 3))" ms; echo x >> blocks')
+    script(folder / "longer", 'echo took "$((104 + $(wc -l < blocks) % 3))" ms; echo x >> blocks')
+    needed = {}
+    for error in ("5%", "0.01%"):
+        (folder / "blocks").write_text("", encoding="utf-8")
+        words = ("./wobbles", "./longer", *TOOK, "--error", error, "--time", "60s", "--export-json", "a.json")
+        run(folder, "compare", *words)
+        told = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+        [one] = told["differences"]
+        needed[error] = told["blocks"], one["high"] - one["low"]
+        assert told["error"] == float(error.removesuffix("%")) / 100
+    assert needed["0.01%"] > needed["5%"]
+
+
+def test_untimed_runs_come_before_each_timed_one(folder: Path) -> None:
+    script(folder / "counts", "echo x >> runs")
+    words = ("--warmup", "2", "--prepare", "true", "--turns", "off", "--time", "1ms")
+    assert run(folder, "compare", "-n", "a", "-n", "b", "./counts", "./counts", *words).returncode == 0
+    # Two commands and the control, in one block.
+    assert (folder / "runs").read_text(encoding="utf-8").count("x") == 3 * (2 + 1)
+
+
+def test_short_commands_are_repeated(folder: Path) -> None:
+    script(folder / "quick", "echo x >> runs")
+    script(folder / "quicker", "exit 0")
+    files = ("--export-json", "a.json")
+    done = run(folder, "compare", "./quick", "./quicker", "--time", "1ms", "--turns", "off", *files)
+    assert done.returncode == 0, done.stderr
+    told = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+    times = told["in_a_row"]
+    assert times > 1
+    assert f"each time is of {times} runs in a row" in done.stdout
+    # Itself and under its second name: once in the block that shows how short it is, then in a row.
+    runs = (folder / "runs").read_text(encoding="utf-8").count("x")
+    assert runs == 2 + 2 * times * told["blocks"]
+
+
+def test_a_short_command_that_fails_is_named_with_its_code(folder: Path) -> None:
+    script(folder / "quick", "exit 0")
+    script(
+        folder / "wears_out", 'echo x >> count; [ "$(wc -l < count)" -lt 9 ] || { echo worn >&2; exit 4; }'
+    )
+    done = run(folder, "compare", "./quick", "./wears_out", "--time", "20s", "--turns", "off")
+    assert done.returncode == 2
+    assert "exit code 4: worn" in done.stderr
+
+
+def test_what_is_prepared_is_never_repeated(folder: Path) -> None:
+    script(folder / "needs", "rm prepared")
+    words = ("--prepare", "touch prepared", "--turns", "off", "--time", "1ms", "--export-json", "a.json")
+    done = run(folder, "compare", "-n", "a", "-n", "b", "./needs", "./needs", *words)
+    assert done.returncode == 0, done.stderr
+    assert json.loads((folder / "a.json").read_text(encoding="utf-8"))["in_a_row"] == 1
+
+
+def test_slices_are_as_long_as_asked(folder: Path) -> None:
+    slices = {}
+    for length in ("5ms", "10s"):
+        words = ("./long", "./long; true", "--turns", length, "--time", "1ms", "--append", length)
+        assert run(folder, "compare", *words).returncode == 0
+        [session] = json.loads((folder / length).read_text(encoding="utf-8"))["sessions"]
+        slices[length] = [len((one["turns"] or {"seconds": []})["seconds"]) for one in session["records"]]
+    assert max(slices["5ms"]) > max(slices["10s"])

@@ -1,0 +1,109 @@
+"""What `carom compare` makes of its measurements: tables, files, a page, and a file that it goes on with."""
+
+import csv
+import json
+import re
+from pathlib import Path
+
+from experiments.tests.compare.calls import (
+    TOOK,
+    left_behind,
+    needs_the_program,
+    printed,
+    run,
+    script,
+)
+
+pytestmark = needs_the_program
+
+
+def test_the_result_is_written_as_files(folder: Path) -> None:
+    words = ["--export-json", "a.json", "--export-csv", "a.csv", "--export-markdown", "a.md"]
+    done = run(folder, "compare", "-n", "a|b", "-n", "c", "./short", "./long", "--time", "20s", *words)
+    assert done.returncode in (0, 5), done.stderr
+    told = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+    assert [one["name"] for one in told["commands"]] == ["a|b", "c"]
+    rows = list(csv.DictReader((folder / "a.csv").open(encoding="utf-8")))
+    assert {row["command"] for row in rows} == {"a|b", "a|b again", "c"}
+    seconds = [float(row["seconds"]) for row in rows if row["command"] == "c"]
+    [runs] = [one for one in told["runs"] if one["command"] == "c"]
+    assert seconds == runs["seconds"]
+    assert "c against a\\|b" in (folder / "a.md").read_text(encoding="utf-8")
+
+
+def test_products_of_lists_have_a_table_of_effects(folder: Path) -> None:
+    printed(folder)
+    lists = ("-L", "a", "100,200", "-L", "b", "1,3")
+    done = run(folder, "compare", *lists, "./prints {a} {b}", *TOOK, "--time", "60s")
+    assert done.returncode == 0, done.stderr
+    told = done.stdout.split("what each value changes")[1]
+    rows = [re.split(" {3,}", line.strip()) for line in told.splitlines()[1:]]
+    more, none = "more time, by more than 2 %", "below 2 %"
+    assert rows == [
+        ["a 200 instead of 100", "+100.0 % [+100.0, +100.0]", more],
+        ["b 3 instead of 1", "+200.0 % [+200.0, +200.0]", more],
+        ["a 200 instead of 100 and b 3 instead of 1", "+0.0 % [+0.0, +0.0]", none],
+    ]
+
+
+def test_a_range_of_numbers_is_a_league(folder: Path) -> None:
+    printed(folder)
+    done = run(folder, "compare", "-P", "n", "1", "3", "./prints {n} 100", "--time", "60s", *TOOK)
+    assert "./prints 2 100 against ./prints 1 100   +100.0 %" in done.stdout
+    assert "./prints 3 100 against ./prints 1 100   +200.0 %" in done.stdout
+    assert "those with a letter in common cannot be told apart" in done.stdout
+
+
+def test_a_file_goes_on_with_what_is_in_it(folder: Path) -> None:
+    printed(folder)
+    words = ("compare", "./prints 100 1", "./prints 50 1", *TOOK, "--append", "kept.json", "--time", "1ms")
+    assert "1 block:" in run(folder, *words).stdout
+    assert "2 blocks, 1 of them earlier" in run(folder, *words).stdout
+    done = run(folder, *words[:-1], "60s")
+    assert "settled after" in done.stdout
+    assert "6 blocks, 2 of them earlier" in done.stdout
+    assert "6 blocks, 6 of them earlier" in run(folder, *words).stdout, "all is known: nothing is measured"
+    script(folder / "prints", 'echo took "$(($1 * $2))" ms # changed')
+    done = run(folder, *words)
+    assert "a new session begins" in done.stderr
+    assert "other commands, or changed programs" in done.stderr
+    assert "1 block:" in done.stdout
+    sessions = json.loads((folder / "kept.json").read_text(encoding="utf-8"))["sessions"]
+    assert [len(one["records"]) for one in sessions] == [18, 3]
+
+
+def test_a_file_of_something_else_is_no_earlier_call(folder: Path) -> None:
+    (folder / "kept.json").write_text('{"sessions": 1}', encoding="utf-8")
+    done = run(folder, "compare", "./short", "./long", "--append", "kept.json")
+    assert done.returncode == 1
+    assert "--append: kept.json: is no file of an earlier call" in done.stderr
+    assert (folder / "kept.json").read_text(encoding="utf-8") == '{"sessions": 1}'
+
+
+def test_a_page_has_the_verdict_and_its_picture(folder: Path) -> None:
+    printed(folder)
+    words = ("./prints 100 1", "./prints 50 1", "-n", "<old>", "-n", "new", *TOOK, "--time", "60s")
+    assert run(folder, "compare", *words, "--html", "a.html").returncode == 0
+    page = (folder / "a.html").read_text(encoding="utf-8")
+    assert "<h1>new against &lt;old&gt;: faster by more than 2 %</h1>" in page
+    assert "<svg" in page
+    assert not re.search(r"(href|src)=.http|url\(http|@import", page), "it asks nothing of any other place"
+    assert left_behind(folder) == []
+
+
+def test_what_is_counted_stands_beside_the_times(folder: Path) -> None:
+    done = run(folder, "compare", "./short", "./long", "--time", "1ms", "--export-json", "a.json")
+    assert "counted of each run, short → long:" in done.stdout
+    assert "page faults" in done.stdout
+    told = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+    for one in told["runs"]:
+        assert len(one["counts"]["minor_page_faults"]) == told["blocks"]
+
+
+def test_three_commands_are_a_league(folder: Path) -> None:
+    for name, time_taken in (("a", 100), ("b", 50), ("c", 50)):
+        script(folder / name, f"echo took {time_taken} ms")
+    done = run(folder, "compare", "./a", "./b", "./c", "--time", "60s", "--time-from", "took ([0-9]+) ms")
+    assert "c against a   −50.0 %" in done.stdout
+    places = [line.split() for line in done.stdout.split("told apart:\n")[1].splitlines()]
+    assert [place[-2:] for place in places] == [["b", "a"], ["c", "a"], ["a", "b"]]
