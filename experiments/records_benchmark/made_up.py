@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from experiments.results.store import Store, new_session
-from experiments.run.runner import Runner, Task
+from experiments.results.store import new_session
+from experiments.run.runner import Task
 from experiments.run.study import Settings, Study
 from support.errors import InputError
 from support.files import read_json, to_json
@@ -53,13 +53,11 @@ def fill(study: Study, records: int, size: int) -> None:
 def _measured(study: Study) -> dict[str, Any]:
     """A record of the question's first point."""
     [experiment] = study.experiments
-    store = Store(study.store.root, new_session())
-    with store.opened():
-        runner = Runner(store, study.scenes(), study.generator, study.site.time_limit_seconds)
-        [done] = runner.run([Task(experiment, experiment.points[0], 0, 0, 1, 1)])
+    with study.store.opened():
+        [done] = study.runner().run([Task(experiment, experiment.points[0], 0, 0, 1, 1)])
     if done.seconds is None:
         raise InputError(f"made-up records: a first one cannot be measured: {done.reason}")
-    found = read_json(store.record_path(experiment.points[0], 0))
+    found = read_json(study.store.record_path(experiment.points[0], 0))
     assert isinstance(found, dict)
     return found
 
