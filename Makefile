@@ -173,7 +173,7 @@ calibrate: environment settings calibration-gcc ## measure how often verdicts ar
 	$(python) experiments calibrate $(results) $${TIME:+--seconds "$$TIME"}
 
 bench-records: environment settings build-gcc ## how long it takes to read up to 100 000 made-up records
-	$(python) experiments.records_benchmark
+	$(python) experiments.records_benchmark --output results/records
 
 usual-ways: environment settings build-gcc ## hold `carom compare` against hyperfine, perf stat and others (ROUNDS=10)
 	$(python) experiments.usual_ways --rounds $${ROUNDS:-10} --output results/usual_ways.csv >/dev/null

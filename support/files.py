@@ -2,6 +2,7 @@
 
 import contextlib
 import fcntl
+import hashlib
 import json
 import math
 import os
@@ -40,6 +41,11 @@ def of_json(text: bytes) -> Any:  # noqa: ANN401 - JSON is any value
 def to_json(content: object) -> bytes:
     """The content as JSON in as few bytes as may be."""
     return orjson.dumps(content)
+
+
+def digest_of(content: object) -> str:
+    """The SHA-256 of what a JSON file holds: how it is written does not matter."""
+    return hashlib.sha256(orjson.dumps(content, option=orjson.OPT_SORT_KEYS)).hexdigest()
 
 
 def finite(text: str) -> float:

@@ -7,7 +7,7 @@ import pandas as pd
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import Compared, Outcome, directed, judged, no_records, told
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios
 from analysis.support.wording import blocks, change
 
 NOT_TOLD_APART = (
@@ -22,7 +22,7 @@ def compilers(evidence: Evidence, experiment: str, candidate: str, reference: st
 
     Both have to hold: a program that is faster by its runtime alone is not faster code.
     """
-    times = process_medians(evidence.study.times_of(experiment))
+    times = evidence.study.times_of(experiment)
     if times.empty:
         return no_records(experiment)
     family, runtime = times["compiler_family"], times["openmp_runtime"]

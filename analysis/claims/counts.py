@@ -9,7 +9,7 @@ import pandas as pd
 
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, directed, judged, no_records, told
-from analysis.statistics.pairs import PAIR, process_medians, ratios_of
+from analysis.statistics.pairs import PAIR, ratios_of
 from analysis.statistics.verdicts import judge_one
 from analysis.support.wording import blocks, change, count
 from support.vocabulary import COUNTS
@@ -40,7 +40,7 @@ def fewer_wasted_attempts(
         value: directed(_over_seeds(before, after, value), once=True)
         for value in ("wasted_attempts", "pair_attempts", "pair_resolves")
     }
-    times = process_medians(evidence.study.times_of(experiment))
+    times = evidence.study.times_of(experiment)
     what = {value: value.replace("_", " ") for value in rows}
     said = "; ".join(f"{change(row)} of {what[value]} ({_told(row)})" for value, row in rows.items())
     wasted = rows["wasted_attempts"]

@@ -12,7 +12,7 @@ from analysis.claims.family import both
 from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records
 from analysis.records.studies import Study
 from analysis.statistics.intervals import FEWEST
-from analysis.statistics.pairs import log_ratios, process_medians, ratios_of
+from analysis.statistics.pairs import log_ratios, ratios_of
 from analysis.statistics.trends import Minimum, growth, linearity, minimum
 from analysis.support.wording import blocks, change, exact, factor, interval, listed, number
 
@@ -22,7 +22,7 @@ FOUR_POINTS = "needs four values measured in the same block"
 
 def published_processes(study: Study, experiment: str) -> pd.DataFrame:
     """Return the processes of the published variant, of which the claims speak, or of all if it has none."""
-    processes = process_medians(study.times_of(experiment))
+    processes = study.times_of(experiment)
     published = processes[processes["variant"] == "published"]
     return processes if published.empty else published
 

@@ -10,7 +10,6 @@ from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records
 from analysis.records.published import Published
-from analysis.statistics.pairs import process_medians
 from analysis.statistics.unpaired import judge_unpaired
 from analysis.support.wording import listed, number
 
@@ -101,7 +100,7 @@ def _machines(evidence: Evidence, experiment: str) -> list[Measured]:
     machines: dict[str, Measured] = {}
     # This study first: another one of its machine, of another revision, must not speak for it.
     for other in (evidence.study, *evidence.studies):
-        processes = process_medians(other.times_of(experiment))
+        processes = other.times_of(experiment)
         if other.scale == evidence.study.scale and not processes.empty:
             speed = gigahertz(str(processes["cpu_model"].iloc[0]), evidence.published)
             machines.setdefault(other.machine, Measured(other.machine, speed, processes))

@@ -13,7 +13,7 @@ import pandas as pd
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import OPEN, Compared, Outcome, directed, judged, no_records, told
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios
 from analysis.support.wording import blocks, change, exact, percent
 
 
@@ -37,7 +37,7 @@ def _one_pair(
     evidence: Evidence, experiment: str, sides: tuple[str, str, str], expected: str, at: float | None
 ) -> Outcome:
     axis, candidate, reference = sides
-    times = process_medians(evidence.study.times_of(experiment))
+    times = evidence.study.times_of(experiment)
     if times.empty:
         return no_records(experiment)
     chosen, against = (times[times[axis] == value] for value in (candidate, reference))

@@ -9,7 +9,7 @@ from analysis.claims.alternatives import alternatives
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, directed, judged, no_records, told
-from analysis.statistics.pairs import PAIR, log_ratios, process_medians
+from analysis.statistics.pairs import PAIR, log_ratios
 from analysis.support.wording import blocks, change, count, exact, number, percent
 
 ONE_THREAD = "on a single thread a schedule shares nothing out: needs 2 hardware threads"
@@ -29,7 +29,7 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     Were the first enough, the claim would hold where all schedules tie; a tie refutes claims about two
     choices, and so it does here. The average is that of the log ratios within each block.
     """
-    processes = process_medians(evidence.study.times_of(experiment))
+    processes = evidence.study.times_of(experiment)
     if processes.empty:
         return no_records(experiment)
     kind = processes[axis].str.split("_").str[0]

@@ -8,7 +8,6 @@ import pandas as pd
 
 from analysis.records.reading import load
 from analysis.records.studies import split
-from analysis.statistics.pairs import process_medians
 from analysis.statistics.unpaired import judge_unpaired
 from analysis.statistics.verdicts import COLUMNS, corrected
 from support.errors import InputError
@@ -62,7 +61,7 @@ def _processes(folder: Path, experiment: str | None) -> pd.DataFrame:
     times = study.times if experiment is None else study.times_of(experiment)
     unsaid = dict.fromkeys(("label", "scene_name", "tolerance"), "")
     numbers = {"find_chunk": 0, "resolve_chunk": 0, "substeps": 1}
-    return process_medians(times).fillna({**unsaid, **numbers}).astype({"label": str})
+    return times.fillna({**unsaid, **numbers}).astype({"label": str})
 
 
 def exit_code(table: pd.DataFrame) -> int:

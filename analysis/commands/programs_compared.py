@@ -12,7 +12,6 @@ from analysis.records.reading import load
 from analysis.records.studies import split
 from analysis.statistics.forecast import blocks_to_decide
 from analysis.statistics.looks import ERROR, next_look
-from analysis.statistics.pairs import process_medians
 from analysis.statistics.ranking import ranking
 from analysis.statistics.verdicts import corrected, judge_one
 from support.files import read_json
@@ -78,8 +77,7 @@ def _effects(times: pd.DataFrame, by: Stated, contrasts: Any) -> list[dict[str, 
     """
     if not contrasts:
         return []
-    processes = process_medians(times)
-    logs = np.log(processes.pivot_table("steps_seconds", ["block", "session"], "series")).dropna()
+    logs = np.log(times.pivot_table("steps_seconds", ["block", "session"], "series")).dropna()
     rows = []
     for one in contrasts:
         weights = pd.Series(one["weights"], dtype=float)

@@ -14,7 +14,7 @@ from analysis.derived.comparisons import Stated, differences, reference, stated
 from analysis.figures.curves import bounded, difference, margin_band
 from analysis.figures.labels import name_rows, note
 from analysis.figures.style import BAND, FAINT, INK, PALETTE, WIDTH, Drawing, lighten, save, styled
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios
 from support.errors import InputError
 from support.vocabulary import AGAIN
 
@@ -64,8 +64,7 @@ def _figure(times: pd.DataFrame, table: pd.DataFrame, against: str, by: Stated) 
 
 def _pairs(times: pd.DataFrame, against: str) -> dict[tuple[str, float], pd.Series]:
     """Return the change of each block in per cent, in the order of time, by series and x."""
-    processes = process_medians(times)
-    first, others = (processes[(processes["series"] == against) == side] for side in (True, False))
+    first, others = (times[(times["series"] == against) == side] for side in (True, False))
     return {
         (str(name), float(x)): 100 * np.expm1(part["log_ratio"])
         for name, of_series in others.groupby("series")

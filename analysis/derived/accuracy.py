@@ -16,7 +16,7 @@ from analysis.records.studies import Study
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.convergence import order
 from analysis.statistics.looks import ERROR
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios, scaled
 from analysis.statistics.pareto import front
 from analysis.statistics.verdicts import error_of_picked, judge_one
 from analysis.support.values import Interval
@@ -122,9 +122,9 @@ def errors(study: Study, experiment: str) -> pd.DataFrame:
 
 
 def times(study: Study, experiment: str) -> pd.DataFrame:
-    """Return the timed repetitions with `seconds`, the time of one unit of simulated time."""
+    """Return the times with `seconds`, that of one unit of simulated time."""
     table = _without_steps(study.times_of(experiment))
-    return table.assign(seconds=table["steps_seconds"] / table["steps"])
+    return scaled(table, "seconds", 1 / table["steps"].astype(float))
 
 
 def _without_steps(table: pd.DataFrame) -> pd.DataFrame:
@@ -224,8 +224,6 @@ class Race:
 
     def __init__(self, timed: pd.DataFrame) -> None:
         self._timed = dict(iter(timed.groupby(["series", "x"])))
-        processes = process_medians(timed, "seconds")
-        self._processes = dict(iter(processes.groupby(["series", "x"])))
         self._seconds: dict[Entrant, Interval] = {}
         self._slower: dict[tuple[Entrant, Entrant], bool] = {}
 
@@ -241,9 +239,9 @@ class Race:
         """Whether the candidate was found slower, from ratios within blocks, as one of all pairs."""
         key = candidate, reference
         if key not in self._slower:
-            sides = self._processes[reference], self._processes[candidate]
+            sides = self._timed[reference], self._timed[candidate]
             ratios = log_ratios(*sides, value="seconds")["log_ratio"]
-            row = judge_one(ratios, error=error_of_picked(len(self._processes)))
+            row = judge_one(ratios, error=error_of_picked(len(self._timed)))
             self._slower[key] = row["verdict"] == "slower"
         return self._slower[key]
 

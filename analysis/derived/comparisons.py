@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from analysis.statistics.looks import ERROR
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios
 from analysis.statistics.verdicts import MARGIN, judge
 
 PUBLISHED = "published"
@@ -51,8 +51,8 @@ def differences(times: pd.DataFrame, against: str, by: Stated | None = None) -> 
     `against` at the same x, Holm-corrected over all of them, by the margin and the error that are stated, or
     by those given.
     """
-    processes, by = process_medians(times), by or stated(times)
-    first, others = (processes[(processes["series"] == against) == side] for side in (True, False))
+    by = by or stated(times)
+    first, others = (times[(times["series"] == against) == side] for side in (True, False))
     pairs = [
         log_ratios(first, part, match=("x",)).assign(series=name) for name, part in others.groupby("series")
     ]

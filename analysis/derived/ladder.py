@@ -13,7 +13,7 @@ from analysis.derived.counters import derived
 from analysis.records.studies import Study
 from analysis.records.tables import COLUMN_OF, LATER_AXES
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.pairs import process_medians, ratios_of
+from analysis.statistics.pairs import ratios_of, scaled
 from analysis.statistics.verdicts import COLUMNS, judge
 from analysis.support.wording import NO_INTERVAL, number, scene_in_words
 
@@ -35,7 +35,7 @@ def named(table: pd.DataFrame) -> pd.DataFrame:
 def per_disc_step(times: pd.DataFrame) -> pd.DataFrame:
     """Return the times with `nanoseconds`: of the steps, per disc and step."""
     work = times["particles"] * times["steps"] * times["substeps"]
-    return times.assign(nanoseconds=1e9 * times["steps_seconds"] / work)
+    return scaled(times, "nanoseconds", 1e9 / work.astype(float))
 
 
 def rungs(runs: pd.DataFrame, times: pd.DataFrame, counters: pd.DataFrame) -> pd.DataFrame:
@@ -116,11 +116,10 @@ def _name(runs: pd.DataFrame, rung: float) -> str:
 
 
 def _judged(times: pd.DataFrame, pairs_of: PairsOf, by: list[str]) -> pd.DataFrame:
-    processes = process_medians(times)
     # The rungs of all scenes, so that one that a scene lacks has no ratio there, not that of its neighbour.
-    rungs_of_all = sorted(processes["series_number"].unique())
+    rungs_of_all = sorted(times["series_number"].unique())
     pairs = []
-    for scene, group in processes.groupby("scene_name"):
+    for scene, group in times.groupby("scene_name"):
         for before, after in pairs_of(rungs_of_all):
             ratios = ratios_of(group, "series_number", before, after)
             pairs.append(ratios.assign(scene_name=scene, series_number=after))

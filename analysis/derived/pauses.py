@@ -3,7 +3,7 @@
 import pandas as pd
 
 from analysis.statistics.intervals import FEWEST, centre
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios
 
 KIND = "pauses"
 """The kind of the experiments whose series each have these labels."""
@@ -18,9 +18,8 @@ def ratios(times: pd.DataFrame) -> pd.DataFrame:
     (`ratio`, an Interval), the number of `blocks`, the median `seconds` without a pause, and whether it took
     turns (`sliced`).
     """
-    processes = process_medians(times)
     rows = []
-    for series, group in processes.sort_values("series_number").groupby("series", sort=False):
+    for series, group in times.sort_values("series_number").groupby("series", sort=False):
         reference = group[group["label"] == WITHOUT]
         seconds = float(reference["steps_seconds"].median())
         for label in STOPPED_BY:

@@ -10,7 +10,7 @@ import pandas as pd
 
 from analysis.records.studies import Study
 from analysis.statistics.intervals import FEWEST, centre
-from analysis.statistics.pairs import PAIR, process_medians, ratios_of
+from analysis.statistics.pairs import PAIR, ratios_of
 from analysis.support.values import Interval
 from analysis.support.wording import change, listed, percent
 
@@ -56,7 +56,7 @@ class Comparison:
 def comparisons(study: Study, experiment: str) -> list[Comparison]:
     """Return the comparisons of an experiment that have four blocks both ways, in the order of its file."""
     times = study.times_of(experiment)
-    processes = process_medians(times.assign(scene_name=times["scene_name"].fillna("")))
+    processes = times.assign(scene_name=times["scene_name"].fillna(""))
     spent = study.runs_of(experiment).set_index("file")["process_seconds"]
     processes = processes.assign(seconds=processes["file"].map(spent))
     found = []

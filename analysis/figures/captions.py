@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import pandas as pd
 
-from analysis.statistics.pairs import process_medians, without_partner
+from analysis.statistics.pairs import timed_runs, without_partner
 from analysis.statistics.trends import growth, linearity, minimum
 from analysis.support.values import Interval
 from analysis.support.wording import change, count, exact, interval, listed
@@ -25,15 +25,16 @@ def opening(times: pd.DataFrame, subject: str, dots: str = MEDIANS) -> str:
         fixed.append(count(int(times["threads"].iloc[0]), "thread"))
     nouns = {"file": "process", "block": "block", "session": "session"}
     processes, blocks, sessions = (count(times[of].nunique(), noun) for of, noun in nouns.items())
+    runs = count(timed_runs(times), "timed run")
     return (
         f"{subject[0].upper()}{subject[1:]} ({', '.join(fixed)}). {dots}: {processes} in {blocks} and "
-        f"{sessions}, {count(len(times), 'timed run')}, none left out.{_alone(times)}{_kind_of_time(times)}"
+        f"{sessions}, {runs}, none left out.{_alone(times)}{_kind_of_time(times)}"
     )
 
 
 def _alone(times: pd.DataFrame) -> str:
     """Say which processes are in no ratio; nothing if all of them are."""
-    lone = without_partner(times.drop_duplicates("file"))
+    lone = without_partner(times)
     if lone.empty:
         return ""
     return (
@@ -74,10 +75,9 @@ def _kind_of_time(times: pd.DataFrame) -> str:
 
 def growth_sentence(times: pd.DataFrame) -> str:
     """Say how the time changes over the whole range, with the fitted exponent."""
-    processes = process_medians(times)
-    if processes["x"].nunique() < 2:
+    if times["x"].nunique() < 2:
         return ""
-    trend = growth(processes)
+    trend = growth(times)
     verdict = {"grows": "The time grows", "falls": "The time falls", "flat": "The time stays the same"}
     said = verdict.get(trend.verdict, "No trend is settled")
     return (
@@ -88,7 +88,7 @@ def growth_sentence(times: pd.DataFrame) -> str:
 
 def linear_sentence(times: pd.DataFrame) -> str:
     """Say whether the time is a straight line, with the exponent over a fixed cost."""
-    line = linearity(process_medians(times))
+    line = linearity(times)
     if pd.isna(line.exponent.estimate):
         return growth_sentence(times)
     said = {"linear": "The time is linear", "not linear": "The time is not linear"}
@@ -98,10 +98,9 @@ def linear_sentence(times: pd.DataFrame) -> str:
 
 def minimum_sentence(times: pd.DataFrame) -> str:
     """Say where the time is least, and how far it falls before and rises after."""
-    processes = process_medians(times)
-    if processes["x"].nunique() < 3:
+    if times["x"].nunique() < 3:
         return growth_sentence(times)
-    least = minimum(processes)
+    least = minimum(times)
     where = f"{exact(least.lowest)}{_with('; break point', least.break_point)}"
     return (
         f" The time is least at {where}; against it {change(least.fall)} at the smallest and "

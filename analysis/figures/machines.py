@@ -6,7 +6,6 @@ from analysis.figures.captions import differing
 from analysis.figures.curves import dots
 from analysis.figures.style import BLUE, Data, Drawing, lighten, new_figure
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.pairs import process_medians
 from analysis.statistics.unpaired import judge_unpaired
 from analysis.statistics.verdicts import corrected
 from analysis.support.wording import count, exact
@@ -45,8 +44,7 @@ def _caption(times: pd.DataFrame, subject: str) -> str:
         f"{subject} (N = {exact(times['particles'].iloc[0])}, {on}): medians with 95 % "
         f"bootstrap intervals, {count(times['file'].nunique(), 'process')}.{_hosts(times)}"
     )
-    processes = process_medians(times)
-    groups = {name: group["steps_seconds"] for name, group in processes.groupby("told")}
+    groups = {name: group["steps_seconds"] for name, group in times.groupby("told")}
     if times["machine"].nunique() < 2:
         return f"{caption} Only one machine is present; more appear when their results are collected."
     # By name: were the fastest chosen, the verdicts against it would be biased.

@@ -8,7 +8,7 @@ from analysis.figures.curves import curve, curves, dots, faint_dots
 from analysis.figures.labels import from_zero, label_ends, plain_ticks
 from analysis.figures.style import BAND, BLUE, FAINT, INK, VERMILLION, Data, Drawing, new_figure
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.pairs import process_medians, ratios_of
+from analysis.statistics.pairs import ratios_of
 from analysis.statistics.verdicts import MARGIN, judge
 from analysis.support.wording import exact
 
@@ -25,7 +25,7 @@ def row(data: Data) -> Drawing | None:
     ends = curves(left, scaled, {series: COLOURS.get(series, INK) for series in scaled["series"]})
     left.set(xscale="log", xlabel="discs", ylabel="time per disc and step, ns")
     from_zero(left)
-    table = judge(ratios_of(process_medians(times), "order", "checkered", "row", match=("x",)), ["x"])
+    table = judge(ratios_of(times, "order", "checkered", "row", match=("x",)), ["x"])
     percent = table.assign(**{end: 100 * (table[end] - 1) for end in ("ratio", "low", "high")})
     right.axhspan(-100 * MARGIN, 100 * MARGIN, color=BAND, zorder=0, linewidth=0)
     right.axhline(0, color=FAINT, linewidth=0.7)

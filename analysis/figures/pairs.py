@@ -14,7 +14,7 @@ from analysis.figures.curves import bounded, difference, margin_band
 from analysis.figures.hover import Told, tell
 from analysis.figures.labels import label_ends, note, plain_ticks
 from analysis.figures.style import BLUE, INK, VERMILLION, Data, Drawing, lighten, new_figure
-from analysis.statistics.pairs import PAIR, log_ratios, process_medians
+from analysis.statistics.pairs import PAIR, log_ratios
 from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.wording import blocks, change, count, exact, number, percent
 from support.vocabulary import COUNTS
@@ -39,9 +39,8 @@ def pair_drawing(
     each takes.
     """
     times = data.study.times_of(sides.experiment)
-    processes = process_medians(times)
     candidate, reference = (
-        _one_a_block(processes[processes["series"] == name]) for name in (sides.candidate, sides.reference)
+        _one_a_block(times[times["series"] == name]) for name in (sides.candidate, sides.reference)
     )
     if candidate.empty or reference.empty:
         return None

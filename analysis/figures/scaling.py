@@ -14,7 +14,7 @@ from analysis.figures.style import BLUE, FAINT, VERMILLION, Data, Drawing, light
 from analysis.records.studies import Study
 from analysis.statistics import scalability
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios
 from analysis.statistics.scalability import ScalabilityLaw
 from analysis.statistics.verdicts import judge
 from analysis.support.wording import count, exact, interval, interval_of, number
@@ -35,7 +35,7 @@ def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
     shades = colours(times)
     parts = {str(series): part for series, part in times.groupby("series")}
     measured = {series: _series(panels, part, shades[series]) for series, part in parts.items()}
-    law = scalability.fit(process_medians(times), data.study.hardware_threads) if len(parts) == 1 else None
+    law = scalability.fit(times, data.study.hardware_threads) if len(parts) == 1 else None
     _published(panels, published)
     _ideal(panels, pd.concat(measured.values()), published)
     if law:
@@ -58,7 +58,7 @@ def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
 
 def _series(panels: Sequence[Axes], times: pd.DataFrame, colour: str) -> pd.DataFrame:
     """Draw one series and return its speed-ups."""
-    speed_ups, first = speed_up(process_medians(times)), float(times["x"].min())
+    speed_ups, first = speed_up(times), float(times["x"].min())
     summary = summarise(times, ["x"])
     scale = summary.loc[summary["x"] == first, "median"].iloc[0]
     relative = summary.assign(**{end: summary[end] / scale for end in ("median", "low", "high")})
@@ -76,7 +76,7 @@ def _entries(
     entries = []
     for series, times in parts.items():
         first = times["x"].min()
-        seconds = process_medians(times).query("x == @first")["steps_seconds"].median()
+        seconds = times.query("x == @first")["steps_seconds"].median()
         name = series if len(parts) > 1 else "measured"
         entries.append((f"● {name}, {number(seconds)} s on {count(int(first), 'thread')}", shades[series]))
     if published:
@@ -97,9 +97,8 @@ def oversubscription(data: Data) -> Drawing | None:
     axes.set_ylabel("time of the steps, s")
     from_zero(axes)
     limits(axes, data.study, named=True)
-    processes = process_medians(times)
-    reference = processes[processes["x"] == processes.loc[processes["x"] <= hardware, "x"].max()]
-    table = judge(log_ratios_by_x(reference, processes[processes["x"] > hardware]), ["x"])
+    reference = times[times["x"] == times.loc[times["x"] <= hardware, "x"].max()]
+    table = judge(log_ratios_by_x(reference, times[times["x"] > hardware]), ["x"])
     said = differing((f"{x / hardware:g} times as many:" for x in table["x"]), table)
     caption = opening(times, "Time with more threads than the machine has hardware threads")
     against = f" Against {count(hardware, 'thread')}, as many as there are: {said}." if said else ""

@@ -15,7 +15,7 @@ from analysis.figures.hover import Told, tell
 from analysis.figures.labels import from_zero, key, label_ends, logarithmic_ticks, plain_ticks
 from analysis.figures.style import BLUE, FAINT, GREEN, Data, Drawing, lighten, new_figure
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.pairs import log_ratios, process_medians, ratios_of
+from analysis.statistics.pairs import log_ratios, ratios_of
 from analysis.statistics.verdicts import error_of_picked, judge_one
 from analysis.support.wording import exact, interval_of, number
 
@@ -154,10 +154,9 @@ def _published_moved(
 
 def _sentences(times: pd.DataFrame) -> str:
     """Say of each series how the time changes, and by how much each is faster than the published one."""
-    processes = process_medians(times)
-    first = processes[processes["variant"] == PUBLISHED]
+    first = times[times["variant"] == PUBLISHED]
     said = []
-    for series, part in processes.groupby("series"):
+    for series, part in times.groupby("series"):
         if len(first) and part["variant"].iloc[0] == PUBLISHED:
             said.append(f" {series}:{minimum_sentence(times[times['series'] == series])}")
             continue

@@ -1,36 +1,30 @@
-"""From records of promised errors to a flat table."""
+"""From records of promised errors to the rows of a flat table."""
 
+import math
+from collections.abc import Iterable
 from typing import Any
 
-import numpy as np
-import pandas as pd
-
-from analysis.records.tables import Named, place
+from analysis.records.tables import PLACE, Record, Row, place
 
 NUMBERS = ["error_below", "promised", "delivered", "seconds", "trial_seconds", "methods", "ratio"]
-COLUMNS = [
-    "file", "machine", "scale", "experiment", "scene_name", "session", "particles", "threads", "measure",
-    "kept", "method", "cheapest", *NUMBERS,
-]  # fmt: skip
+COLUMNS = [*PLACE, "particles", "threads", "measure", "kept", "method", "cheapest", *NUMBERS]
 
 
-def table(records: Named) -> pd.DataFrame:
-    """One row a bound that an error was to stay below: where it stands, `measure`, `error_below`, what was
-    `promised` and `delivered`, NaN where no method is known to reach the bound, `kept`, `method` with its
+def promises(name: str, record: Record) -> Iterable[Row]:
+    """Give one row a bound that an error was to stay below: where it stands, `measure`, `error_below`, what
+    was `promised` and `delivered`, NaN where no method is known to reach the bound, `kept`, `method` with its
     `seconds`, the `cheapest` of all `methods` that keep the bound, and `ratio`, how many times as much the
     chosen one costs.
     """
-    rows = [
+    return (
         {
             **place(name, record),
             "particles": record["scene"]["particles"],
             "threads": record["axes"]["threads"],
             **_row(row),
         }
-        for name, record in records
         for row in record["promises"]
-    ]
-    return pd.DataFrame(rows, columns=COLUMNS).astype(dict.fromkeys(NUMBERS, float))
+    )
 
 
 def _row(row: dict[str, Any]) -> dict[str, object]:
@@ -38,7 +32,7 @@ def _row(row: dict[str, Any]) -> dict[str, object]:
     if row["chosen"] is None:
         return told
     chosen, cheapest = row["chosen"], row["cheapest"]
-    delivered = np.nan if chosen["error"] is None else chosen["error"]
+    delivered = math.nan if chosen["error"] is None else chosen["error"]
     return told | {
         "promised": row["promised"],
         "delivered": delivered,

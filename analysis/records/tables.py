@@ -1,20 +1,21 @@
-"""From validated records to flat tables; every table carries the same columns of context (see `context`)."""
+"""From a validated record to the rows of flat tables: what each table is made of, and where a record stands.
+
+Every table of what was measured carries the same columns of context (see `context`).
+"""
 
 import math
 import re
 import shlex
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from analysis.statistics.returning import excess
+from analysis.support.values import Floats
 
 Record = dict[str, Any]
-Named = list[tuple[str, Record]]
-Placed = list[tuple[dict[str, Any], Record]]
-"""Records with their context."""
+Row = dict[str, Any]
 
 TAGS = [
     "experiment", "series", "x_name", "x", "block", "position", "session", "scale", "site", "point",
@@ -45,14 +46,8 @@ ERRORS = [
     "penetration_mean", "time_to_tenth_radius", "collision_rate", "collision_rate_reference", "pressure",
     "pressure_reference", "speed_distance",
 ]  # fmt: skip
-LIMITS = [
-    "file", "machine", "compiler", "limit", "threads", "level", "working_set_bytes", "lanes", "best",
-    "median", "repetitions",
-]  # fmt: skip
-OUTSIDE = [
-    "file", "machine", "scale", "experiment", "scene_name", "scene_sha256", "block", "session", "substeps",
-    "engine", "seconds", "energy_drift",
-]  # fmt: skip
+CHECKS = ["has_errors", "check_verdict", "check_scope", "check_reason", "repetitions", "process_seconds"]
+PLACE = ["file", "machine", "experiment", "scale", "scene_name", "session"]
 NO_SCENE: dict[str, Any] = {"name": "", "sha256": "", **dict.fromkeys(SCENE)}
 """Of a program that is about something else than discs."""
 _OLD_REPLICATE = re.compile(r"(?:(.*) )?replicate (\d+)")
@@ -62,9 +57,30 @@ CONTEXT = [
     "warm_ups", "in_turns", "time_from", "undisturbed", "command", "compiler_family", "node", "machine",
     "revision",
 ]  # fmt: skip
+OF_PARTS = {
+    "runs": [*WORK, *ERRORS, *CHECKS],
+    "times": ["lost_by_turns"],
+    "trajectory": ["time", "rms_distance"],
+    "phases": ["phase", "wall_seconds", "serial_seconds"],
+    "threads": ["phase", "thread", "busy_seconds", "waiting_seconds"],
+    "counters": ["name", "thread", "value", "source", "reason", "remedy"],
+}
+"""What each table has beside the context, a row a part of a record, made by the function of its name."""
+ALONE = {
+    "limits": ["file", "machine", "compiler", "limit", "threads", "level", "working_set_bytes", "lanes",
+               "best", "median", "repetitions"],
+    "outside": ["file", "machine", "scale", "experiment", "scene_name", "scene_sha256", "block", "session",
+                "substeps", "engine", "seconds", "energy_drift"],
+    "failures": ["file", *TAGS, "command", "exit_code", "reason", "recorded_at", "owner", "program_sha256"],
+}  # fmt: skip
+"""The tables of records of other kinds, each made by the function of its name."""
+FLOATS = {
+    "runs": [*ERRORS, "pair_attempts"], "trajectory": ["rms_distance"], "outside": ["energy_drift"],
+}  # fmt: skip
+"""Columns that are numbers, NaN where nothing is known, even where that is everywhere."""
 
 
-def context(name: str, record: Record) -> dict[str, Any]:
+def context(name: str, record: Record) -> Row:
     """Return where a record stands: its tags, axes, scene and origin, one column each.
 
     `machine` is what may be compared as one machine: the host with its CPU model or, under Slurm, the
@@ -106,7 +122,7 @@ def context(name: str, record: Record) -> dict[str, Any]:
     }
 
 
-def place(name: str, record: Record) -> dict[str, Any]:
+def place(name: str, record: Record) -> Row:
     """Return where a record stands that is of no variant or program: a few columns of `context`."""
     tags = record["tags"]
     return {
@@ -146,66 +162,44 @@ def _compiler_family(compiler: str) -> str:
     return next(iter(compiler.split()), "unknown")
 
 
-def runs(records: Placed) -> pd.DataFrame:
-    """One row a record: context, work totals over the S steps, the check's verdict, and the error measures,
-    NaN for those that were not asked for or not possible; `has_errors` tells who was asked.
+def runs(record: Record) -> Iterable[Row]:
+    """Give one row: work totals over the S steps, the check's verdict, and the error measures, NaN for those
+    that were not asked for or not possible; `has_errors` tells who was asked.
     """
-    rows = [
-        {
-            **context,
-            **{column: record.get("work", {}).get(column) for column in WORK},
-            **{column: (record.get("errors") or {}).get(column) for column in ERRORS},
-            "has_errors": "trajectory" in (record.get("errors") or {}),
-            "check_verdict": record["check"]["verdict"],
-            "check_scope": record["check"]["scope"],
-            "check_reason": record["check"]["reason"],
-            "repetitions": len(record["repetitions"]),
-            "process_seconds": record["process_seconds"],
-        }
-        for context, record in records
-    ]
-    checks = ["has_errors", "check_verdict", "check_scope", "check_reason", "repetitions", "process_seconds"]
-    table = pd.DataFrame(rows, columns=[*CONTEXT, *WORK, *ERRORS, *checks])
-    return table.astype(dict.fromkeys([*ERRORS, "pair_attempts"], float))
+    errors, check = record.get("errors") or {}, record["check"]
+    yield {
+        **{column: record.get("work", {}).get(column) for column in WORK},
+        **{column: errors.get(column) for column in ERRORS},
+        "has_errors": "trajectory" in errors,
+        "check_verdict": check["verdict"],
+        "check_scope": check["scope"],
+        "check_reason": check["reason"],
+        "repetitions": len(record["repetitions"]),
+        "process_seconds": record["process_seconds"],
+    }
 
 
-def _table(records: Placed, parts: Callable[[Record], Iterable[Record]], *columns: str) -> pd.DataFrame:
-    """One row a part of a record: context, and these columns of the part."""
-    rows = [{**context, **part} for context, record in records for part in parts(record)]
-    return pd.DataFrame(rows, columns=[*CONTEXT, *columns])
-
-
-def trajectory(records: Placed) -> pd.DataFrame:
-    """One row a time at which a run was compared with the exact reference: context, `time`, `rms_distance`
-    (in units of the radius).
+def trajectory(record: Record) -> Iterable[Row]:
+    """Give one row a time at which a run was compared with the exact reference: `time`, `rms_distance` (in
+    units of the radius).
     """
-    table = _table(
-        records, lambda record: (record.get("errors") or {}).get("trajectory") or [], "time", "rms_distance"
-    )
-    return table.astype({"rms_distance": float})
+    return (record.get("errors") or {}).get("trajectory") or []
 
 
-def times(records: Placed) -> pd.DataFrame:
-    """One row a repetition of every timed run: context, `repetition`, `steps_seconds`, and `lost_by_turns`,
-    the share of the process's time that coming back to cold caches took, NaN where not known. Of a whole
-    process the seconds are its own, as seen from outside or as it says itself.
+def times(record: Record) -> Iterable[Row]:
+    """Give one row for a process that was timed: `lost_by_turns`, the share of its time that coming back to
+    cold caches took, NaN where not known.
     """
+    if len(seconds_of_runs(record)):
+        yield {"lost_by_turns": _lost_by_turns(record)}
 
-    timed = [
-        (context, record)
-        for context, record in records
-        if record["kind"] in ("bench", "process") and record["repetitions"]
-    ]
-    counts = [len(record["repetitions"]) for _, record in timed]
-    # A context is made once a record and repeated as rows: there may be hundreds of repetitions in each.
-    contexts = pd.DataFrame([context for context, _ in timed], columns=CONTEXT)
-    table = contexts.take(np.repeat(np.arange(len(timed)), counts)).reset_index(drop=True)
-    first = np.cumsum([0, *counts])[:-1]
-    lost = np.full(len(table), np.nan)
-    lost[first] = [_lost_by_turns(record) for _, record in timed]
-    seconds = [float(one["steps_seconds"]) for _, record in timed for one in record["repetitions"]]
-    numbers = np.arange(len(table)) - np.repeat(first, counts)
-    return table.assign(repetition=numbers, steps_seconds=np.array(seconds, dtype=float), lost_by_turns=lost)
+
+def seconds_of_runs(record: Record) -> Floats:
+    """Return the seconds of the steps of each timed run of a process in their order. Of a whole process they
+    are its own, as seen from outside or as it says itself.
+    """
+    is_timed = record["kind"] in ("bench", "process")
+    return np.array([one["steps_seconds"] for one in record["repetitions"]] if is_timed else [], dtype=float)
 
 
 def _lost_by_turns(record: Record) -> float:
@@ -215,36 +209,35 @@ def _lost_by_turns(record: Record) -> float:
         return math.nan
     steps, rounds = record["scene"]["steps"], turns["rounds"]
     found = excess(turns["seconds"], turns["returning_seconds"], steps, rounds)
-    return found.share if found else math.nan
+    return float(found.share) if found else math.nan
 
 
-def phases(records: Placed) -> pd.DataFrame:
-    """One row a phase of every profiled run: context, `phase`, `wall_seconds`, `serial_seconds`."""
-    return _table(records, _profiled("phases"), "phase", "wall_seconds", "serial_seconds")
+def phases(record: Record) -> Iterable[Row]:
+    """Give one row a phase of a profiled run: `phase`, `wall_seconds`, `serial_seconds`."""
+    return _profiled(record, "phases")
 
 
-def threads(records: Placed) -> pd.DataFrame:
-    """One row a phase and thread of every profiled run: context, seconds busy and waiting."""
-    return _table(records, _profiled("threads"), "phase", "thread", "busy_seconds", "waiting_seconds")
+def threads(record: Record) -> Iterable[Row]:
+    """Give one row a phase and thread of a profiled run: seconds busy and waiting."""
+    return _profiled(record, "threads")
 
 
-def counters(records: Placed) -> pd.DataFrame:
-    """One row a counter and thread of every profiled run: context, `name`, `value` or `reason`, `remedy`."""
-    columns = ("name", "thread", "value", "source", "reason", "remedy")
-    return _table(records, _profiled("counters"), *columns)
+def counters(record: Record) -> Iterable[Row]:
+    """Give one row a counter and thread of a profiled run: `name`, `value` or `reason`, `remedy`."""
+    return _profiled(record, "counters")
 
 
-def _profiled(part: str) -> Callable[[Record], Iterable[Record]]:
-    return lambda record: record.get("profile", {}).get(part, []) if record["kind"] == "profile" else []
+def _profiled(record: Record, part: str) -> Iterable[Row]:
+    return record.get("profile", {}).get(part, []) if record["kind"] == "profile" else []
 
 
-def limits(records: Named) -> pd.DataFrame:
-    """One row a rate that a machine reached at most: `file`, `machine`, `compiler`, `limit` (copy or
+def limits(name: str, record: Record) -> Iterable[Row]:
+    """Give one row a rate that a machine reached at most: `file`, `machine`, `compiler`, `limit` (copy or
     arithmetic), `threads`, `level` and `working_set_bytes` of a copy, `lanes` of arithmetic, `best` and
     `median` per second, `repetitions`.
     """
     rates = {"copy": "bytes_per_second", "arithmetic": "operations_per_second"}
-    rows = [
+    return (
         {
             "file": name,
             "machine": machine_of(record["provenance"]),
@@ -253,18 +246,17 @@ def limits(records: Named) -> pd.DataFrame:
             **row,
             **row[rate],
         }
-        for name, record in records
         for limit, rate in rates.items()
         for row in record["limits"][limit]
-    ]
-    return pd.DataFrame(rows, columns=LIMITS)
+    )
 
 
-def outside(records: Named) -> pd.DataFrame:
-    """One row a run of a general engine beside the variants: where it stands, `engine` with its version,
+def outside(name: str, record: Record) -> Iterable[Row]:
+    """Give one row a run of a general engine beside the variants: where it stands, `engine` with its version,
     `seconds` for a unit of simulated time, and the size of its relative `energy_drift`.
     """
-    rows = [
+    drift = record["errors"]["energy_drift"]
+    return (
         {
             **place(name, record),
             "block": record["tags"].get("block"),
@@ -272,31 +264,24 @@ def outside(records: Named) -> pd.DataFrame:
             "substeps": record["axes"]["substeps"],
             "engine": f"{record['engine']['name']} {record['engine']['version']}",
             "seconds": run["steps_seconds"] / record["scene"]["steps"],
-            "energy_drift": record["errors"]["energy_drift"],
+            "energy_drift": None if drift is None else abs(float(drift)),
         }
-        for name, record in records
         for run in record["repetitions"]
-    ]
-    table = pd.DataFrame(rows, columns=OUTSIDE)
-    return table.assign(energy_drift=table["energy_drift"].astype(float).abs())
+    )
 
 
-def failures(records: Named) -> pd.DataFrame:
-    """One row a failed point: its tags, `command` (one line), `exit_code`, `reason`, `recorded_at`; `owner`,
-    the partition or host that it failed on, and `program_sha256`, where the record tells them.
+def failures(name: str, record: Record) -> Iterable[Row]:
+    """Give one row of a failed point: its tags, `command` (one line), `exit_code`, `reason`, `recorded_at`;
+    `owner`, the partition or host that it failed on, and `program_sha256`, where the record tells them.
     """
-    rows = [
-        {
-            "file": name,
-            **{column: record["tags"].get(column) for column in TAGS},
-            "command": " ".join(record["command"]),
-            "exit_code": record["exit_code"],
-            "reason": record["reason"],
-            "recorded_at": record["recorded_at"],
-            "owner": record["tags"].get("partition") or record["tags"].get("host"),
-            "program_sha256": record["tags"].get("program_sha256"),
-        }
-        for name, record in records
-    ]
-    columns = ["command", "exit_code", "reason", "recorded_at", "owner", "program_sha256"]
-    return pd.DataFrame(rows, columns=["file", *TAGS, *columns])
+    tags = record["tags"]
+    yield {
+        "file": name,
+        **{column: tags.get(column) for column in TAGS},
+        "command": " ".join(record["command"]),
+        "exit_code": record["exit_code"],
+        "reason": record["reason"],
+        "recorded_at": record["recorded_at"],
+        "owner": tags.get("partition") or tags.get("host"),
+        "program_sha256": tags.get("program_sha256"),
+    }

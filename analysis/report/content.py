@@ -22,7 +22,7 @@ from analysis.report.parts import contents, parts
 from analysis.statistics.levels import in_order, levels, shifting
 from analysis.statistics.looks import ERROR
 from analysis.statistics.noise import needed_said, process_noise, warning
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios
 from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.support.wording import blocks, change, count, number, share
 from support.vocabulary import CONTROL
@@ -120,7 +120,7 @@ def _settled(table: pd.DataFrame, drawn: Sequence[Drawn]) -> set[str]:
 
 def control_sentence(study: Study) -> str:
     """Say what came of the control, the same variant measured under two labels."""
-    processes = process_medians(study.times_of(CONTROL))
+    processes = study.times_of(CONTROL)
     sides = [part for _, part in processes.groupby("label")]
     if len(sides) != 2:
         return "The control (one variant, two labels) was not measured: nothing vouches for the rest."

@@ -10,7 +10,7 @@ from analysis.figures import titles
 from analysis.figures.captions import by_series
 from analysis.records.reading import Records
 from analysis.records.studies import Study
-from analysis.statistics.pairs import without_partner
+from analysis.statistics.pairs import runs_of, timed_runs, without_partner
 from analysis.support.wording import count, exact, number, share
 from support.vocabulary import CONTROL, COUNTS
 
@@ -40,7 +40,7 @@ def machine(study: Study) -> list[tuple[str, str]]:
         ("Programs (SHA-256)", _values(runs["binary_sha256"].str[:16])),
         ("Measured", f"{runs['recorded_at'].min()} to {runs['recorded_at'].max()} (UTC)"),
         ("Sessions", exact(runs["session"].nunique())),
-        ("Records", f"{exact(len(runs))} processes, {exact(len(study.times))} timed runs"),
+        ("Records", f"{exact(len(runs))} processes, {exact(timed_runs(study.times))} timed runs"),
         ("In the clock", in_the_clock(study)),
     ]
 
@@ -52,7 +52,8 @@ def in_the_clock(study: Study) -> str:
     compared = study.times[study.times["question_kind"] != COUNTS]
     at = pd.to_datetime(study.runs["recorded_at"]).groupby(study.runs["session"])
     whole = float((at.max() - at.min()).dt.total_seconds().sum())
-    timed, processes = float(compared["steps_seconds"].sum()), float(study.runs["process_seconds"].sum())
+    timed = float(compared[runs_of("steps_seconds")].map(sum).sum())
+    processes = float(study.runs["process_seconds"].sum())
     if whole < timed:
         return f"{number(timed)} s of {number(processes)} s of the processes"
     return f"{number(timed)} s of {number(whole)} s ({share(timed / whole)}); processes {number(processes)} s"

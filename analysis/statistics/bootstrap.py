@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
+from analysis.statistics.pairs import runs_of
 from analysis.support.values import Floats
 
 REPLICATES = 2000
@@ -16,7 +17,7 @@ def summarise(
     times: pd.DataFrame, by: list[str], value: str = "steps_seconds", level: float = 0.95
 ) -> pd.DataFrame:
     """Return per group of `by`: `median`, `low`, `high` of `value`, and how many sessions, processes,
-    samples.
+    samples. Takes a row a process.
 
     The median is that of the processes' medians. The interval comes from a hierarchical bootstrap (Davison
     and Hinkley, "Bootstrap Methods and their Application", 1997, section 3.8): sessions are drawn with
@@ -31,7 +32,8 @@ def summarise(
         medians = _row_medians(padded.reshape(-1, padded.shape[2]))
         median, processes = float(_row_medians(medians[np.newaxis])[0]), group["file"].nunique()
         ends = _widened(padded, median, processes, level)
-        rows.append((*key, median, *ends, padded.shape[0], processes, len(group)))
+        samples = int(np.isfinite(padded).sum())
+        rows.append((*key, median, *ends, padded.shape[0], processes, samples))
     return pd.DataFrame(rows, columns=[*by, "median", "low", "high", "sessions", "processes", "samples"])
 
 
@@ -50,11 +52,12 @@ def _widened(padded: Floats, median: float, processes: int, level: float) -> tup
 
 def _padded(group: pd.DataFrame, value: str) -> Floats:
     """Arrange the samples as sessions x processes x repetitions, NaN where there are fewer than the most."""
+    runs = [np.atleast_1d(one) for one in group.get(runs_of(value), group[value])]
     session = pd.factorize(group["session"])[0]
-    process = group.groupby("session")["file"].transform(lambda files: pd.factorize(files)[0]).to_numpy()
-    repetition = group.groupby(["session", "file"]).cumcount().to_numpy()
-    padded = np.full((session.max() + 1, process.max() + 1, repetition.max() + 1), np.nan)
-    padded[session, process, repetition] = group[value].to_numpy(dtype=float)
+    process = group.groupby("session").cumcount().to_numpy()
+    padded = np.full((session.max() + 1, process.max() + 1, max(map(len, runs))), np.nan)
+    for place, one in zip(zip(session, process, strict=True), runs, strict=True):
+        padded[place][: len(one)] = one
     return padded
 
 

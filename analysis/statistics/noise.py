@@ -10,7 +10,7 @@ from analysis.statistics.dependence import widening_of_independent
 from analysis.statistics.forecast import MOST_BLOCKS
 from analysis.statistics.looks import ERROR, looks_up_to
 from analysis.statistics.looks import share as share_of_error
-from analysis.statistics.pairs import PAIR, process_medians
+from analysis.statistics.pairs import PAIR
 from analysis.statistics.verdicts import MARGIN
 from analysis.support.values import Floats
 from analysis.support.wording import count, listed, share
@@ -35,9 +35,8 @@ def process_noise(times: pd.DataFrame) -> pd.DataFrame:
     configuration have no estimate and are left out.
     """
     rows = []
-    processes = process_medians(times)
-    processes = processes.assign(**{key: processes[key].fillna("") for key in ("label", "scene_name")})
-    for experiment, group in processes.groupby("experiment"):
+    times = times.assign(**{key: times[key].fillna("") for key in ("label", "scene_name")})
+    for experiment, group in times.groupby("experiment"):
         keys = ["series", "x", "label", "replicate", "scene_name"]
         table = group.pivot_table(index=PAIR, columns=keys, values="steps_seconds", aggfunc="median")
         # What has no partner tells nothing of the noise, and a configuration that soon failed would leave no

@@ -10,16 +10,17 @@ PAIR = ["node", "block", "session"]
 """What two records of a pair have in common: nothing else was measured together."""
 
 
-def process_medians(times: pd.DataFrame, value: str = "steps_seconds") -> pd.DataFrame:
-    """Return one row a process (a record): its columns of context, the median of its repetitions as `value`,
-    and all of them in their order beside it.
-
-    A process is one sample of whatever changes from start to start (placement in memory, the machine's mood);
-    its repetitions are not independent of each other.
+def scaled(times: pd.DataFrame, value: str, factor: pd.Series) -> pd.DataFrame:
+    """Return the times with `value` beside `steps_seconds`: that times a factor for each process, of the
+    process and of each of its runs.
     """
-    runs = times.groupby("file", sort=False)[value].agg(tuple)
-    first = times.drop_duplicates("file").set_index("file")
-    return first.assign(**{value: runs.map(np.median), _runs_of(value): runs}).reset_index()
+    of_runs = times[runs_of("steps_seconds")] * factor
+    return times.assign(**{value: times["steps_seconds"] * factor, runs_of(value): of_runs})
+
+
+def timed_runs(times: pd.DataFrame) -> int:
+    """Return how many runs were timed."""
+    return int(times[runs_of("steps_seconds")].map(len).sum())
 
 
 def join_replicates(times: pd.DataFrame) -> pd.DataFrame:
@@ -28,12 +29,11 @@ def join_replicates(times: pd.DataFrame) -> pd.DataFrame:
     without replicates are returned as they are.
     """
     keys = ["series", "x", *PAIR]
-    processes = process_medians(times)
-    if not processes.duplicated(keys).any():
+    if not times.duplicated(keys).any():
         return times
-    logs = np.log(processes["steps_seconds"]).groupby([processes[key] for key in keys]).transform("mean")
-    joined = processes.assign(steps_seconds=np.exp(logs)).drop_duplicates(keys)
-    return joined.drop(columns=_runs_of("steps_seconds"))
+    logs = np.log(times["steps_seconds"]).groupby([times[key] for key in keys]).transform("mean")
+    joined = times.assign(steps_seconds=np.exp(logs)).drop_duplicates(keys)
+    return joined.drop(columns=runs_of("steps_seconds"), errors="ignore")
 
 
 def log_ratios(
@@ -89,7 +89,7 @@ def _per_block(processes: pd.DataFrame, keys: list[str], value: str) -> pd.DataF
     """Return what each block has beside its `keys`: `logs` of its runs, the time `at` which it was recorded,
     and the share of its time `lost` by turns.
     """
-    runs = processes.get(_runs_of(value), processes[value])
+    runs = processes.get(runs_of(value), processes[value])
     logs = [np.log(np.atleast_1d(np.asarray(one, dtype=float))) for one in runs]
     at = processes.get("recorded_at", processes["block"])
     lost = processes.get("lost_by_turns", np.nan)
@@ -113,6 +113,8 @@ def _block_ratio(reference: Floats, candidate: Floats) -> float:
     return float(np.log(np.median(np.exp(candidate)) / np.median(np.exp(reference))))
 
 
-def _runs_of(value: str) -> str:
-    """Return the name of the column that holds the value of each of a process's runs."""
+def runs_of(value: str) -> str:
+    """Return the name of the column that holds the value of each of a process's runs in their order; the
+    column `value` has their median.
+    """
     return f"{value}_of_runs"

@@ -6,7 +6,7 @@ from string import ascii_lowercase
 
 import pandas as pd
 
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios
 from analysis.statistics.verdicts import MARGIN, judge
 
 APART = ("faster", "slower")
@@ -20,10 +20,9 @@ def ranking(times: pd.DataFrame, margin: float = MARGIN) -> pd.DataFrame:
     without a letter of `bracket` in common differ by more than the margin; what has one in common cannot be
     told apart, or differs by less (all pairs displayed as lines: Piepho, J. Comput. Graph. Stat. 13, 2004).
     """
-    processes = process_medians(times)
-    seconds = processes.groupby("series")["steps_seconds"].median().sort_values(kind="stable")
+    seconds = times.groupby("series")["steps_seconds"].median().sort_values(kind="stable")
     names = [str(name) for name in seconds.index]
-    apart = _apart(processes, names, margin)
+    apart = _apart(times, names, margin)
     letters = brackets(names, apart)
     rows = []
     for name in names:

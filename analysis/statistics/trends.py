@@ -1,6 +1,6 @@
 """Trends over a swept parameter: the growth exponent, linearity, and the point where a curve turns from
-falling to rising. Each takes one row a process (see `pairs.process_medians`) of a single series with its
-column `x`.
+falling to rising. Each takes one row a process (as `records.tables.times` has them) of a single series with
+its column `x`.
 """
 
 from dataclasses import dataclass

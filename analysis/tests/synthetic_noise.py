@@ -42,7 +42,21 @@ QUIET = Noise(process=0.002, repetition=0.002, burst_rate=0, drift=0.01)
 def times_table(
     truth: dict[str, float], blocks: int, repetitions: int, noise: Noise, seed: int
 ) -> pd.DataFrame:
-    """Return the columns of `tables.times` that the statistics use, one series a key of `truth`."""
+    """Return the columns of the table `times` that the statistics use, one series a key of `truth`."""
+    return of_processes(samples_table(truth, blocks, repetitions, noise, seed))
+
+
+def of_processes(samples: pd.DataFrame) -> pd.DataFrame:
+    """Return a row a process of a table of repetitions, as the table `times` has them."""
+    runs = samples.groupby("file", sort=False)["steps_seconds"].agg(np.array)
+    first = samples.drop_duplicates("file").set_index("file")
+    return first.assign(steps_seconds=runs.map(np.median), steps_seconds_of_runs=runs).reset_index()
+
+
+def samples_table(
+    truth: dict[str, float], blocks: int, repetitions: int, noise: Noise, seed: int
+) -> pd.DataFrame:
+    """Return the same, a row a repetition."""
     generator = np.random.default_rng(seed)
     samples = noise.seconds(generator, np.array(list(truth.values())), blocks, repetitions)
     series, block, repetition = (axis.ravel() for axis in np.indices(samples.shape))

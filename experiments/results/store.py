@@ -76,11 +76,11 @@ class Store:
 
     def record_path(self, point: Point, block: int) -> Path:
         """Where the record of one process belongs."""
-        return self.root / "records" / point.experiment / f"{point.id}-b{block}.json"
+        return place_of(self.root / "records" / point.experiment, f"{point.id}-b{block}.json")
 
     def failure_path(self, point: Point, block: int) -> Path:
         """Where the failure of one process belongs."""
-        return self.root / "failures" / point.experiment / f"{point.id}-b{block}.json"
+        return place_of(self.root / "failures" / point.experiment, f"{point.id}-b{block}.json")
 
     def find(self, experiment: Experiment) -> Found:
         """What is there of an experiment; reads only."""
@@ -111,19 +111,19 @@ class Store:
         found = Found()
         for point in experiment.points:
             key = (point.id, block)
-            summary = summary_of(read_json(self.record_path(point, block)))
+            summary = _summary_at(self.record_path(point, block))
             if unusable(summary, point, block) is None:
                 assert summary is not None
                 found.take(key, summary)
                 continue
-            failure = summary_of(read_json(self.failure_path(point, block)))
+            failure = _summary_at(self.failure_path(point, block))
             if failure is not None and failure.kind == "failure":
                 found.failures[key] = failure.reason
         return found
 
     def has(self, point: Point, block: int) -> bool:
         """Whether one process has been measured by now, perhaps by someone else."""
-        return unusable(summary_of(read_json(self.record_path(point, block))), point, block) is None
+        return unusable(_summary_at(self.record_path(point, block)), point, block) is None
 
     def settle(self, experiment: Experiment) -> Found:
         """Move what is stale out of the way and bring back what fits the plan again; say what is there then.
@@ -133,7 +133,7 @@ class Store:
         for path in self.find(experiment).stale:
             self.retire(path)
         points = {point.id: point for point in experiment.points}
-        for path in (self.root / "stale" / "records" / experiment.name).glob("*.json"):
+        for path in (self.root / "stale" / "records" / experiment.name).rglob("*.json"):
             key = _key(path)
             point = points.get(key[0]) if key else None
             if key is None or point is None:
@@ -165,9 +165,11 @@ class Store:
 
     def keep_record(self, point: Point, block: int, scratch: Path) -> None:
         """Take in a finished record; an earlier failure of the same process is history then."""
-        move(scratch, self.record_path(point, block))
-        if self.failure_path(point, block).exists():
-            self.retire(self.failure_path(point, block))
+        path, failure = self.record_path(point, block), self.failure_path(point, block)
+        move(scratch, path)
+        for answered in (failure, _before_levels(failure), _before_levels(path)):
+            if answered.exists():
+                self.retire(answered)
 
     def keep_failure(self, point: Point, block: int, done: Completed, tags: Tags) -> None:
         """Record that a process failed, why, where and with which program."""
@@ -216,6 +218,24 @@ def measured_by_point(found: Iterable[Found]) -> dict[str, list[tuple[float, Seq
         for key, value in one.seconds.items():
             measured.setdefault(key[0], []).append((value, one.runs.get(key, ())))
     return measured
+
+
+def place_of(folder: Path, name: str) -> Path:
+    """Where a file of a folder for one experiment belongs: of a process below the first three letters of its
+    point's id, so that no folder holds a hundred thousand files.
+    """
+    return folder / name[:3] / name if _key(Path(name)) else folder / name
+
+
+def _before_levels(path: Path) -> Path:
+    """Where a file of a process was before its folder had levels: such folders are read as they are."""
+    return path.parent.parent / path.name
+
+
+def _summary_at(path: Path) -> Summary | None:
+    """What the file of a process holds, here or where it was before."""
+    found = summary_of(read_json(path))
+    return found if found is not None else summary_of(read_json(_before_levels(path)))
 
 
 def _key(path: Path) -> Key | None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from experiments.plan.point import Point, Tags
+from support.files import digest_of
 from support.record_schema import is_record
 
 
@@ -28,6 +29,11 @@ class Summary:
     """The seconds of each of its timed runs, in their order: what of the process was in the clock."""
     reason: str = ""
     """Of a failure."""
+    owner: str = ""
+    """The machine that it is of: the partition under Slurm, else the host, else the site."""
+    recorded_at: str = ""
+    digest: str = ""
+    """Of the content: how the file is written does not matter."""
 
 
 def summary_of(record: Any) -> Summary | None:  # noqa: ANN401 - read from a file
@@ -43,7 +49,18 @@ def summary_of(record: Any) -> Summary | None:  # noqa: ANN401 - read from a fil
         seconds=float(record.get("process_seconds", 0.0)),
         runs=_runs(record),
         reason=record.get("reason") or "",
+        owner=_owner(record),
+        recorded_at=record["recorded_at"],
+        digest=digest_of(record),
     )
+
+
+def _owner(record: Any) -> str:  # noqa: ANN401 - read from a file
+    """A failure tells it among its tags; an old one knows its site only."""
+    provenance, tags = record.get("provenance", {}), record["tags"]
+    slurm = provenance.get("slurm") or {}
+    host = provenance.get("host") or tags.get("host") or tags.get("site", "unknown")
+    return str(slurm.get("SLURM_JOB_PARTITION") or tags.get("partition") or host)
 
 
 def _runs(record: Any) -> Sequence[float]:  # noqa: ANN401 - read from a file
@@ -77,7 +94,7 @@ def packed(found: Summary | None) -> list[Any] | None:
         return None
     runs = b64encode(array("d", found.runs).tobytes()).decode("ascii")
     told = [found.kind, found.tags, found.program, found.verdict, found.has_trajectory]
-    return [*told, found.seconds, runs, found.reason]
+    return [*told, found.seconds, runs, found.reason, found.owner, found.recorded_at, found.digest]
 
 
 def unpacked(told: Any) -> Summary | None:  # noqa: ANN401 - read from a file
@@ -94,8 +111,9 @@ def unpacked(told: Any) -> Summary | None:  # noqa: ANN401 - read from a file
             *more,
         ]:
             match more:
-                case [float() | int() as seconds, str() as text, str() as reason]:
+                case [float() | int() as seconds, str() as text, str(), str(), str(), str()]:
                     runs = array("d")
                     runs.frombytes(b64decode(text, validate=True))
-                    return Summary(kind, tags, program, verdict, has_trajectory, float(seconds), runs, reason)
+                    first = (kind, tags, program, verdict, has_trajectory)
+                    return Summary(*first, float(seconds), runs, *more[2:])
     raise ValueError("is no summary of a record")

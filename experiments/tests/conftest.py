@@ -179,11 +179,11 @@ class Workplace:
 
     def records(self, experiment: str = "*") -> dict[str, dict[str, Any]]:
         """File name -> record."""
-        paths = self.results.glob(f"records/{experiment}/*.json")
+        paths = self.results.glob(f"records/{experiment}/**/*.json")
         return {path.name: json.loads(path.read_text(encoding="utf-8")) for path in paths}
 
     def failures(self) -> list[dict[str, Any]]:
-        return [json.loads(path.read_text()) for path in self.results.glob("failures/*/*.json")]
+        return [json.loads(path.read_text()) for path in self.results.glob("failures/*/*/*.json")]
 
     def start(self, verb: str = "run", *more: str) -> "subprocess.Popen[str]":
         """The command line, as a user starts it."""

@@ -157,7 +157,7 @@ def test_check_sees_a_variant_that_there_is_not_where_the_program_is_built(workp
 def test_two_runners_in_one_folder_are_refused(workplace: Workplace) -> None:
     workplace.behave(FAKE_SECONDS="0.3")
     first = workplace.start("run", "--no-figures")
-    wait_for(workplace.results, "records/*/*.json")
+    wait_for(workplace.results, "records/*/*/*.json")
     code, _, error = finish(workplace.start("run", "--no-figures"))
     assert code == 1
     assert re.fullmatch(
@@ -172,7 +172,7 @@ def test_two_runners_in_one_folder_are_refused(workplace: Workplace) -> None:
 def test_a_signal_stops_cleanly(workplace: Workplace, number: signal.Signals) -> None:
     workplace.behave(FAKE_SECONDS="0.3")
     process = workplace.start("run", "--no-figures")
-    wait_for(workplace.results, "records/*/*.json")
+    wait_for(workplace.results, "records/*/*/*.json")
     process.send_signal(number)
     code, _, error = finish(process)
     assert code == 128 + number
@@ -195,7 +195,7 @@ for line in sys.stdin:
         print('{"open": {}, "settled": [], "said": {}}', flush=True)
         continue
     with open('told', 'a') as file:
-        print(*sys.argv[1:], line.strip(), len(glob.glob('results/records/*/*.json')), file=file)
+        print(*sys.argv[1:], line.strip(), len(glob.glob('results/records/*/*/*.json')), file=file)
     if glob.glob('no_paper'):
         sys.exit('no paper')
     print('no ink for the PDF', file=sys.stderr)

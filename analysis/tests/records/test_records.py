@@ -15,12 +15,12 @@ def record(**tags: str | float) -> dict[str, Any]:
     return bench("steps", Point("checkered", 20, 1.0, "steps"), 0, [1.0, 1.1], Machine(), **tags)
 
 
-def test_one_row_a_repetition_a_record_a_phase_a_counter(tmp_path: Path) -> None:
+def test_one_row_a_process_a_record_a_phase_a_counter(tmp_path: Path) -> None:
     write(tmp_path, study(["neighbourhood", "phases"], blocks=3, repetitions=2))
     write(tmp_path, failures())
     records = load(tmp_path, warn=pytest.fail)
     assert len(records.runs) == 2 * 3 + 3 * 3
-    assert len(records.times) == 2 * 3 * 2
+    assert [len(runs) for runs in records.times["steps_seconds_of_runs"]] == 2 * 3 * [2]
     assert len(records.phases) == 3 * 3 * 4
     assert len(records.threads) == 3 * 3 * 4 * 2
     assert len(records.counters) == 3 * 3 * (2 + 2 * 6)
@@ -29,7 +29,7 @@ def test_one_row_a_repetition_a_record_a_phase_a_counter(tmp_path: Path) -> None
         "step 2: disc 4 left moving into the wall",
         "step 3: discs 1 and 2 are still colliding",
     ]
-    first = records.times.sort_values(["file", "repetition"]).iloc[0]
+    first = records.times.iloc[0]
     assert (first["experiment"], first["threads"], first["particles"]) == ("neighbourhood", 2, 100_000)
 
 

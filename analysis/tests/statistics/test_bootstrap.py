@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from analysis.statistics.bootstrap import _replicates, summarise
-from analysis.tests.synthetic_noise import Noise, times_table
+from analysis.tests.synthetic_noise import Noise, of_processes, samples_table, times_table
 
 
 def summary_of(table: pd.DataFrame) -> pd.Series:
@@ -15,7 +15,9 @@ def summary_of(table: pd.DataFrame) -> pd.Series:
 def test_the_median_is_that_of_the_processes_and_nothing_is_dropped() -> None:
     table = times_table({"a": 1.0}, 5, 3, Noise(), seed=4)
     row = summary_of(table)
-    assert row["median"] == pytest.approx(table.groupby("file")["steps_seconds"].median().median())
+    assert row["median"] == pytest.approx(
+        samples_table({"a": 1.0}, 5, 3, Noise(), seed=4).groupby("file")["steps_seconds"].median().median()
+    )
     assert (row["sessions"], row["processes"], row["samples"]) == (1, 5, 15)
     assert row["low"] <= row["median"] <= row["high"]
 
@@ -28,9 +30,10 @@ def test_repetitions_of_one_process_do_not_count_as_processes() -> None:
 
 
 def test_sessions_that_differ_widen_the_interval() -> None:
-    table = times_table({"a": 1.0}, 8, 3, Noise(burst_rate=0, drift=0), seed=3)
-    later = table["block"] >= 4
-    slower = table.assign(steps_seconds=table["steps_seconds"] * np.where(later, 1.3, 1.0))
+    table = samples_table({"a": 1.0}, 8, 3, Noise(burst_rate=0, drift=0), seed=3)
+    paces = np.where(table["block"] >= 4, 1.3, 1.0)
+    slower = of_processes(table.assign(steps_seconds=table["steps_seconds"] * paces))
+    later = slower["block"] >= 4
     one = summary_of(slower)
     two = summary_of(slower.assign(session=np.where(later, "second", "first")))
     assert two["high"] - two["low"] >= one["high"] - one["low"]
@@ -57,10 +60,10 @@ def test_the_same_data_give_the_same_interval() -> None:
 
 
 def test_unequal_repetitions_and_a_single_process() -> None:
-    table = times_table({"a": 1.0}, 3, 4, Noise(), seed=5)
+    table = samples_table({"a": 1.0}, 3, 4, Noise(), seed=5)
     ragged = table[~((table["block"] == 1) & (table["repetition"] > 0))]
-    assert summary_of(ragged)["samples"] == 9
-    single = summary_of(table[(table["block"] == 0) & (table["repetition"] == 0)])
+    assert summary_of(of_processes(ragged))["samples"] == 9
+    single = summary_of(of_processes(table[(table["block"] == 0) & (table["repetition"] == 0)]))
     assert single["processes"] == 1
     assert np.isnan([single["low"], single["high"]]).all()
 
@@ -91,7 +94,7 @@ def test_very_many_repetitions_cost_no_more_memory_than_few() -> None:
         {"series": "a", "file": np.arange(rows) // 301, "session": np.arange(rows) // 3010}
     ).assign(steps_seconds=np.random.default_rng(2).uniform(1, 2, rows))
     tracemalloc.start()
-    row = summary_of(table)
+    row = summary_of(of_processes(table))
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert (row["sessions"], row["processes"], row["samples"]) == (24, 240, rows)

@@ -10,8 +10,9 @@ from analysis.statistics.bootstrap import FEWEST as FEWEST_PROCESSES
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.looks import ERROR
-from analysis.statistics.pairs import log_ratios, process_medians, without_partner
+from analysis.statistics.pairs import log_ratios, without_partner
 from analysis.statistics.verdicts import MARGIN, holm, judge_one
+from analysis.tests.synthetic_noise import of_processes
 
 RATIOS = st.lists(st.floats(-3, 3), min_size=1, max_size=20)
 SECONDS = st.floats(1e-6, 1e4)
@@ -19,13 +20,15 @@ MIRRORED = {"faster": "slower", "slower": "faster"}
 
 
 def processes(rows: list[list[float]]) -> pd.DataFrame:
-    """The timed repetitions of processes, a list each, in blocks of their own."""
-    return pd.DataFrame(
-        [
-            {"file": f"{block}.json", "session": "s", "node": "n", "block": block, "steps_seconds": value}
-            for block, values in enumerate(rows)
-            for value in values
-        ]
+    """Processes with their timed repetitions, a list each, in blocks of their own."""
+    return of_processes(
+        pd.DataFrame(
+            [
+                {"file": f"{block}.json", "session": "s", "node": "n", "block": block, "steps_seconds": value}
+                for block, values in enumerate(rows)
+                for value in values
+            ]
+        )
     )
 
 
@@ -58,7 +61,7 @@ def test_a_verdict_is_that_of_its_interval_and_mirrored_by_changing_sides(values
 def test_ratios_do_not_ask_for_the_unit_of_time(blocks: list[tuple[float, float]], unit: float) -> None:
     def ratios(scale: float) -> pd.Series:
         sides = (processes([[scale * pair[side]] for pair in blocks]) for side in (0, 1))
-        return log_ratios(*map(process_medians, sides))["log_ratio"]
+        return log_ratios(*sides)["log_ratio"]
 
     assert ratios(unit).to_numpy() == pytest.approx(ratios(1).to_numpy(), abs=1e-9)
     assert ratios(1).to_numpy() == pytest.approx([np.log(new / old) for old, new in blocks], abs=1e-9)
@@ -80,7 +83,8 @@ def test_a_bootstrap_interval_stands_about_the_median_of_enough_processes(
     assert np.isnan(row["low"]) == np.isnan(row["high"]) == (len(rows) < FEWEST_PROCESSES)
     assert len(rows) < FEWEST_PROCESSES or row["low"] <= row["median"] * (1 + 1e-12)
     assert len(rows) < FEWEST_PROCESSES or row["high"] >= row["median"] * (1 - 1e-12)
-    assert (row["sessions"], row["processes"], row["samples"]) == (len(set(sessions)), len(rows), len(table))
+    found = (row["sessions"], row["processes"], row["samples"])
+    assert found == (len(set(sessions)), len(rows), sum(map(len, rows)))
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=12), st.randoms())

@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 from analysis.records import published
 from analysis.statistics import scalability
 from analysis.statistics.breaks import break_point
-from analysis.statistics.pairs import process_medians
 from analysis.statistics.trends import growth, linearity, minimum
 from analysis.tests.synthetic_noise import Noise, times_table
 
@@ -17,7 +16,7 @@ VM = Noise(burst_rate=0.01)
 
 def curve(times: dict[float, float], blocks: int = 6, noise: Noise = VM, seed: int = 1) -> pd.DataFrame:
     table = times_table({f"{x:g}": seconds for x, seconds in times.items()}, blocks, 1, noise, seed)
-    return process_medians(table.assign(x=table["series"].astype(float), series="a"))
+    return table.assign(x=table["series"].astype(float), series="a")
 
 
 def of_published(experiment: str) -> pd.DataFrame:

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from analysis.statistics.pairs import log_ratios, process_medians
+from analysis.statistics.pairs import log_ratios
 from analysis.statistics.verdicts import MARGIN, holm, judge, judge_one
 from analysis.tests.synthetic_noise import Noise, times_table
 
@@ -25,7 +25,7 @@ def verdicts(effect: float, blocks: int, noise: Noise, repetitions: int = 5) -> 
     truth = {"reference": 1.0, "candidate": 1.0 + effect}
     tables = [times_table(truth, blocks, repetitions, noise, seed).assign(x=seed) for seed in range(STUDIES)]
     times = pd.concat(tables)
-    processes = process_medians(times.assign(file=times["file"] + times["x"].map("-study-{}".format)))
+    processes = times.assign(file=times["file"] + times["x"].map("-study-{}".format))
     reference, candidate = (processes[processes["series"] == name] for name in truth)
     pairs = log_ratios(reference, candidate, match=("x",))
     return Counter(judge_one(study["log_ratio"])["verdict"] for _, study in pairs.groupby("x"))
@@ -134,7 +134,7 @@ def test_not_faster_needs_evidence() -> None:
 
 
 def test_a_process_without_partner_and_a_block_over_two_sessions() -> None:
-    table = process_medians(times_table({"a": 1.0, "b": 1.1}, 4, 2, Noise(), seed=1))
+    table = times_table({"a": 1.0, "b": 1.1}, 4, 2, Noise(), seed=1)
     table.loc[table["file"] == "b-2", "session"] = "resumed"
     pairs = log_ratios(table[table["series"] == "a"].iloc[1:], table[table["series"] == "b"])
     assert list(pairs["block"]) == [1, 3], "of block 0 one side is missing, of block 2 the sides never met"

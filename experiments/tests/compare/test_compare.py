@@ -97,7 +97,9 @@ def test_a_signal_ends_it_with_what_there_is(folder: Path, number: signal.Signal
         text=True,
     )
     until = time.monotonic() + 60
-    while time.monotonic() < until and not list(folder.glob("tmp/carom-compare-*/records/compare/*-b1.json")):
+    while time.monotonic() < until and not list(
+        folder.glob("tmp/carom-compare-*/records/compare/*/*-b1.json")
+    ):
         time.sleep(0.1)
     child.send_signal(number)
     output, _ = child.communicate(timeout=60)

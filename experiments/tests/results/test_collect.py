@@ -31,19 +31,19 @@ def change(file: Path, edit: Callable[[dict[str, Any]], None]) -> None:
 
 
 def collected(folder: Path, kind: str = "records") -> list[Path]:
-    return sorted(folder.glob(f"{kind}/collected/*/*/*.json"))
+    return sorted(folder.glob(f"{kind}/collected/*/*/*/*.json"))
 
 
 def first(source: Path) -> Path:
-    return min(source.glob("records/pair/*.json"))
+    return min(source.glob("records/pair/*/*.json"))
 
 
 def test_records_come_in_once(source: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     target = tmp_path / "all"
     collect([source], target)
     names = [path.name for path in collected(target)]
-    assert names == sorted(path.name for path in source.glob("records/pair/*.json"))
-    assert {path.parent.relative_to(target).as_posix() for path in collected(target)} == {
+    assert names == sorted(path.name for path in source.glob("records/pair/*/*.json"))
+    assert {path.parent.parent.relative_to(target).as_posix() for path in collected(target)} == {
         f"records/collected/{HOST}/pair"
     }
     collect([source], target)
@@ -73,7 +73,7 @@ def test_what_was_measured_here_is_not_taken_in_from_a_copy(source: Path, tmp_pa
 def test_machines_of_the_same_kind_stand_side_by_side(source: Path, tmp_path: Path) -> None:
     target = tmp_path / "all"
     collect([source], target)
-    for file in source.glob("records/pair/*.json"):
+    for file in source.glob("records/pair/*/*.json"):
         change(file, lambda record: record["provenance"].update(host="../other host"))
     collect([source], target)
     assert len(collected(target)) == 8
@@ -103,7 +103,7 @@ def test_of_two_records_of_one_process_the_later_stays(source: Path, tmp_path: P
 def test_another_schema_is_refused_and_nothing_taken_in(
     source: Path, tmp_path: Path, edit: Callable[[dict[str, Any]], None], line: str
 ) -> None:
-    file = max(source.glob("records/pair/*.json"))
+    file = max(source.glob("records/pair/*/*.json"))
     change(file, edit)
     with pytest.raises(InputError) as refused:
         collect([source], tmp_path / "all")
@@ -138,7 +138,7 @@ def test_failures_come_in_until_they_are_answered(workplace: Workplace, tmp_path
 
 def as_on(folder: Path, host: str) -> None:
     """Make what a folder holds that of another host with the same processor."""
-    for file in folder.glob("*/pair/*.json"):
+    for file in folder.glob("*/pair/*/*.json"):
         change(
             file,
             lambda record: record["tags" if record["kind"] == "failure" else "provenance"].update(host=host),
@@ -157,7 +157,7 @@ def test_hosts_with_the_same_processor_keep_failures_of_their_own(
         collect([folder], target)
         collect_of[host] = len(collected(target, "failures"))
     assert collect_of == {"one": 1, "two": 2, "three": 2}, "what one host measured the others did not"
-    owners = {path.parent.parent.name for path in collected(target, "failures")}
+    owners = {path.parts[-4] for path in collected(target, "failures")}
     assert owners == {"one", "two"}
 
 

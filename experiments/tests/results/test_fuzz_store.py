@@ -60,7 +60,7 @@ def test_anything_in_a_results_folder_is_put_aside_or_counted_once(
     with tempfile.TemporaryDirectory() as folder:
         results = Path(folder, "results")
         shutil.copytree(measured.results, results)
-        *records, missing = sorted((results / "records" / "pair").iterdir())
+        *records, missing = sorted((results / "records" / "pair").rglob("*.json"))
         missing.unlink()  # so that something is left to be verified and measured
         damage = data.draw(damaged(json.loads(records[0].read_text(encoding="utf-8"))))
         victim = data.draw(st.sampled_from(["record", "new", "failure", "note"]))
@@ -89,7 +89,7 @@ def test_anything_in_a_results_folder_is_put_aside_or_counted_once(
 
 
 def test_a_record_of_another_kind_is_put_aside(measured: Workplace) -> None:
-    first, second = sorted((measured.results / "records" / "pair").iterdir())[:2]
+    first, second = sorted((measured.results / "records" / "pair").rglob("*.json"))[:2]
     bench = json.loads(first.read_text(encoding="utf-8"))
     outside = {**bench, "kind": "outside", "axes": {"threads": 1, "substeps": 1}}
     outside["engine"] = {"name": "Chipmunk", "version": "7.0.3", "iterations": 10}

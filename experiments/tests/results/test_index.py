@@ -9,11 +9,12 @@ from typing import Any
 import pytest
 
 from experiments.results import index
-from experiments.results.index import FOLDER, Index
+from experiments.results.index import Index
 from experiments.results.summary import Summary
 from experiments.run.session import run
 from experiments.run.study import Study
 from experiments.tests.conftest import PAIR, Workplace
+from support.known_files import FOLDER
 
 OLD = 1_000_000_000
 """Seconds: a time of files long ago."""
@@ -25,12 +26,12 @@ def results(empty_workplace: Workplace) -> Path:
     empty_workplace.question("pair", PAIR)
     assert run(empty_workplace.settings) == 0
     folder = empty_workplace.results / "records" / "pair"
-    first = min(folder.iterdir())
+    first = min(folder.rglob("*.json"))
     for number in range(100, 130):
-        copy = folder / f"{first.name.split('-b')[0]}-b{number}.json"
+        copy = first.parent / f"{first.name.split('-b')[0]}-b{number}.json"
         copy.write_bytes(first.read_bytes())
     (folder / "torn.json").write_text("{", encoding="utf-8")
-    for file in folder.iterdir():
+    for file in folder.rglob("*.json"):
         os.utime(file, (OLD, OLD))
     return empty_workplace.results
 

@@ -114,7 +114,7 @@ def test_any_name_does_for_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     place.question("control", CONTROL)
     code, _, error = finish(place.start("run", "--no-figures", f"--results=./{name}"))
     assert (code, error) == (0, "")
-    assert len(list((place.root / name).glob("records/*/*.json"))) == 10
+    assert len(list((place.root / name).glob("records/*/*/*.json"))) == 10
 
 
 DAMAGED = {
@@ -132,7 +132,7 @@ DAMAGED = {
 @pytest.mark.parametrize("damage", DAMAGED)
 def test_a_damaged_record_is_put_aside_and_measured_again(workplace: Workplace, damage: str) -> None:
     assert run(workplace.settings) == 0
-    victim = sorted(workplace.results.glob("records/pair/*.json"))[0]
+    victim = sorted(workplace.results.glob("records/pair/*/*.json"))[0]
     content = DAMAGED[damage]
     if content is None:
         content = json.dumps(json.loads(victim.read_text()) | {"schema_version": 0}).encode()
@@ -146,7 +146,7 @@ def test_a_damaged_record_is_put_aside_and_measured_again(workplace: Workplace, 
 
 def test_what_cannot_be_opened_is_put_aside_and_measured_again(workplace: Workplace) -> None:
     assert run(workplace.settings) == 0
-    folder, link = sorted(workplace.results.glob("records/pair/*.json"))[:2]
+    folder, link = sorted(workplace.results.glob("records/pair/*/*.json"))[:2]
     folder.unlink()
     folder.mkdir()
     link.unlink()

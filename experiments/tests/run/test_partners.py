@@ -120,7 +120,7 @@ def test_a_point_that_failed_late_keeps_its_earlier_pairs(pair: Workplace) -> No
 def test_a_failure_of_a_block_that_cannot_be_is_of_no_account(pair: Workplace) -> None:
     pair.behave(FAKE_BENCH_CRASHES="nine")
     run(pair.settings)
-    [failure] = pair.results.glob("failures/pair/*-b0.json")
+    [failure] = pair.results.glob("failures/pair/*/*-b0.json")
     failure.rename(failure.with_name(failure.name.replace("-b0", "-b999999999")))
     pair.behave(FAKE_BENCH_CRASHES="none")
     assert run(pair.settings) == 0
@@ -172,7 +172,7 @@ def test_whole_blocks_of_two_sessions_add_up(pair: Workplace) -> None:
     "harm",
     [
         lambda place: place.build("clang", "# edited"),
-        lambda place: next(place.results.glob("records/pair/*-b0.json")).unlink(),
+        lambda place: next(place.results.glob("records/pair/*/*-b0.json")).unlink(),
     ],
     ids=["edited", "lost"],
 )
@@ -193,7 +193,7 @@ def test_scenes_have_blocks_of_their_own(empty_workplace: Workplace) -> None:
     run(empty_workplace.settings)
     [lost] = [
         path
-        for path in empty_workplace.results.glob("records/errors/*-b1.json")
+        for path in empty_workplace.results.glob("records/errors/*/*-b1.json")
         if (tags := empty_workplace.records()[path.name]["tags"])["scene_name"] == "dilute"
         and (tags["series"], tags["x"]) == ("nine", 2)
     ]
@@ -213,7 +213,7 @@ def test_what_only_the_first_block_does_is_done_there(empty_workplace: Workplace
     run(empty_workplace.settings)
     [point] = [one for one in Study(empty_workplace.settings).experiments[0].points
                if (one.scene_name, one.series, one.x) == ("cradle", "nine", 2)]  # fmt: skip
-    lost = empty_workplace.results / "records" / "errors" / f"{point.id}-b0.json"
+    lost = empty_workplace.results / "records" / "errors" / point.id[:3] / f"{point.id}-b0.json"
     lost.unlink()
     assert run(empty_workplace.settings) == 0
     assert "trajectory" in empty_workplace.records()[lost.name]["errors"]

@@ -238,7 +238,7 @@ def test_a_new_question_runs_as_it_is(empty_workplace: Workplace) -> None:
         "one thread",
         "two threads",
     }
-    assert json.loads(next(empty_workplace.results.glob("records/sorting/*")).read_text())["scene"] is None
+    assert json.loads(next(empty_workplace.results.glob("records/sorting/*/*")).read_text())["scene"] is None
 
 
 @pytest.mark.skipif(not (BUILD / "clang" / "carom").is_file(), reason="build/clang/carom is not built")

@@ -106,7 +106,7 @@ def test_only_a_profile_can_be_counted_under_cachegrind(workplace: Workplace) ->
 def test_a_record_without_the_errors_asked_for_is_measured_again(workplace: Workplace) -> None:
     workplace.question("errors", ERRORS)
     run(workplace.settings)
-    path = next(workplace.results.glob("records/errors/*-b0.json"))
+    path = next(workplace.results.glob("records/errors/*/*-b0.json"))
     record = json.loads(path.read_text())
     del record["errors"]["trajectory"]
     path.write_text(json.dumps(record))
@@ -133,7 +133,7 @@ def test_running_again_measures_nothing_twice(workplace: Workplace) -> None:
 
 def test_only_what_is_missing_is_run(workplace: Workplace) -> None:
     run(workplace.settings)
-    lost = sorted(workplace.results.glob("records/*/*-b1.json"))
+    lost = sorted(workplace.results.glob("records/*/*/*-b1.json"))
     for path in lost:
         path.unlink()
     done = workplace.measured()
@@ -144,7 +144,7 @@ def test_only_what_is_missing_is_run(workplace: Workplace) -> None:
 
 def test_what_has_lost_its_partners_is_run_again_with_them(workplace: Workplace) -> None:
     run(workplace.settings)
-    lost = sorted(workplace.results.glob("records/chunks/*-b1.json"))[0]
+    lost = sorted(workplace.results.glob("records/chunks/*/*-b1.json"))[0]
     lost.unlink()
     before, done = workplace.records(), workplace.measured()
     assert run(workplace.settings) == 0
@@ -160,7 +160,7 @@ def test_another_program_makes_every_record_stale(workplace: Workplace) -> None:
     assert workplace.rows()["chunks"].stale == 6
     assert run(workplace.settings) == 0
     assert not before.keys() & workplace.records().keys()
-    stale = {path.name for path in workplace.results.glob("stale/records/*/*.json")}
+    stale = {path.name for path in workplace.results.glob("stale/records/*/*/*.json")}
     assert stale == before.keys()
 
 
@@ -190,7 +190,7 @@ def test_a_damaged_scene_is_generated_again(workplace: Workplace) -> None:
     scene = next(workplace.results.glob("scenes/100-*.in"))
     content = scene.read_text()
     scene.write_text(content + "1\n")
-    for path in workplace.results.glob("records/pair/*.json"):
+    for path in workplace.results.glob("records/pair/*/*.json"):
         path.unlink()
     run(workplace.settings)
     assert scene.read_text() == content

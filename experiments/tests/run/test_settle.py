@@ -25,7 +25,7 @@ for line in sys.stdin:
             file.write(line)
         print(json.dumps(["results/report.html"]), flush=True)
         continue
-    records = [json.load(open(path)) for path in glob.glob("results/records/*/*.json")]
+    records = [json.load(open(path)) for path in glob.glob("results/records/*/*/*.json")]
     blocks = {}
     for one in records:
         name = one["tags"]["experiment"]
@@ -239,7 +239,7 @@ def test_a_folder_in_which_points_had_stopped_counts_the_blocks_of_all(workplace
     note = study.store.note("plan.json")
     note["paper"]["chunks"] |= {"blocks": 4, "stopped": {chunks.points[-1].id: 3}}
     (workplace.results / "plan.json").write_text(json.dumps(note))
-    for path in (workplace.results / "records" / "chunks").glob(f"{chunks.points[-1].id}-b3.json"):
+    for path in (workplace.results / "records" / "chunks").rglob(f"{chunks.points[-1].id}-b3.json"):
         path.unlink()
     before = len(workplace.calls())
     run(replace(workplace.settings, figures=False))

@@ -52,7 +52,7 @@ def start(manifest: Path, task: int) -> "subprocess.Popen[str]":
 
 
 def records(workplace: Workplace) -> dict[str, bytes]:
-    paths = workplace.results.glob("slurm/cluster/xs/records/*/*.json")
+    paths = workplace.results.glob("slurm/cluster/xs/records/*/*/*.json")
     return {path.name: path.read_bytes() for path in paths}
 
 
@@ -103,7 +103,7 @@ def test_a_failed_point_is_not_tried_again_by_its_task(workplace: Workplace) -> 
     workplace.behave(FAKE_BENCH_CRASHES="nine")
     assert work(job_of(workplace), 0) == 2
     assert len(records(workplace)) == 14
-    failures = list(workplace.results.glob("slurm/cluster/xs/failures/pair/*.json"))
+    failures = list(workplace.results.glob("slurm/cluster/xs/failures/pair/*/*.json"))
     assert len(failures) == 1
 
 
@@ -151,7 +151,7 @@ APART = PAIR.replace("[scene]", "turns = false\n[scene]", 1)
 def cut_off(workplace: Workplace, *lost: int) -> None:
     """Leave the blocks of the question `pair` as a task does that was killed after their first process."""
     for block in lost:
-        paths = sorted(workplace.results.glob(f"slurm/cluster/xs/records/pair/*-b{block}.json"))
+        paths = sorted(workplace.results.glob(f"slurm/cluster/xs/records/pair/*/*-b{block}.json"))
         for path in paths[1:]:
             path.unlink()
 
@@ -183,7 +183,7 @@ def test_a_task_started_again_measures_what_was_not_begun(workplace: Workplace) 
     manifest = job_of(workplace)
     assert work(manifest, 0) == 0
     cut_off(workplace, 0)
-    for path in workplace.results.glob("slurm/cluster/xs/records/pair/*-b1.json"):
+    for path in workplace.results.glob("slurm/cluster/xs/records/pair/*/*-b1.json"):
         path.unlink()
     assert work(manifest, 0) == 0
     assert {name[-7:] for name in records(workplace)} >= {"b1.json"}

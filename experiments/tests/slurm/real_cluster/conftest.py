@@ -50,7 +50,7 @@ class ClusterWorkplace:
         return self.workplace.results / "slurm" / "cluster" / partition
 
     def records(self, partition: str = "*") -> list[Path]:
-        return sorted(self.workplace.results.glob(f"slurm/cluster/{partition}/records/*/*.json"))
+        return sorted(self.workplace.results.glob(f"slurm/cluster/{partition}/records/*/*/*.json"))
 
     def say(self, verb: str, *more: str, code: int = 0) -> str:
         """Run one verb for the site; returns what it prints, on standard error where it fails."""

@@ -26,7 +26,7 @@ def test_three_partitions_give_one_figure_with_three_machines(place: ClusterWork
         assert environment["OMP_PLACES"] == "cores"
     assert "15 of 15 files are new" in place.say("collect")
     assert "0 of 15 files are new" in place.say("collect")
-    assert len(list(place.workplace.results.glob("records/collected/*/machine/*.json"))) == 15
+    assert len(list(place.workplace.results.glob("records/collected/*/machine/*/*.json"))) == 15
     report = place.report()
     for partition in PARTITIONS:
         assert f"{partition}: none" in report
@@ -38,7 +38,7 @@ def test_odd_folders_and_hostile_names_run_nothing(place: ClusterWorkplace) -> N
     place.site("w5-3423", common=f'results = "{folder}"\narguments = ["--comment=a b; touch owned"]')
     place.say("submit")
     place.cluster.wait_until_idle()
-    assert len(list(folder.glob("w5-3423/records/machine/*.json"))) == 5
+    assert len(list(folder.glob("w5-3423/records/machine/*/*.json"))) == 5
     assert len(list(folder.glob("w5-3423/jobs/0001-?.log"))) == 5
     place.site("x; touch owned")
     assert 'slurm.partitions[1].name: found "x; touch owned"' in place.say("submit", code=1)
