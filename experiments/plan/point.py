@@ -107,7 +107,7 @@ class Point(Measurement):
     x: float
     scale: str
 
-    @property
+    @cached_property
     def tags(self) -> Tags:
         """What a record of the point tells those who draw it."""
         measured = {field.name for field in fields(Measurement)}

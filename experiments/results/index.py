@@ -1,14 +1,16 @@
 """What the files of a results folder hold, in short; each is read once (see `support.known_files`)."""
 
 import contextlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from experiments.results.summary import Summary, packed, summary_of, unpacked
 from support.files import of_json, read_json, to_json
 from support.known_files import FOLDER, Stamp, files_below, is_worth_keeping, keep, kept, lasting
 
-VERSION = 3
+VERSION = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +45,7 @@ class Index:
             rows[name] = row
         self._rows[kind, experiment] = rows
         if is_worth_keeping(new + len(before.keys() - rows.keys()), len(rows)):
-            told = {name: [row.stamp, packed(row.summary)] for name, row in rows.items() if row.stamp}
-            keep(self._file(kind, experiment), to_json(told), VERSION)
+            keep(self._file(kind, experiment), _told(rows), VERSION)
         return {name: row.summary for name, row in rows.items()}
 
     def everything(self, kind: str) -> dict[Path, Summary | None]:
@@ -64,14 +65,27 @@ class Index:
     def _kept(self, kind: str, experiment: str) -> dict[str, _Row]:
         """What an earlier process has written; nothing of anything else."""
         body = kept(self._file(kind, experiment), VERSION)
-        with contextlib.suppress(ValueError):
-            rows = of_json(body) if body is not None else {}
-            return {name: _Row(_stamp(row[0]), unpacked(row[1])) for name, row in rows.items()}
+        with contextlib.suppress(ValueError, TypeError, LookupError):
+            return _rows(of_json(body)) if body is not None else {}
         return {}
 
 
-def _stamp(told: object) -> Stamp:
-    match told:
-        case [int() as size, int() as changed, int() as number]:
-            return size, changed, number
-    raise ValueError("is no stamp of a file")
+def _told(rows: Mapping[str, _Row]) -> bytes:
+    """All rows as JSON, each set of tags once."""
+    places: dict[bytes, int] = {}
+    told: dict[str, list[Any]] = {}
+    for name, row in rows.items():
+        if row.stamp is not None and row.summary is None:
+            told[name] = [row.stamp, None, None]
+        elif row.stamp is not None and row.summary is not None:
+            place = places.setdefault(to_json(row.summary.tags), len(places))
+            told[name] = [row.stamp, place, packed(row.summary)]
+    return to_json({"tags": [of_json(tags) for tags in places], "rows": told})
+
+
+def _rows(told: Any) -> dict[str, _Row]:  # noqa: ANN401 - read from a file
+    tags = told["tags"]
+    return {
+        name: _Row(tuple(stamp), None if place is None else unpacked(row, tags[place]))
+        for name, (stamp, place, row) in told["rows"].items()
+    }

@@ -87,20 +87,18 @@ class Store:
         points = {point.id: point for point in experiment.points}
         found = Found()
         for name, summary in self._index.summaries("records", experiment.name).items():
-            path = self.root / "records" / experiment.name / name
-            key = _key(path)
+            key = _key(name)
             point = points.get(key[0]) if key else None
             if key is None or point is None or unusable(summary, point, key[1]):
-                found.stale.append(path)
+                found.stale.append(self.root / "records" / experiment.name / name)
             else:
                 assert summary is not None
                 found.take(key, summary)
         for name, summary in self._index.summaries("failures", experiment.name).items():
-            path = self.root / "failures" / experiment.name / name
-            key = _key(path)
+            key = _key(name)
             is_failure = summary is not None and summary.kind == "failure"
             if key is None or key[0] not in points or key in found.seconds or not is_failure:
-                found.stale.append(path)
+                found.stale.append(self.root / "failures" / experiment.name / name)
             else:
                 assert summary is not None
                 found.failures[key] = summary.reason
@@ -134,7 +132,7 @@ class Store:
             self.retire(path)
         points = {point.id: point for point in experiment.points}
         for path in (self.root / "stale" / "records" / experiment.name).rglob("*.json"):
-            key = _key(path)
+            key = _key(path.name)
             point = points.get(key[0]) if key else None
             if key is None or point is None:
                 continue
@@ -224,7 +222,7 @@ def place_of(folder: Path, name: str) -> Path:
     """Where a file of a folder for one experiment belongs: of a process below the first three letters of its
     point's id, so that no folder holds a hundred thousand files.
     """
-    return folder / name[:3] / name if _key(Path(name)) else folder / name
+    return folder / name[:3] / name if _key(name) else folder / name
 
 
 def _before_levels(path: Path) -> Path:
@@ -238,6 +236,10 @@ def _summary_at(path: Path) -> Summary | None:
     return found if found is not None else summary_of(read_json(_before_levels(path)))
 
 
-def _key(path: Path) -> Key | None:
-    name = re.fullmatch(r"(.*?)-b([0-9]{1,9})", path.stem, re.DOTALL)
-    return (name[1], int(name[2])) if name else None
+_NAME = re.compile(r"(.*?)-b([0-9]{1,9})\.json", re.DOTALL)
+
+
+def _key(name: str) -> Key | None:
+    """Of a file's name, with folders or without."""
+    found = _NAME.fullmatch(name, name.rfind("/") + 1)
+    return (found[1], int(found[2])) if found else None

@@ -1,7 +1,8 @@
 """What is to be known of a record without reading it again."""
 
 from array import array
-from base64 import b64decode, b64encode
+from base64 import b64encode
+from binascii import a2b_base64
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +11,8 @@ from experiments.plan.point import Point, Tags
 from support.files import digest_of
 from support.record_schema import is_record
 
+_OF_ONE = ("block", "position")
+
 
 @dataclass(frozen=True, slots=True)
 class Summary:
@@ -17,6 +20,8 @@ class Summary:
 
     kind: str
     tags: Tags
+    """All but those that tell one process of a point from another: records of a point share them."""
+    block: object = None
     program: str = ""
     """The hash of the program that it was measured with."""
     verdict: str = ""
@@ -40,9 +45,11 @@ def summary_of(record: Any) -> Summary | None:  # noqa: ANN401 - read from a fil
     """Return what is to be known of it; None for what is no record."""
     if not is_record(record):
         return None
+    tags = record["tags"]
     return Summary(
         kind=record["kind"],
-        tags=record["tags"],
+        tags={key: value for key, value in tags.items() if key not in _OF_ONE},
+        block=tags.get("block"),
         program=record.get("provenance", {}).get("binary_sha256") or "",
         verdict=record.get("check", {}).get("verdict", ""),
         has_trajectory="trajectory" in (record.get("errors") or {}),
@@ -82,38 +89,24 @@ def unusable(found: Summary | None, point: Point, block: int) -> str | None:
         return "it was measured with another program"
     if point.measures_errors(block) and not found.has_trajectory:
         return "it lacks the error measures"
-    for key, value in (point.tags | {"block": block}).items():
-        if found.tags.get(key) != value:
-            return f"its tag {key} is {found.tags.get(key)!r}, not {value!r}"
+    if not point.tags.items() <= found.tags.items():
+        key = next(key for key, value in point.tags.items() if found.tags.get(key) != value)
+        return f"its tag {key} is {found.tags.get(key)!r}, not {point.tags[key]!r}"
+    if found.block != block:
+        return f"its tag block is {found.block!r}, not {block!r}"
     return None
 
 
-def packed(found: Summary | None) -> list[Any] | None:
-    """Return it as JSON has it, the runs as one text."""
-    if found is None:
-        return None
+def packed(found: Summary) -> list[Any]:
+    """Return all but the tags as JSON has it, the runs as one text."""
     runs = b64encode(array("d", found.runs).tobytes()).decode("ascii")
-    told = [found.kind, found.tags, found.program, found.verdict, found.has_trajectory]
-    return [*told, found.seconds, runs, found.reason, found.owner, found.recorded_at, found.digest]
+    told = [found.kind, found.block, found.program, found.verdict, found.has_trajectory, found.seconds]
+    return [*told, runs, found.reason, found.owner, found.recorded_at, found.digest]
 
 
-def unpacked(told: Any) -> Summary | None:  # noqa: ANN401 - read from a file
+def unpacked(told: Any, tags: Tags) -> Summary:  # noqa: ANN401 - read from a file
     """Return what was packed. Raises ValueError for anything else."""
-    match told:
-        case None:
-            return None
-        case [
-            str() as kind,
-            dict() as tags,
-            str() as program,
-            str() as verdict,
-            bool() as has_trajectory,
-            *more,
-        ]:
-            match more:
-                case [float() | int() as seconds, str() as text, str(), str(), str(), str()]:
-                    runs = array("d")
-                    runs.frombytes(b64decode(text, validate=True))
-                    first = (kind, tags, program, verdict, has_trajectory)
-                    return Summary(*first, float(seconds), runs, *more[2:])
-    raise ValueError("is no summary of a record")
+    kind, block, program, verdict, has_trajectory, seconds, text, *more = told
+    runs = array("d")
+    runs.frombytes(a2b_base64(text))
+    return Summary(kind, tags, block, program, verdict, has_trajectory, seconds, runs, *more)
