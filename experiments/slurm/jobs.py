@@ -9,7 +9,7 @@ import os
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -115,9 +115,17 @@ class PartitionFolder:
         folder = hashlib.sha256(os.fsencode(self.path)).hexdigest()[:8]
         name = f"carom-{self.partition.name}-{folder}-{number}"
         units = tuple(tuple(task) for task in tasks)
-        now = datetime.now(UTC).isoformat()
+        now = self._after_all_others(datetime.now(UTC))
         words = {one.name: self.made_of(one) for one in study.experiments}
         return Job(name, self.partition.name, self.settings, units, now, words), self.jobs / f"{number}.json"
+
+    def _after_all_others(self, now: datetime) -> str:
+        """The time, or just after the last job of any partition: that may be of another login node, whose
+        clock is ahead.
+        """
+        paths = self.path.parent.glob("*/jobs/*.json")
+        times = [datetime.fromisoformat(read_job(path).submitted_at) for path in paths]
+        return max([now, *(time + timedelta(microseconds=1) for time in times)]).isoformat()
 
     def made_of(self, experiment: Experiment) -> str:
         """The points of an experiment and a task's time limit in a word: another one where any is another."""

@@ -2,26 +2,41 @@
 
 import os
 import re
+from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from experiments.slurm.refusal import RefusedError, words_of
 from experiments.support import process
+from experiments.support.process import Completed
 from support.errors import InputError
 
 TIME_LIMIT_SECONDS = 30.0
 DEFAULT_MAX_ARRAY_SIZE = 1001
 """Slurm's own default."""
 
-_WAITING = ("PENDING", "REQUEUED", "REQUEUE_FED", "REQUEUE_HOLD", "RESV_DEL_HOLD", "SPECIAL_EXIT")
-_RUNNING = ("RUNNING", "CONFIGURING", "SUSPENDED", "STOPPED", "SIGNALING", "RESIZING", "STAGE_OUT")
+_WAITING = (
+    *("PENDING", "REQUEUED", "REQUEUE_FED", "REQUEUE_HOLD", "RESV_DEL_HOLD", "SPECIAL_EXIT"),
+    *("EXPEDITING", "LAUNCH_FAILED"),
+)
+_RUNNING = (
+    *("RUNNING", "CONFIGURING", "SUSPENDED", "STOPPED", "SIGNALING", "RESIZING", "STAGE_OUT"),
+    # A task that was preempted is still leaving its node when it is put back into the queue.
+    *("POWER_UP_NODE", "COMPLETING"),
+)
+_SUSPENDED = ("SUSPENDED", "STOPPED")
 
 
 @dataclass(frozen=True)
 class TaskState:
-    """What the scheduler says of one task of an array, e.g. `PENDING` and `Resources`."""
+    """What the scheduler says of one task of an array, e.g. `PENDING` and `Resources`, and for how many
+    seconds it has run, by the controller's clock.
+    """
 
     state: str
     reason: str
+    seconds: float = 0.0
 
     @property
     def waits(self) -> bool:
@@ -33,18 +48,25 @@ class TaskState:
         """Whether it has nodes."""
         return self.state in _RUNNING
 
+    @property
+    def is_suspended(self) -> bool:
+        """Whether it has nodes and stands still."""
+        return self.state in _SUSPENDED
+
 
 Queue = dict[tuple[str, int], TaskState]
 """A job's name and a task's index in its array -> its state."""
 
 
 def max_array_size() -> int:
-    """MaxArraySize of the cluster: an index is less than that. Raises InputError if it cannot be read."""
+    """MaxArraySize of the cluster, an index is less than that; or MaxJobCount, how many jobs it keeps, if
+    that is less. Raises InputError if it cannot be read.
+    """
     said = _ask("scontrol", "show", "config")
-    found = re.search(r"^MaxArraySize\s*=\s*(\d+)\s*$", said, re.MULTILINE)
-    if found is None:
+    sizes = dict(re.findall(r"^\s*(MaxArraySize|MaxJobCount)\s*=\s*(\d+)\b", said, re.MULTILINE))
+    if "MaxArraySize" not in sizes:
         raise InputError("scontrol show config: names no MaxArraySize")
-    return max(1, int(found.group(1)))
+    return max(1, min(map(int, sizes.values())))
 
 
 def queue() -> Queue:
@@ -52,26 +74,63 @@ def queue() -> Queue:
 
     Raises InputError if squeue does not answer.
     """
-    said = _ask("squeue", "--me", "--array", "--noheader", "--states=all", "--format=%j|%K|%T|%r")
+    # The name comes last: others of the user's jobs may have any.
+    said = _ask("squeue", "--me", "--array", "--noheader", "--states=all", "--format=%K|%T|%M|%r|%j")
     tasks: Queue = {}
     for line in said.splitlines():
-        name, index, state, reason = (line.split("|", 3) + [""] * 3)[:4]
-        # A task may be listed twice, by the job that was requeued and by its twin: what lives counts.
-        known = tasks.get((name, int(index))) if index.isdigit() else None
-        if index.isdigit() and (known is None or not (known.waits or known.runs)):
-            tasks[name, int(index)] = TaskState(state, reason)
+        index, state, elapsed, reason, name = (line.strip().split("|", 4) + [""] * 5)[:5]
+        for number in _indices(index):
+            # A task may be listed twice, by the job that was requeued and by its twin: what lives counts.
+            known = tasks.get((name, number))
+            if known is None or not (known.waits or known.runs):
+                tasks[name, number] = TaskState(state.rstrip("+"), reason, _seconds(elapsed))
     return tasks
 
 
+def in_queue() -> Counter[str]:
+    """How many of the user's jobs wait or run, by partition; each task of an array is a job to the limits.
+
+    Raises InputError if squeue does not answer.
+    """
+    said = _ask("squeue", "--me", "--array", "--noheader", "--format=%P")
+    return Counter(line.strip() for line in said.splitlines() if line.strip())
+
+
 def submit(script: Path) -> str:
-    """Submit a batch script; returns the job's id. Raises InputError with Slurm's words if it is refused."""
-    return _ask("sbatch", "--parsable", os.fspath(script)).strip().partition(";")[0]
+    """Submit a batch script; returns the job's id. Raises RefusedError with Slurm's words if it is not taken.
+    """
+    done = _run("sbatch", "--parsable", os.fspath(script))
+    if done.exit_code != 0:
+        raise RefusedError.of(done)
+    return done.output.strip().partition(";")[0]
+
+
+def _indices(text: str) -> Iterator[int]:
+    """`7` is one, `N/A` is none; of `[0-3,9%4]`, which a version may leave together, it is five."""
+    for part in text.strip("[]").partition("%")[0].split(","):
+        found = re.fullmatch(r"(\d{1,9})(?:-(\d{1,9}))?(?::(\d{1,9}))?", part)
+        if found is not None:
+            first, last, step = int(found[1]), int(found[2] or found[1]), int(found[3] or 1)
+            yield from range(first, last + 1, max(1, step))
+
+
+def _seconds(elapsed: str) -> float:
+    """Of `1-02:03:04`, `02:03:04` and `3:04`; 0 of what is no time, such as INVALID."""
+    found = re.fullmatch(r"(?:(?:(\d+)-)?(\d+):)?(\d+):(\d+)", elapsed.strip())
+    if found is None:
+        return 0.0
+    days, hours, minutes, seconds = (int(part or 0) for part in found.groups())
+    return 86400.0 * days + 3600 * hours + 60 * minutes + seconds
 
 
 def _ask(*command: str) -> str:
+    done = _run(*command)
+    if done.exit_code != 0:
+        raise InputError(words_of(done))
+    return done.output
+
+
+def _run(*command: str) -> Completed:
     # sbatch lets its own variables overrule the script, which is to be the one account of what was asked for.
     environment = {key: value for key, value in os.environ.items() if not key.startswith("SBATCH_")}
-    done = process.run(command, environment, TIME_LIMIT_SECONDS)
-    if done.exit_code != 0:
-        raise InputError(f"{command[0]}: {done.reason.removeprefix(f'{command[0]}: ')}")
-    return done.output
+    return process.run(command, environment, TIME_LIMIT_SECONDS)

@@ -54,6 +54,7 @@ def _options(job: str, partition: Partition, manifest: Path, tasks: int) -> list
         "--ntasks=1",
         f"--cpus-per-task={partition.cpus}",
         "--exclusive",
+        *_memory(partition),
         "--hint=nomultithread",
         f"--time={partition.minutes}",
         f"--signal=USR1@{partition.signal_seconds}",
@@ -64,6 +65,11 @@ def _options(job: str, partition: Partition, manifest: Path, tasks: int) -> list
         "--open-mode=append",
         *partition.arguments,
     ]
+
+
+def _memory(partition: Partition) -> list[str]:
+    """All of the node's: even with a whole node comes no more than DefMemPerCPU for each processor."""
+    return [] if any(one.startswith("--mem") for one in partition.arguments) else ["--mem=0"]
 
 
 def _one_line(option: str) -> str:

@@ -1,27 +1,30 @@
 """Hand what is missing of a study to Slurm: one job array for each partition."""
 
 import shutil
-from collections.abc import Collection, Sequence
-from pathlib import Path
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 
 from experiments.plan.site import load_site
 from experiments.run.progress import warn
 from experiments.run.study import Settings, Study
 from experiments.slurm import scheduler
+from experiments.slurm.hand_over import hand_over, plan_job, script_of
 from experiments.slurm.jobs import (
-    Job,
     PartitionFolder,
     Unit,
     blocks_of,
+    cluster_of,
     folders,
     results_of,
     submitted,
     units,
 )
+from experiments.slurm.pack import Room
+from experiments.slurm.refusal import RefusedError
 from experiments.slurm.scheduler import DEFAULT_MAX_ARRAY_SIZE, Queue
-from experiments.slurm.script import render
 from support.errors import InputError
-from support.files import locked, write_json, write_text
+from support.files import locked
 
 MOST_CUT_OFF = 2
 """Blocks of an experiment that allocations may cut off, in those that the question asks for."""
@@ -39,11 +42,12 @@ def submit(settings: Settings, *, dry_run: bool = False) -> int:
         for folder, study in planned:
             _print_script(folder, study, size)
         return 0
-    size = scheduler.max_array_size()
-    with locked(results_of(settings, load_site(settings.site))):
-        queue = scheduler.queue()
-        for folder, study in planned:
-            _submit(folder, study, queue, size)
+    site, size = load_site(settings.site), scheduler.max_array_size()
+    with locked(results_of(settings, site)):
+        queue, room = scheduler.queue(), Room(cluster_of(site), Counter())
+        if room.is_limited:
+            room.queued += scheduler.in_queue()
+        _submit_all([_lacking(folder, study, queue) for folder, study in planned], room, size)
     return 0
 
 
@@ -53,12 +57,6 @@ def resume(settings: Settings, *, dry_run: bool = False) -> int:
     if chosen is None:
         raise InputError(f"site {settings.site}: nothing was submitted yet; `carom study submit` does it")
     return submit(chosen, dry_run=dry_run)
-
-
-def pack(wanted: Sequence[Unit], blocks_per_task: int, array_size: int) -> list[list[Unit]]:
-    """Share blocks out among tasks: so many each, or more where the array would else be too long."""
-    each = max(blocks_per_task, -(-len(wanted) // array_size))
-    return [list(wanted[first : first + each]) for first in range(0, len(wanted), each)]
 
 
 def is_active(folder: PartitionFolder, queue: Queue) -> dict[tuple[str, Unit], str]:
@@ -108,7 +106,29 @@ def said(partition: str, experiment: str, cut_off: int) -> str:
     )
 
 
-def _submit(folder: PartitionFolder, study: Study, queue: Queue, array_size: int) -> None:
+@dataclass(frozen=True)
+class _Lacking:
+    """What of the study one partition lacks."""
+
+    folder: PartitionFolder
+    study: Study
+    wanted: Mapping[Unit, int]
+    """Units to submit, each with its number of processes."""
+    cut_off: Mapping[str, int]
+    """The experiments that are not submitted any more."""
+    is_active: bool
+    """Whether tasks wait or run."""
+
+    @property
+    def name(self) -> str:
+        return self.folder.partition.name
+
+    def processes(self, units: Collection[Unit]) -> int:
+        return sum(self.wanted[unit] for unit in units)
+
+
+def _lacking(folder: PartitionFolder, study: Study, queue: Queue) -> _Lacking:
+    """What is to be submitted, once what is stale and what was left half-written is out of the way."""
     active = is_active(folder, queue)
     for experiment in study.experiments:
         study.store.settle(experiment)
@@ -116,55 +136,74 @@ def _submit(folder: PartitionFolder, study: Study, queue: Queue, array_size: int
         # What tasks that were killed left half-written.
         shutil.rmtree(study.store.root / ".running", ignore_errors=True)
     without = too_long(folder, study, active)
-    wanted, points = _missing(study, active, without)
-    name = folder.partition.name
-    for one, cut_off in without.items():
-        print(said(name, one, cut_off))
-    if not wanted:
-        rest = "waits or runs" if active else "was cut off" if without else ""
+    return _Lacking(folder, study, _missing(study, active, without), without, bool(active))
+
+
+def _submit_all(lacking: Sequence[_Lacking], room: Room, size: int) -> None:
+    """Submit what each partition lacks. What is refused to one, others may be given; the last refusal is
+    raised in the end, after a line for each of the others.
+    """
+    refused: list[RefusedError] = []
+    for number, one in enumerate(lacking):
+        for name, cut_off in one.cut_off.items():
+            print(said(one.name, name, cut_off))
+        sharing = sum(bool(other.wanted) for other in lacking[number:])
+        try:
+            _submit(one, room, room.of(one.folder.partition, sharing), size)
+        except RefusedError as refusal:
+            refused.append(refusal)
+            if refusal.is_away:
+                break
+    for earlier in refused[:-1]:
+        warn(str(earlier))
+    if refused:
+        raise refused[-1]
+
+
+def _submit(lacking: _Lacking, room: Room, most_tasks: int | None, size: int) -> None:
+    name = lacking.name
+    if not lacking.wanted:
+        rest = "waits or runs" if lacking.is_active else "was cut off" if lacking.cut_off else ""
         print(f"{name}: nothing to submit; " + (f"the rest {rest}" if rest else "all is measured"))
         return
-    job, path = folder.next_job(study, pack(wanted, folder.partition.blocks_per_task, array_size))
-    script = path.with_suffix(".sbatch")
-    text = _script(folder, study, job, path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_text(script, text, path.parent)
-    write_json(path, job.content(), path.parent)
-    try:
-        number = scheduler.submit(script)
-    except InputError:
-        # A job that was never in the queue must not be taken for one that has left it.
-        path.unlink()
-        script.unlink()
-        raise
-    print(f"{name}: job {number}, {points} processes in {len(job.tasks)} tasks: {script}")
+    if most_tasks == 0:
+        blocks = len(lacking.wanted)
+        print(f"{name}: max_submitted leaves room for no task; {_left(blocks)} once jobs of yours have ended")
+        return
+    most_tasks = size if most_tasks is None else min(size, most_tasks)
+    handed = hand_over(lacking.folder, lacking.study, list(lacking.wanted), most_tasks)
+    room.take(lacking.folder.partition, len(handed.job.tasks))
+    points = lacking.processes(lacking.wanted.keys() - set(handed.left))
+    print(
+        f"{name}: job {handed.number}, {points} processes in {len(handed.job.tasks)} tasks: {handed.script}"
+    )
+    if handed.left:
+        print(f"{name}: no more fit into the time limit of so many tasks; {_left(len(handed.left))}")
 
 
-def _missing(
-    study: Study, active: Collection[tuple[str, Unit]], without: Collection[str]
-) -> tuple[list[Unit], int]:
-    """Units to submit, and the number of their processes, `without` those of some experiments."""
+def _left(blocks: int) -> str:
+    return f"`carom study resume` submits the {blocks} block{'s' if blocks != 1 else ''} that are left"
+
+
+def _missing(study: Study, active: Collection[tuple[str, Unit]], without: Collection[str]) -> dict[Unit, int]:
+    """Units to submit, and the number of processes of each, `without` those of some experiments."""
     busy = of_scale(study, active)
-    lacking = {
+    return {
         unit: len(points)
         for unit, experiment, points in units(study, busy)
         if points and unit not in busy and experiment.name not in without
     }
-    return list(lacking), sum(lacking.values())
 
 
 def _print_script(folder: PartitionFolder, study: Study, array_size: int) -> None:
-    wanted, points = _missing(study, (), too_long(folder, study, ()))
+    wanted = _missing(study, (), too_long(folder, study, ()))
     if not wanted:
         print(f"# {folder.partition.name}: nothing to submit")
         return
-    job, path = folder.next_job(study, pack(wanted, folder.partition.blocks_per_task, array_size))
+    job, path = plan_job(folder, study, list(wanted), array_size)
+    points = sum(wanted[unit] for task in job.tasks for unit in task)
     print(f"# {folder.partition.name}: {points} processes in {len(job.tasks)} tasks")
-    print(_script(folder, study, job, path))
-
-
-def _script(folder: PartitionFolder, study: Study, job: Job, manifest: Path) -> str:
-    return render(job.name, folder.partition, manifest, len(job.tasks), study.site.programs)
+    print(script_of(folder, study, job, path))
 
 
 def _array_size_or_default() -> int:

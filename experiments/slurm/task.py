@@ -1,11 +1,13 @@
 """One task of a job array: measures the blocks that are its own, within its allocation."""
 
+import os
 import time
 from collections.abc import Sequence
 from pathlib import Path
 
 from experiments.plan.plan import Experiment
 from experiments.plan.scenes import SceneFolder
+from experiments.plan.site import this_machine
 from experiments.results.store import Key
 from experiments.run.costs import Costs
 from experiments.run.progress import ProgressDisplay
@@ -15,6 +17,8 @@ from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import together
 from experiments.run.whole_blocks import WholeBlocks
 from experiments.slurm.jobs import PartitionFolder, Unit, folders, read_job
+from experiments.slurm.processors import Processors
+from experiments.slurm.task_log import RESTARTS, TaskLog
 from support.errors import InputError
 
 
@@ -32,17 +36,24 @@ def work(manifest: Path, index: int) -> int:
     partitions: dict[str, PartitionFolder] = {one.partition.name: one for one in folders(job.settings)}
     if job.partition not in partitions:
         raise InputError(f'{job.settings.site}: has no partition "{job.partition}" any more')
-    study = partitions[job.partition].study()
-    with study.store.shared(), ProgressDisplay() as display:
-        return _Worker(study, display).run(job.tasks[index])
+    folder = partitions[job.partition]
+    study, log, machine = folder.study(), TaskLog(manifest, index), this_machine()
+    restarts = os.environ.get(RESTARTS, "0")
+    with log.kept(machine.name, os.environ), study.store.shared(), ProgressDisplay() as display:
+        if restarts != "0":
+            display.line(f"started again by Slurm ({RESTARTS}={restarts}): goes on with what was not begun")
+        worker = _Worker(study, display, log, Processors(folder.partition, machine))
+        return worker.run(job.tasks[index])
 
 
 class _Worker:
     """What one task knows while it runs."""
 
-    def __init__(self, study: Study, display: ProgressDisplay) -> None:
+    def __init__(self, study: Study, display: ProgressDisplay, log: TaskLog, processors: Processors) -> None:
         self._study = study
         self._display = display
+        self._log = log
+        self._processors = processors
         store = study.store
         # Scenes of its own, since a task with another program would empty a common folder.
         scenes = SceneFolder(store.temporary / "scenes", store.temporary, str(study.generator.sha256))
@@ -56,10 +67,13 @@ class _Worker:
         experiments = {one.name: one for one in self._study.experiments}
         for name, block in own:
             if name in experiments:
-                self._block(experiments[name], block)
+                began, failed = time.monotonic(), len(self._failed)
+                if self._block(experiments[name], block) and len(self._failed) == failed:
+                    self._log.measured((name, block), time.monotonic() - began)
         return POINTS_FAILED if self._failed else 0
 
-    def _block(self, experiment: Experiment, block: int) -> None:
+    def _block(self, experiment: Experiment, block: int) -> bool:
+        """Measure what is missing of a block; says whether that was all of it."""
         found = self._study.store.find_block(experiment, block)
         given, session = experiment.question.blocks.minimum, self._study.store.session
         missing = WholeBlocks(experiment, given, found, session).missing_if_given(block)
@@ -69,14 +83,27 @@ class _Worker:
             runs = process_runs([point for _, point in group], self._runs, self._costs)
             tasks = [Task(experiment, point, block, at, blocks, size, runs) for at, point in group]
             self._measure([one for one in tasks if not self._study.store.has(one.point, block)])
+        return len(hopeful) == size
 
-    def _measure(self, tasks: Sequence[Task]) -> None:
+    def _measure(self, asked: Sequence[Task]) -> None:
+        tasks = [one for one in asked if not self._refuse(one)]
+        if not tasks:
+            return
         began = time.monotonic()
         ended = self._runner.run(tasks)
         self._costs.learn_group([one.point for one in tasks], ended, time.monotonic() - began)
         for task, result in zip(tasks, ended, strict=True):
             self._runs[task.point.id, task.block] = result.runs
             self._tell(task, result)
+
+    def _refuse(self, task: Task) -> bool:
+        """Whether the point's threads cannot have the processors that they were planned for; says so then."""
+        refused = self._processors.refusal(task.point)
+        if refused is None:
+            return False
+        self._study.store.keep_failure(task.point, task.block, refused, task.tags(self._study.store.session))
+        self._tell(task, ProcessResult(None, refused.reason, refused.exit_code))
+        return True
 
     def _tell(self, task: Task, result: ProcessResult) -> None:
         point = task.point
