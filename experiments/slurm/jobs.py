@@ -4,6 +4,7 @@ A job is written down before it is submitted, under the name it will have in the
 whether its blocks are measured is told by the records alone.
 """
 
+import contextlib
 import hashlib
 import os
 import re
@@ -124,8 +125,10 @@ class PartitionFolder:
         clock is ahead.
         """
         paths = self.path.parent.glob("*/jobs/*.json")
-        times = [datetime.fromisoformat(read_job(path).submitted_at) for path in paths]
-        return max([now, *(time + timedelta(microseconds=1) for time in times)]).isoformat()
+        last = max((read_job(path).submitted_at for path in paths), default="")
+        with contextlib.suppress(ValueError):
+            now = max(now, datetime.fromisoformat(last).astimezone(UTC) + timedelta(microseconds=1))
+        return now.isoformat()
 
     def made_of(self, experiment: Experiment) -> str:
         """The points of an experiment and a task's time limit in a word: another one where any is another."""

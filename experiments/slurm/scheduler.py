@@ -97,8 +97,7 @@ def in_queue() -> Counter[str]:
 
 
 def submit(script: Path) -> str:
-    """Submit a batch script; returns the job's id. Raises RefusedError with Slurm's words if it is not taken.
-    """
+    """Submit a batch script; returns the job's id. Raises RefusedError with Slurm's words."""
     done = _run("sbatch", "--parsable", os.fspath(script))
     if done.exit_code != 0:
         raise RefusedError.of(done)

@@ -1,16 +1,20 @@
 """What of a study on a cluster is measured, running, waiting, failed or missing, and why."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
+from datetime import datetime
 
 from experiments.run.progress import warn
 from experiments.run.status import new_console, new_table
 from experiments.run.study import Settings, Study
 from experiments.slurm import scheduler
+from experiments.slurm.fates import fate, of_all_tasks
+from experiments.slurm.forecast import progress_line, tasks_of
 from experiments.slurm.jobs import PartitionFolder, blocks_of, folders, submitted, units
-from experiments.slurm.scheduler import Queue, TaskState
+from experiments.slurm.scheduler import Queue
 from experiments.slurm.submit import is_active, of_scale, said, too_long
+from experiments.slurm.task_log import read_told
 from support.errors import InputError
 
 _STATES = ("done", "running", "waiting", "failed", "missing")
@@ -42,12 +46,13 @@ def show_cluster_status(settings: Settings) -> int:
         queue = {}
     screen = new_console()
     shown = new_table("partition", "experiment", *_STATES)
-    explained = []
+    explained, lines = [], []
     for folder in folders(chosen):
         study = folder.study(to_be_built=True)
         state = rows(folder, study, queue)
         for row in state:
             shown.add_row(row.partition, row.experiment, *(str(row.counts[name]) for name in _STATES))
+        lines.append(_progress(folder, study, state, queue))
         explained += [
             f"{row.partition}: {row.experiment}: {number} failed: {reason}"
             for row in state
@@ -57,7 +62,7 @@ def show_cluster_status(settings: Settings) -> int:
         without = too_long(folder, study, is_active(folder, queue))
         explained += [said(folder.partition.name, name, number) for name, number in without.items()]
     screen.print(shown)
-    for line in explained:
+    for line in (*lines, *explained):
         screen.print(line)
     return 0
 
@@ -94,15 +99,22 @@ def _explain(folder: PartitionFolder, study: Study, queue: Queue) -> list[str]:
             unfinished -= own
             state = queue.get((job.name, index))
             if own and not (state is not None and state.runs):
-                told[number, _fate(state, folder.jobs / f"{number}-{index}.log")] += 1
+                told[number, fate(state, folder.jobs / f"{number}-{index}.log")] += 1
     name = folder.partition.name
-    return [f"{name}: job {number}: {count} of the tasks {fate}" for (number, fate), count in told.items()]
+    return [
+        *(f"{name}: job {number}: {count} of the tasks {became}" for (number, became), count in told.items()),
+        *(f"{name}: {line}" for line in of_all_tasks(read_told(folder.jobs, study.scale.name))),
+    ]
 
 
-def _fate(state: TaskState | None, log: Path) -> str:
-    if state is not None and state.waits:
-        return f"wait: {state.reason}"
-    if not log.exists():
-        return "never started, and have left the queue (cancelled?)"
-    ended = f"ended as {state.state}" if state is not None else "have ended"
-    return f"{ended} and left processes unfinished; their logs are in {log.parent}"
+def _progress(folder: PartitionFolder, study: Study, state: Sequence[Row], queue: Queue) -> str:
+    """How far the partition is, with what its tasks do now."""
+    scale = study.scale.name
+    tasks = tasks_of(folder, folder.known_jobs(), scale, queue)
+    counts = sum((row.counts for row in state), Counter[str]())
+    line = progress_line(
+        folder.partition.name, counts, tasks, read_told(folder.jobs, scale), datetime.now().astimezone()
+    )
+    if tasks.suspended:
+        line += f"; {tasks.suspended} stand still: what a pause cut through is measured again once they go on"
+    return line

@@ -126,6 +126,7 @@ proc_bind = "close"
 proc_bind_oversubscribed = "false"
 
 [slurm]
+oversubscribed = true
 """
 """Up to what a cluster says of itself."""
 

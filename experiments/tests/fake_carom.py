@@ -2,7 +2,8 @@
 
 The environment says what goes wrong: FAKE_SECONDS (each measurement takes that long),
 FAKE_CHECK_SECONDS (each check), FAKE_CHECK_FAILS, FAKE_BENCH_CRASHES, FAKE_RESULT_WRONG, FAKE_NO_RECORD,
-FAKE_HANGS (the variant concerned), FAKE_SUSPENDED (the verb concerned), FAKE_LIMITS_FAIL,
+FAKE_HANGS (the variant concerned), FAKE_SUSPENDED (the verb concerned; only as often as the file
+FAKE_SUSPENSIONS has lines, if there is one), FAKE_LIMITS_FAIL,
 FAKE_PROMISES_FAIL. FAKE_LOG is a file that gets a line for every call, FAKE_SPANS one that gets a line for
 every call that computes: its verb, when it began and when it ended. FAKE_UNDISTURBED is the reason why
 processes do not take turns, where nobody said whether.
@@ -35,7 +36,7 @@ def main(words: list[str]) -> int:
 
 
 def answer(words: list[str]) -> int:
-    if os.environ.get("FAKE_SUSPENDED") == words[0]:
+    if os.environ.get("FAKE_SUSPENDED") == words[0] and is_still_suspended():
         said = "was suspended for some time while it was measured; measure it again"
         print(f"carom: {words[1]}: {said}", file=sys.stderr)
         return 1
@@ -47,6 +48,15 @@ def answer(words: list[str]) -> int:
         print("\n".join(VARIANTS))
         return 0
     return answer_with(words[0], *split(words[1:]))
+
+
+def is_still_suspended() -> bool:
+    if "FAKE_SUSPENSIONS" not in os.environ:
+        return True
+    path = Path(os.environ["FAKE_SUSPENSIONS"])
+    left = path.read_text(encoding="utf-8").splitlines()
+    write(str(path), "".join(f"{line}\n" for line in left[1:]))
+    return bool(left)
 
 
 def answer_with(verb: str, options: Options, positional: list[str]) -> int:
@@ -363,7 +373,7 @@ def provenance() -> dict[str, Any]:
     slurm = {key: value for key, value in os.environ.items() if key.startswith(("SLURM_", "SLURMD_"))}
     return {
         "host": os.uname().nodename,
-        "cpu_model": "none",
+        "cpu_model": os.environ.get("FAKE_CPU_MODEL", "none"),
         "cores": 2,
         "hardware_threads": 2,
         "affinity": "0-1",
