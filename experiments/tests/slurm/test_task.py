@@ -29,9 +29,9 @@ def folder_of(workplace: Workplace) -> PartitionFolder:
     return folders(replace(workplace.settings, site=site(workplace.root)))[0]
 
 
-def job_of(workplace: Workplace, tasks: int = 1) -> Path:
+def job_of(workplace: Workplace, tasks: int = 1, folder: PartitionFolder | None = None) -> Path:
     """Write the list of blocks of a job, dealt out to so many tasks."""
-    folder = folder_of(workplace)
+    folder = folder or folder_of(workplace)
     study = folder.study()
     wanted = [unit for unit, _, points in units(study) if points]
     job, path = folder.next_job(study, [wanted[first::tasks] for first in range(tasks)])

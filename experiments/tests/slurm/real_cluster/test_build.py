@@ -34,7 +34,7 @@ def test_each_kind_of_node_builds_once_for_itself(place: ClusterWorkplace, tmp_p
     place.cluster.wait_until_idle()
     assert len(builds.read_text().splitlines()) == 2
     programs = {
-        path.parents[2].name: json.loads(path.read_text())["provenance"]["binary_sha256"]
+        path.parents[3].name: json.loads(path.read_text())["provenance"]["binary_sha256"]
         for path in place.records()
     }
     assert len(place.records()) == 10

@@ -9,14 +9,15 @@ from experiments.tests.slurm.real_cluster.conftest import ClusterWorkplace
 
 def test_three_partitions_give_one_figure_with_three_machines(place: ClusterWorkplace) -> None:
     place.workplace.behave(FAKE_SECONDS="0.05")
-    said = place.say("submit")
+    # No fewer give a verdict.
+    said = place.say("submit", "--blocks", "6")
     assert [line.split(": ")[0] for line in said.splitlines()] == list(PARTITIONS)
-    assert said.count("5 processes in 5 tasks") == 3
+    assert said.count("6 processes in 6 tasks") == 3
     place.cluster.wait_until_idle()
-    assert len(place.records()) == 15
+    assert len(place.records()) == 18
     for path in place.records():
         record = json.loads(path.read_text())
-        partition = path.parents[2].name
+        partition = path.parents[3].name
         assert record["axes"]["threads"] == 16
         assert record["provenance"]["slurm"]["SLURMD_NODENAME"] == node_of(partition)
         assert record["provenance"]["slurm"]["SLURM_JOB_PARTITION"] == partition
@@ -24,9 +25,9 @@ def test_three_partitions_give_one_figure_with_three_machines(place: ClusterWork
         environment = record["provenance"]["openmp"]["environment"]
         assert environment["OMP_NUM_THREADS"] == "16"
         assert environment["OMP_PLACES"] == "cores"
-    assert "15 of 15 files are new" in place.say("collect")
-    assert "0 of 15 files are new" in place.say("collect")
-    assert len(list(place.workplace.results.glob("records/collected/*/machine/*/*.json"))) == 15
+    assert "18 of 18 files are new" in place.say("collect")
+    assert "0 of 18 files are new" in place.say("collect")
+    assert len(list(place.workplace.results.glob("records/collected/*/machine/*/*.json"))) == 18
     report = place.report()
     for partition in PARTITIONS:
         assert f"{partition}: none" in report

@@ -1,0 +1,94 @@
+"""What Slurm's commands answer, from version 21 to 25."""
+
+import pytest
+
+from experiments.slurm import scheduler
+from experiments.slurm.scheduler import TaskState
+from experiments.tests.conftest import Workplace
+from experiments.tests.slurm.fake_slurm import FakeSlurm
+
+CONFIGURATIONS = {
+    "21.08": (
+        "Configuration data as of 2022-03-01T10:00:00\n"
+        "AccountingStorageBackupHost = (null)\n"
+        "MaxArraySize            = 1001\n"
+        "MaxDBDMsgs              = 20008\n"
+        "MaxJobCount             = 10000\n"
+        "MaxJobId                = 67043328\n"
+        "\nSlurmctld(primary) at head is UP\n",
+        1001,
+    ),
+    "23.11": (
+        "Configuration data as of 2024-03-01T10:00:00\n"
+        "CliFilterPlugins        = (null)\n"
+        "MaxArraySize            = 75000\n"
+        "MaxBatchRequeue         = 5\n"
+        "MaxJobCount             = 20000\n"
+        "\nCgroup Support Configuration:\nConstrainCores          = yes\nMaxRAMPercent           = 100.0%\n",
+        20000,
+    ),
+    "25.05": (
+        "Configuration data as of 2025-06-01T10:00:00\r\n"
+        "HashPlugin              = hash/sha3\r\n"
+        "MaxArraySize            = 40001\r\n"
+        "MaxJobCount             = 500000\r\n",
+        40001,
+    ),
+    "no arrays": ("MaxArraySize = 0\nMaxJobCount = 10000\n", 1),
+}
+
+
+@pytest.mark.parametrize(("said", "size"), CONFIGURATIONS.values(), ids=CONFIGURATIONS.keys())
+def test_the_largest_array_is_read_of_every_version(workplace: Workplace, said: str, size: int) -> None:
+    FakeSlurm(workplace, show_config=said)
+    assert scheduler.max_array_size() == size
+
+
+STATES = {
+    "runs": ("RUNNING", "SUSPENDED", "STOPPED", "COMPLETING", "CONFIGURING", "POWER_UP_NODE", "STAGE_OUT"),
+    "waits": ("PENDING", "REQUEUED", "REQUEUE_HOLD", "SPECIAL_EXIT", "EXPEDITING", "RESV_DEL_HOLD"),
+    "ended": (
+        *("COMPLETED", "CANCELLED", "FAILED", "TIMEOUT", "NODE_FAIL", "PREEMPTED", "BOOT_FAIL", "DEADLINE"),
+        *("OUT_OF_MEMORY", "REVOKED", "RECONFIG_FAIL", "CANCELLED+", "A_STATE_OF_TOMORROW"),
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("what", "state"), [(what, state) for what, states in STATES.items() for state in states]
+)
+def test_each_state_means_one_of_three_things(what: str, state: str) -> None:
+    found = TaskState(state, "None")
+    assert (found.waits, found.runs) == (what == "waits", what == "runs")
+
+
+def test_lines_of_every_kind_are_read_and_others_left(workplace: Workplace) -> None:
+    FakeSlurm(
+        workplace,
+        squeue_lines=[
+            "0|RUNNING|1-02:03:04|None|carom-xs-1",
+            "1|RUNNING|3:04|None|carom-xs-1",
+            "2|PENDING|0:00|Nodes required for job are DOWN, DRAINED or reserved|carom-xs-1",
+            "[4-6,9%4]|PENDING|0:00|Priority|carom-xs-1",
+            "[12-...]|PENDING|0:00|Priority|carom-xs-1",
+            "N/A|RUNNING|5:00|None|somebody's | job |7",
+            "|RUNNING",
+            "",
+            "7|REVOKED|INVALID|None|carom-xs-1",
+            "7|COMPLETING|2:00:00|None|carom-xs-1",
+            "8|OUT_OF_ME+|UNLIMITED|OutOfMemory|carom-xs-1",
+        ],
+    )
+    found = scheduler.queue()
+    assert {name for name, _ in found} == {"carom-xs-1"}
+    assert sorted(index for _, index in found) == [0, 1, 2, 4, 5, 6, 7, 8, 9]
+    assert found["carom-xs-1", 0].seconds == 86400 + 2 * 3600 + 3 * 60 + 4
+    assert found["carom-xs-1", 1].seconds == 184
+    assert found["carom-xs-1", 2].reason == "Nodes required for job are DOWN, DRAINED or reserved"
+    assert found["carom-xs-1", 7].runs, "of a task that is listed twice the living one counts"
+    assert found["carom-xs-1", 7].seconds == 7200
+
+
+def test_jobs_are_counted_as_the_limits_count_them(workplace: Workplace) -> None:
+    FakeSlurm(workplace, squeue_lines=["xs", "xs", "w5", ""])
+    assert scheduler.in_queue() == {"xs": 2, "w5": 1}
