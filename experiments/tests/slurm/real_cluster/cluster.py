@@ -149,6 +149,12 @@ class Cluster:
         command = ("squeue", "--array", "--noheader", f"--states={state}", "--format=%F_%K")
         return self.ask(*command).split()
 
+    def start_at_once(self) -> None:
+        """Let tasks that were put back into the queue not wait for the time that Slurm has them wait."""
+        until(lambda: bool(self.tasks("PENDING")), "nothing was put back into the queue", 30)
+        for task in self.tasks("PENDING"):
+            self.ask("scontrol", "update", f"jobid={task}", "starttime=now")
+
     def wait_until_idle(self, seconds: float = 90) -> None:
         """Wait until nothing waits or runs."""
         until(lambda: not self.ask("squeue", "--noheader").strip(), "jobs do not end", seconds)

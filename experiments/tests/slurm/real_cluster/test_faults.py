@@ -49,6 +49,39 @@ def test_a_node_dies_in_mid_task_and_comes_back(place: ClusterWorkplace) -> None
     assert Counter(restarts) == {None: len(before), "1": 5 - len(before)}
     assert sum(measurements(place).values()) <= 6, "only the process that was cut off ran twice"
     assert "nothing to submit; all is measured" in place.say("resume")
+    assert f"{PARTITION}: 1 of the tasks were started again by Slurm" in place.say("status")
+
+
+def test_a_task_that_is_requeued_goes_on_by_itself(place: ClusterWorkplace) -> None:
+    place.site(PARTITION, common="blocks_per_task = 5")
+    place.workplace.behave(FAKE_SECONDS="0.5")
+    place.say("submit")
+    until(lambda: len(place.records()) == 1, "the task does not begin", 30)
+    place.cluster.ask("scontrol", "requeue", place.cluster.tasks("RUNNING")[0])
+    assert "nothing to submit; the rest waits or runs" in place.say("resume")
+    # Slurm itself lets a job that was requeued wait for two minutes.
+    place.cluster.start_at_once()
+    place.cluster.wait_until_idle()
+    assert len(place.records()) == 5
+    assert sum(measurements(place).values()) <= 6, "only the process that was cut off ran twice"
+    assert "nothing to submit; all is measured" in place.say("resume")
+    assert f"{PARTITION}: 1 of the tasks were started again by Slurm" in place.say("status")
+
+
+def test_a_task_that_is_suspended_is_told_and_goes_on(place: ClusterWorkplace) -> None:
+    place.site(PARTITION, common="blocks_per_task = 5")
+    place.workplace.behave(FAKE_SECONDS="0.5")
+    place.say("submit")
+    until(lambda: len(place.records()) == 1, "the task does not begin", 30)
+    task = place.cluster.tasks("RUNNING")[0]
+    place.cluster.ask("scontrol", "suspend", task)
+    said = place.say("status")
+    assert "1 tasks run, 0 wait; about " in said
+    assert "; 1 stand still: what a pause cut through is measured again once they go on" in said
+    assert "nothing to submit; the rest waits or runs" in place.say("resume")
+    place.cluster.ask("scontrol", "resume", task)
+    place.cluster.wait_until_idle()
+    assert len(place.records()) == 5
 
 
 def test_half_an_array_cancelled_is_what_resume_submits(place: ClusterWorkplace) -> None:
@@ -62,7 +95,11 @@ def test_half_an_array_cancelled_is_what_resume_submits(place: ClusterWorkplace)
     place.cluster.wait_until_idle()
     assert measurements(place) == {f"block={block}": 1 for block in range(3)}
     assert re.search(rf"^{PARTITION} +machine +3 +0 +0 +0 +3$", place.say("status"), re.MULTILINE)
-    assert "3 of the tasks never started, and have left the queue (cancelled?)" in place.say("status")
+    said = place.say("status")
+    assert "3 of the tasks never started, and have left the queue (cancelled?)" in said
+    assert (
+        f"{PARTITION}: [{'#' * 12}{'-' * 12}] 3 of 6 processes; no task runs or waits: `carom study" in said
+    )
     assert ", 3 processes in 3 tasks" in place.say("resume")
     place.cluster.wait_until_idle()
     assert measurements(place) == {f"block={block}": 1 for block in range(6)}
