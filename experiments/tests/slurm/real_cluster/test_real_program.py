@@ -63,7 +63,7 @@ def test_three_kinds_of_node_with_one_processor_do_the_same(place: ClusterWorkpl
 def verdicts_of_machines(
     place: ClusterWorkplace, records: dict[Path, Any], slower: dict[str, float]
 ) -> list[str]:
-    """What the report says of the machines, had each block taken as long everywhere but where it is slower."""
+    """What the report says of the machines if all blocks took equally long but where it is `slower`."""
     for path, record in records.items():
         factor = slower.get(record["provenance"]["slurm"]["SLURM_JOB_PARTITION"], 1.0)
         seconds = factor * (1 + 0.001 * record["tags"]["block"])
