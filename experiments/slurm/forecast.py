@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from experiments.run.progress import about
-from experiments.slurm.jobs import Job, PartitionFolder, Unit
+from experiments.run.study import Study
+from experiments.slurm.jobs import PartitionFolder, Unit
 from experiments.slurm.scheduler import Queue, TaskState
 from experiments.slurm.task_log import Told
 
@@ -34,13 +35,13 @@ class Tasks:
         return max(max(left, default=0.0), sum(left) / max(1, min(self.at_once, len(left))))
 
 
-def tasks_of(folder: PartitionFolder, jobs: Sequence[Job], scale: str, queue: Queue) -> Tasks:
-    """Those of the jobs of one scale."""
+def tasks_of(folder: PartitionFolder, study: Study, queue: Queue) -> Tasks:
+    """Those of the folder's jobs, of the scale of the study."""
     running: list[tuple[TaskState, Sequence[Unit]]] = []
     waiting: list[tuple[TaskState, Sequence[Unit]]] = []
     arrays: set[str] = set()
-    for job in jobs:
-        for index, units in enumerate(job.tasks if job.settings.scale == scale else ()):
+    for job in folder.known_jobs():
+        for index, units in enumerate(job.tasks if job.settings.scale == study.scale.name else ()):
             state = queue.get((job.name, index))
             if state is not None and (state.runs or state.waits):
                 (running if state.runs else waiting).append((state, units))
@@ -48,14 +49,21 @@ def tasks_of(folder: PartitionFolder, jobs: Sequence[Job], scale: str, queue: Qu
     return Tasks(running, waiting, len(arrays) * folder.partition.at_once)
 
 
-def progress_line(name: str, counts: Counter[str], tasks: Tasks, told: Told, now: datetime) -> str:
-    """The line of one partition, whose processes have these states. `now` is the local time."""
+def progress_line(name: str, counts: Counter[str], tasks: Tasks | None, told: Told, now: datetime) -> str:
+    """The line of one partition, whose processes have these states. `tasks` is None where Slurm does not tell
+    them; `now` is the local time.
+    """
     all_of_them, done = counts.total(), counts["done"]
     share = done / all_of_them if all_of_them else 1.0
     filled = int(_WIDTH * share)
     parts = [f"{name}: [{'#' * filled}{'-' * (_WIDTH - filled)}] {done} of {all_of_them} processes"]
-    if tasks.running or tasks.waiting:
-        parts += [f"{len(tasks.running)} tasks run, {len(tasks.waiting)} wait", _end(tasks, told, now)]
+    if tasks is None:
+        parts.append("what runs and waits is not known")
+    elif tasks.running or tasks.waiting:
+        run = "task runs" if len(tasks.running) == 1 else "tasks run"
+        parts += [f"{len(tasks.running)} {run}, {len(tasks.waiting)} wait", _end(tasks, told, now)]
+        if tasks.suspended:
+            parts.append(f"{tasks.suspended} suspended: what the pause cut through is measured again")
     elif done < all_of_them:
         parts.append("no task runs or waits: `carom study resume` submits what is missing")
     return "; ".join(parts)

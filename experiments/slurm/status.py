@@ -10,11 +10,11 @@ from experiments.run.status import new_console, new_table
 from experiments.run.study import Settings, Study
 from experiments.slurm import scheduler
 from experiments.slurm.fates import fate, of_all_tasks
-from experiments.slurm.forecast import progress_line, tasks_of
+from experiments.slurm.forecast import Tasks, progress_line, tasks_of
 from experiments.slurm.jobs import PartitionFolder, blocks_of, folders, submitted, units
 from experiments.slurm.scheduler import Queue
 from experiments.slurm.submit import is_active, of_scale, said, too_long
-from experiments.slurm.task_log import read_told
+from experiments.slurm.task_log import Told, read_told
 from support.errors import InputError
 
 _STATES = ("done", "running", "waiting", "failed", "missing")
@@ -39,11 +39,8 @@ def show_cluster_status(settings: Settings) -> int:
     chosen = submitted(settings) or settings
     if settings.study:
         chosen = replace(chosen, study=settings.study)
-    try:
-        queue = scheduler.queue()
-    except InputError as error:
-        warn(f"{error}; what runs and what waits is shown as missing")
-        queue = {}
+    answer = _queue()
+    queue = answer or {}
     screen = new_console()
     shown = new_table("partition", "experiment", *_STATES)
     explained, lines = [], []
@@ -52,19 +49,32 @@ def show_cluster_status(settings: Settings) -> int:
         state = rows(folder, study, queue)
         for row in state:
             shown.add_row(row.partition, row.experiment, *(str(row.counts[name]) for name in _STATES))
-        lines.append(_progress(folder, study, state, queue))
+        told = read_told(folder.jobs, study.scale.name)
+        lines.append(
+            _progress(folder, state, told, tasks_of(folder, study, queue) if answer is not None else None)
+        )
         explained += [
             f"{row.partition}: {row.experiment}: {number} failed: {reason}"
             for row in state
             for reason, number in row.reasons.items()
         ]
         explained += _explain(folder, study, queue)
+        explained += [f"{folder.partition.name}: {line}" for line in of_all_tasks(told)]
         without = too_long(folder, study, is_active(folder, queue))
         explained += [said(folder.partition.name, name, number) for name, number in without.items()]
     screen.print(shown)
     for line in (*lines, *explained):
         screen.print(line)
     return 0
+
+
+def _queue() -> Queue | None:
+    """The queue, or None with a line where Slurm does not answer."""
+    try:
+        return scheduler.queue()
+    except InputError as error:
+        warn(f"{error}; what runs and what waits is shown as missing")
+        return None
 
 
 def rows(folder: PartitionFolder, study: Study, queue: Queue) -> list[Row]:
@@ -102,19 +112,11 @@ def _explain(folder: PartitionFolder, study: Study, queue: Queue) -> list[str]:
                 told[number, fate(state, folder.jobs / f"{number}-{index}.log")] += 1
     name = folder.partition.name
     return [
-        *(f"{name}: job {number}: {count} of the tasks {became}" for (number, became), count in told.items()),
-        *(f"{name}: {line}" for line in of_all_tasks(read_told(folder.jobs, study.scale.name))),
+        f"{name}: job {number}: {count} of the tasks {became}" for (number, became), count in told.items()
     ]
 
 
-def _progress(folder: PartitionFolder, study: Study, state: Sequence[Row], queue: Queue) -> str:
-    """How far the partition is, with what its tasks do now."""
-    scale = study.scale.name
-    tasks = tasks_of(folder, folder.known_jobs(), scale, queue)
+def _progress(folder: PartitionFolder, state: Sequence[Row], told: Told, tasks: Tasks | None) -> str:
+    """How far the partition is, with what its tasks do now as far as that is known."""
     counts = sum((row.counts for row in state), Counter[str]())
-    line = progress_line(
-        folder.partition.name, counts, tasks, read_told(folder.jobs, scale), datetime.now().astimezone()
-    )
-    if tasks.suspended:
-        line += f"; {tasks.suspended} stand still: what a pause cut through is measured again once they go on"
-    return line
+    return progress_line(folder.partition.name, counts, tasks, told, datetime.now().astimezone())

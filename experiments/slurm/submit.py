@@ -182,7 +182,8 @@ def _submit(lacking: _Lacking, room: Room, most_tasks: int | None, size: int) ->
 
 
 def _left(blocks: int) -> str:
-    return f"`carom study resume` submits the {blocks} block{'s' if blocks != 1 else ''} that are left"
+    those = f"{blocks} blocks that are" if blocks != 1 else "block that is"
+    return f"`carom study resume` submits the {those} left"
 
 
 def _missing(study: Study, active: Collection[tuple[str, Unit]], without: Collection[str]) -> dict[Unit, int]:

@@ -65,6 +65,9 @@ def test_without_tasks_the_line_says_what_helps() -> None:
     assert progress_line("xs", Counter(done=1, missing=1), nobody, TOLD, NOON).endswith(
         "1 of 2 processes; no task runs or waits: `carom study resume` submits what is missing"
     )
+    assert progress_line("xs", Counter(done=1, missing=1), None, TOLD, NOON).endswith(
+        "1 of 2 processes; what runs and waits is not known"
+    )
     assert progress_line("xs", Counter(done=2), nobody, TOLD, NOON) == f"xs: [{'#' * 24}] 2 of 2 processes"
 
 
@@ -86,7 +89,7 @@ def test_status_follows_a_study_from_its_submission_to_its_end(workplace: Workpl
     slurm.becomes(4, "SUSPENDED", elapsed="0:01")
     output, _ = say(workplace, "status")
     assert re.search(r"7 of 16 processes; 2 tasks run, 2 wait; about \d+ s left if 4 run at a time", output)
-    assert "; 1 stand still: what a pause cut through is measured again once they go on" in output
+    assert "; 1 suspended: what the pause cut through is measured again" in output
     for index in range(3, 7):
         assert work(manifest(workplace), index) == 0
     slurm.ends()

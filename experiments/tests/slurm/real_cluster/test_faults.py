@@ -76,8 +76,8 @@ def test_a_task_that_is_suspended_is_told_and_goes_on(place: ClusterWorkplace) -
     task = place.cluster.tasks("RUNNING")[0]
     place.cluster.ask("scontrol", "suspend", task)
     said = place.say("status")
-    assert "1 tasks run, 0 wait; about " in said
-    assert "; 1 stand still: what a pause cut through is measured again once they go on" in said
+    assert "1 task runs, 0 wait; about " in said
+    assert "; 1 suspended: what the pause cut through is measured again" in said
     assert "nothing to submit; the rest waits or runs" in place.say("resume")
     place.cluster.ask("scontrol", "resume", task)
     place.cluster.wait_until_idle()
