@@ -14,6 +14,9 @@ from support.home import ROOT
 COMPILERS = {"gcc": "g++", "clang": "clang++"}
 
 
+_OF_MEMORY = ("--mem", "--mem-per-cpu", "--mem-per-gpu")
+
+
 def render(job: str, partition: Partition, manifest: Path, tasks: int, programs: Mapping[str, str]) -> str:
     """The script of an array of `tasks` tasks that work through `manifest`.
 
@@ -69,7 +72,7 @@ def _options(job: str, partition: Partition, manifest: Path, tasks: int) -> list
 
 def _memory(partition: Partition) -> list[str]:
     """All of the node's: even with a whole node comes no more than DefMemPerCPU for each processor."""
-    return [] if any(one.startswith("--mem") for one in partition.arguments) else ["--mem=0"]
+    return [] if any(one.split("=")[0] in _OF_MEMORY for one in partition.arguments) else ["--mem=0"]
 
 
 def _one_line(option: str) -> str:

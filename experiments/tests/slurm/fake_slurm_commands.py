@@ -42,7 +42,7 @@ def sbatch(state: dict[str, Any], words: list[str]) -> int:
     job = {"name": options["job-name"], "partition": options["partition"]}
     waits = {"state": "PENDING", "reason": "Resources", "elapsed": "0:00"}
     state["jobs"].append(job | {"tasks": [waits] * tasks})
-    if "loses_replies" in config:
+    if config.get("loses_replies"):
         return fail("sbatch", config["loses_replies"])
     print(f"{100 + len(state['jobs'])}")
     return 0

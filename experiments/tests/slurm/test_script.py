@@ -75,6 +75,14 @@ def test_a_script_asks_for_what_the_site_says() -> None:
     assert "module" not in script
 
 
+@pytest.mark.parametrize("named", [(), ("--mem=2G",), ("--mem-per-cpu=1G",), ("--memory-of-mine",)])
+def test_all_of_a_nodes_memory_is_asked_for_unless_the_site_names_some(named: tuple[str, ...]) -> None:
+    script = render("job", replace(PARTITION, arguments=named), Path("/r/jobs/1.json"), 1, PROGRAMS)
+    options = [shlex.split(line)[1] for line in script.splitlines() if line.startswith("#SBATCH")]
+    asked = [option for option in options if option.split("=")[0] in ("--mem", "--mem-per-cpu")]
+    assert asked == ([one for one in named if "=" in one] or ["--mem=0"])
+
+
 def test_no_value_reaches_a_shell_as_more_than_a_word(tmp_path: Path) -> None:
     folder = tmp_path / "it $(touch owned) `touch owned` & touch owned"
     folder.mkdir()

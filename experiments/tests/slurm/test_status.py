@@ -97,6 +97,19 @@ def test_status_follows_a_study_from_its_submission_to_its_end(workplace: Workpl
     assert f"xs: [{'#' * 24}] 16 of 16 processes\n" in output
 
 
+def test_a_scheduler_that_does_not_answer_is_no_empty_queue(workplace: Workplace) -> None:
+    slurm = FakeSlurm(workplace)
+    site(workplace.root)
+    say(workplace, "submit")
+    slurm.configure(squeue_fails=["slurm_load_jobs error: Unable to contact slurm controller"])
+    output, error = say(workplace, "status")
+    assert error == (
+        "squeue: error: slurm_load_jobs error: Unable to contact slurm controller; "
+        "what runs and what waits is shown as missing\n"
+    )
+    assert "0 of 16 processes; what runs and waits is not known\n" in output
+
+
 def test_how_long_blocks_took_is_told_of_whole_ones_alone(workplace: Workplace) -> None:
     FakeSlurm(workplace)
     site(workplace.root)

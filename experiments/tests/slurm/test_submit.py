@@ -3,16 +3,22 @@ why.
 """
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from experiments.plan.cluster import Partition
+from experiments.slurm import scheduler
 from experiments.slurm.jobs import Unit
 from experiments.slurm.pack import within_time
+from experiments.slurm.refusal import RefusedError
+from experiments.slurm.scheduler import Queue
+from experiments.slurm.submit import submit
 from experiments.tests.conftest import Workplace, finish
 from experiments.tests.slurm.fake_slurm import FakeSlurm
 from experiments.tests.slurm.test_script import site
+from support.errors import InputError
 
 BLOCKS = 7
 """Of the three questions of a workplace; 16 processes."""
@@ -194,6 +200,27 @@ def test_a_job_that_was_taken_although_the_reply_was_lost_is_not_submitted_twice
     assert "xs: job known by its name, 16 processes in 7 tasks" in output
     assert say(workplace, "resume")[0] == "xs: nothing to submit; the rest waits or runs\n"
     assert slurm.arrays() == [7]
+
+
+def test_a_list_of_blocks_stays_while_nobody_says_whether_its_job_was_taken(workplace: Workplace) -> None:
+    lost = ["Batch job submission failed: Socket timed out on send/recv operation"]
+    slurm = FakeSlurm(workplace, loses_replies=lost)
+    site(workplace.root)
+    answers = iter([scheduler.queue])
+
+    def queue() -> Queue:
+        asked = next(answers, None)
+        if asked is None:
+            raise InputError("squeue: nobody answers")
+        return asked()
+
+    workplace.monkeypatch.setattr(scheduler, "queue", queue)
+    with pytest.raises(RefusedError, match="timed out"):
+        submit(replace(workplace.settings, site=str(workplace.root / "cluster.toml")))
+    assert len(jobs_of(workplace)) == 1
+    slurm.ends("CANCELLED")
+    slurm.configure(loses_replies=[])
+    assert "16 processes in 7 tasks" in say(workplace, "resume")[0]
 
 
 def test_arrays_stay_below_what_the_cluster_keeps_at_all(workplace: Workplace) -> None:
