@@ -144,7 +144,7 @@ sanitize: environment settings ## run the quick C++ tests with AddressSanitizer 
 	done
 
 test-slurm: environment ## the tests that need Slurm, which they unpack themselves (Debian's packages, no root)
-	$(python) pytest -m slurm
+	$(python) pytest -m slurm --numprocesses 2 --dist loadfile
 
 # A mistake is told before anything is built. What g++'s build can measure is measured before another one is built. A
 # point that failed (2) belongs in the report and still fails the goal.
