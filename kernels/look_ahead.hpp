@@ -7,7 +7,7 @@
 #include "policies.hpp"
 #include "state.hpp"
 
-// The published layout leads from a box to its list, from there to discs and their lists, and none of these
+// Prefetch::on. The published layout leads from a box to its list, from there to discs and their lists, and none of these
 // lie near one another: a thread would wait for one cache line after another. So the loops over boxes ask for
 // what the boxes after the present one will read. What is needed last is asked for first, since each thing
 // must have arrived for the next to be known. No result depends on it.
@@ -47,7 +47,7 @@ template <Policies policies>
 /// For a loop that finds in every box: as above, and where the lists of the boxes of the next row are.
 template <Policies policies>
 [[gnu::always_inline]] inline void look_ahead_to_find(const State<policies>& state, int row, int column) {
-    if constexpr (policies.storage == Storage::numbered) {
+    if constexpr (policies.prefetch == Prefetch::on) {
         const int ahead = state.boxes_ahead;
         prefetch_entries(box_ahead(state, row, column, 3 * ahead));
         prefetch_discs(state, box_ahead(state, row, column, 2 * ahead));
@@ -60,7 +60,7 @@ template <Policies policies>
 [[gnu::always_inline]] inline void look_ahead_to_find_left(const State<policies>& state, int row,
                                                            int column) {
     look_ahead_to_find(state, row, column);
-    if constexpr (policies.storage == Storage::numbered) {
+    if constexpr (policies.prefetch == Prefetch::on) {
         for (const int i : box_ahead(state, row, column, state.boxes_ahead)) {
             __builtin_prefetch(state.near[static_cast<std::size_t>(i)].data());
         }
@@ -71,7 +71,7 @@ template <Policies policies>
 template <Policies policies>
 [[gnu::always_inline]] inline void look_ahead_to_resolve(const State<policies>& state, int row, int column,
                                                          int stride) {
-    if constexpr (policies.storage == Storage::numbered) {
+    if constexpr (policies.prefetch == Prefetch::on) {
         const int ahead = stride * state.boxes_ahead;
         prefetch_entries(box_ahead(state, row, column, 3 * ahead));
         prefetch_discs(state, box_ahead(state, row, column, 2 * ahead));

@@ -41,6 +41,10 @@ enum class Storage {
     sorted,   ///< in the order of their boxes, sorted anew each step; a box is a range
 };
 
+/// Whether loops over boxes ask for the memory of the boxes that come next, before they are there. No result
+/// depends on it. The published program does not.
+enum class Prefetch { off, on };
+
 /// The side of a box of the grid.
 enum class BoxSide {
     wide, ///< 4r + 1
@@ -90,6 +94,7 @@ struct Policies {
     Schedule find_schedule = Schedule::guided_chunk;
     Schedule resolve_schedule = Schedule::guided_chunk; ///< of the parallel orders; the others have none
     Storage storage = Storage::numbered;
+    Prefetch prefetch = Prefetch::off; ///< of numbered discs; sorted ones are read as they stand
     BoxSide box_side = BoxSide::wide;
     Overlaps overlaps = Overlaps::lists;
     Search search = Search::exact;

@@ -32,6 +32,7 @@ constexpr std::string_view word(Schedule value) {
 }
 
 constexpr std::string_view word(Storage value) { return value == Storage::sorted ? "sorted" : "numbered"; }
+constexpr std::string_view word(Prefetch value) { return value == Prefetch::on ? "on" : "off"; }
 constexpr std::string_view word(BoxSide value) { return value == BoxSide::snug ? "snug" : "wide"; }
 constexpr std::string_view word(Overlaps value) { return value == Overlaps::contacts ? "contacts" : "lists"; }
 constexpr std::string_view word(Search value) { return value == Search::filtered ? "filtered" : "exact"; }
@@ -80,6 +81,7 @@ constexpr Name name_of(const Policies& policies) {
     add(policies.find_schedule != published.find_schedule, "find_", word(policies.find_schedule));
     add(policies.resolve_schedule != published.resolve_schedule, "resolve_", word(policies.resolve_schedule));
     add(policies.storage != published.storage, "", word(policies.storage));
+    add(policies.prefetch != published.prefetch, "prefetch_", word(policies.prefetch));
     add(policies.box_side != published.box_side, "", word(policies.box_side));
     add(policies.overlaps != published.overlaps, "", word(policies.overlaps));
     add(policies.search != published.search, "", word(policies.search));

@@ -15,6 +15,9 @@ constexpr std::string_view impossible(const Policies& policies) {
     if (is_sequential(policies.order) && policies.resolve_schedule != Policies{}.resolve_schedule) {
         return "a sequential resolve order has no resolve schedule to choose";
     }
+    if (policies.prefetch == Prefetch::on && policies.storage == Storage::sorted) {
+        return "sorted discs are read in the order in which they stand: there is nothing to ask ahead for";
+    }
     if (policies.box_side == BoxSide::snug && policies.neighbourhood == Neighbourhood::four) {
         return "a quadrant of a snug box does not hold a disc's reach: it needs nine boxes";
     }
@@ -89,6 +92,7 @@ inline constexpr auto table = [] {
         vary({.direction = forward}, &Policies::order, row, track, repeat, once),
         rows({{.order = row, .self_contained = off, .resolve_schedule = dynamic},
               {.neighbourhood = nine, .order = row, .resolve_schedule = dynamic}}),
+        vary({}, &Policies::prefetch, Prefetch::on),
         ladder,
         vary({.precision = float_}, &Policies::neighbourhood, four, nine),
         vary({.precision = float_}, &Policies::order, track),

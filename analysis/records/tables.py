@@ -32,7 +32,7 @@ PROVENANCE = [
     "operating_system", "compiler", "compiler_flags", "build_type", "binary_sha256",
 ]  # fmt: skip
 LATER_AXES = {
-    "storage": "numbered", "box_side": "wide", "overlaps": "lists", "search": "exact", "worklist": "all",
+    "storage": "numbered", "prefetch": "on", "box_side": "wide", "overlaps": "lists", "search": "exact", "worklist": "all",
     "impact": "step_end", "precision": "double",
 }  # fmt: skip
 """Policies that not all records name, each with its value in those that do not."""

@@ -26,12 +26,16 @@ inline nlohmann::ordered_json policies_json(const Policies& policies, Engine eng
                                 {"find_schedule", word(policies.find_schedule)},
                                 {"resolve_schedule", nullptr},
                                 {"storage", word(policies.storage)},
+                                {"prefetch", nullptr},
                                 {"box_side", word(policies.box_side)},
                                 {"overlaps", word(policies.overlaps)},
                                 {"search", word(policies.search)},
                                 {"worklist", word(policies.worklist)},
                                 {"impact", word(policies.impact)},
                                 {"precision", word(policies.precision)}};
+    if (policies.storage == Storage::numbered) {
+        json["prefetch"] = word(policies.prefetch);
+    }
     if (policies.overlaps == Overlaps::lists) {
         json["direction"] = word(policies.direction);
     }
