@@ -18,6 +18,7 @@
 #include "state.hpp"
 #include "sweep.hpp"
 #include "tally.hpp"
+#include "threads/own_lines.hpp"
 
 // Impact::at_contact with lists. Each near pair stands in two lists, and each disc chooses the earliest
 // collision of its own. Two discs that choose each other collide.
@@ -56,7 +57,7 @@ Changes choose_next(State<policies>& state, int i, const WayBackOf<policies>& ba
         }
     }
     state.next[static_cast<std::size_t>(i)] = next;
-    return {.attempts = static_cast<int>(near.size())};
+    return {.attempts = std::ssize(near)};
 }
 
 /// Finds the discs within twice `radius` of each disc of one box, and those that are that near a wall, and

@@ -4,8 +4,8 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
-#include <vector>
 
 #include "at_contact.hpp"
 #include "collide.hpp"
@@ -88,7 +88,7 @@ template <Policies policies>
 /// were looked at.
 template <Policies policies>
 [[gnu::always_inline]] inline Selection pairs_to_ask(State<policies>& state, int index, int sweep,
-                                                     int& attempts) {
+                                                     std::int64_t& attempts) {
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
     const int* near_begin = strip.near_begin.data();
@@ -257,23 +257,22 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
     const auto back = way_back(state, tuning);
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     const int strips = state.grid.strip_count(strip_height(policies.order));
-    const std::vector<StripSweep> order = sweep_order(strips, 2, strips);
     Wavefront wavefront(strips);
     return sweep_at_contact(tuning, probe, [&](int sweep, int threads) {
-        return parallel_for<policies.resolve_schedule>(
-            threads, static_cast<int>(order.size()), tuning.resolve_chunk, probe,
-            [&](int index) {
-                const auto [strip, half] = order[static_cast<std::size_t>(index)];
-                const Changes changes = half == 0
-                                            ? find_pending(state, strip, sweep, back)
-                                            : collide_earliest(state, strip, sweep, back, approaching, probe);
-                wavefront.ends(strip, 2 * sweep + half);
-                return Tally(changes);
-            },
-            [&](int index) {
-                const auto [strip, half] = order[static_cast<std::size_t>(index)];
-                return wavefront.can_begin(strip, 2 * sweep + half);
-            });
+        const auto half_sweep = [&](const StripSweep& next) {
+            const auto [strip, half] = next;
+            const Changes changes = half == 0
+                                        ? find_pending(state, strip, sweep, back)
+                                        : collide_earliest(state, strip, sweep, back, approaching, probe);
+            wavefront.ends(strip, 2 * sweep + half);
+            return Tally(changes);
+        };
+        const auto can_begin = [&](const StripSweep& next) {
+            return wavefront.can_begin(next.strip, 2 * sweep + next.sweep);
+        };
+        Tuning now = tuning;
+        now.threads = threads;
+        return sweep_in_turns<policies>(strips, 2, false, now, probe, half_sweep, can_begin);
     });
 }
 

@@ -27,11 +27,12 @@ struct Tally {
     friend bool operator==(const Tally&, const Tally&) = default;
 };
 
-/// What visiting some discs or contacts changed.
+/// What visiting some discs or contacts changed: those of one visit, one box or one strip. Of all discs, a
+/// Tally.
 struct Changes {
     int pairs = 0;
     int walls = 0;
-    int attempts = 0; ///< pairs asked, changed or not
+    std::int64_t attempts = 0; ///< pairs asked, changed or not
 
     int count() const { return pairs + walls; }
     bool any() const { return count() > 0; }
