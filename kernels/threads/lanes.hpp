@@ -17,8 +17,8 @@ namespace carom {
 /// Each lane's turns come one after another, and none is taken before it can begin. Let every turn wait only
 /// for turns of a lower rank, and rank never fall along a lane. Then as long as turns are left some thread
 /// can take one or is at one: of those of the lowest rank that are not done each can begin, and so can what
-/// stands before it in its lane.
-template <class Turn> class Lanes {
+/// stands before it in its lane. `Counter` is for tests, which count what is done to it.
+template <class Turn, class Counter = std::atomic<int>> class Lanes {
   public:
     /// Room for so many lanes and turns.
     Lanes(int lanes, std::size_t turns) {
@@ -85,7 +85,7 @@ template <class Turn> class Lanes {
         ~Lane() = default;
 
         int end; ///< of its turns
-        std::atomic<int> next;
+        Counter next;
     };
 
     std::vector<Lane> lanes_;
