@@ -12,7 +12,7 @@ namespace carom {
 
 /// Turns to be taken by several threads, each from a lane of its own first and from the others' when its own
 /// cannot go on. So a number is taken from a counter that nobody else writes, and looks at, but for who has
-/// nothing else to do. (Box2D 3 hands out its blocks so; Catto, Releasing Box2D 3.0, 2024.)
+/// nothing else to do. (So Box2D 3 hands out its blocks: solver.c, GetWorkerStartIndex.)
 ///
 /// Each lane's turns come one after another, and none is taken before it can begin. Let every turn wait only
 /// for turns of a lower rank, and rank never fall along a lane. Then as long as turns are left some thread
