@@ -57,7 +57,7 @@ Changes choose_next(State<policies>& state, int i, const WayBackOf<policies>& ba
         }
     }
     state.next[static_cast<std::size_t>(i)] = next;
-    return {.attempts = std::ssize(near)};
+    return {.attempts = static_cast<int>(near.size())};
 }
 
 /// Finds the discs within twice `radius` of each disc of one box, and those that are that near a wall, and

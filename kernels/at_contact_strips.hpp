@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
-#include <cstdint>
 #include <iterator>
 
 #include "at_contact.hpp"
@@ -88,7 +87,7 @@ template <Policies policies>
 /// were looked at.
 template <Policies policies>
 [[gnu::always_inline]] inline Selection pairs_to_ask(State<policies>& state, int index, int sweep,
-                                                     std::int64_t& attempts) {
+                                                     int& attempts) {
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));
     const int* near_begin = strip.near_begin.data();

@@ -114,12 +114,13 @@ void find_within_box(State<policies>& state, int row, int column,
 /// Resolves within one box until no pair in it collides. What is left after `rounds_within_box` rounds the
 /// resolve of the step will find.
 template <Policies policies>
-Tally resolve_within_box(State<policies>& state, int row, int column,
-                         const ApproachToleranceOf<policies>& approaching) {
+Changes resolve_within_box(State<policies>& state, int row, int column,
+                           const ApproachToleranceOf<policies>& approaching) {
     Remembered remembered;
-    Tally changes = visit_each<LookAtWalls::no>(state, state.discs_in(row, column), remembered, approaching);
+    Changes changes =
+        visit_each<Changes, LookAtWalls::no>(state, state.discs_in(row, column), remembered, approaching);
     for (int round = 0; round < rounds_within_box && !remembered.next.empty(); ++round) {
-        changes += visit_remembered<LookAtWalls::no>(state, remembered, approaching);
+        changes += visit_remembered<Changes, LookAtWalls::no>(state, remembered, approaching);
     }
     return changes;
 }

@@ -78,28 +78,6 @@ template <Schedule schedule, class Iterate>
     }
 }
 
-/// Runs `work(thread, sum)` once on each of `threads` threads, each with a sum of its own, and returns the
-/// sum of these. Exceptions must not leave `work`.
-template <class Sum, class SomeProbe, class Work>
-[[gnu::always_inline]] inline Sum sum_of_threads(int threads, SomeProbe& probe, const Work& work) {
-    Sum total;
-#pragma omp declare reduction(add:Sum : omp_out += omp_in)
-#pragma omp parallel num_threads(threads) reduction(add : total)
-    {
-        Sum sum; // not shared with the runtime: it may stay in registers
-        const int thread = omp_get_thread_num();
-        probe.loop_begin(thread);
-        work(thread, sum);
-        probe.loop_end(thread);
-        if constexpr (!std::is_same_v<SomeProbe, NoProbe>) { // whom the end of the region, a barrier, will do
-#pragma omp barrier
-            probe.barrier_end(thread);
-        }
-        total += sum;
-    }
-    return total;
-}
-
 /// Runs `body(i, sum)` for each i in [0, count), as the iterations of one loop on `threads` threads under the
 /// given schedule, and returns the sum of what the bodies add to their sums. Each thread has a copy of `body`
 /// and takes its iterations in rising order. Iterations must not write what another one reads, unless `ready`
@@ -109,8 +87,14 @@ template <class Sum, class SomeProbe, class Work>
 template <Schedule schedule, class Sum, class SomeProbe, class Body, class Ready>
 Sum sum_in_parallel(int threads, int count, int chunk, SomeProbe& probe, const Body& body,
                     const Ready& ready) {
-    return sum_of_threads<Sum>(threads, probe, [&](int thread, Sum& sum) {
+    Sum total;
+#pragma omp declare reduction(add:Sum : omp_out += omp_in)
+#pragma omp parallel num_threads(threads) reduction(add : total)
+    {
+        Sum sum; // not shared with the runtime: it may stay in registers
         Body own_body(body);
+        const int thread = omp_get_thread_num();
+        probe.loop_begin(thread);
         iterate_own<schedule>(count, chunk, [&](int i) {
             if (!ready(i)) {
                 await(i, ready, thread, probe);
@@ -118,7 +102,14 @@ Sum sum_in_parallel(int threads, int count, int chunk, SomeProbe& probe, const B
             probe.iteration(thread, i);
             own_body(i, sum);
         });
-    });
+        probe.loop_end(thread);
+        if constexpr (!std::is_same_v<SomeProbe, NoProbe>) { // whom the end of the region, a barrier, will do
+#pragma omp barrier
+            probe.barrier_end(thread);
+        }
+        total += sum;
+    }
+    return total;
 }
 
 /// Of bodies that return nothing.
@@ -184,14 +175,29 @@ int next_turn(Lanes<Turn>& lanes, int thread, const Ready& ready, SomeProbe& pro
 /// make it. Exceptions must not leave `body`.
 template <class Turn, class SomeProbe, class Body, class Ready>
 auto take_turns(int threads, Lanes<Turn>& lanes, SomeProbe& probe, const Body& body, const Ready& ready) {
+    // A region of its own: where the two share one, g++ 12 makes 2 % more instructions of the loops over
+    // boxes.
     using Sum = std::invoke_result_t<const Body&, const Turn&>;
-    return sum_of_threads<Sum>(threads, probe, [&](int thread, Sum& sum) {
+    Sum total;
+#pragma omp declare reduction(add:Sum : omp_out += omp_in)
+#pragma omp parallel num_threads(threads) reduction(add : total)
+    {
+        Sum sum;
+        const int thread = omp_get_thread_num();
+        probe.loop_begin(thread);
         for (int turn = next_turn(lanes, thread, ready, probe); turn >= 0;
              turn = next_turn(lanes, thread, ready, probe)) {
             probe.iteration(thread, turn);
             sum += body(lanes.turns()[static_cast<std::size_t>(turn)]);
         }
-    });
+        probe.loop_end(thread);
+        if constexpr (!std::is_same_v<SomeProbe, NoProbe>) {
+#pragma omp barrier
+            probe.barrier_end(thread);
+        }
+        total += sum;
+    }
+    return total;
 }
 
 /// Runs `body(thread)` once on each of the same threads that `parallel_for` with as many threads uses.

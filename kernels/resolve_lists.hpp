@@ -36,7 +36,7 @@ template <bool again, Direction direction, Policies policies, class OnPartner>
     Changes changes;
     for (int pass = 0; pass < (again ? passes_per_visit : 1); ++pass) {
         const int before = changes.count();
-        changes.attempts += std::ssize(partners);
+        changes.attempts += static_cast<int>(partners.size());
         const int* next = reverse ? last : first;
         while (next != (reverse ? first : last)) {
             const int j = reverse ? *--next : *next++;
@@ -108,18 +108,12 @@ struct Remembered {
     }
 };
 
-/// Adds what one visit did: the rest of a tally no visit changes.
-inline void add(Tally& total, const Changes& changes) {
-    total.pair_resolves += changes.pairs;
-    total.pair_attempts += changes.attempts;
-    total.wall_resolves += changes.walls;
-}
-
-/// Visits each of `discs` in turn and remembers partners before it that it changed.
-template <LookAtWalls walls, Policies policies, class Discs>
-Tally visit_each(State<policies>& state, const Discs& discs, Remembered& remembered,
-                 const ApproachToleranceOf<policies>& approaching) {
-    Tally total;
+/// Visits each of `discs` in turn and remembers partners before it that it changed. Returns the sum of what
+/// the visits changed: of all discs, a Tally.
+template <class Sum, LookAtWalls walls, Policies policies, class Discs>
+Sum visit_each(State<policies>& state, const Discs& discs, Remembered& remembered,
+               const ApproachToleranceOf<policies>& approaching) {
+    Sum total;
     remembered.next.clear();
     for (const int i : discs) {
         const Changes changes = visit<true, policies.direction>(state, i, looks_at_wall<walls>(state, i),
@@ -128,7 +122,7 @@ Tally visit_each(State<policies>& state, const Discs& discs, Remembered& remembe
                                                                         remembered.next.push_back(j);
                                                                     }
                                                                 });
-        add(total, changes);
+        total += changes;
         if (changes.count() >= passes_per_visit) {
             remembered.next.push_back(i);
         }
@@ -137,16 +131,16 @@ Tally visit_each(State<policies>& state, const Discs& discs, Remembered& remembe
 }
 
 /// Visits what was remembered, and remembers every partner changed.
-template <LookAtWalls walls, Policies policies>
-Tally visit_remembered(State<policies>& state, Remembered& remembered,
-                       const ApproachToleranceOf<policies>& approaching) {
-    Tally total;
+template <class Sum, LookAtWalls walls, Policies policies>
+Sum visit_remembered(State<policies>& state, Remembered& remembered,
+                     const ApproachToleranceOf<policies>& approaching) {
+    Sum total;
     remembered.begin_round(state.count());
     for (const int i : remembered.now) {
         const Changes changes =
             visit<true, Direction::forward>(state, i, looks_at_wall<walls>(state, i), approaching,
                                             [&](int j) { remembered.next.push_back(j); });
-        add(total, changes);
+        total += changes;
         if (changes.count() >= passes_per_visit) {
             remembered.next.push_back(i);
         }

@@ -27,12 +27,12 @@ struct Tally {
     friend bool operator==(const Tally&, const Tally&) = default;
 };
 
-/// What visiting some discs or contacts changed: those of one visit, one box or one strip. Of all discs, a
-/// Tally.
+/// What visiting a disc, or those of a box or a strip, or its contacts, changed. An int holds that unless
+/// there are some gigabytes of lists in one strip; of all discs it is a Tally.
 struct Changes {
     int pairs = 0;
     int walls = 0;
-    std::int64_t attempts = 0; ///< pairs asked, changed or not
+    int attempts = 0; ///< pairs asked, changed or not
 
     int count() const { return pairs + walls; }
     bool any() const { return count() > 0; }

@@ -80,10 +80,10 @@ class Wavefront {
     }
 
     /// Notes what a strip has done in the `sweep`-th of the sweeps that run as one.
-    void notes(int strip, int sweep, const Changes& made) {
+    void notes(int strip, int sweep, const Tally& made) {
         Strip& one = strips_[static_cast<std::size_t>(strip)];
-        one.changes[static_cast<std::size_t>(sweep)] = made.count();
-        one.attempts[static_cast<std::size_t>(sweep)] = made.attempts;
+        one.changes[static_cast<std::size_t>(sweep)] = made.pair_resolves + made.wall_resolves;
+        one.attempts[static_cast<std::size_t>(sweep)] = made.pair_attempts;
     }
 
     /// What all strips have noted of that sweep.
@@ -105,7 +105,7 @@ class Wavefront {
     /// thread's hands at a time.
     struct alignas(cache_line) Strip {
         std::atomic<int> sweeps = 0;
-        std::array<int, most_sweeps_at_once> changes{};
+        std::array<std::int64_t, most_sweeps_at_once> changes{};
         std::array<std::int64_t, most_sweeps_at_once> attempts{};
     };
 
@@ -200,10 +200,10 @@ Swept sweep_wavefront(State<policies>& state, Wavefront& wavefront, int done, in
     assert(count > 0);
     const int strips = state.grid.strip_count(strip_height(policies.order));
     const auto resolve_next = [&](const StripSweep& next) {
-        const Changes made = resolve_strip(state, next.strip, approaching);
+        const Tally made = resolve_strip(state, next.strip, approaching);
         wavefront.notes(next.strip, next.sweep, made);
         wavefront.ends(next.strip, done + next.sweep);
-        return Tally(made);
+        return made;
     };
     const auto can_begin = [&](const StripSweep& next) {
         return wavefront.can_begin(next.strip, done + next.sweep);

@@ -154,7 +154,7 @@ TEST(Wavefront, AddsUpMoreThanAnIntHolds) {
     constexpr int strips = 2500; // of a hundred million discs
     Wavefront wavefront(strips);
     for (int strip = 0; strip < strips; ++strip) {
-        wavefront.notes(strip, 3, {.pairs = most, .attempts = std::int64_t{4} * most});
+        wavefront.notes(strip, 3, {.pair_resolves = most, .pair_attempts = std::int64_t{4} * most});
     }
     EXPECT_EQ(wavefront.noted(3).changes, std::int64_t{strips} * most);
     EXPECT_EQ(wavefront.noted(3).attempts, std::int64_t{strips} * 4 * most);
