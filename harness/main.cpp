@@ -16,6 +16,7 @@
 #include "harness/command_line/usage_errors.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/machine/provenance.hpp"
+#include "harness/machine/threads.hpp"
 #include "harness/machine/waiting.hpp"
 #include "harness/support/errors.hpp"
 
@@ -63,6 +64,7 @@ void add_verbs(CLI::App& program) {
 
 int main(int count, char** arguments) {
     carom::settle_waiting();
+    carom::end_where_threads_run_out_of_memory();
     try {
         carom::hand_over(std::vector<std::string>(arguments + (count > 0 ? 1 : 0), arguments + count));
     } catch (const carom::InputError& error) {

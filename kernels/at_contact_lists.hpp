@@ -18,6 +18,7 @@
 #include "state.hpp"
 #include "sweep.hpp"
 #include "tally.hpp"
+#include "threads/own_lines.hpp"
 
 // Impact::at_contact with lists. Each near pair stands in two lists, and each disc chooses the earliest
 // collision of its own. Two discs that choose each other collide.

@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cstddef>
 #include <iterator>
-#include <vector>
 
 #include "at_contact.hpp"
 #include "collide.hpp"
@@ -257,23 +256,22 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
     const auto back = way_back(state, tuning);
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     const int strips = state.grid.strip_count(strip_height(policies.order));
-    const std::vector<StripSweep> order = sweep_order(strips, 2, strips);
     Wavefront wavefront(strips);
     return sweep_at_contact(tuning, probe, [&](int sweep, int threads) {
-        return parallel_for<policies.resolve_schedule>(
-            threads, static_cast<int>(order.size()), tuning.resolve_chunk, probe,
-            [&](int index) {
-                const auto [strip, half] = order[static_cast<std::size_t>(index)];
-                const Changes changes = half == 0
-                                            ? find_pending(state, strip, sweep, back)
-                                            : collide_earliest(state, strip, sweep, back, approaching, probe);
-                wavefront.ends(strip, 2 * sweep + half);
-                return Tally(changes);
-            },
-            [&](int index) {
-                const auto [strip, half] = order[static_cast<std::size_t>(index)];
-                return wavefront.can_begin(strip, 2 * sweep + half);
-            });
+        const auto half_sweep = [&](const StripSweep& next) {
+            const auto [strip, half] = next;
+            const Changes changes = half == 0
+                                        ? find_pending(state, strip, sweep, back)
+                                        : collide_earliest(state, strip, sweep, back, approaching, probe);
+            wavefront.ends(strip, 2 * sweep + half);
+            return Tally(changes);
+        };
+        const auto can_begin = [&](const StripSweep& next) {
+            return wavefront.can_begin(next.strip, 2 * sweep + next.sweep);
+        };
+        Tuning now = tuning;
+        now.threads = threads;
+        return sweep_in_turns<policies>(strips, 2, false, now, probe, half_sweep, can_begin);
     });
 }
 

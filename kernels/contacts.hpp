@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "grid.hpp"
-#include "parallel_for.hpp"
 #include "policies.hpp"
+#include "threads/own_lines.hpp"
 
 namespace carom {
 
@@ -73,22 +73,23 @@ class FoundPairs {
     }
 
   private:
-    std::vector<OverlappingDiscs> pairs_;
+    OwnVector<OverlappingDiscs> pairs_;
     std::size_t size_ = 0;
 };
 
 /// The contacts whose first disc lies in one strip of rows of boxes, in the order of the boxes. The second
-/// disc lies in the same strip or in the first row of the next.
-template <class Real> struct Strip {
-    std::vector<Contact<Real>> contacts;
-    std::vector<int> contact_begin;   ///< of each segment, its first contact; at the end, their number
-    FoundPairs found;                 ///< of one segment, while it is searched
-    std::vector<NearPair<Real>> near; ///< Impact::at_contact: what the search finds, before contacts are made
-    std::vector<int> near_begin; ///< ditto: of each segment, its first near pair; at the end, their number
-    std::vector<int> pending;    ///< ditto: room for the numbers of all near pairs and one more
-    int pending_count = 0;       ///< ditto: how many of them are pending
-    std::vector<int> segments;   ///< room to select segments of one row in
-    std::vector<int> selected;   ///< room to select contacts or near pairs in
+/// disc lies in the same strip or in the first row of the next. One thread at a time writes it, while others
+/// write those beside it: so all of it has cache lines of its own.
+template <class Real> struct alignas(cache_line) Strip {
+    OwnVector<Contact<Real>> contacts;
+    OwnVector<int> contact_begin;   ///< of each segment, its first contact; at the end, their number
+    FoundPairs found;               ///< of one segment, while it is searched
+    OwnVector<NearPair<Real>> near; ///< Impact::at_contact: what the search finds, before contacts are made
+    OwnVector<int> near_begin;      ///< ditto: of each segment, its first near pair; at the end, their number
+    OwnVector<int> pending;         ///< ditto: room for the numbers of all near pairs and one more
+    int pending_count = 0;          ///< ditto: how many of them are pending
+    OwnVector<int> segments;        ///< room to select segments of one row in
+    OwnVector<int> selected;        ///< room to select contacts or near pairs in
 
     /// Impact::at_contact: the near pairs that have come into contact and have not collided yet.
     std::span<const int> pending_pairs() const {
@@ -177,7 +178,7 @@ class ActiveSegments {
     int per_row_;
     int stride_; ///< of rows, so that no two threads write to one cache line at a time
     int last_column_;
-    std::vector<unsigned char> marks_;
+    UntouchedVector<unsigned char> marks_; ///< those of a row are written first by who searches its strip
 };
 
 } // namespace carom

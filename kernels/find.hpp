@@ -118,9 +118,9 @@ Changes resolve_within_box(State<policies>& state, int row, int column,
                            const ApproachToleranceOf<policies>& approaching) {
     Remembered remembered;
     Changes changes =
-        visit_each<LookAtWalls::no>(state, state.discs_in(row, column), remembered, approaching);
+        visit_each<Changes, LookAtWalls::no>(state, state.discs_in(row, column), remembered, approaching);
     for (int round = 0; round < rounds_within_box && !remembered.next.empty(); ++round) {
-        changes += visit_remembered<LookAtWalls::no>(state, remembered, approaching);
+        changes += visit_remembered<Changes, LookAtWalls::no>(state, remembered, approaching);
     }
     return changes;
 }

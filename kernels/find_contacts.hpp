@@ -8,7 +8,6 @@
 #include <cstring>
 #include <iterator>
 #include <limits>
-#include <vector>
 
 #include "collide.hpp"
 #include "contacts.hpp"
@@ -19,6 +18,7 @@
 #include "state.hpp"
 #include "storage.hpp"
 #include "tally.hpp"
+#include "threads/own_lines.hpp"
 
 namespace carom {
 
@@ -227,7 +227,7 @@ Tally find_in_strip(State<policies>& state, int index, RealOf<policies.precision
     auto& strip = state.strips[static_cast<std::size_t>(index)];
     strip.contacts.clear();
     strip.near.clear();
-    std::vector<int>& segment_begin =
+    OwnVector<int>& segment_begin =
         policies.impact == Impact::at_contact ? strip.near_begin : strip.contact_begin;
     segment_begin.assign(1, 0);
     const BoxRange rows = state.grid.rows_of_strip(index, strip_height(policies.order));

@@ -40,7 +40,8 @@ class NoCollisionLog {
 /// The master calls `phase_begin`, `phase_end`, `sweep_begin` and `sweep_end` outside parallel loops. Each
 /// thread calls `loop_begin` when it enters a parallel loop, `iteration` before each of its iterations,
 /// `loop_end` when it has none left, and `barrier_end` when all threads are through; `wait_begin` and
-/// `wait_end`, before an iteration, where it has to wait for others. Sweeps that run as one are told as one.
+/// `wait_end`, before an iteration or its last `loop_end`, where it has to wait for others. Sweeps that run
+/// as one are told as one.
 class Probe {
   public:
     virtual ~Probe() = default;

@@ -108,11 +108,12 @@ struct Remembered {
     }
 };
 
-/// Visits each of `discs` in turn and remembers partners before it that it changed.
-template <LookAtWalls walls, Policies policies, class Discs>
-Changes visit_each(State<policies>& state, const Discs& discs, Remembered& remembered,
-                   const ApproachToleranceOf<policies>& approaching) {
-    Changes total;
+/// Visits each of `discs` in turn and remembers partners before it that it changed. Returns the sum of what
+/// the visits changed: of all discs, a Tally.
+template <class Sum, LookAtWalls walls, Policies policies, class Discs>
+Sum visit_each(State<policies>& state, const Discs& discs, Remembered& remembered,
+               const ApproachToleranceOf<policies>& approaching) {
+    Sum total;
     remembered.next.clear();
     for (const int i : discs) {
         const Changes changes = visit<true, policies.direction>(state, i, looks_at_wall<walls>(state, i),
@@ -130,10 +131,10 @@ Changes visit_each(State<policies>& state, const Discs& discs, Remembered& remem
 }
 
 /// Visits what was remembered, and remembers every partner changed.
-template <LookAtWalls walls, Policies policies>
-Changes visit_remembered(State<policies>& state, Remembered& remembered,
-                         const ApproachToleranceOf<policies>& approaching) {
-    Changes total;
+template <class Sum, LookAtWalls walls, Policies policies>
+Sum visit_remembered(State<policies>& state, Remembered& remembered,
+                     const ApproachToleranceOf<policies>& approaching) {
+    Sum total;
     remembered.begin_round(state.count());
     for (const int i : remembered.now) {
         const Changes changes =

@@ -14,6 +14,7 @@
 #include "scene.hpp"
 #include "storage.hpp"
 #include "tally.hpp"
+#include "threads/own_lines.hpp"
 
 namespace carom {
 
@@ -26,20 +27,20 @@ template <class Real> struct OverlapsOf<Overlaps::lists, Real> {
     std::vector<unsigned char> overlaps_wall; ///< of each disc, whether it overlaps one
     std::vector<std::vector<NearDisc<Real>>>
         near; ///< Impact::at_contact: for each disc those near it, and near a wall itself
-    std::vector<NextCollision<Real>> next; ///< ditto: of each disc
-    std::vector<unsigned char> asked;      ///< ditto: of each disc, whether it chooses anew in this sweep
-    std::vector<unsigned char> asked_next; ///< ditto: in the next one
+    UntouchedVector<NextCollision<Real>> next; ///< ditto: of each disc
+    UntouchedVector<unsigned char> asked;      ///< ditto: of each disc, whether it chooses anew in this sweep
+    UntouchedVector<unsigned char> asked_next; ///< ditto: in the next one
 
     OverlapsOf(const Grid& /*grid*/, int count)
         : overlaps(static_cast<std::size_t>(count)), overlaps_wall(static_cast<std::size_t>(count)) {}
 };
 
 template <class Real> struct OverlapsOf<Overlaps::contacts, Real> {
-    std::vector<Strip<Real>> strips;
-    std::vector<ActiveSegments::Beside> segments_of_disc;
+    OwnVector<Strip<Real>> strips;
+    UntouchedVector<ActiveSegments::Beside> segments_of_disc;
     ActiveSegments active;
-    std::vector<EarliestCollision<Real>> earliest; ///< Impact::at_contact: of each disc
-    std::vector<int> changed_in; ///< ditto: of each disc the last sweep in which it collided; -1 before
+    UntouchedVector<EarliestCollision<Real>> earliest; ///< Impact::at_contact: of each disc
+    UntouchedVector<int> changed_in; ///< ditto: of each disc the last sweep in which it collided; -1 before
 
     OverlapsOf(const Grid& grid, int count)
         : strips(static_cast<std::size_t>(grid.strip_count(strip_height(Order::strips)))),

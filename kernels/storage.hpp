@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
-#include <type_traits>
+#include <span>
 #include <vector>
 
 #include "grid.hpp"
@@ -11,23 +10,9 @@
 #include "policies.hpp"
 #include "probe.hpp"
 #include "scene.hpp"
+#include "threads/own_lines.hpp"
 
 namespace carom {
-
-/// Leaves the elements of a vector as the memory comes, to be written before they are read. Systems give
-/// memory when it is first touched, near the processor that does: so the threads that work on a vector get
-/// it side by side, each what it will use, and nothing is written in vain.
-template <class T> struct Untouched : std::allocator<T> {
-    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
-
-    template <class Other> struct rebind { // NOLINT(readability-identifier-naming)
-        using other = Untouched<Other>;
-    };
-
-    void construct(T* /*element*/) const noexcept {}
-};
-
-template <class T> using UntouchedVector = std::vector<T, Untouched<T>>;
 
 /// The discs and which box holds which, by `Policies::storage`.
 template <Storage storage, class Real> struct DiscsOf;
@@ -72,18 +57,29 @@ struct Indices {
     Iterator begin() const { return {first}; }
     Iterator end() const { return {last}; }
     int count() const { return last - first; }
+    bool hold(int i) const { return first <= i && i < last; }
 };
 
-/// What one part of the discs brings to the sort: how many each box holds, and then the place of the next of
-/// them there. Of the boxes from the first to the last that hold one: after the first sort few, since discs
-/// do not move far in a step.
-struct PlacesOfPart {
-    BoxRange boxes{.first = 0, .last = -1};
-    std::vector<int> by_box;
+/// One part of the sort (bin.hpp), in a cache line of its own: one thread writes it while others write
+/// others.
+struct alignas(cache_line) PartOfSort {
+    struct Begin {
+        int box;
+        int disc;
+    };
+    Begin begin{0, 0};   ///< of the next sort: the first of its boxes and of its discs, as they lie now
+    Indices boxes{0, 0}; ///< of this sort: its boxes
+    Indices discs{0, 0}; ///< ditto: the indices, before it, of the discs that it looks through
+    int total = 0;       ///< how many discs its boxes hold
+    int first_place = 0; ///< where the first of these goes
+    OwnVector<int> leaving_end; ///< of each part, the end of the discs listed for it
 
-    int& operator[](int box) { return by_box[static_cast<std::size_t>(box - boxes.first)]; }
-    bool holds(int box) const { return boxes.first <= box && box <= boxes.last; }
-    bool meets(BoxRange others) const { return boxes.first <= others.last && others.first <= boxes.last; }
+    /// Those of its discs that lie in the boxes of another part. `leaving` are those of all parts.
+    std::span<const int> leaving_to(int part, std::span<const int> leaving) const {
+        const auto to = static_cast<std::size_t>(part);
+        const auto first = static_cast<std::size_t>(part == 0 ? discs.first : leaving_end[to - 1]);
+        return leaving.subspan(first, static_cast<std::size_t>(leaving_end[to]) - first);
+    }
 };
 
 /// Discs in the order of their boxes, row by row; in a box they keep the order that they had before. A box is
@@ -92,15 +88,17 @@ template <class Real> struct DiscsOf<Storage::sorted, Real> {
     UntouchedVector<BasicDisc<Real>> discs;
     UntouchedVector<int> numbers;     ///< the number, in the scene, of the disc at each index
     UntouchedVector<int> box_of_disc; ///< written by the move, and then sorted with the discs
-    std::vector<int> box_begin; ///< index of the first disc of each box; one more, the count, at the end
+    UntouchedVector<int> box_begin; ///< index of the first disc of each box; one more, the count, at the end
 
-    std::vector<float> near_x; ///< Search::filtered: positions in float, and eight more that mean nothing
-    std::vector<float> near_y; ///< ditto
+    UntouchedVector<float> near_x; ///< Search::filtered: positions in float, and eight more that mean nothing
+    UntouchedVector<float> near_y; ///< ditto
 
     UntouchedVector<BasicDisc<Real>> spare_discs; ///< what the sort writes into, then swapped
     UntouchedVector<int> spare_numbers;
     UntouchedVector<int> spare_box_of_disc;
-    std::vector<PlacesOfPart> places; ///< of each part of the sort
+    UntouchedVector<int>
+        leaving; ///< of each part of the sort, in its share of the indices, the discs that it lists
+    OwnVector<PartOfSort> parts; ///< of the sort; one more, which has nothing, at the end
 
     DiscsOf(const Scene& scene, const Grid& grid, int threads)
         : discs(scene.discs.size()), numbers(discs.size()), box_of_disc(discs.size()),
@@ -118,6 +116,12 @@ template <class Real> struct DiscsOf<Storage::sorted, Real> {
             numbers[index] = i;
         });
     }
+
+    /// How many discs each box holds, while they are sorted, and then where the next of them goes. When the
+    /// last of them has gone there that is the begin of the next box.
+    int* counts() { return box_begin.data() + 1; }
+
+    std::span<PartOfSort> parts_before_end() { return {parts.data(), parts.size() - 1}; }
 
     int begin_of(int box) const { return box_begin[static_cast<std::size_t>(box)]; }
     Indices discs_in_box(int box) const { return {begin_of(box), begin_of(box + 1)}; }

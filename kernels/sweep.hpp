@@ -115,9 +115,10 @@ Swept sweep_discs(State<policies>& state, const ApproachToleranceOf<policies>& a
 template <Policies policies>
 Swept sweep_track(State<policies>& state, Remembered& remembered, bool is_first,
                   const ApproachToleranceOf<policies>& approaching) {
-    Swept swept = one_sweep(
-        is_first ? visit_each<LookAtWalls::yes>(state, Indices{0, state.count()}, remembered, approaching)
-                 : visit_remembered<LookAtWalls::yes>(state, remembered, approaching));
+    Swept swept =
+        one_sweep(is_first ? visit_each<Tally, LookAtWalls::yes>(state, Indices{0, state.count()}, remembered,
+                                                                 approaching)
+                           : visit_remembered<Tally, LookAtWalls::yes>(state, remembered, approaching));
     swept.last_changes = std::ssize(remembered.next);
     return swept;
 }

@@ -27,7 +27,8 @@ struct Tally {
     friend bool operator==(const Tally&, const Tally&) = default;
 };
 
-/// What visiting some discs or contacts changed.
+/// What visiting a disc, or those of a box or a strip, or its contacts, changed. An int holds that unless
+/// there are some gigabytes of lists in one strip; of all discs it is a Tally.
 struct Changes {
     int pairs = 0;
     int walls = 0;

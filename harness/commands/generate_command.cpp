@@ -14,6 +14,7 @@
 #include "harness/scenes/hard_cases.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/free_memory.hpp"
 #include "harness/support/nearest.hpp"
 #include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
@@ -40,10 +41,18 @@ void require_velocities(const GeneratorArguments& arguments) {
     }
 }
 
+/// The text of a scene is held as a whole before it is written.
+void require_room_to_write(int discs) {
+    constexpr std::int64_t bytes_per_line = 50; // at least: four numbers of most often 17 digits
+    require_memory(discs * (static_cast<std::int64_t>(sizeof(Disc)) + bytes_per_line),
+                   counted(discs, "disc") + " and their text");
+}
+
 Scene random_scene(const GeneratorArguments& arguments) {
     require_radius(arguments.radius, "R");
     require_side(arguments.side, arguments.radius, "L");
     require_velocities(arguments);
+    require_room_to_write(arguments.count);
     return generate(arguments);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "harness/machine/threads.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/free_memory.hpp"
 #include "harness/support/nearest.hpp"
 #include "harness/support/note.hpp"
 #include "harness/support/text.hpp"
@@ -18,6 +20,7 @@
 #include "harness/verify/rounding.hpp"
 #include "variants/event_driven_variant.hpp"
 #include "variants/fastest.hpp"
+#include "variants/least_memory.hpp"
 
 namespace carom {
 namespace {
@@ -56,6 +59,20 @@ void require_event_driven(const Scene& scene, const Tuning& tuning) {
         throw InputError(option + ": found that at the start " + *overlap +
                          ", expected discs apart from each other and from the walls, as `carom generate "
                          "--placement random` makes them");
+    }
+}
+
+/// Requires room for the scene and its simulation. That of one with too few discs for `auto` to take the
+/// fastest variant is not asked for; an unknown variant is told of later.
+void require_room_to_simulate(const SimulationOptions& options, const Scene& box, std::size_t discs) {
+    const bool fastest = options.variant == automatic || options.variant == fastest_name;
+    const Variant* const variant = fastest ? &fastest_variant() : find_variant(options.variant);
+    if (variant != nullptr) {
+        const auto count = static_cast<std::int64_t>(discs);
+        const int threads = options.tuning.threads;
+        require_memory(count * static_cast<std::int64_t>(sizeof(Disc)) +
+                           least_memory(*variant, box, count, threads),
+                       counted(discs, "disc") + " on " + counted(threads, "thread"));
     }
 }
 
@@ -101,7 +118,9 @@ Scene read_scene_and_settle_threads(SimulationOptions& options, AskedThreads mea
     if (asked) {
         require_threads(threads);
     }
-    Scene scene = read_scene(options.scene, threads);
+    Scene scene = read_scene(options.scene, threads, [&](const Scene& box, std::size_t discs) {
+        require_room_to_simulate(options, box, discs);
+    });
     const std::size_t discs = scene.discs.size();
     if (!fixed && discs < fewest_discs_for_threads) {
         threads = 1;

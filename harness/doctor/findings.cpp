@@ -1,7 +1,6 @@
 #include "harness/doctor/findings.hpp"
 
 #include <algorithm>
-#include <fstream>
 
 #include "harness/counters/cachegrind.hpp"
 #include "harness/counters/cachegrind_output.hpp"
@@ -9,20 +8,11 @@
 #include "harness/counters/rusage.hpp"
 #include "harness/machine/threads.hpp"
 #include "harness/processes/process.hpp"
+#include "harness/support/free_memory.hpp"
 #include "harness/support/silence.hpp"
 
 namespace carom {
 namespace {
-
-std::optional<std::int64_t> available_memory() {
-    std::ifstream file("/proc/meminfo");
-    for (std::string word; file >> word;) {
-        if (std::int64_t kibibytes = 0; word == "MemAvailable:" && file >> kibibytes) {
-            return kibibytes * 1024;
-        }
-    }
-    return std::nullopt;
-}
 
 std::optional<bool> read_turbo() {
     const auto off = first_line("/sys/devices/system/cpu/intel_pstate/no_turbo");

@@ -1,20 +1,26 @@
 #include "harness/machine/threads.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <new>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include <omp.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include "harness/machine/cpu_quota.hpp"
 #include "harness/machine/machine.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/free_memory.hpp"
 #include "harness/support/text.hpp"
 #include "kernels/parallel_for.hpp"
 
@@ -35,6 +41,24 @@ int others_running() {
         fewest = std::min(fewest, parse_running(first_line("/proc/loadavg").value_or("")).value_or(1) - 1);
     }
     return std::max(fewest, 0);
+}
+
+/// Else the runtime ends the process, in words of its own. Stacks of another size than the system's
+/// (OMP_STACKSIZE, KMP_STACKSIZE) are their user's.
+void require_room_for_stacks(int threads) {
+    const auto room = free_address_space();
+    pthread_attr_t attributes;
+    std::size_t stack = 0;
+    if (!room || std::getenv("OMP_STACKSIZE") != nullptr || std::getenv("KMP_STACKSIZE") != nullptr ||
+        pthread_getattr_default_np(&attributes) != 0 || pthread_attr_getstacksize(&attributes, &stack) != 0) {
+        return;
+    }
+    if (*room / static_cast<std::int64_t>(stack) < threads - 1) {
+        throw InputError("--threads: found " + std::to_string(threads) + ", whose stacks of " +
+                         std::to_string(stack >> 20) + " MiB do not fit in " + std::to_string(*room >> 20) +
+                         " MiB of address space; expected fewer, a smaller OMP_STACKSIZE, or more memory "
+                         "(ulimit -v)");
+    }
 }
 
 } // namespace
@@ -78,7 +102,25 @@ void wait_asleep() {
     }
 }
 
+void end_where_threads_run_out_of_memory() {
+    std::set_new_handler([] {
+        if (omp_in_parallel() != 0) {
+            static std::atomic_flag told; // by the first thread; the others wait for its end
+            while (told.test_and_set()) {
+                pause();
+            }
+            constexpr std::string_view line =
+                "carom: out of memory: expected a machine with room for the scene, "
+                "its boxes and what overlaps\n";
+            [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), line.size());
+            _exit(1);
+        }
+        throw std::bad_alloc();
+    });
+}
+
 void require_threads(int threads) {
+    require_room_for_stacks(threads);
     // The limit is asked for first: LLVM's runtime prints a warning of its own where it refuses a thread.
     auto granted = static_cast<std::ptrdiff_t>(omp_get_thread_limit());
     if (granted >= threads) {

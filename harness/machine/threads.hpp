@@ -28,7 +28,12 @@ std::optional<int> parse_running(std::string_view line);
 /// whole milliseconds. What the user has set (OMP_WAIT_POLICY, KMP_BLOCKTIME, KMP_LIBRARY) stays.
 void wait_asleep();
 
-/// Throws InputError if OpenMP grants fewer threads: nothing may be reported of threads that never ran.
+/// From now on the process ends with one line and exit code 1 where memory runs out on several threads, which
+/// no exception may leave; elsewhere std::bad_alloc is thrown, as ever.
+void end_where_threads_run_out_of_memory();
+
+/// Throws InputError if the address space that this process may have is too small for their stacks, or if
+/// OpenMP grants fewer threads: nothing may be reported of threads that never ran.
 void require_threads(int threads);
 
 } // namespace carom

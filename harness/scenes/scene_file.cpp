@@ -7,6 +7,7 @@
 
 #include "harness/scenes/disc_lines.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/free_memory.hpp"
 #include "harness/support/input_file.hpp"
 #include "harness/support/text.hpp"
 
@@ -100,7 +101,7 @@ std::size_t read_count(LineReader& reader) {
 }
 
 /// The scene as its first four lines tell it, with room for its discs.
-Scene read_header(LineReader& reader, const std::string& name) {
+Scene read_header(LineReader& reader, const std::string& name, const RequireRoom& require_room) {
     const std::size_t count = read_count(reader);
     Scene scene;
     scene.side = sole_field<double>(reader, "the side of the box L, a number");
@@ -111,6 +112,7 @@ Scene read_header(LineReader& reader, const std::string& name) {
     if (scene.steps < 0) {
         reader.fail(std::to_string(scene.steps), "a number of steps of at least 0");
     }
+    require_room(scene, count);
     scene.discs.resize(count);
     return scene;
 }
@@ -138,7 +140,24 @@ void read_discs(LineReader& reader, std::vector<Disc>& discs) {
     }
 }
 
+Scene parse(std::string_view text, const std::string& name, const RequireRoom& require_room) {
+    LineReader reader(text, name);
+    Scene scene = read_header(reader, name, require_room);
+    const Pieces pieces{.size = text.size(), .at = [text](std::size_t offset, std::span<char> buffer) {
+                            return text.substr(offset, buffer.size());
+                        }};
+    if (!read_disc_lines(pieces, text.size() - reader.bytes_left(), scene.discs, 1)) {
+        read_discs(reader, scene.discs);
+        reader.end_text();
+    }
+    return scene;
+}
+
 } // namespace
+
+void require_room_for_discs(const Scene& /*box*/, std::size_t discs) {
+    require_memory(static_cast<std::int64_t>(discs * sizeof(Disc)), counted(discs, "disc"));
+}
 
 void require_radius(double radius, const std::string& where) {
     if (!(radius >= smallest_radius && radius <= largest_number)) {
@@ -154,19 +173,10 @@ void require_side(double side, double radius, const std::string& where) {
 }
 
 Scene parse_scene(std::string_view text, const std::string& name) {
-    LineReader reader(text, name);
-    Scene scene = read_header(reader, name);
-    const Pieces pieces{.size = text.size(), .at = [text](std::size_t offset, std::span<char> buffer) {
-                            return text.substr(offset, buffer.size());
-                        }};
-    if (!read_disc_lines(pieces, text.size() - reader.bytes_left(), scene.discs, 1)) {
-        read_discs(reader, scene.discs);
-        reader.end_text();
-    }
-    return scene;
+    return parse(text, name, require_room_for_discs);
 }
 
-Scene read_scene(const std::filesystem::path& path, int threads) {
+Scene read_scene(const std::filesystem::path& path, int threads, const RequireRoom& require_room) {
     const InputFile file(path);
     const Pieces pieces{.size = file.size(), .at = [&file](std::size_t offset, std::span<char> buffer) {
                             return file.piece(offset, buffer);
@@ -175,12 +185,12 @@ Scene read_scene(const std::filesystem::path& path, int threads) {
     const std::string_view start = pieces.at(0, buffer);
     if (start.size() <= file.size() && std::ranges::count(start, '\n') >= 4) {
         LineReader reader(start, shown_name(path), file.size() - start.size());
-        Scene scene = read_header(reader, shown_name(path));
+        Scene scene = read_header(reader, shown_name(path), require_room);
         if (read_disc_lines(pieces, file.size() - reader.bytes_left(), scene.discs, threads)) {
             return scene;
         }
     }
-    return parse_scene(file.whole(), shown_name(path));
+    return parse(file.whole(), shown_name(path), require_room);
 }
 
 std::string scene_text(const Scene& scene) {

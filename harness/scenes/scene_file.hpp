@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,9 +25,17 @@ inline constexpr int most_discs = 100'000'000;
 /// expected; nothing is allocated for discs that the text is too short to hold.
 Scene parse_scene(std::string_view text, const std::string& name);
 
+/// Is told of a scene, still without its discs, and how many these are, before there is memory for them.
+/// Throws InputError if there is too little for what is to be done with them.
+using RequireRoom = std::function<void(const Scene& box, std::size_t discs)>;
+
+/// Requires room for the discs themselves.
+void require_room_for_discs(const Scene& box, std::size_t discs);
+
 /// Reads and parses a scene file, or standard input for "-", on at most so many threads of OpenMP; the scene,
 /// or the error, is the same on any number. Throws InputError.
-Scene read_scene(const std::filesystem::path& path, int threads = 1);
+Scene read_scene(const std::filesystem::path& path, int threads = 1,
+                 const RequireRoom& require_room = require_room_for_discs);
 
 /// The text that `parse_scene` reads back as the same scene, to the last bit.
 std::string scene_text(const Scene& scene);

@@ -234,5 +234,28 @@ TEST(GridAtWall, HoldsInTheLastButOneRowWhereTheLastIsNarrowerThanARadius) {
     EXPECT_FALSE(grid.at_wall(8, 4));
 }
 
+/// No memory is needed to see that no index overflows, under UBSan.
+TEST(Grid, OfAHundredMillionDiscsHasIndicesThatAnIntHolds) {
+    constexpr int count = 100'000'000;
+    for (const double fraction : {1e-9, 0.2, 0.8}) {
+        for (const BoxSide choice : {BoxSide::wide, BoxSide::snug}) {
+            const double side = std::sqrt(count * std::numbers::pi / fraction);
+            const Grid grid(side, 1, count, choice);
+            const int last = grid.boxes_per_side() - 1;
+            EXPECT_EQ(grid.box_of(last, last) + 1, grid.box_count());
+            EXPECT_GT(grid.box_count() + 1, 0);
+            EXPECT_EQ(grid.rows_of_strip(grid.strip_count(4) - 1, 4).last, last);
+            EXPECT_EQ(grid.coordinate(side), last);
+        }
+    }
+}
+
+TEST(Grid, OfTheMostBoxesHasIndicesThatAnIntHolds) {
+    const Grid grid(1e9, 1e-6, std::numeric_limits<int>::max(), BoxSide::snug);
+    EXPECT_EQ(grid.boxes_per_side(), 32768);
+    EXPECT_EQ(grid.box_of(32767, 32767) + 1, grid.box_count());
+    EXPECT_GT(grid.box_count() + 1, 0);
+}
+
 } // namespace
 } // namespace carom

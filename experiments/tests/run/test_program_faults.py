@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -125,6 +126,58 @@ def test_more_discs_than_memory_is_one_line(tmp_path: Path) -> None:
     assert done.returncode == 1
     assert done.stderr == "carom: out of memory: expected a machine with room for the scene and its boxes\n"
     assert sorted(tmp_path.iterdir()) == [scene]
+
+
+def within(bytes_of_address_space: int) -> Callable[[], None]:
+    """What limits a program before it starts."""
+    return lambda: resource.setrlimit(resource.RLIMIT_AS, (bytes_of_address_space,) * 2)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--variant", "fastest"], "for 100000000 discs on 2 threads"),
+        (["--variant", "published"], "for 100000000 discs on 2 threads"),
+        (["--variant", "event_driven"], "for 100000000 discs on 2 threads"),
+    ],
+)
+def test_a_hundred_million_discs_that_do_not_fit_are_refused_before_they_are_read(
+    tmp_path: Path, options: list[str], words: str
+) -> None:
+    scene = tmp_path / "many.in"
+    scene.write_text("100000000\n19817\n1\n1\n", encoding="utf-8")
+    os.truncate(scene, 1 << 30)  # of nothing: no disc is read
+    done = carom("run", scene, 2, *options, preexec_fn=within(4 << 30))
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("carom: out of memory: found 3.")
+    assert " GiB free, expected at least 1" in line
+    assert line.endswith(words)
+
+
+def test_a_hundred_million_discs_that_do_not_fit_are_not_made(tmp_path: Path) -> None:
+    done = carom(
+        "generate", 100_000_000, 20_000, 1, 1, -1, 1, "--output", tmp_path / "many.in",
+        preexec_fn=within(4 << 30),
+    )  # fmt: skip
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("carom: out of memory: ")
+    assert line.endswith("100000000 discs and their text")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_more_threads_than_their_stacks_have_room_for_are_one_line(tmp_path: Path) -> None:
+    scene = tmp_path / "few.in"
+    assert carom("generate", 1000, 200, 1, 1, 1, 2, "--output", scene).returncode == 0
+    stack = resource.getrlimit(resource.RLIMIT_STACK)[0]
+    if stack == resource.RLIM_INFINITY or stack < 1 << 20:
+        pytest.skip("no usual limit of a stack here")
+    unset = {name: text for name, text in os.environ.items() if not name.endswith("_STACKSIZE")}
+    done = carom("run", scene, 1024, preexec_fn=within(500 * stack), env=unset)
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("carom: --threads: found 1024, whose stacks of ")
 
 
 def test_the_locale_has_a_decimal_comma(comma_locale: dict[str, str]) -> None:

@@ -1,0 +1,112 @@
+#include "harness/support/free_memory.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "harness/support/errors.hpp"
+#include "harness/support/format.hpp"
+
+namespace carom {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Less is not asked for: most machines have as much, and it is known sooner by trying.
+constexpr std::int64_t many_bytes = std::int64_t{256} << 20;
+
+void keep_least(std::optional<std::int64_t>& least, std::optional<std::int64_t> other) {
+    if (other) {
+        least = std::min(*other, least.value_or(*other));
+    }
+}
+
+std::optional<std::int64_t> number_in(const fs::path& path) {
+    std::ifstream file(path);
+    std::int64_t number = 0;
+    return file >> number ? std::optional(number) : std::nullopt;
+}
+
+/// This process's control group of version 2: "0::" and its path.
+fs::path memory_cgroup(const fs::path& root) {
+    std::ifstream file(root / "proc/self/cgroup");
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("0::")) {
+            return fs::path(line.substr(3)).relative_path();
+        }
+    }
+    return {};
+}
+
+/// What a group holds of files, which is given up when memory is short.
+std::int64_t bytes_of_files(const fs::path& group) {
+    std::ifstream file(group / "memory.stat");
+    std::int64_t sum = 0;
+    std::int64_t bytes = 0;
+    for (std::string word; file >> word >> bytes;) {
+        sum += word == "inactive_file" || word == "active_file" ? bytes : 0;
+    }
+    return sum;
+}
+
+std::optional<std::int64_t> left_by_cgroups(const fs::path& root) {
+    std::optional<std::int64_t> least;
+    const fs::path top = root / "sys/fs/cgroup";
+    for (fs::path own = memory_cgroup(root);; own = own.parent_path()) {
+        const auto most = number_in(top / own / "memory.max"); // "max" is no number
+        const auto now = number_in(top / own / "memory.current");
+        if (most && now) {
+            keep_least(least, std::max(*most - *now + bytes_of_files(top / own), std::int64_t{0}));
+        }
+        if (own.empty()) {
+            return least;
+        }
+    }
+}
+
+std::string gibibytes(std::int64_t bytes) {
+    return format("%.3g GiB", static_cast<double>(bytes) / (std::int64_t{1} << 30));
+}
+
+} // namespace
+
+std::optional<std::int64_t> available_memory(const fs::path& root) {
+    std::ifstream file(root / "proc/meminfo");
+    for (std::string word; file >> word;) {
+        if (std::int64_t kibibytes = 0; word == "MemAvailable:" && file >> kibibytes) {
+            return kibibytes * 1024;
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<std::int64_t> free_address_space(const fs::path& root) {
+    rlimit limit{};
+    const auto pages = number_in(root / "proc/self/statm"); // its first number: all that is mapped
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !pages) {
+        return std::nullopt;
+    }
+    const std::int64_t mapped = *pages * sysconf(_SC_PAGESIZE);
+    return std::max(static_cast<std::int64_t>(limit.rlim_cur) - mapped, std::int64_t{0});
+}
+
+std::optional<std::int64_t> free_memory(const fs::path& root) {
+    std::optional<std::int64_t> least = available_memory(root);
+    keep_least(least, left_by_cgroups(root));
+    keep_least(least, free_address_space(root));
+    return least;
+}
+
+void require_memory(std::int64_t bytes, const std::string& needed_for) {
+    if (bytes < many_bytes) {
+        return;
+    }
+    if (const auto left = free_memory(); left && *left < bytes) {
+        throw InputError("out of memory: found " + gibibytes(*left) + " free, expected at least " +
+                         gibibytes(bytes) + " for " + needed_for);
+    }
+}
+
+} // namespace carom
