@@ -18,11 +18,11 @@
 namespace carom {
 
 /// Puts every disc's number into the list of its box, in the order of the numbers. On one thread, as the
-/// published program does. The boxes of some discs are asked for before the first of them is needed.
+/// published program does. Prefetch::on: the boxes of some discs are asked for before the first is needed.
 template <Policies policies, class SomeProbe>
     requires(policies.storage == Storage::numbered)
 void bin(State<policies>& state, const Tuning& /*tuning*/, SomeProbe& /*probe*/) {
-    constexpr int at_once = 32;
+    constexpr int at_once = policies.prefetch == Prefetch::on ? 32 : 1;
     std::array<std::vector<int>*, at_once> box_of_disc;
     for (std::vector<int>& box : state.boxes) {
         box.clear();
@@ -33,7 +33,9 @@ void bin(State<policies>& state, const Tuning& /*tuning*/, SomeProbe& /*probe*/)
             const auto& disc = state.disc(i);
             const int box = state.grid.box_of(state.grid.coordinate(disc.y), state.grid.coordinate(disc.x));
             box_of_disc[static_cast<std::size_t>(i - first)] = &state.boxes[static_cast<std::size_t>(box)];
-            __builtin_prefetch(&state.boxes[static_cast<std::size_t>(box)]);
+            if constexpr (policies.prefetch == Prefetch::on) {
+                __builtin_prefetch(&state.boxes[static_cast<std::size_t>(box)]);
+            }
         }
         for (int i = first; i < last; ++i) {
             box_of_disc[static_cast<std::size_t>(i - first)]->push_back(i);
