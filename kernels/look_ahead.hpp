@@ -7,10 +7,10 @@
 #include "policies.hpp"
 #include "state.hpp"
 
-// Prefetch::on. The published layout leads from a box to its list, from there to discs and their lists, and none of these
-// lie near one another: a thread would wait for one cache line after another. So the loops over boxes ask for
-// what the boxes after the present one will read. What is needed last is asked for first, since each thing
-// must have arrived for the next to be known. No result depends on it.
+// Prefetch::on. The published layout leads from a box to its list, from there to discs and their lists, and
+// none of these lie near one another: a thread would wait for one cache line after another. So the loops over
+// boxes ask for what the boxes after the present one will read. What is needed last is asked for first, since
+// each thing must have arrived for the next to be known. No result depends on it.
 //
 // Every function here is inlined always: g++ takes a function that only prefetches for one that does nothing.
 

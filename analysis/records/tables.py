@@ -32,8 +32,8 @@ PROVENANCE = [
     "operating_system", "compiler", "compiler_flags", "build_type", "binary_sha256",
 ]  # fmt: skip
 LATER_AXES = {
-    "storage": "numbered", "prefetch": "on", "box_side": "wide", "overlaps": "lists", "search": "exact", "worklist": "all",
-    "impact": "step_end", "precision": "double",
+    "storage": "numbered", "prefetch": "on", "box_side": "wide", "overlaps": "lists", "search": "exact",
+    "worklist": "all", "impact": "step_end", "precision": "double",
 }  # fmt: skip
 """Policies that not all records name, each with its value in those that do not."""
 COLUMN_OF = {"overlaps": "overlaps_kept"}

@@ -26,8 +26,10 @@ def draw(rows: Sequence[Mapping[str, float]], path: Path) -> None:
             panel.loglog(records, [row[key] for row in part], style, color=colour, label=label, markersize=4)
         first = part[0]
         linear = [first["status_first"] * count / first["records"] for count in records]
-        panel.loglog(records, linear, ":", color="0.6", label="as many times as long as records")
+        panel.loglog(records, linear, ":", color="0.6", label="in proportion to the records")
         panel.set(title=f"records of {size / 1000:.0f} KB", xlabel="records")
+        panel.set_xticks(records, [f"{count:,}" for count in records])
+        panel.minorticks_off()
         panel.grid(visible=True, which="major", color="0.9")
     panels[0].set_ylabel("seconds")
     panels[-1].legend(fontsize=7)

@@ -112,6 +112,11 @@ TEST(Impossible, GivesAReasonForContactsAndSnugBoxesWithoutWhatTheyNeed) {
     }
 }
 
+TEST(Impossible, GivesAReasonForAskingAheadForWhatStandsInOrder) {
+    EXPECT_EQ(impossible({.prefetch = Prefetch::on}), "");
+    EXPECT_NE(impossible({.storage = Storage::sorted, .prefetch = Prefetch::on}), "");
+}
+
 TEST(Table, CombinesCollisionsAtContactWithThePublishedStorageAndTheFastest) {
     for (const Policies& base : {Policies{}, ladder.back()}) {
         for (const Precision precision : {Precision::double_, Precision::float_}) {
@@ -127,9 +132,9 @@ int differences(const Policies& one, const Policies& two) {
     const auto differ = [&](auto axis) { return one.*axis != two.*axis ? 1 : 0; };
     return differ(&Policies::neighbourhood) + differ(&Policies::order) + differ(&Policies::self_contained) +
            differ(&Policies::direction) + differ(&Policies::find_schedule) +
-           differ(&Policies::resolve_schedule) + differ(&Policies::storage) + differ(&Policies::box_side) +
-           differ(&Policies::overlaps) + differ(&Policies::search) + differ(&Policies::worklist) +
-           differ(&Policies::impact) + differ(&Policies::precision);
+           differ(&Policies::resolve_schedule) + differ(&Policies::storage) + differ(&Policies::prefetch) +
+           differ(&Policies::box_side) + differ(&Policies::overlaps) + differ(&Policies::search) +
+           differ(&Policies::worklist) + differ(&Policies::impact) + differ(&Policies::precision);
 }
 
 TEST(Ladder, ClimbsFromThePublishedBestOnePolicyARung) {

@@ -44,7 +44,7 @@ TEST(ListCommand, GivesEveryPolicyAsJson) {
     EXPECT_EQ(list[0], nlohmann::json::parse(R"({"name": "published", "policies": {
         "neighbourhood": "four", "order": "checkered", "self_contained": "on", "direction": "reverse",
         "find_schedule": "guided_chunk", "resolve_schedule": "guided_chunk", "storage": "numbered",
-        "box_side": "wide", "overlaps": "lists", "search": "exact", "worklist": "all", "impact": "step_end",
+        "prefetch": "off", "box_side": "wide", "overlaps": "lists", "search": "exact", "worklist": "all", "impact": "step_end",
         "precision": "double"},
         "same_bits": {"threads": true, "compilers": true}})"));
     for (std::size_t i = 0; i < variants().size(); ++i) {

@@ -34,8 +34,9 @@ TEST_F(SimulatedSteps, AreAllThatCounts) {
 TEST_F(SimulatedSteps, AreReproducibleAndTellFourBoxesFromNine) {
     const double four = tests::simulate("published", 5).at("instructions");
     const double nine = tests::simulate("nine", 5).at("instructions");
-    EXPECT_NEAR(tests::simulate("published", 5).at("instructions"), four, 1e-3 * four);
-    EXPECT_NEAR(tests::simulate("nine", 5).at("instructions"), nine, 1e-3 * nine);
+    // Of the 8 million some 15 000 come and go from process to process.
+    EXPECT_NEAR(tests::simulate("published", 5).at("instructions"), four, 5e-3 * four);
+    EXPECT_NEAR(tests::simulate("nine", 5).at("instructions"), nine, 5e-3 * nine);
     // Nine boxes hold more than twice the candidates of four, of which finding makes up most of a step.
     EXPECT_GT(nine, 1.05 * four);
 }

@@ -2,6 +2,7 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -120,6 +121,20 @@ TEST_P(EndsInPublishedState, OnAnyNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Programs, EndsInPublishedState, testing::ValuesIn(published_states));
+
+/// The states of `published`, which asking for memory ahead must not change.
+std::vector<PublishedState> with_prefetch() {
+    std::vector<PublishedState> states;
+    for (PublishedState state : published_states) {
+        if (state.variant == "published") {
+            state.variant = "prefetch_on";
+            states.push_back(state);
+        }
+    }
+    return states;
+}
+
+INSTANTIATE_TEST_SUITE_P(Prefetch, EndsInPublishedState, testing::ValuesIn(with_prefetch()));
 
 /// The published tolerance is not the default: what is told of `published` to the last bit is told under it.
 TEST(PublishedTolerance, IsNotTheDefault) { EXPECT_EQ(Tuning{}.tolerance, Tolerance::relative); }
