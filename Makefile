@@ -5,7 +5,7 @@
 # Goals and prerequisites run one after another in the order given, also in `make -j2 setup test`.
 .NOTPARALLEL:
 .SILENT:
-.PHONY: help setup environment build build-gcc build-clang build-gcc-libomp install uninstall package calibration-gcc \
+.PHONY: help setup environment build build-gcc build-clang install uninstall package calibration-gcc \
         tests-gcc tests-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files experiments appendix calibrate \
         usual-ways bench-records lint lint-quick format clean distclean settings
 
@@ -34,7 +34,7 @@ limits := $${BUDGET:+--budget "$$BUDGET"} $${UNTIL:+"--until-$$UNTIL"}
 #:   DRY_RUN=    1: say what would be done, do nothing (no)
 #:   PREFIX=     where it is installed (~/.local)
 #:   DESTDIR=    a folder put before PREFIX, to make a package of what is installed (none)
-#:   COMPILER=   gcc, clang or gcc-libomp (gcc)
+#:   COMPILER=   gcc or clang (gcc)
 #:   JOBS=       compilers and tests at a time (one a processor)
 #:   WERROR=     1: a compiler's warning stops the build (no)
 #:   TIME=       seconds of random input for each reader, and of each stream of calibrate (60)
@@ -68,8 +68,8 @@ settings:
 setup: ## install what is missing and make .venv (PYTHON=another Python, 3.11 or newer)
 	./setup.sh
 
-build: settings ## build build/$COMPILER/carom (COMPILER=gcc|clang|gcc-libomp; JOBS=; WERROR=1 stops at a warning)
-	case "$$COMPILER" in gcc|clang|gcc-libomp) ;; *) echo "COMPILER=$$COMPILER: expected gcc, clang or gcc-libomp" >&2; exit 1;; esac
+build: settings ## build build/$COMPILER/carom (COMPILER=gcc|clang; JOBS=; WERROR=1 stops at a warning)
+	case "$$COMPILER" in gcc|clang) ;; *) echo "COMPILER=$$COMPILER: expected gcc or clang" >&2; exit 1;; esac
 	$(MAKE) --no-print-directory "build-$$COMPILER"
 
 # The program alone: what the study and the verbs need. The tests are built for the tests.
@@ -82,14 +82,6 @@ tests-gcc tests-clang: tests-%: settings
 	$(call own_build,build/$*)
 	$(configure)
 	cmake --build build/$* $(jobs)
-
-# g++'s code with the OpenMP runtime of clang++, which has g++'s entry points too: to compare the compilers' code alone.
-build-gcc-libomp: settings
-	$(call own_build,build/gcc-libomp)
-	CXX=g++ $(generator) cmake --preset release -B build/gcc-libomp -DBUILD_TESTING=OFF \
-		-DOpenMP_CXX_FLAGS=-fopenmp -DOpenMP_CXX_LIB_NAMES=omp \
-		-DOpenMP_omp_LIBRARY="$$(dirname "$$(readlink -f "$$(command -v clang++)")")/../lib/libomp.so"
-	cmake --build build/gcc-libomp $(jobs) --target carom
 
 # What is there, in one folder, lib/carom, which looks as a checkout does; and links to it.
 prefix := "$${PREFIX:-$$HOME/.local}"

@@ -30,7 +30,7 @@ MISTAKES = {
     "a scale": (["experiments", "SCALE=quik"], 'scale: found "quik".*; did you mean "quick"\\?'),
     "jobs": (["build", "JOBS=many"], "JOBS=many: expected a whole number of at least 1"),
     "no jobs": (["test", "JOBS=0"], "JOBS=0: expected a whole number of at least 1"),
-    "a compiler": (["build", "COMPILER=tcc"], "COMPILER=tcc: expected gcc, clang or gcc-libomp"),
+    "a compiler": (["build", "COMPILER=tcc"], "COMPILER=tcc: expected gcc or clang"),
 }
 
 

@@ -18,6 +18,12 @@ FOLDER = Path(__file__).parents[1] / "sites"
 _OPENMP_VARIABLES = ("OMP_", "GOMP_", "KMP_")
 
 
+_LOOK_OUT = {"GOMP_SPINCOUNT": "300000", "KMP_BLOCKTIME": "8"}
+"""So many looks, which is what libgomp takes by itself, and in milliseconds about as long."""
+_SLEEP_SOON = {"GOMP_SPINCOUNT": "1000", "KMP_BLOCKTIME": "0"}
+"""As libgomp does by itself with more threads than processors."""
+
+
 @dataclass(frozen=True)
 class Machine:
     """One kind of machine: what the threads of a point are chosen by."""
@@ -36,9 +42,14 @@ class Binding:
     proc_bind_oversubscribed: str
 
     def environment(self, threads: int, machine: Machine, *, bound: bool = True) -> dict[str, str]:
-        """The OpenMP variables of a process; not `bound`: those of more threads than cores, however few."""
+        """The OpenMP variables of a process; not `bound`: those of more threads than cores, however few.
+
+        They say how threads wait, which each runtime else decides for itself: they look out for each other
+        for some milliseconds before they sleep, or hardly, where they share cores.
+        """
         oversubscribed = threads > machine.cores or not bound
         return {
+            **(_SLEEP_SOON if oversubscribed else _LOOK_OUT),
             "OMP_DYNAMIC": "false",
             "OMP_NUM_THREADS": str(threads),
             "OMP_PLACES": self.places,

@@ -150,7 +150,9 @@ def concerns(name: str, options: Options) -> bool:
 def note(words: list[str]) -> None:
     if "FAKE_LOG" in os.environ:
         with Path(os.environ["FAKE_LOG"]).open("a", encoding="utf-8") as file:
-            openmp = {key: value for key, value in os.environ.items() if key.startswith("OMP_")}
+            openmp = {
+                key: value for key, value in os.environ.items() if key.startswith(("OMP_", "GOMP_", "KMP_"))
+            }
             for call in [words, *contenders(words)]:
                 file.write(json.dumps({"pid": os.getpid(), "words": call, "openmp": openmp}) + "\n")
             for one in described(words):
@@ -369,7 +371,7 @@ def errors(asked: bool) -> dict[str, Any]:
 
 
 def provenance() -> dict[str, Any]:
-    openmp = {key: value for key, value in os.environ.items() if key.startswith("OMP_")}
+    openmp = {key: value for key, value in os.environ.items() if key.startswith(("OMP_", "GOMP_", "KMP_"))}
     slurm = {key: value for key, value in os.environ.items() if key.startswith(("SLURM_", "SLURMD_"))}
     return {
         "host": os.uname().nodename,

@@ -218,6 +218,8 @@ def test_the_local_site_is_valid_and_binds_no_oversubscribed_run() -> None:
     assert site.binding.environment(2, machine)["OMP_PROC_BIND"] == "close"
     assert site.binding.environment(3, machine)["OMP_PROC_BIND"] == "false"
     assert site.binding.environment(2, machine)["OMP_DYNAMIC"] == "false"
+    assert site.binding.environment(2, machine)["KMP_BLOCKTIME"] == "8"
+    assert site.binding.environment(3, machine)["KMP_BLOCKTIME"] == "0"
 
 
 def test_no_question_holds_anything_that_its_schema_does_not_know() -> None:
