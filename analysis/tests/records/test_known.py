@@ -1,5 +1,6 @@
 """What is kept for the analysis: never another table than the files give, and no file read twice."""
 
+import errno
 import os
 import random
 from pathlib import Path
@@ -118,6 +119,37 @@ def test_where_it_cannot_be_written_the_files_are_read(results: Path) -> None:
     (results / FOLDER).write_text("in the way", encoding="utf-8")
     assert_same(read(results), told)
     assert (results / FOLDER).read_text(encoding="utf-8") == "in the way"
+
+
+def test_a_disk_that_is_full_leaves_nothing_of_it(results: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told = from_files(results)
+    kept(results).unlink()
+    whole = Path.write_bytes
+
+    def half(path: Path, content: bytes) -> int:
+        whole(path, content[: len(content) // 2])
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", half)
+    assert_same(read(results), told)
+    assert list((results / FOLDER).iterdir()) == []
+
+
+def test_processes_that_read_at_the_same_time_read_the_same(results: Path) -> None:
+    told = from_files(results)
+    kept(results).unlink()
+    children = []
+    for _ in range(4):
+        child = os.fork()
+        if child == 0:
+            same = all(
+                in_full(getattr(read(results), name)) == in_full(getattr(told, name)) for name in TABLES
+            )
+            os._exit(0 if same else 1)
+        children.append(child)
+    assert [os.waitpid(child, 0)[1] for child in children] == [0, 0, 0, 0]
+    assert [file.name for file in (results / FOLDER).iterdir()] == [kept(results).name]
+    assert_same(read(results), told)
 
 
 def test_a_writer_that_is_killed_leaves_the_old_one(results: Path) -> None:

@@ -168,7 +168,7 @@ def test_what_is_learnt_about_one_point_corrects_the_others() -> None:
 
 
 def test_a_missing_program_costs_nothing() -> None:
-    built, missing = points("compiler")
+    missing, built = points("compiler")
     assert Costs({}, {}).point(built) > 0
     assert Costs({}, {}).point(missing) == 0
 
