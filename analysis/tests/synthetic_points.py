@@ -108,7 +108,7 @@ def _phases() -> list[Point]:
 
 
 def _compiler() -> list[Point]:
-    return [Point("g++", 0, 1.1), Point("clang++", 0, 1.06, compiler="Clang 14.0.6")]
+    return [Point("g++ with libomp", 0, 1.1), Point("clang++ with libomp", 0, 1.06, compiler="Clang 14.0.6")]
 
 
 def _schedule(phase: str, chunks: dict[str, list[int]], best: tuple[str, int]) -> Callable[[], list[Point]]:
