@@ -31,6 +31,7 @@ LIKE = [
     ("phases", "phases"),
     ("ladder", "ladder"),
     ("limits", "limits"),
+    ("more_cores", "more_cores"),
     ("ways", "ways"),
 ]
 
