@@ -1,5 +1,6 @@
 import json
 import re
+import tomllib
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,13 @@ from analysis.tests.synthetic_study import study, trace
 
 UNCOUNTED = ["counters_hardware", "counters_simulated", "speed_against_error-unresolved"]
 DRAWN = [entry for entry in FIGURES if entry.name not in UNCOUNTED]
+QUESTIONS = Path(__file__).parents[3] / "experiments" / "questions"
+
+
+def pairs_of(entry: Entry) -> tuple[str, str] | None:
+    """Return the series that a figure of two compares, None of any other figure."""
+    sides = getattr(entry.draw, "keywords", {}).get("sides")
+    return sides and (sides.candidate, sides.reference)
 
 
 @pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.name)
@@ -47,6 +55,20 @@ def test_what_was_not_counted_is_not_drawn(data: Data, name: str) -> None:
 
 def test_every_experiment_has_a_figure() -> None:
     assert set(figures.titles()) == set(EXPERIMENTS)
+
+
+PAIRED = {entry.experiment: sides for entry in FIGURES if (sides := pairs_of(entry))}
+
+
+def test_the_figures_of_pairs_are_known() -> None:
+    assert {"control", "neighbourhood", "reverse", "compiler"} <= set(PAIRED)
+
+
+@pytest.mark.parametrize("experiment", PAIRED)
+def test_a_pair_has_the_names_of_the_series_of_its_question(experiment: str) -> None:
+    question = tomllib.loads((QUESTIONS / f"{experiment}.toml").read_text(encoding="utf-8"))
+    series = {str(one.get("name", one.get("variant"))) for one in question["series"]}
+    assert set(PAIRED[experiment]) <= series
 
 
 @pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.name)
