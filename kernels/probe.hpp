@@ -18,6 +18,7 @@ template <class Real> struct Collision {
     BasicDisc<Real> second_after; ///< likewise
 
     bool at_wall() const { return first == second; }
+    friend bool operator==(const Collision&, const Collision&) = default;
 };
 
 /// Is told every collision, after it was made. With Impact::at_contact by any thread; two of one disc are

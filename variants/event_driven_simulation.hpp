@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "kernels/probe.hpp"
@@ -9,11 +10,13 @@
 
 namespace carom {
 
-/// The event-driven simulation as one that takes steps: a step only says when to look.
-template <class Log> class EventDrivenSimulation final : public Simulation {
+/// The event-driven simulation, by any class that does it, as one that takes steps: a step only says when to
+/// look.
+template <class Exact> class EventDrivenSimulation final : public Simulation {
   public:
-    EventDrivenSimulation(const Scene& scene, int substeps, Log log = Log())
-        : exact_(scene, log), substeps_(substeps) {}
+    template <class... More>
+    EventDrivenSimulation(const Scene& scene, int substeps, More&&... more)
+        : exact_(scene, std::forward<More>(more)...), substeps_(substeps) {}
 
     Tally step() override {
         const std::int64_t pairs = exact_.pair_collisions();
@@ -33,7 +36,7 @@ template <class Log> class EventDrivenSimulation final : public Simulation {
     std::vector<Disc> discs() const override { return exact_.discs(); }
 
   private:
-    EventDriven<double, Log> exact_;
+    Exact exact_;
     double substeps_;
     std::int64_t steps_ = 0;
 };

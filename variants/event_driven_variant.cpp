@@ -7,14 +7,25 @@ namespace carom {
 
 template class EventDriven<double>;
 template class EventDriven<long double>;
+template class EventWindows<double>;
 
 namespace {
 
 std::unique_ptr<Simulation> simulate(const Scene& scene, const Tuning& tuning) {
-    return std::make_unique<EventDrivenSimulation<NoCollisionLog>>(scene, tuning.substeps);
+    const int tiles = tiles_per_side(scene.discs.size(), tuning.threads);
+    if (tiles == 1) {
+        return std::make_unique<EventDrivenSimulation<EventDriven<double>>>(scene, tuning.substeps);
+    }
+    const WindowSettings settings{.tiles_per_side = tiles};
+    return std::make_unique<EventDrivenSimulation<EventWindows<double>>>(scene, tuning.substeps,
+                                                                         tuning.threads, settings);
 }
 
 } // namespace
+
+int event_driven_threads(std::size_t discs, int threads) {
+    return tiles_per_side(discs, threads) == 1 ? 1 : threads;
+}
 
 const Variant& event_driven() {
     static constexpr Variant variant{.name = word(Engine::event_driven),

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
+
 #include "kernels/exact/event_driven.hpp"
+#include "kernels/exact/event_windows.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {
@@ -9,13 +12,18 @@ namespace carom {
 /// compiled in haste, would bring slow ones.
 extern template class EventDriven<double>;
 extern template class EventDriven<long double>;
+extern template class EventWindows<double>;
 extern template class EventDriven<double, CollisionLog<double>&>;
 extern template class EventDriven<long double, CollisionLog<long double>&>;
 
 /// The event-driven simulation (kernels/exact/event_driven.hpp) as one more variant, beside the table: every
-/// collision at its time, in order, exact to rounding. It runs on one thread, whatever the tuning says; a
-/// step of dt only says when to look at it. Of scenes whose discs overlap at the start it makes something of
+/// collision at its time, in order, exact to rounding. It ends in the same bits on any number of threads; it
+/// uses more than one where that pays, and none but one where its collisions are told. A step of dt only says
+/// when to look at it. Of scenes whose discs overlap at the start it makes something of
 /// its own.
 const Variant& event_driven();
+
+/// How many of `threads` threads it uses for so many discs.
+int event_driven_threads(std::size_t discs, int threads);
 
 } // namespace carom

@@ -1,11 +1,14 @@
 #include "variants/least_memory.hpp"
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "kernels/contacts.hpp"
 #include "kernels/exact/flight.hpp"
 #include "kernels/grid.hpp"
 #include "kernels/state.hpp"
+#include "variants/event_driven_variant.hpp"
 
 namespace carom {
 namespace {
@@ -71,8 +74,9 @@ std::int64_t least_memory(const Variant& variant, const Scene& box, std::int64_t
     Bytes bytes;
     bytes.add<Disc>(discs);
     if (variant.engine == Engine::event_driven) {
-        bytes.add<Flight<double>>(discs);
-        bytes.add<double>(discs); // the times of the queue
+        const bool in_windows = event_driven_threads(static_cast<std::size_t>(discs), threads) > 1;
+        bytes.add<Flight<double>>((in_windows ? 2 : 1) * discs); // at both ends of a window
+        bytes.add<std::array<double, 2>>(discs);                 // in the queue, or by tile
         return bytes.sum();
     }
     const std::int64_t steps = variant.policies.precision == Precision::float_

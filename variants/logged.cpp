@@ -12,7 +12,8 @@ template class EventDriven<long double, CollisionLog<long double>&>;
 
 std::unique_ptr<Simulation> simulate_event_driven_logged(const Scene& scene, const Tuning& tuning,
                                                          CollisionLog<double>& log) {
-    return std::make_unique<EventDrivenSimulation<CollisionLog<double>&>>(scene, tuning.substeps, log);
+    return std::make_unique<EventDrivenSimulation<EventDriven<double, CollisionLog<double>&>>>(
+        scene, tuning.substeps, log);
 }
 
 namespace part_detail {

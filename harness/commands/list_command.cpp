@@ -74,12 +74,12 @@ void print_promises() {
 }
 
 void print_event_driven() {
-    std::printf(
-        "\nWithout steps, and with none of these policies:\n"
-        "%s\n"
-        "    every collision at its time, in order, exact to rounding; on one thread, whatever --threads\n"
-        "    says; no --substeps, no phases to profile, no scene whose discs overlap at the start\n",
-        std::string(event_driven().name).c_str());
+    std::printf("\nWithout steps, and with none of these policies:\n"
+                "%s\n"
+                "    every collision at its time, in order, exact to rounding; on one thread where\n"
+                "    more do not pay; no --substeps, no phases to profile, no scene whose discs overlap at "
+                "the start\n",
+                std::string(event_driven().name).c_str());
 }
 
 } // namespace

@@ -27,6 +27,7 @@
 #include "harness/support/process_clock.hpp"
 #include "harness/support/progress_bar.hpp"
 #include "harness/support/text.hpp"
+#include "variants/event_driven_variant.hpp"
 
 namespace carom {
 namespace {
@@ -214,7 +215,8 @@ void run(RunOptions options) {
     }
     const Variant& variant = require_variant(options.simulation.variant, scene, options.simulation.tuning);
     if (variant.engine == Engine::event_driven) {
-        options.simulation.tuning.threads = 1;
+        int& threads = options.simulation.tuning.threads;
+        threads = event_driven_threads(scene.discs.size(), threads);
         options.simulation.threads_withheld = 0;
     }
     const Run result = simulate(options, scene, variant, seconds);

@@ -7,16 +7,22 @@
 #include <limits>
 #include <vector>
 
-#include "kernels/scene.hpp"
-
 namespace carom {
 
-/// The cells of the exact reference, at least 2r wide, and which discs are in each. The cells at the edges
-/// reach out to infinity, so that every disc is in one. Around them lies a border of cells that stay empty,
-/// so that every cell has eight neighbours.
+/// A square of the plane, from its lower left corner.
+template <class Real> struct Square {
+    Real left = 0;
+    Real bottom = 0;
+    Real side = 0;
+};
+
+/// The cells of the exact reference in a square, at least 2r wide, and which discs are in each. The cells at
+/// the edges reach out to infinity, so that every disc is in one. Around them lies a border of cells that
+/// stay empty, so that every cell has eight neighbours.
 template <class Real> class EventCells {
   public:
     static constexpr int at_hand = 3;
+    static constexpr int most_per_side = 10'000;
 
     /// The discs of a cell, the latest first: three at hand, which is nearly always all of them, and those
     /// before them by `before`. What stands behind the last disc at hand is the number of some disc.
@@ -25,22 +31,24 @@ template <class Real> class EventCells {
         std::array<int, at_hand> discs{};
     };
 
-    explicit EventCells(const Scene& scene) : before_(scene.discs.size()) {
-        const auto count = static_cast<double>(scene.discs.size());
-        const double spacing = std::max(2.0 * scene.radius * (1 + 1e-9), scene.side / std::sqrt(count + 1));
-        const double per_side = std::clamp(std::floor(scene.side / spacing), 1.0, 10'000.0);
-        cell_side_ = static_cast<Real>(scene.side) / static_cast<Real>(per_side);
-        for (int edge = 0; edge <= static_cast<int>(per_side); ++edge) {
-            edges_.push_back(static_cast<Real>(edge) * cell_side_);
-        }
-        edges_.front() = -std::numeric_limits<Real>::infinity();
-        edges_.back() = std::numeric_limits<Real>::infinity();
-        stride_ = static_cast<int>(per_side) + 2;
-        cells_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(stride_));
-    }
+    EventCells() = default;
+    EventCells(const Square<Real>& square, std::size_t count, Real radius) { arrange(square, count, radius); }
 
-    /// Takes all discs out.
-    void clear() { std::ranges::fill(cells_, Cell{}); }
+    /// Empty cells for so many discs of that radius, so many a side at most. Keeps the memory it has.
+    void arrange(const Square<Real>& square, std::size_t count, Real radius, int most = most_per_side) {
+        const auto side = static_cast<double>(square.side);
+        const double spacing = std::max(2.0 * static_cast<double>(radius) * (1 + 1e-9),
+                                        side / std::sqrt(static_cast<double>(count) + 1));
+        const double per_side = std::clamp(std::floor(side / spacing), 1.0, static_cast<double>(most));
+        cell_side_ = square.side / static_cast<Real>(per_side);
+        left_ = square.left;
+        bottom_ = square.bottom;
+        stride_ = static_cast<int>(per_side) + 2;
+        place_edges(edges_x_, left_);
+        place_edges(edges_y_, bottom_);
+        cells_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(stride_), Cell{});
+        before_.resize(count);
+    }
 
     /// What to add to the number of a cell for the cell in the next row; for the next column it is 1.
     int stride() const { return stride_; }
@@ -50,11 +58,11 @@ template <class Real> class EventCells {
         return {-stride_ - 1, -stride_, -stride_ + 1, -1, 0, 1, stride_ - 1, stride_, stride_ + 1};
     }
 
-    int cell_at(Real x, Real y) const { return (along(y) + 1) * stride_ + along(x) + 1; }
+    int cell_at(Real x, Real y) const { return (along(y - bottom_) + 1) * stride_ + along(x - left_) + 1; }
 
     /// Where a disc that flies up or down along an axis leaves the cell; infinity at the edge of the box.
-    Real edge_x(int cell, bool up) const { return edge(cell % stride_ - 1, up); }
-    Real edge_y(int cell, bool up) const { return edge(cell / stride_ - 1, up); }
+    Real edge_x(int cell, bool up) const { return edge(edges_x_, cell % stride_ - 1, up); }
+    Real edge_y(int cell, bool up) const { return edge(edges_y_, cell / stride_ - 1, up); }
 
     const Cell& operator[](int cell) const { return cells_[static_cast<std::size_t>(cell)]; }
 
@@ -94,11 +102,25 @@ template <class Real> class EventCells {
         return scaled > 0 ? static_cast<int>(std::min(scaled, static_cast<Real>(stride_ - 3))) : 0;
     }
 
-    Real edge(int index, bool up) const { return edges_[static_cast<std::size_t>(index + (up ? 1 : 0))]; }
+    void place_edges(std::vector<Real>& edges, Real begin) const {
+        edges.clear();
+        for (int edge = 0; edge <= stride_ - 2; ++edge) {
+            edges.push_back(begin + static_cast<Real>(edge) * cell_side_);
+        }
+        edges.front() = -std::numeric_limits<Real>::infinity();
+        edges.back() = std::numeric_limits<Real>::infinity();
+    }
 
-    Real cell_side_;
-    int stride_;
-    std::vector<Real> edges_; ///< between rows, and between columns
+    static Real edge(const std::vector<Real>& edges, int index, bool up) {
+        return edges[static_cast<std::size_t>(index + (up ? 1 : 0))];
+    }
+
+    Real cell_side_ = 0;
+    Real left_ = 0;
+    Real bottom_ = 0;
+    int stride_ = 0;
+    std::vector<Real> edges_x_; ///< between columns
+    std::vector<Real> edges_y_; ///< between rows
     std::vector<Cell> cells_;
     std::vector<int> before_;
 };

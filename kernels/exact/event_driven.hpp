@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "kernels/collide.hpp"
@@ -26,12 +27,16 @@ struct EventLimits {
 
 /// The exact reference: what the time step tends to as dt -> 0. Discs fly freely from event to event; pairs
 /// and walls collide at their exact times, in order (Alder and Wainwright, J. Chem. Phys. 31, 459, 1959).
-/// Events of one instant happen in the order of their discs.
+/// Collisions of one instant happen in the order of their discs.
+///
+/// A disc's flight changes at its collisions alone, and the time of a collision is a function of the flights
+/// that lead to it. So what becomes of the discs depends on nothing but the scene, to the last bit: not on
+/// the cells, nor on when who looked ahead.
 ///
 /// Each disc knows only its own next event, which stands in a queue of N times; an event whose partner has
 /// collided since it was foreseen is noticed when it comes up, and the disc looks ahead anew (lazy
-/// invalidation; Lubachevsky, J. Comput. Phys. 94, 255, 1991). Discs look into the nine cells around them and
-/// are moved only when something happens to them; crossing into another cell is an event, too. The work of an
+/// invalidation; Lubachevsky, J. Comput. Phys. 94, 255, 1991). Discs look into the nine cells around them;
+/// crossing into another cell is an event, too. The work of an
 /// event does not depend on N, but where all discs no longer fit into a cache its time does: an event may be
 /// anywhere, and what the next ones will read is asked for ahead.
 ///
@@ -41,28 +46,38 @@ struct EventLimits {
 /// `Log` is told every collision; CollisionLog<Real>& is one that can.
 template <class Real, class Log = NoCollisionLog> class EventDriven {
   public:
-    explicit EventDriven(const Scene& scene, Log log = Log())
-        : log_(log), walls_{static_cast<Real>(scene.radius),
-                            static_cast<Real>(scene.side) - static_cast<Real>(scene.radius)},
-          reach_squared_(4 * walls_[0] * walls_[0]), cells_(scene),
-          queue_(static_cast<int>(scene.discs.size())) {
-        flights_.reserve(scene.discs.size());
-        place(scene);
+    /// So many cells a side at most: no result depends on it.
+    explicit EventDriven(const Scene& scene, Log log = Log(),
+                         int most_cells_per_side = EventCells<Real>::most_per_side)
+        : EventDriven(static_cast<Real>(scene.side), static_cast<Real>(scene.radius), log) {
+        most_cells_per_side_ = most_cells_per_side;
+        restart(scene);
     }
+
+    /// No discs yet, in a box of that side.
+    EventDriven(Real side, Real radius, Log log)
+        : log_(log), side_(side), walls_{radius, side - radius}, reach_squared_(4 * radius * radius) {}
 
     /// Goes back to the start of the scene it was built of and keeps its memory.
     void restart(const Scene& scene) {
-        now_ = 0;
-        events_ = 0;
-        pair_collisions_ = 0;
-        wall_collisions_ = 0;
-        wall_impulse_ = 0;
-        momentum_from_walls_ = {};
         flights_.clear();
-        cells_.clear();
-        queue_.clear();
-        place(scene);
+        for (const Disc& disc : scene.discs) {
+            flights_.push_back({.x = static_cast<Real>(disc.x),
+                                .y = static_cast<Real>(disc.y),
+                                .vx = static_cast<Real>(disc.vx),
+                                .vy = static_cast<Real>(disc.vy)});
+        }
+        begin(0, {.left = 0, .bottom = 0, .side = side_});
     }
+
+    /// Goes on from `now` with these flights, as if there were no other discs: most of them in that square.
+    void restart(std::span<const Flight<Real>> flights, Real now, const Square<Real>& square) {
+        flights_.assign(flights.begin(), flights.end());
+        begin(now, square);
+    }
+
+    /// Each disc since its last collision.
+    const std::vector<Flight<Real>>& flights() const { return flights_; }
 
     /// Goes on to `time`, from 0 at the start. False if a limit is passed, with more events at one instant
     /// (as where a disc is wedged) or in all: it then stands at that instant.
@@ -74,7 +89,7 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
             if (at_once > limits.at_once || events_ > limits.in_all) {
                 return false;
             }
-            now_ = std::max(now_, next);
+            now_ = next;
             if (flights_.size() > at_hand) {
                 prefetch_what_comes();
             }
@@ -128,16 +143,22 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
     static constexpr Real never = std::numeric_limits<Real>::infinity();
     static constexpr std::size_t at_hand = 4096; ///< discs in 256 KiB, which a second cache holds
 
-    /// Puts the discs where the scene has them, and looks ahead.
-    void place(const Scene& scene) {
-        for (const Disc& disc : scene.discs) {
-            flights_.push_back({.x = static_cast<Real>(disc.x),
-                                .y = static_cast<Real>(disc.y),
-                                .vx = static_cast<Real>(disc.vx),
-                                .vy = static_cast<Real>(disc.vy)});
-            Flight<Real>& one = flights_.back();
-            one.cell = cells_.cell_at(one.x, one.y);
-            cells_.insert(static_cast<int>(flights_.size()) - 1, one.cell);
+    /// Puts the discs into cells, where they are by now, and looks ahead.
+    void begin(Real now, const Square<Real>& square) {
+        now_ = now;
+        events_ = 0;
+        pair_collisions_ = 0;
+        wall_collisions_ = 0;
+        wall_impulse_ = 0;
+        momentum_from_walls_ = {};
+        cells_.arrange(square, flights_.size(), walls_[0], most_cells_per_side_);
+        nine_ = cells_.nine();
+        queue_.clear(static_cast<int>(flights_.size()));
+        for (int i = 0; i < static_cast<int>(flights_.size()); ++i) {
+            Flight<Real>& one = flight(i);
+            const Real elapsed = now - one.time;
+            one.cell = cells_.cell_at(one.x + one.vx * elapsed, one.y + one.vy * elapsed);
+            cells_.insert(i, one.cell);
         }
         for (int i = 0; i < static_cast<int>(flights_.size()); ++i) {
             look_ahead(i);
@@ -189,21 +210,25 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
             cross(i);
             return;
         }
-        one.move_to(now_);
-        if (one.partner >= 0) {
-            const int partner = one.partner;
-            Flight<Real>& other = flight(partner);
-            if (other.age == one.partner_age) {
-                other.move_to(now_);
-                collide(one, other);
-                log_.collided(Collision<Real>{now_, 0, i, partner, disc_of(one), disc_of(other)});
-                look_ahead(partner);
-            }
-        } else {
+        if (one.partner < 0) {
+            one.move_to(one.collision_time);
             bounce(one);
-            log_.collided(Collision<Real>{now_, 0, i, i, disc_of(one), disc_of(one)});
+            log_.collided(Collision<Real>{one.time, 0, i, i, disc_of(one), disc_of(one)});
+        } else if (flight(one.partner).age == one.partner_age) {
+            const int partner = one.partner;
+            meet(std::min(i, partner), std::max(i, partner), one.collision_time);
+            look_ahead(partner);
         }
         look_ahead(i);
+    }
+
+    void meet(int first, int second, Real time) {
+        Flight<Real>& one = flight(first);
+        Flight<Real>& other = flight(second);
+        one.move_to(time);
+        other.move_to(time);
+        collide(one, other);
+        log_.collided(Collision<Real>{time, 0, first, second, disc_of(one), disc_of(other)});
     }
 
     static BasicDisc<Real> disc_of(const Flight<Real>& one) { return {one.x, one.y, one.vx, one.vy}; }
@@ -231,12 +256,11 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
         ++wall_collisions_;
     }
 
-    /// Moves disc i, which is at the edge of its cell, into the next one and looks into the cells that came
+    /// Puts disc i, which is at the edge of its cell, into the next one and looks into the cells that came
     /// into reach.
     void cross(int i) {
         Flight<Real>& one = flight(i);
         const bool in_y = time_to_crossing_y(one) < time_to_crossing_x(one);
-        one.move_to(now_);
         const int across = in_y ? 1 : cells_.stride();
         const int along = in_y ? cells_.stride() : 1;
         const int step = (in_y ? one.vy : one.vx) > 0 ? along : -along;
@@ -251,7 +275,7 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
         schedule(i);
     }
 
-    /// Foresees the next event of disc i, which has been moved to now, from nothing.
+    /// Foresees the next event of disc i from nothing.
     void look_ahead(int i) {
         Flight<Real>& one = flight(i);
         one.collision_time = never;
@@ -262,12 +286,16 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
         for (const int offset : nine_) {
             first.look_into(one.cell + offset);
         }
-        first.foresee();
+        if (one.time == now_) {
+            first.template foresee<true>();
+        } else {
+            first.foresee();
+        }
         schedule(i);
     }
 
     void foresee_wall(Flight<Real>& one, Real position, Real velocity, int wall) const {
-        const Real time = now_ + time_to(walls_[velocity > 0 ? 1 : 0], position, velocity);
+        const Real time = one.time + time_to(walls_[velocity > 0 ? 1 : 0], position, velocity);
         one.partner = time < one.collision_time ? wall : one.partner;
         one.collision_time = std::min(one.collision_time, time);
     }
@@ -287,17 +315,20 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
 
     void schedule(int i) {
         const Flight<Real>& one = flight(i);
-        const Real crossing_time = now_ + std::min(time_to_crossing_x(one), time_to_crossing_y(one));
-        queue_.set(i, std::min(one.collision_time, crossing_time));
+        const Real crossing_time = one.time + std::min(time_to_crossing_x(one), time_to_crossing_y(one));
+        const bool crosses = crossing_time < one.collision_time;
+        queue_.set(i, crosses ? crossing_time : one.collision_time, crosses ? -1 : one.ranks_as(i));
     }
 
     [[no_unique_address]] Log log_;
+    Real side_;                 ///< of the box
     std::array<Real, 2> walls_; ///< how far a centre comes, down and up
     Real reach_squared_;        ///< (2r)^2
+    int most_cells_per_side_ = EventCells<Real>::most_per_side;
     Real now_ = 0;
     std::vector<Flight<Real>> flights_;
     EventCells<Real> cells_;
-    std::array<int, 9> nine_ = cells_.nine();
+    std::array<int, 9> nine_{};
     EventQueue<Real> queue_;
     std::int64_t events_ = 0;
     std::int64_t pair_collisions_ = 0;

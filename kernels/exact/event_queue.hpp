@@ -1,14 +1,16 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <vector>
 
 namespace carom {
 
-/// For each of N discs the time of its next event, the earliest first; those of one instant come in the order
-/// of their discs. To find the earliest and to change a time takes as long for any N, on average and as long
+/// For each of N discs the time of its next event and who else has part in it, the earliest first. Those of
+/// one instant come in the order of the lower, then of the higher of their two numbers, whichever of the two
+/// the event is of. To find the earliest and to change a time takes as long for any N, on average and as long
 /// as events keep coming about as often.
 ///
 /// A calendar (Brown, Communications of the ACM 31, 1220, 1988; for collisions Paul, J. Comput. Phys. 221,
@@ -22,18 +24,15 @@ template <class Real> class EventQueue {
     /// So many of those after the earliest are known, as a rule.
     static constexpr std::size_t ahead = 3;
 
-    explicit EventQueue(int count)
-        : times_(static_cast<std::size_t>(count), never), buckets_(times_.size() / 8 + 1) {
-        for (auto& bucket : buckets_) {
-            bucket.reserve(2 * per_bucket);
-        }
-    }
+    explicit EventQueue(int count = 0) { clear(count); }
 
-    /// Forgets all events and is as at the start, but for the memory it has.
-    void clear() {
-        std::ranges::fill(times_, never);
+    /// Forgets all events and is as one of so many discs at the start, but for the memory it has.
+    void clear(int count) {
+        events_.assign(static_cast<std::size_t>(count), Event{});
+        buckets_.resize(events_.size() / 8 + 1);
         for (auto& bucket : buckets_) {
             bucket.clear();
+            bucket.reserve(2 * per_bucket);
         }
         opened_ = static_cast<Real>(buckets_.size());
         soon_.clear();
@@ -47,7 +46,7 @@ template <class Real> class EventQueue {
 
     /// The time of the earliest event; infinity if there is none.
     Real earliest_time() {
-        if (added_ + shifted_ > 16 * times_.size() + 1000) {
+        if (added_ + shifted_ > 16 * events_.size() + 1000) {
             begin_year();
         }
         while (soon_.size() - front_ <= ahead || is_stale(soon_[front_])) {
@@ -67,48 +66,58 @@ template <class Real> class EventQueue {
     /// Probably the disc of the event `count` after that one, at most `ahead`, if nothing changes.
     int coming(std::size_t count) const { return soon_[std::min(front_ + count, soon_.size() - 1)].disc; }
 
-    /// Gives the disc's next event another time.
-    void set(int disc, Real time) {
-        times_[static_cast<std::size_t>(disc)] = time;
-        add(disc, time);
+    /// Gives the disc another next event, at that time and with that one: another disc, itself, or -1, so
+    /// that it comes before all others of its instant.
+    void set(int disc, Real time, int other) {
+        events_[static_cast<std::size_t>(disc)] = {time, other};
+        add({{time, other}, disc});
     }
 
     /// Asks for what set() will read.
     [[gnu::always_inline]] void prefetch(int disc) const {
-        __builtin_prefetch(&times_[static_cast<std::size_t>(disc)]);
+        __builtin_prefetch(&events_[static_cast<std::size_t>(disc)]);
     }
 
   private:
     static constexpr std::size_t per_bucket = 16;
     static constexpr Real never = std::numeric_limits<Real>::infinity();
 
-    struct Entry {
-        Real time;
+    struct Event {
+        Real time = never;
+        int other = 0;
+
+        bool operator==(const Event&) const = default;
+    };
+
+    struct Entry : Event {
         int disc;
 
-        bool operator<(const Entry& other) const {
-            return time < other.time || (time == other.time && disc < other.disc);
+        bool operator<(const Entry& second) const {
+            return this->time < second.time || (this->time == second.time && ranks() < second.ranks());
+        }
+        std::array<int, 3> ranks() const {
+            return {std::min(disc, this->other), std::max(disc, this->other), disc};
         }
     };
 
-    Real time_of(int disc) const { return times_[static_cast<std::size_t>(disc)]; }
-    bool is_stale(const Entry& entry) const { return entry.time != time_of(entry.disc); }
+    const Event& event_of(int disc) const { return events_[static_cast<std::size_t>(disc)]; }
+    bool is_stale(const Entry& entry) const { return entry != event_of(entry.disc); }
 
     /// Rounded down it is the number of a bucket. It never falls as time grows, whatever the rounding.
     Real bucket_at(Real time) const { return (time - year_begin_) * buckets_per_time_; }
 
-    void add(int disc, Real time) {
-        const Real bucket = bucket_at(time);
+    void add(const Entry& entry) {
+        const Real bucket = bucket_at(entry.time);
         ++added_;
         if (bucket < opened_) {
-            soon_.push_back({time, disc});
+            soon_.push_back(entry);
             std::size_t place = soon_.size() - 1;
             for (; place > front_ && soon_[place] < soon_[place - 1]; --place) {
                 std::swap(soon_[place], soon_[place - 1]);
                 ++shifted_;
             }
         } else if (bucket < static_cast<Real>(buckets_.size())) {
-            buckets_[static_cast<std::size_t>(bucket)].push_back(disc);
+            buckets_[static_cast<std::size_t>(bucket)].push_back(entry.disc);
         }
     }
 
@@ -122,9 +131,9 @@ template <class Real> class EventQueue {
         const auto before = static_cast<std::ptrdiff_t>(soon_.size());
         std::vector<int>& discs = buckets_[static_cast<std::size_t>(opened_)];
         for (const int disc : discs) {
-            const Real bucket = bucket_at(time_of(disc));
+            const Real bucket = bucket_at(event_of(disc).time);
             if (bucket >= opened_ && bucket < opened_ + 1) {
-                soon_.push_back({time_of(disc), disc});
+                soon_.push_back({event_of(disc), disc});
             }
         }
         discs.clear();
@@ -135,32 +144,33 @@ template <class Real> class EventQueue {
 
     /// Begins with the earliest event; false if there is none.
     bool begin_year() {
-        const auto earliest = std::min_element(times_.begin(), times_.end());
-        if (earliest == times_.end() || *earliest == never) {
+        const auto is_earlier = [](const Event& one, const Event& other) { return one.time < other.time; };
+        const auto earliest = std::min_element(events_.begin(), events_.end(), is_earlier);
+        if (earliest == events_.end() || earliest->time == never) {
             return false;
         }
         const Real per_time = static_cast<Real>(added_) / per_bucket / (now_ - year_begin_);
         const bool is_known = per_time > 0 && per_time < never;
         buckets_per_time_ = is_known ? per_time : std::numeric_limits<Real>::min(); // all in the first bucket
-        year_begin_ = *earliest;
+        year_begin_ = earliest->time;
         opened_ = 0;
         soon_.clear();
         front_ = 0;
         for (auto& bucket : buckets_) {
             bucket.clear();
         }
-        for (int disc = 0; disc < static_cast<int>(times_.size()); ++disc) {
-            add(disc, time_of(disc));
+        for (int disc = 0; disc < static_cast<int>(events_.size()); ++disc) {
+            add({event_of(disc), disc});
         }
         added_ = 0;
         shifted_ = 0;
         return true;
     }
 
-    std::vector<Real> times_;
+    std::vector<Event> events_; ///< the next one of each disc
     std::vector<std::vector<int>> buckets_;
-    Real opened_ = static_cast<Real>(buckets_.size()); ///< how many
-    std::vector<Entry> soon_;                          ///< what has been opened, from front_ on in order
+    Real opened_ = 0;         ///< how many
+    std::vector<Entry> soon_; ///< what has been opened, from front_ on in order
     std::size_t front_ = 0;
     Real year_begin_ = 0;
     Real buckets_per_time_ = never;

@@ -5,8 +5,8 @@
 
 namespace carom {
 
-/// A disc in free flight, and the collision that it has foreseen. In double it fills one cache line of most
-/// processors, 64 bytes: nothing else is asked of a disc that is near another one.
+/// A disc in free flight since its last collision, and the collision that it has foreseen. In double it fills
+/// one cache line of most processors, 64 bytes: nothing else is asked of a disc that is near another one.
 template <class Real> struct alignas(64) Flight {
     static constexpr int nobody = -1;
 
@@ -14,12 +14,16 @@ template <class Real> struct alignas(64) Flight {
     Real y = 0;
     Real vx = 0;
     Real vy = 0;
-    Real time = 0;                                               ///< at which x and y are where it was
+    Real time = 0;                                               ///< of its last collision, at x and y
     Real collision_time = std::numeric_limits<Real>::infinity(); ///< of the next collision foreseen
     int partner = nobody;                                        ///< of the next collision: a disc or a wall
     std::uint32_t partner_age = 0;                               ///< the partner's age when it was foreseen
     std::uint32_t age = 0;                                       ///< collisions so far
     int cell = 0;                                                ///< of EventCells
+
+    /// The number that orders collisions of one instant beside that of the disc itself: of its partner, of a
+    /// wall the disc's own.
+    int ranks_as(int disc) const { return partner >= 0 ? partner : disc; }
 
     void move_to(Real now) {
         const Real elapsed = now - time;

@@ -288,6 +288,17 @@ TEST_F(RunCommand, TakesTheEventDrivenSimulationForAVariant) {
     EXPECT_EQ(nlohmann::json::parse(checked.output)["state_hash"], json["state_hash"]);
 }
 
+TEST_F(RunCommand, EndsInTheSameBitsWhereTheEventDrivenSimulationTakesSeveralThreads) {
+    Scene scene = tests::lattice_scene(142, 0.5, 3);
+    scene.steps = 2;
+    const std::string large = directory.write("large.in", scene_text(scene));
+    const auto alone = summary({large, "--threads", "1", "--variant", "event_driven"});
+    const auto shared = summary({large, "--threads", "5", "--variant", "event_driven"});
+    EXPECT_EQ(shared["threads"], 5);
+    EXPECT_EQ(shared["state_hash"], alone["state_hash"]);
+    EXPECT_EQ(shared["pair_resolves_per_step"], alone["pair_resolves_per_step"]);
+}
+
 TEST_F(RunCommand, RefusesWhatTheEventDrivenSimulationCannot) {
     const std::string apart = directory.write("apart.in", scene_text(tests::cradle()));
     const std::vector<std::string> exact{"--variant", "event_driven"};

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "kernels/exact/event_cells.hpp"
+#include "kernels/tests/exact/cells_of.hpp"
 #include "kernels/tests/scenes.hpp"
 
 namespace carom::tests {
@@ -28,7 +29,7 @@ std::vector<int> discs_in(const EventCells<double>& cells, int cell) {
 TEST(EventCells, HoldWhatListsWouldHoldFromNoneToManyDiscsInACell) {
     constexpr int count = 60;
     const Scene scene = random_scene(count, 10, 1.2, 0, 1, 5);
-    EventCells<double> cells(scene);
+    EventCells<double> cells = cells_of(scene);
     const int all = cells.stride() * cells.stride();
     std::vector<std::list<int>> lists(static_cast<std::size_t>(all));
     std::vector<int> cell_of(count, -1);
@@ -57,7 +58,7 @@ TEST(EventCells, HoldWhatListsWouldHoldFromNoneToManyDiscsInACell) {
 
 TEST(EventCells, HoldAPositionBetweenTheirEdgesAndReachOutToInfinity) {
     const Scene scene = random_scene(100, 50, 2, 0, 1, 7);
-    const EventCells<double> cells(scene);
+    const EventCells<double> cells = cells_of(scene);
     Random random(8);
     for (int k = 0; k < 1000; ++k) {
         const double x = random.uniform(-30, 80);
@@ -79,7 +80,7 @@ TEST(EventCells, HoldAPositionBetweenTheirEdgesAndReachOutToInfinity) {
 /// Whoever is within 2r of a disc is in one of the nine cells, whose numbers exist even at a corner.
 TEST(EventCells, NineOfThemHoldAllWithinADiameter) {
     const Scene scene = random_scene(200, 40, 1, 0, 1, 9);
-    EventCells<double> cells(scene);
+    EventCells<double> cells = cells_of(scene);
     for (std::size_t i = 0; i < scene.discs.size(); ++i) {
         cells.insert(static_cast<int>(i), cells.cell_at(scene.discs[i].x, scene.discs[i].y));
     }

@@ -73,7 +73,7 @@ template <class Real> int differs_after(int count, const Delay& delay, int event
     EventQueue<Real> queue(count);
     PlainQueue<Real> plain(count);
     const auto set = [&](int disc, Real time) {
-        queue.set(disc, time);
+        queue.set(disc, time, disc);
         plain.set(disc, time);
     };
     for (int disc = 0; disc < count; ++disc) {
@@ -108,12 +108,12 @@ TEST(EventQueue, TellsInfinityAsLongAsNothingIsToCome) {
     EXPECT_EQ(of_none.earliest_time(), never);
     EventQueue<double> queue(3);
     EXPECT_EQ(queue.earliest_time(), never);
-    queue.set(1, 5);
+    queue.set(1, 5, 1);
     EXPECT_EQ(queue.earliest_time(), 5);
     EXPECT_EQ(queue.earliest(), 1);
-    queue.set(1, never);
+    queue.set(1, never, 1);
     EXPECT_EQ(queue.earliest_time(), never);
-    queue.set(2, 4);
+    queue.set(2, 4, 2);
     EXPECT_EQ(queue.earliest_time(), 4) << "earlier than what has been there";
     EXPECT_EQ(queue.earliest(), 2);
 }
@@ -121,14 +121,34 @@ TEST(EventQueue, TellsInfinityAsLongAsNothingIsToCome) {
 TEST(EventQueue, GivesEventsOfOneInstantInTheOrderOfTheirDiscs) {
     EventQueue<double> queue(50);
     for (int disc = 49; disc >= 0; --disc) {
-        queue.set(disc, 1);
+        queue.set(disc, 1, disc);
     }
     for (int disc = 0; disc < 50; ++disc) {
         ASSERT_EQ(queue.earliest_time(), 1);
         EXPECT_EQ(queue.earliest(), disc);
-        queue.set(disc, 2);
+        queue.set(disc, 2, disc);
     }
     EXPECT_EQ(queue.earliest_time(), 2);
+}
+
+/// Whichever of the two discs foresaw their collision, it comes at the same place among those of its instant.
+TEST(EventQueue, OrdersEventsOfOneInstantByBothOfTheirDiscs) {
+    EventQueue<double> queue(10);
+    queue.set(3, 1, 3);
+    queue.set(9, 1, 2);
+    queue.set(2, 1, 7);
+    queue.set(8, 1, 1);
+    queue.set(5, 1, -1);
+    for (const int disc : {5, 8, 2, 9, 3}) {
+        ASSERT_EQ(queue.earliest_time(), 1);
+        EXPECT_EQ(queue.earliest(), disc);
+        queue.set(disc, 2, disc);
+    }
+    queue.set(4, 1.5, 4);
+    queue.set(4, 1.5, 0);
+    queue.set(1, 1.5, 3);
+    ASSERT_EQ(queue.earliest_time(), 1.5);
+    EXPECT_EQ(queue.earliest(), 4) << "with another partner at the same time";
 }
 
 /// Where no event comes before those that are known, only the ends of years may hide one.
@@ -139,7 +159,7 @@ TEST(EventQueue, KnowsWhatComesNextAsARule) {
     EventQueue<double> queue(count);
     PlainQueue<double> plain(count);
     const auto set = [&](int disc, double time) {
-        queue.set(disc, time);
+        queue.set(disc, time, disc);
         plain.set(disc, time);
     };
     for (int disc = 0; disc < count; ++disc) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "kernels/exact/first_collision.hpp"
+#include "kernels/tests/exact/cells_of.hpp"
 #include "kernels/tests/scenes.hpp"
 
 namespace carom::tests {
@@ -21,7 +22,7 @@ struct Flights {
     EventCells<double> cells;
     std::vector<Flight<double>> all;
 
-    explicit Flights(const Scene& scene) : cells(scene) {
+    explicit Flights(const Scene& scene) : cells(cells_of(scene)) {
         Random random(scene.discs.size());
         for (std::size_t i = 0; i < scene.discs.size(); ++i) {
             const Disc& disc = scene.discs[i];
@@ -40,9 +41,10 @@ struct Flights {
 };
 
 /// When two discs meet, asked one thing after another; `no_meeting` if they do not.
-double meeting(const Flight<double>& one, const Flight<double>& elsewhere, double radius) {
-    Flight<double> other = elsewhere;
-    other.move_to(one.time);
+double meeting(Flight<double> one, Flight<double> other, double radius) {
+    const double start = std::max(one.time, other.time);
+    one.move_to(start);
+    other.move_to(start);
     const double dx = other.x - one.x;
     const double dy = other.y - one.y;
     const double vx = other.vx - one.vx;
@@ -52,11 +54,12 @@ double meeting(const Flight<double>& one, const Flight<double>& elsewhere, doubl
         return no_meeting;
     }
     const double c = dx * dx + dy * dy - 4 * radius * radius;
-    if (c <= 0) {
-        return one.time;
+    const double across = dx * vy - dy * vx;
+    const double discriminant = (vx * vx + vy * vy) * (4 * radius * radius) - across * across;
+    if (discriminant < 0) {
+        return no_meeting;
     }
-    const double discriminant = b * b - (vx * vx + vy * vy) * c;
-    return discriminant < 0 ? no_meeting : one.time + c / (std::sqrt(discriminant) - b);
+    return c <= 0 ? start : start + c / (std::sqrt(discriminant) - b);
 }
 
 /// Compares what every disc foresees with what asking one disc after another gives, to the last bit, for
@@ -66,7 +69,6 @@ int compare(const Scene& scene, double foreseen = no_meeting) {
     int found = 0;
     for (std::size_t i = 0; i < flights.all.size(); ++i) {
         Flight<double>& one = flights.all[i];
-        one.move_to(5);
         double earliest = foreseen;
         for (std::size_t j = 0; j < flights.all.size(); ++j) {
             const int rows =
@@ -112,7 +114,58 @@ TEST(FirstCollision, LeavesWhatComesBeforeIt) {
     const int soon = compare(scene, 5.5);
     EXPECT_GT(soon, 20);
     EXPECT_LT(soon, all - 20);
-    EXPECT_EQ(compare(scene, 5), 0);
+    EXPECT_EQ(compare(scene, 3), 0) << "before the flights of any two";
+}
+
+TEST(FirstCollision, IsAtTheSameTimeForEitherDisc) {
+    Flights flights(random_scene_of_density(400, 0.05, 0, 7));
+    int met = 0;
+    for (const Flight<double>& one : flights.all) {
+        for (const Flight<double>& other : flights.all) {
+            const auto seen = approach(one, other, 4.0);
+            const auto from_there = approach(other, one, 4.0);
+            EXPECT_EQ(seen.b, from_there.b);
+            EXPECT_EQ(seen.collide(), from_there.collide());
+            if (one.time >= other.time) {
+                EXPECT_EQ(approach<true>(one, other, 4.0).b, seen.b);
+                EXPECT_EQ(approach<true>(one, other, 4.0).discriminant, seen.discriminant);
+            }
+            if (seen.collide()) {
+                ++met;
+                EXPECT_EQ(time_to_collision(seen, 4.0), time_to_collision(from_there, 4.0));
+            }
+        }
+    }
+    EXPECT_GT(met, 1000);
+}
+
+/// Four discs of the same distance on all sides of a slower one, which comes last in one order of the cells
+/// and first in another.
+TEST(FirstCollision, OfSeveralAtOneInstantIsThatOfTheLowestNumber) {
+    const std::vector<Disc> around = {{5, 9, 0, -1}, {9, 5, -1, 0}, {5, 1, 0, 1}, {1, 5, 1, 0}};
+    for (std::size_t turn = 0; turn < around.size(); ++turn) {
+        Scene scene{.side = 10, .radius = 1, .steps = 0, .discs = around};
+        std::rotate(scene.discs.begin(), scene.discs.begin() + static_cast<std::ptrdiff_t>(turn),
+                    scene.discs.end());
+        for (const std::size_t middle : {std::size_t{0}, std::size_t{2}, around.size()}) {
+            Scene all = scene;
+            all.discs.insert(all.discs.begin() + static_cast<std::ptrdiff_t>(middle), Disc{5, 5, 0, 0});
+            EventCells<double> cells = cells_of(all);
+            std::vector<Flight<double>> flights;
+            for (const Disc& disc : all.discs) {
+                const int cell = cells.cell_at(disc.x, disc.y);
+                flights.push_back({.x = disc.x, .y = disc.y, .vx = disc.vx, .vy = disc.vy, .cell = cell});
+                cells.insert(static_cast<int>(flights.size()) - 1, cell);
+            }
+            FirstCollision<double> first(flights, cells, static_cast<int>(middle), 4);
+            for (int cell = cells.stride() + 1; cell < cells.stride() * (cells.stride() - 1); ++cell) {
+                first.look_into(cell);
+            }
+            first.foresee();
+            EXPECT_EQ(flights[middle].collision_time, 2);
+            EXPECT_EQ(flights[middle].partner, middle == 0 ? 1 : 0);
+        }
+    }
 }
 
 } // namespace

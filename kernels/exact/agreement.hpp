@@ -1,0 +1,124 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "kernels/exact/flight.hpp"
+#include "kernels/exact/tile_grid.hpp"
+#include "kernels/exact/tile_history.hpp"
+
+namespace carom {
+
+/// What the tiles of a window have begun with, and what they have come to.
+template <class Real> struct Window {
+    Real begin;
+    Real end;
+    Real halo; ///< how far from its bounds a tile has copies
+    const TileGrid<Real>& grid;
+    const std::vector<TileHistory<Real>>& tiles;
+    const std::vector<Flight<Real>>& flights; ///< of each disc, when the window began
+    const std::vector<int>& tile_of;          ///< of each disc: who owns it
+    const std::vector<int>& place;            ///< of each disc, among those that its owner holds
+};
+
+/// Whether what the owners say is what truly happens, as far as one tile has to see to it. They agree if
+///
+///  1. each copy that the tile has went through the same collisions, to the bit, as the disc at its owner's,
+///  or
+///     at least up to a time from which on neither of the two comes near what the tile owns;
+///  2. nothing that the tile owns comes near what another tile owns that has no copy of it.
+///
+/// If all tiles agree, all owners tell the truth. For suppose that they do before time t, and one of them, A,
+/// does not at t, of a disc that it owns. Before t the disc is where A has it. Whatever collides with it at
+/// t, truly or in A alone, is within 2r of it then. So A owns that, too, or has a copy of it, by 2, which
+/// went through the same as at its owner's before t, by 1, and so through what is true. Then A had the true
+/// flights of both. They alone decide whether and when they collide (first_collision.hpp), so that A is right
+/// at t.
+///
+/// `radius` is that of the discs. Distances are along the axis along which they are greater.
+template <class Real> class Agreement {
+  public:
+    Agreement(const Window<Real>& window, Real radius) : window_(window), near_(Real(2.001) * radius) {}
+
+    bool of(int number) const {
+        const TileHistory<Real>& tile = window_.tiles[index(number)];
+        Real farthest = 0;
+        window_.grid.for_each_near(number, [&](int other) {
+            farthest = std::max(farthest, window_.tiles[index(other)].excursion());
+        });
+        // Those farther away than the tiles around it have no copies of what it owns.
+        const bool is_alone = window_.tiles.size() == 1;
+        bool agreed = tile.ended && tile.clearance() > farthest + near_ &&
+                      (is_alone || 2 * tile.excursion() + near_ < window_.grid.tile_side());
+        for (int k = 0; agreed && k < static_cast<int>(tile.held.size()); ++k) {
+            const Held& one = tile.held[index(k)];
+            agreed = !one.followed || (one.owned ? stays_away(number, k) : is_as_owned(tile, k));
+        }
+        return agreed;
+    }
+
+  private:
+    /// Does an owned disc keep away from what the tiles around own that have no copy of it?
+    bool stays_away(int number, int k) const {
+        const TileHistory<Real>& tile = window_.tiles[index(number)];
+        const Flight<Real>& before = window_.flights[index(tile.held[index(k)].disc)];
+        const std::array<Real, 2> start = position(before, window_.begin);
+        bool away = true;
+        window_.grid.for_each_near(number, [&](int other) {
+            const TileHistory<Real>& around = window_.tiles[index(other)];
+            if (away && other != number && around.bounds.distance(start) > window_.halo) {
+                away = path(tile, before, tile.first(k), window_.begin).distance(around.bounds) >
+                       around.excursion() + near_;
+            }
+        });
+        return away;
+    }
+
+    /// Has a copy the same history as the disc at its owner's, as long as it matters?
+    bool is_as_owned(const TileHistory<Real>& tile, int k) const {
+        const std::size_t disc = index(tile.held[index(k)].disc);
+        const TileHistory<Real>& owner = window_.tiles[index(window_.tile_of[disc])];
+        Flight<Real> flight = window_.flights[disc];
+        const Change<Real>* copied = tile.first(k);
+        const Change<Real>* owned = owner.first(window_.place[disc]);
+        while (copied != nullptr && owned != nullptr && copied->is_as(*owned)) {
+            flight = flight_after(*copied);
+            copied = tile.after(*copied);
+            owned = owner.after(*owned);
+        }
+        if (copied == nullptr && owned == nullptr) {
+            return true;
+        }
+        const Real parted = std::min(copied != nullptr ? copied->time : window_.end,
+                                     owned != nullptr ? owned->time : window_.end);
+        const Real reach = tile.excursion() + near_;
+        return path(tile, flight, copied, parted).distance(tile.bounds) > reach &&
+               path(owner, flight, owned, parted).distance(tile.bounds) > reach;
+    }
+
+    /// What holds a disc from a time to the end of the window that flies so until that change.
+    Bounds<Real> path(const TileHistory<Real>& tile, Flight<Real> flight, const Change<Real>* change,
+                      Real from) const {
+        Bounds<Real> bounds;
+        bounds.widen(position(flight, from));
+        for (; change != nullptr; change = tile.after(*change)) {
+            flight = flight_after(*change);
+            bounds.widen({flight.x, flight.y});
+        }
+        bounds.widen(position(flight, window_.end));
+        return bounds;
+    }
+
+    static Flight<Real> flight_after(const Change<Real>& one) {
+        return {.x = one.after.x, .y = one.after.y, .vx = one.after.vx, .vy = one.after.vy, .time = one.time};
+    }
+
+    static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+    const Window<Real>& window_;
+    Real near_; ///< 2r, and what positions are rounded by
+};
+
+} // namespace carom

@@ -1,0 +1,144 @@
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "kernels/exact/agreement.hpp"
+
+namespace carom::tests {
+namespace {
+
+/// Two by two tiles of side 50 in a box of side 100, discs of radius 1, a window from time 0 to 1. The left
+/// lower tile owns disc 0; the right lower one owns discs 1 and 2, of which 1 starts nearer to the border
+/// than the halo of 10, and 2 farther away.
+class AgreementOfTiles : public testing::Test {
+  protected:
+    static constexpr double halo = 10;
+    static constexpr int left = 0;
+    static constexpr int right = 1;
+
+    AgreementOfTiles()
+        : flights_{{.x = 45, .y = 20}, {.x = 53, .y = 20}, {.x = 85, .y = 20}}, tile_of_{left, right, right},
+          place_{0, 1, 2}, tiles_(4) {
+        for (int tile = 0; tile < grid_.count(); ++tile) {
+            tiles_[static_cast<std::size_t>(tile)].bounds = grid_.bounds(tile);
+        }
+        tiles_[left].held = {{0, true, true}, {1, false, true}};
+        tiles_[right].held = {{0, false, true}, {1, true, true}, {2, true, false}};
+        for (auto& tile : tiles_) {
+            tile.begin();
+        }
+        tiles_[left].owned_is_at(0, {45, 20});
+        tiles_[right].owned_is_at(1, {53, 20});
+        tiles_[right].owned_is_at(2, {85, 20});
+    }
+
+    /// A disc meets a wall in one tile, and flies on from there so.
+    void meets_wall(int tile, int place, double time, const Disc& after) {
+        tiles_[static_cast<std::size_t>(tile)].collided({time, 0, place, place, after, after});
+    }
+
+    bool agree() const {
+        const Window<double> window{.begin = 0,
+                                    .end = 1,
+                                    .halo = halo,
+                                    .grid = grid_,
+                                    .tiles = tiles_,
+                                    .flights = flights_,
+                                    .tile_of = tile_of_,
+                                    .place = place_};
+        const Agreement<double> agreement(window, 1);
+        bool all = true;
+        for (int tile = 0; tile < grid_.count(); ++tile) {
+            all = agreement.of(tile) && all;
+        }
+        return all;
+    }
+
+    TileGrid<double> grid_{100, 2};
+    std::vector<Flight<double>> flights_;
+    std::vector<int> tile_of_;
+    std::vector<int> place_;
+    std::vector<TileHistory<double>> tiles_;
+};
+
+TEST_F(AgreementOfTiles, HoldsWhereNothingHappens) { EXPECT_TRUE(agree()); }
+
+TEST_F(AgreementOfTiles, HoldsWhereACopyGoesThroughTheSame) {
+    meets_wall(left, 1, 0.5, {53, 20, 1, 0});
+    meets_wall(right, 1, 0.5, {53, 20, 1, 0});
+    EXPECT_TRUE(agree());
+}
+
+TEST_F(AgreementOfTiles, FailsWhereACopyNearByMissesACollisionOrHasOneMore) {
+    meets_wall(right, 1, 0.5, {51.9, 20, 1, 0});
+    EXPECT_FALSE(agree());
+    meets_wall(left, 1, 0.5, {51.9, 20, 1, 0});
+    EXPECT_TRUE(agree());
+    meets_wall(left, 1, 0.6, {51.9, 20, 1, 0});
+    EXPECT_FALSE(agree());
+}
+
+TEST_F(AgreementOfTiles, FailsWhereACopyNearByDiffersInTheLastBit) {
+    for (const Disc& other : {Disc{51.9, 20, 1 + 0x1p-52, 0}, Disc{51.9, 20, 1, 0x1p-1074}}) {
+        tiles_[left].begin();
+        tiles_[right].begin();
+        meets_wall(left, 1, 0.5, {51.9, 20, 1, 0});
+        meets_wall(right, 1, 0.5, other);
+        EXPECT_FALSE(agree());
+    }
+}
+
+TEST_F(AgreementOfTiles, FailsWhereACopyNearByCollidesAtAnotherTime) {
+    meets_wall(left, 1, 0.5, {51.9, 20, 1, 0});
+    meets_wall(right, 1, 0.6, {51.9, 20, 1, 0});
+    EXPECT_FALSE(agree());
+}
+
+TEST_F(AgreementOfTiles, DoesNotAskForWhatACopyDoesFarAway) {
+    flights_[1].x = 59;
+    meets_wall(right, 1, 0.5, {59, 20, 1, 0});
+    EXPECT_TRUE(agree());
+    tiles_[right].begin();
+    meets_wall(right, 1, 0.5, {59, 20, -20, 0});
+    EXPECT_FALSE(agree()) << "the disc itself comes near by the end of the window";
+    tiles_[right].begin();
+    meets_wall(left, 1, 0.5, {59, 20, -20, 0});
+    EXPECT_FALSE(agree()) << "its copy does";
+}
+
+TEST_F(AgreementOfTiles, AsksForFartherOnesWhereAnOwnedDiscComesOut) {
+    flights_[1].x = 59;
+    meets_wall(right, 1, 0.5, {59, 20, 1, 0});
+    tiles_[left].owned_is_at(0, {57, 20});
+    EXPECT_FALSE(agree());
+}
+
+TEST_F(AgreementOfTiles, FailsWhereADiscWithoutACopyComesNear) {
+    tiles_[right].owned_is_at(2, {51, 20});
+    EXPECT_FALSE(agree());
+}
+
+/// Disc 1 has a copy in the tile beside it, and none in that above it.
+TEST_F(AgreementOfTiles, FailsWhereADiscComesNearATileThatHasNoCopyOfIt) {
+    meets_wall(left, 1, 0.1, {53, 49.5, 0, 0});
+    meets_wall(right, 1, 0.1, {53, 49.5, 0, 0});
+    EXPECT_FALSE(agree());
+}
+
+TEST_F(AgreementOfTiles, FailsWhereAnOwnedDiscComesFarOut) {
+    tiles_[left].owned_is_at(0, {73, 20});
+    EXPECT_TRUE(agree());
+    tiles_[left].owned_is_at(0, {74.5, 20});
+    EXPECT_FALSE(agree()) << "tiles beyond those beside it have no copy of it";
+}
+
+TEST_F(AgreementOfTiles, FailsWhereTheCollisionsOfAnInstantDidNotEnd) {
+    tiles_[right].ended = false;
+    EXPECT_FALSE(agree());
+}
+
+} // namespace
+} // namespace carom::tests

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "kernels/exact/event_cells.hpp"
+#include "kernels/scene.hpp"
+
+namespace carom::tests {
+
+/// The cells of a whole scene, empty.
+inline EventCells<double> cells_of(const Scene& scene) {
+    return {{.left = 0, .bottom = 0, .side = scene.side}, scene.discs.size(), scene.radius};
+}
+
+} // namespace carom::tests
