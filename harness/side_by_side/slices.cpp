@@ -4,20 +4,13 @@
 #include <random>
 
 namespace carom {
-namespace {
-
-constexpr double least_slice = 0.002;
-
-} // namespace
 
 std::vector<double> lengths_of_slices(const std::vector<Sliced>& all, double slice_seconds) {
-    const auto [least, most] = std::ranges::minmax(all, {}, &Sliced::expected_seconds);
+    const Sliced least = std::ranges::min(all, {}, &Sliced::expected_seconds);
     if (!(least.expected_seconds > 0)) {
         return std::vector<double>(all.size(), slice_seconds);
     }
-    const double rounds =
-        std::max(1.0, std::min(most.expected_seconds / slice_seconds,
-                               least.expected_seconds / std::min(least_slice, slice_seconds)));
+    const double rounds = std::max(1.0, least.expected_seconds / slice_seconds);
     std::vector<double> slices;
     for (const Sliced& one : all) {
         slices.push_back(one.expected_seconds / rounds);

@@ -16,10 +16,10 @@ struct Sliced {
 
 /// How long the slices of each are, in seconds.
 ///
-/// Those of the one that takes longest are `slice_seconds`, those of the others shorter in proportion, so
-/// that all end together: what ran alone would be compared with another time of the machine. Where the
-/// shortest would have less than two milliseconds of each round there are fewer rounds, with longer slices.
-/// Where nobody knows how long one takes all have slices alike.
+/// Those of the one that takes shortest are `slice_seconds`, or all that it takes, and those of the others
+/// longer in proportion, so that all end together: what ran alone would be compared with another time of the
+/// machine. None is shorter, since to stop a program and to let it go on takes some milliseconds in all,
+/// which count. Where nobody knows how long one takes all have slices alike.
 std::vector<double> lengths_of_slices(const std::vector<Sliced>& all, double slice_seconds);
 
 /// Runs all of them to their ends in turn: in each round, in an order that is drawn anew, each of those that

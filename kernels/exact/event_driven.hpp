@@ -60,13 +60,7 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
 
     /// Goes back to the start of the scene it was built of and keeps its memory.
     void restart(const Scene& scene) {
-        flights_.clear();
-        for (const Disc& disc : scene.discs) {
-            flights_.push_back({.x = static_cast<Real>(disc.x),
-                                .y = static_cast<Real>(disc.y),
-                                .vx = static_cast<Real>(disc.vx),
-                                .vy = static_cast<Real>(disc.vy)});
-        }
+        begin_flights(scene, flights_);
         begin(0, {.left = 0, .bottom = 0, .side = side_});
     }
 

@@ -67,13 +67,7 @@ template <class Real> class EventWindows {
 
     /// Goes back to the start of a scene with the same box.
     void restart(const Scene& scene) {
-        flights_.clear();
-        for (const Disc& disc : scene.discs) {
-            flights_.push_back({.x = static_cast<Real>(disc.x),
-                                .y = static_cast<Real>(disc.y),
-                                .vx = static_cast<Real>(disc.vx),
-                                .vy = static_cast<Real>(disc.vy)});
-        }
+        begin_flights(scene, flights_);
         after_.resize(flights_.size());
         tile_of_.resize(flights_.size());
         place_.resize(flights_.size());

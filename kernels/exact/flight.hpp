@@ -2,6 +2,9 @@
 
 #include <cstdint>
 #include <limits>
+#include <vector>
+
+#include "kernels/scene.hpp"
 
 namespace carom {
 
@@ -32,5 +35,16 @@ template <class Real> struct alignas(64) Flight {
         time = now;
     }
 };
+
+/// The flights of a scene's discs at the start, in place of those that are there.
+template <class Real> void begin_flights(const Scene& scene, std::vector<Flight<Real>>& flights) {
+    flights.clear();
+    for (const Disc& disc : scene.discs) {
+        flights.push_back({.x = static_cast<Real>(disc.x),
+                           .y = static_cast<Real>(disc.y),
+                           .vx = static_cast<Real>(disc.vx),
+                           .vy = static_cast<Real>(disc.vy)});
+    }
+}
 
 } // namespace carom

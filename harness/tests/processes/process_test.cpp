@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -224,12 +225,25 @@ TEST_P(ProcessKept, OnesInTurnEndTogetherThoughOneTakesTwiceAsLong) {
     EXPECT_TRUE(all[0].seconds_alone == 0 || all[1].seconds_alone == 0) << "there is but one last";
 }
 
+/// That it stands still is noticed when it does, not up to ten milliseconds later.
+TEST_P(ProcessKept, OneThatIsStoppedSoonIsNotTakenForRunningOn) {
+    constexpr double asked = 0.003;
+    Process process(shell(counting(400'000)), GetParam());
+    while (!process.has_ended()) {
+        process.advance(asked);
+    }
+    std::vector<double> slices = process.end().seconds;
+    ASSERT_GT(slices.size(), 20);
+    std::ranges::sort(slices);
+    EXPECT_LT(slices[slices.size() / 4], 2.5 * asked);
+}
+
 TEST(Slices, AreInProportionToWhatEachTakes) {
     std::vector<Sliced> all{{.process = nullptr, .expected_seconds = 0.02},
                             {.process = nullptr, .expected_seconds = 2}};
-    EXPECT_EQ(lengths_of_slices(all, 0.05), (std::vector<double>{0.002, 0.2}));
+    EXPECT_EQ(lengths_of_slices(all, 0.05), (std::vector<double>{0.02, 2})) << "in one piece";
     all[0].expected_seconds = 1;
-    EXPECT_EQ(lengths_of_slices(all, 0.05), (std::vector<double>{0.025, 0.05}));
+    EXPECT_EQ(lengths_of_slices(all, 0.05), (std::vector<double>{0.05, 0.1}));
     all[1].expected_seconds = 0;
     EXPECT_EQ(lengths_of_slices(all, 0.05), (std::vector<double>{0.05, 0.05}));
 }
