@@ -298,7 +298,6 @@ EXPERIMENTS: dict[str, Callable[[], list[Point]]] = {
     "density": _density,
     "ladder": _ladder,
     "limits": _limits,
-    "more_cores": _more_cores,
     "oversubscription": _oversubscription,
     "control": _control,
     "speed_against_error": _speed_against_error,
@@ -306,4 +305,5 @@ EXPERIMENTS: dict[str, Callable[[], list[Point]]] = {
     "promises": _promises,
     "ways": _ways,
     "ways_of_processes": _ways,
+    "more_cores": _more_cores,
 }
