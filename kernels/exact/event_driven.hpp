@@ -83,11 +83,11 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
             if (at_once > limits.at_once || events_ > limits.in_all) {
                 return false;
             }
-            now_ = next;
+            now_ = std::max(now_, next);
             if (flights_.size() > at_hand) {
                 prefetch_what_comes();
             }
-            happen(queue_.earliest());
+            happen(queue_.earliest(), next);
         }
         now_ = std::max(now_, time);
         return true;
@@ -198,9 +198,9 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
     }
 
     /// The next event of disc i, which has come up.
-    void happen(int i) {
+    void happen(int i, Real time) {
         Flight<Real>& one = flight(i);
-        if (now_ < one.collision_time) {
+        if (time < one.collision_time) {
             cross(i);
             return;
         }
