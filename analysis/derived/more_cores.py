@@ -74,9 +74,9 @@ def foretold(steps: pd.DataFrame, limits: pd.DataFrame) -> pd.DataFrame:
     for each scene of `steps_by_phase`, and for the largest one with LARGER times as many discs in a box as
     much larger.
 
-    Takes the machine's limits. Empty without the scene of two discs, or without its times on two threads.
+    Takes the machine's limits. Empty without the scene of two discs (one at quick scale) on two threads.
     """
-    loops = steps[steps["particles"] == 2].set_index("threads")[PHASES]
+    loops = steps[steps["particles"] <= 2].set_index("threads")[PHASES]
     scenes = steps[(steps["threads"] == 1) & (steps["particles"] > 2)].sort_values("particles")
     if 1 not in loops.index or len(loops) < 2 or scenes.empty:
         return pd.DataFrame(columns=["scene_name", "particles", "threads", "seconds", "bounds"])
