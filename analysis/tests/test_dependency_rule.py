@@ -20,9 +20,9 @@ MAY_INCLUDE = {
     "harness": {"kernels", "variants", "harness"},
 }
 MUST_NOT_IMPORT = {
-    "experiments": {"analysis"},
-    "analysis": {"experiments"},
-    "support": {"analysis", "experiments"},
+    "experiments": {"analysis", "docs"},
+    "analysis": {"experiments", "docs"},
+    "support": {"analysis", "experiments", "docs"},
 }
 GENERATED = {"harness/machine/build_info.hpp"}
 PRAGMAS = "kernels/parallel_for.hpp"
@@ -220,6 +220,7 @@ BROKEN: list[tuple[Rule, str, str, str]] = [
     (wrong_imports, "experiments/a.py", "from analysis.records import reading", "experiments/a.py: imports"),
     (wrong_imports, "experiments/a.py", "importlib.import_module('analysis')", "experiments/a.py: imports"),
     (wrong_imports, "support/a.py", "from analysis.support import wording", "support/a.py: imports analysis"),
+    (wrong_imports, "experiments/a.py", "from docs.generate import pages", "a.py: imports docs.generate"),
     (wrong_rooms, "harness/support/a.hpp", '#include "harness/scenes/b.hpp"', "a.hpp: uses harness/scenes"),
     (wrong_rooms, "harness/scenes/a.hpp", '#include "harness/main.hpp"', "scenes/a.hpp: uses harness/main"),
     (wrong_rooms, "harness/attic/a.hpp", "", "harness/attic/a.hpp: stands in a room that harness/README.md"),

@@ -1,0 +1,125 @@
+"""The generated pages are what their generators make now; their generators read help, parsers and schemas."""
+
+import argparse
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+from documents import BUILT
+
+from docs.generate import command_line, pages, program_help, python_verbs, schema
+from docs.generate.markdown import sentence, table
+from docs.generate.program_help import Row
+from experiments.plan.question import FOLDER
+from support.record_schema import SCHEMA_FILE
+
+HELP = """A program
+Usage: carom [OPTIONS] VERB
+
+Options:
+  -h,--help                   Print this help message and exit
+
+Simulate a scene and
+print a summary
+Usage: carom run [OPTIONS] SCENE
+
+Arguments:
+  SCENE                       Scene file; - is
+                              standard input
+
+Options:
+  -h,--help                   Print this help message and exit
+  --help-all                  Print the help of every verb
+  --threads N=2               Threads
+  --tolerance relative|published=relative
+                              What counts as
+                              approaching
+  --json                      Print JSON
+
+Exit codes: 0 done
+  1 wrong
+"""
+
+
+@pytest.mark.parametrize("name", [name for name in pages.PAGES if name != "command_line.md"])
+def test_a_page_is_what_its_generator_makes(name: str) -> None:
+    made = pages.PAGES[name]()
+    assert (pages.FOLDER / name).read_text(encoding="utf-8") == made, f"{name}: `make docs` makes it anew"
+
+
+@pytest.mark.skipif(not BUILT, reason="build/gcc/carom is not built (`make build` builds it)")
+def test_the_page_of_the_command_line_is_what_its_generator_makes() -> None:
+    page = pages.FOLDER / "command_line.md"
+    assert page.read_text(encoding="utf-8") == command_line.render(pages.PROGRAM), "`make docs` makes it anew"
+
+
+@pytest.mark.skipif(not BUILT, reason="build/gcc/carom is not built (`make build` builds it)")
+def test_every_verb_is_on_the_page() -> None:
+    page = (pages.FOLDER / "command_line.md").read_text(encoding="utf-8")
+    listed = program_help.groups(program_help.help_of(pages.PROGRAM, "--help"))
+    for name in (one for names in listed.values() for one in names if one != "study"):
+        assert f"\n### carom {name}\n" in page
+    for name in python_verbs.study_verbs():
+        assert f"\n### carom {name}\n" in page
+
+
+def test_help_is_read_with_its_wrapped_lines() -> None:
+    verb = program_help.verbs(HELP)["run"]
+    assert (verb.told, verb.usages) == (
+        "Simulate a scene and print a summary",
+        ("carom run [OPTIONS] SCENE",),
+    )
+    assert verb.rows == (
+        Row("SCENE", "", "Scene file; - is standard input"),
+        Row("--threads N", "as many as the machine gives", "Threads"),
+        Row("--tolerance relative|published", "`relative`", "What counts as approaching"),
+        Row("--json", "", "Print JSON"),
+    )
+
+
+def test_a_default_stands_as_it_would_be_typed() -> None:
+    parser = argparse.ArgumentParser(prog="carom x")
+    parser.add_argument(
+        "--margin", type=lambda text: float(text.strip("%")) / 100, default=0.02, metavar="2%"
+    )
+    parser.add_argument(
+        "--head", default="HEAD", metavar="COMMIT", help="what is judged (default: %(default)s)"
+    )
+    parser.add_argument("--reference", help="what it is compared with (default: the first)")
+    rows = python_verbs._verb("x", parser).rows
+    assert [(row.default, row.told) for row in rows] == [
+        ("`2%`", ""),
+        ("`HEAD`", "what is judged"),
+        ("the first", "what it is compared with"),
+    ]
+
+
+def test_a_bar_in_a_cell_does_not_end_it() -> None:
+    assert table(("a",), [("x|y",)]).splitlines()[-1] == "| x\\|y |"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"), [("a b", "A b."), ("omp_x y", "omp_x y."), ("Why?", "Why?"), ("", "")]
+)
+def test_a_description_becomes_a_sentence(text: str, said: str) -> None:
+    assert sentence(text) == said
+
+
+@pytest.mark.parametrize("file", [SCHEMA_FILE, FOLDER / "question.schema.json"], ids=lambda file: file.name)
+def test_every_field_of_a_schema_says_what_it_means(file: Path) -> None:
+    content = schema.read(file)
+    silent = [path for path, node in _fields(content, "") if not schema.told(content, node)]
+    assert silent == []
+
+
+def _fields(node: Mapping[str, Any], prefix: str) -> list[tuple[str, Mapping[str, Any]]]:
+    """All fields that a schema defines, with where they stand."""
+    found = []
+    for name, one in node.get("properties", {}).items():
+        found += [(f"{prefix}{name}", one), *_fields(one.get("items", one), f"{prefix}{name}.")]
+    for rule in node.get("allOf", ()):
+        found += _fields(rule["then"], prefix)
+    for name, one in node.get("$defs", {}).items():
+        found += _fields(one, f"{prefix}${name}.")
+    return found
