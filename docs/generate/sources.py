@@ -1,0 +1,94 @@
+"""The digest of the sources that a figure depends on: of what they do, not of how they are written.
+
+Of C++ and Python no comment, no empty space and no include counts, of Python no docstring, of TOML and JSON
+neither their layout. Where a file is and what it is called does not count either.
+"""
+
+import ast
+import hashlib
+import io
+import json
+import re
+import tokenize
+import tomllib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from support.errors import InputError
+
+_CPP = re.compile(
+    r"""(?P<left_out>//[^\n]*|/\*.*?\*/|^[ \t]*\#[ \t]*include\b[^\n]*)
+    |R"(?P<end>[^(\s"]*)\(.*?\)(?P=end)"
+    |"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'
+    |\.?\d(?:[eEpP][+-]|'\w|[\w.])*|\w+|\S""",
+    re.DOTALL | re.VERBOSE | re.MULTILINE,
+)
+DIGITS = 16
+
+
+def digest(root: Path, patterns: Iterable[str]) -> str:
+    """The digest of all files that the patterns match. Raises InputError where one matches none."""
+    parts = {path: hashlib.sha256(meaning(path).encode()).hexdigest() for path in files(root, patterns)}
+    return hashlib.sha256("\n".join(sorted(parts.values())).encode()).hexdigest()[:DIGITS]
+
+
+def files(root: Path, patterns: Iterable[str]) -> set[Path]:
+    """The files that the patterns match. Raises InputError where one matches none."""
+    found = set()
+    for pattern in patterns:
+        matched = [path for path in root.glob(pattern) if path.is_file()]
+        if not matched:
+            raise InputError(f"{pattern}: matches no file, expected sources of a figure")
+        found.update(matched)
+    return found
+
+
+def meaning(path: Path) -> str:
+    """The content of a file without what changes nothing that it does."""
+    text = path.read_text(encoding="utf-8")
+    match path.suffix:
+        case ".hpp" | ".cpp":
+            return "\0".join(_cpp_tokens(text))
+        case ".py":
+            return "\n".join(_python_lines(text))
+        case ".toml":
+            return json.dumps(tomllib.loads(text), sort_keys=True, default=str)
+        case ".json":
+            return json.dumps(json.loads(text), sort_keys=True)
+        case _:
+            return text
+
+
+def _cpp_tokens(text: str) -> Iterator[str]:
+    return (found.group() for found in _CPP.finditer(text) if found["left_out"] is None)
+
+
+def _python_lines(text: str) -> Iterator[str]:
+    """The lines that are left when comments and texts that stand by themselves are taken out."""
+    lines = text.splitlines()
+    for (first, begin), (last, end) in sorted([*_comments(text), *_lone_texts(text)], reverse=True):
+        head, tail = lines[first - 1][:begin], lines[last - 1][end:]
+        lines[first - 1 : last] = [head + tail] + [""] * (last - first)
+    yield from (line.rstrip() for line in lines if line.strip())
+
+
+Span = tuple[tuple[int, int], tuple[int, int]]
+
+
+def _comments(text: str) -> Iterator[Span]:
+    for one in tokenize.generate_tokens(io.StringIO(text).readline):
+        if one.type == tokenize.COMMENT:
+            yield one.start, one.end
+
+
+def _lone_texts(text: str) -> Iterator[Span]:
+    lines = text.splitlines()
+    for node in ast.walk(ast.parse(text)):
+        if (
+            isinstance(node, ast.Expr)
+            and isinstance(node.value, ast.Constant)
+            and isinstance(node.value.value, str)
+        ):
+            last = node.end_lineno or node.lineno
+            ends = (last, len(lines[last - 1].encode()[: node.end_col_offset].decode()))
+            yield (node.lineno, node.col_offset), ends
