@@ -41,6 +41,8 @@ class Figure:
     needs: str = ""
     same: str = ""
     shown: str = ""
+    is_measurement: bool = True
+    """Or a picture, of which no page says commit, date and machine."""
 
     @property
     def marks(self) -> tuple[str, ...]:
@@ -102,7 +104,9 @@ def complaints(figure: Figure, pages: Mapping[str, str], root: Path = ROOT) -> l
     showing = {name: text for name, text in pages.items() if any(mark in text for mark in figure.marks)}
     if not showing and not figure.shown:
         return [f"{figure.name}: no page shows it"]
-    silent = [name for name, text in showing.items() if not says_origin(figure, text)]
+    silent = [
+        name for name, text in showing.items() if figure.is_measurement and not says_origin(figure, text)
+    ]
     found = [f"{name}: does not say of {figure.name} that it is of {_origin(figure)}" for name in silent]
     if not is_stale(figure, root):
         return found
