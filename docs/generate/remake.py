@@ -75,8 +75,8 @@ def record(table: Path, figure: Figure, of: Origin, digest: str) -> None:
     lines = [line for line in entry.splitlines() if not line.startswith("same = ")]
     keys = [line.split(" = ")[0] for line in lines]
     lines = [f"{key} = {new[key]}" if key in new else line for key, line in zip(keys, lines, strict=True)]
-    entry = "\n".join(lines) + "\n"
-    write_text(table, text[:begin] + entry + ("" if end < 0 else text[end:]), table.parent)
+    rest = "\n" if end < 0 else text[end:]
+    write_text(table, text[:begin] + "\n".join(lines) + rest, table.parent)
 
 
 def origin(root: Path, place: str) -> Origin:
