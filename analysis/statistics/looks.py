@@ -9,7 +9,7 @@ stops. What is measured between two looks is not looked at before the next one, 
 time or a resumed study adds no look.
 
 Intervals that hold at any time (Howard, Ramdas, McAuliffe and Sekhon, Ann. Stat. 49, 2021) need no plan; what
-they cost is in docs/method.md.
+they cost is in docs/reference/method.md.
 """
 
 from analysis.support.values import Floats

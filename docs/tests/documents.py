@@ -11,9 +11,10 @@ ROOT = Path(__file__).parents[2]
 BUILT = (ROOT / "build" / "gcc" / "carom").is_file()
 DOCUMENTS = sorted(
     path.relative_to(ROOT).as_posix()
-    for pattern in ("*.md", "docs/*.md", "experiments/*.md", "analysis/*.md")
+    for pattern in ("*.md", "docs/*.md", "docs/reference/*.md", "experiments/*.md", "analysis/*.md")
     for path in ROOT.glob(pattern)
 )
+FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 KINDS = ("", "slow", "fresh", "verbs")
 """Of shell blocks: run by `make test`; by `make test-all`, after the quick ones; on a fresh machine; only
 looked at, since they need a cluster, or are the tests themselves."""

@@ -10,12 +10,23 @@ import sys
 from pathlib import Path
 
 import pytest
-from documents import BUILT, DOCUMENTS, KINDS, ROOT, Block, blocks, document, output_of, shell, write_file
+from documents import (
+    BUILT,
+    DOCUMENTS,
+    FENCED,
+    KINDS,
+    ROOT,
+    Block,
+    blocks,
+    document,
+    output_of,
+    shell,
+    write_file,
+)
 
 COMMAND = r"(make|cmake|ctest|python|\.venv/bin/python|build/\w+/carom|carom|git|apt-get) "
 LOOKS_LIKE_A_COMMAND = re.compile(rf"^\s*{COMMAND}", re.MULTILINE)
 INDENTED_COMMAND = re.compile(rf"^(    |\t){COMMAND}", re.MULTILINE)
-FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 CMAKE_LISTS = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
 TESTS_BUILT = (ROOT / "build" / "gcc" / "kernels" / "tests" / "kernels_tests").is_file()
 """`make build` builds the program alone."""
