@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 BUILT = (ROOT / "build" / "gcc" / "carom").is_file()
 DOCUMENTS = sorted(
     path.relative_to(ROOT).as_posix()
-    for pattern in ("*.md", "docs/*.md", "experiments/*.md", "analysis/*.md")
+    for pattern in ("*.md", "docs/*.md", "docs/reference/*.md", "experiments/*.md", "analysis/*.md")
     for path in ROOT.glob(pattern)
 )
 KINDS = ("", "slow", "fresh", "verbs")
