@@ -1,4 +1,4 @@
-"""What the first page says is to be seen is to be seen."""
+"""What docs/start.md says is to be seen is to be seen."""
 
 import json
 from bisect import bisect_left
