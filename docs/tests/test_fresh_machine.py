@@ -1,4 +1,4 @@
-"""On a bare Debian or Ubuntu, in a clean clone: README.md's two commands, the tutorial's first.
+"""On a bare Debian or Ubuntu, in a clean clone: README.md's two commands, the first of docs/start.md.
 
 The machine is made by debootstrap, in a folder of its own, from the mirror that apt uses here, or the public
 one of a distribution that apt here has not; what is mounted into it is mounted in a namespace that ends with
@@ -159,14 +159,14 @@ def test_the_two_commands_as_a_user_with_sudo(machine: Machine) -> None:
     assert report.stat().st_size > 100_000
     machine.succeed("sudoer", f"cd carom && {test}")
     machine.succeed("sudoer", f"cd carom && {install}")
-    for block in shell("docs/tutorial.md", "fresh"):
+    for block in shell("docs/start.md", "fresh"):
         machine.succeed("sudoer", f"cd carom && {block.text}")
     assert machine.succeed("sudoer", "cd carom && git status --porcelain") == ""
     machine.succeed("sudoer", "cd carom && make distclean")
     assert machine.succeed("sudoer", "cd carom && git status --porcelain --ignored") in ("", "!! results/\n")
 
 
-INSTALLED = ("docs/compare.md", "docs/your_program.md", "docs/tutorial.md")
+INSTALLED = ("docs/compare.md", "docs/start.md")
 """The pages whose quick commands need no checkout."""
 
 

@@ -46,12 +46,12 @@ def test_every_time_that_is_told_is_one_that_was_published(
         assert near.any(), f"{where}: {said} s at {at or 'any x'}"
 
 
-def test_the_page_and_the_tutorial_tell_the_effect_of_the_entry() -> None:
+def test_the_page_and_the_start_tell_the_effect_of_the_entry() -> None:
     [effect] = [claim.published.effect for claim in CLAIMS if claim.id == "four_boxes"]
     share = effect.split(" less")[0]
     times = published.load().experiment("neighbourhood").groupby("series")["seconds"].mean()
     assert share == f"{100 * (1 - times['four'] / times['nine']):.1f} %"
-    assert f"takes {share} less time" in (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    assert f"takes {share} less time" in (ROOT / "docs" / "start.md").read_text(encoding="utf-8")
 
 
 def test_the_questions_name_the_claims_and_the_runner_knows_them() -> None:

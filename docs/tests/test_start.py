@@ -1,4 +1,4 @@
-"""What the tutorial says is to be seen is to be seen."""
+"""What docs/start.md says is to be seen is to be seen."""
 
 import json
 from bisect import bisect_left
@@ -14,8 +14,8 @@ beside other work many attempts are uneven, and one that is not shows what the s
 
 
 @pytest.mark.skipif(not BUILT, reason="build/gcc/carom is not built (`make build` builds it)")
-def test_the_schedules_of_step_3_share_out_the_discs_unlike(tmp_path: Path) -> None:
-    (block,) = (block for block in shell("docs/tutorial.md", "") if "find_static" in block.text)
+def test_the_schedules_of_step_4_share_out_the_discs_unlike(tmp_path: Path) -> None:
+    (block,) = (block for block in shell("docs/start.md", "") if "find_static" in block.text)
     *preparation, static, guided = block.text.splitlines()
     (tmp_path / "build").symlink_to(ROOT / "build")
     output_of("\n".join(preparation), tmp_path)
