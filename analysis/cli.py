@@ -45,7 +45,8 @@ def _parser() -> argparse.ArgumentParser:
     figures = verb(_figures, "draw the figures of whatever records are there", "results")
     figures.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
     verb(_report, "write report.html and report.pdf", "results").add_argument("--study", **asked)
-    verb(_claims, "print each published claim with its verdict", "results")
+    claims = verb(_claims, "print each published claim with its verdict, a line each", "results")
+    claims.add_argument("--verbose", action="store_true", help="and below it all that is known of it")
     told = "answer each line of standard input, as a running study asks: open, page, report"
     verb(_follow, told, "results").add_argument("--study", **asked)
     verb(_performance, "print the ladder and the limits as Markdown tables", "results")
@@ -135,7 +136,7 @@ def _asked(options: argparse.Namespace) -> list[str]:
 
 def _claims(options: argparse.Namespace) -> int:
     from analysis import claims
-    from analysis.claims import missing
+    from analysis.commands.claims_told import told
     from analysis.records import published
     from analysis.records.reading import load
     from analysis.records.studies import split
@@ -144,12 +145,10 @@ def _claims(options: argparse.Namespace) -> int:
     if not studies:
         raise InputError(f"{options.results}: no records yet (they are made by `make experiments`)")
     for study in studies:
-        print(study.name)
         table = claims.evaluate(study, studies, published.load(), claims.load(options.results))
-        print("  " + ", ".join(f"{amount} {state}" for state, amount in missing.tally(table).items()))
-        for row in table.itertuples():
-            detail = "; ".join(part for part in (row.measured, row.why) if part)
-            print(f"  {row.id:27}{row.said:25} {detail}")
+        print(*told(study.name, table, verbose=options.verbose), sep="\n")
+    if not options.verbose:
+        print("What was measured, on what, and why it is open: carom claims --verbose")
     return 0
 
 
