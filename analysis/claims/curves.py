@@ -44,7 +44,7 @@ def _grows(evidence: Evidence, experiment: str) -> Outcome:
     row, outcome = _growth_tested(evidence, experiment)
     curve = evidence.published.without_degenerate(experiment, evidence.published.curve(experiment))
     published = growth(curve).change["ratio"] if curve["x"].nunique() > 1 else nan
-    what = f"over {experiment.replace('_', ' ')}"
+    what = experiment.replace("_", " ")
     return replace(outcome, effects=(effect_of(what, row, published, evidence.margin(experiment)),))
 
 
@@ -89,7 +89,7 @@ def linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> 
     processes = published_processes(evidence.study, experiment)
     curve = evidence.published.curve(experiment)
     if processes.empty:
-        effect = _exponent(experiment, linearity(curve, within).exponent.estimate, within)
+        effect = _exponent(linearity(curve, within).exponent.estimate, within)
         return replace(no_records(experiment), effects=(effect,))
     outcome = _linear(processes, curve, within)
     grown = _growth_compared(evidence, experiment, processes)
@@ -100,7 +100,7 @@ def _linear(processes: pd.DataFrame, published: pd.DataFrame, within: tuple[floa
     line = linearity(processes, within)
     theirs = linearity(published, within).exponent.estimate
     name = processes["x_name"].iloc[0]
-    effect = _exponent(name, theirs, within, line.exponent)
+    effect = _exponent(theirs, within, line.exponent)
     if pd.isna(line.exponent.estimate):
         return Outcome(OPEN, why=FOUR_POINTS, effects=(effect,))
     measured = (
@@ -113,11 +113,9 @@ def _linear(processes: pd.DataFrame, published: pd.DataFrame, within: tuple[floa
     return replace(judged(row, "linear", measured, figures, why), effects=(effect,))
 
 
-def _exponent(
-    name: str, published: float, within: tuple[float, float], here: Interval = NOT_MEASURED
-) -> Effect:
+def _exponent(published: float, within: tuple[float, float], here: Interval = NOT_MEASURED) -> Effect:
     """Return the exponent as an effect: of a straight line it is 1."""
-    return Effect(f"{EXPONENT}{name.replace('_', ' ')}", here, published, (within[0], within[1]))
+    return Effect(EXPONENT, here, published, (within[0], within[1]))
 
 
 def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = None) -> Outcome:
@@ -127,7 +125,7 @@ def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = 
     processes = published_processes(evidence.study, experiment)
     curve = evidence.published.curve(experiment)
     if processes.empty:
-        return replace(no_records(experiment), effects=_ends(experiment, curve, None))
+        return replace(no_records(experiment), effects=_ends(curve, None))
     if processes["x"].nunique() < 3:
         return Outcome(OPEN, why="needs at least three values of the swept parameter")
     margin = evidence.margin(experiment)
@@ -150,18 +148,15 @@ def _shape(processes: pd.DataFrame, published: pd.DataFrame, margin: float) -> O
     )
     row = {"blocks": ours.fall["blocks"], "p": ours.p, "verdict": ours.verdict}
     outcome = judged(row, "falls then rises", measured, figures)
-    return replace(outcome, why=outcome.why or ours.verdict, effects=_ends(name, published, ours, margin))
+    return replace(outcome, why=outcome.why or ours.verdict, effects=_ends(published, ours, margin))
 
 
-def _ends(
-    name: str, published: pd.DataFrame, ours: Minimum | None, margin: float = MARGIN
-) -> tuple[Effect, ...]:
+def _ends(published: pd.DataFrame, ours: Minimum | None, margin: float = MARGIN) -> tuple[Effect, ...]:
     """Return the times at both ends of the range against the least."""
     theirs = minimum(published) if len(published) else None
-    name = name.replace("_", " ")
     return tuple(
         effect_of(
-            f"{end} {name} against the best",
+            f"at the {end}",
             getattr(ours, side) if ours else None,
             getattr(theirs, side)["ratio"] if theirs else nan,
             margin,
@@ -194,7 +189,7 @@ def _least_at(processes: pd.DataFrame, least: float, margin: float) -> Outcome:
     found = alternatives(pairs, margin)
     best = found.best
     outcome = found.outcome(f"{best['name']} against {exact(least)}: {change(best)} of time, {blocks(best)}")
-    return replace(outcome, effects=(effect_of(f"best other against {exact(least)}", best, margin=margin),))
+    return replace(outcome, effects=(effect_of("best other", best, margin=margin),))
 
 
 def spike_then_linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> Outcome:
@@ -202,7 +197,7 @@ def spike_then_linear(evidence: Evidence, experiment: str, within: tuple[float, 
     spike = falls_then_rises(evidence, experiment)
     theirs = _from_the_lowest(evidence.published.curve(experiment))
     if not spike.measured:
-        line = _exponent(experiment, linearity(theirs, within).exponent.estimate, within)
+        line = _exponent(linearity(theirs, within).exponent.estimate, within)
         return replace(spike, effects=(*spike.effects, line))
     ours = _from_the_lowest(published_processes(evidence.study, experiment))
     return both([spike, _linear(ours, theirs, within)])

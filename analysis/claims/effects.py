@@ -8,7 +8,7 @@ from typing import Any
 from analysis.statistics.verdicts import MARGIN
 from analysis.support.values import Interval
 
-EXPONENT = "exponent over "
+EXPONENT = "exponent"
 NOT_MEASURED = Interval(nan, -inf, inf)
 
 
@@ -29,7 +29,7 @@ class Effect:
     @property
     def is_exponent(self) -> bool:
         """Whether it is no ratio of times but the exponent of a curve, which is 1 for a straight line."""
-        return self.what.startswith(EXPONENT)
+        return self.what == EXPONENT
 
     @property
     def is_measured(self) -> bool:

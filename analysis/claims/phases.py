@@ -38,7 +38,7 @@ def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str)
         f"{number(row['high'])}], {count(row['blocks'], 'block')}"
     )
     figures = (Compared("share of a step that resolving takes", "–", said),)
-    effect = effect_of("resolving against all the rest", row)
+    effect = effect_of("resolving against the rest", row)
     return replace(judged(row, "slower", measured, figures), effects=(effect,))
 
 

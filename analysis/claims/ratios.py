@@ -37,7 +37,7 @@ def pair(
     for name in experiments:
         outcome = _one_pair(evidence, name, sides, expected, at)
         if len(experiments) > 1:
-            told = name.replace("_", " ")
+            told = name.rpartition("_")[2]
             outcome = replace(outcome, effects=tuple(replace(one, what=told) for one in outcome.effects))
         found.append(outcome)
     return both(found)

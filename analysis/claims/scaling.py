@@ -129,5 +129,5 @@ def _effects(
         row = our.judge(processes) if our is not None and processes is not None and has_it else None
         published = their.judge(curve)["ratio"] if their.start < their.end else nan
         margin = MARGIN if our is None else our.margin
-        found.append(effect_of(f"threads {their.what}", row, float(published), margin))
+        found.append(effect_of(their.what, row, float(published), margin))
     return tuple(found)

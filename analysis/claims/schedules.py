@@ -88,11 +88,7 @@ def _published_effects(
     if chosen.any() and not chosen.all():
         choice, others = logs[chosen].iloc[0], logs[~chosen]
         best, mean = np.exp(others.min() - choice), np.exp(choice - others.mean())
-    what = f"{schedule} {chunk}"
-    return (
-        effect_of(f"best other against {what}", None, float(best)),
-        effect_of(f"{what} against the others", None, float(mean)),
-    )
+    return effect_of("best other", None, float(best)), effect_of("against the others", None, float(mean))
 
 
 def _least(table: pd.DataFrame, value: str) -> str:
