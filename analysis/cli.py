@@ -97,6 +97,11 @@ def _figures(options: argparse.Namespace) -> int:
     drawn = draw_all(options.results, options.experiment.split(",") if options.experiment else ())
     for figure in drawn:
         print(figure.files[0])
+    if not options.experiment:
+        from analysis.report.all_claims import draw_all_claims
+
+        for file in draw_all_claims(options.results):
+            print(file)
     if not drawn:
         print(f"{options.results}: no records to draw yet", file=sys.stderr)
     return 0

@@ -39,7 +39,7 @@ def _against(reference: pd.DataFrame, candidate: pd.DataFrame, margin: float) ->
     measured = f"{names[0]} against {names[1]}: {change(row)} of time, {blocks(row)} ({said})"
     figure = Compared(f"time of {names[0]} against {names[1]}", "–", change(row))
     outcome = judged(row, "faster", measured, (figure,))
-    effect = effect_of(figure.what.removeprefix("time of "), row, margin=margin)
+    effect = effect_of(" against ".join(name.split()[0] for name in names), row, margin=margin)
     return replace(outcome, why=outcome.why or f"{said} with the same runtime", effects=(effect,))
 
 

@@ -15,6 +15,7 @@ from matplotlib.patches import Patch, Rectangle
 from analysis import claims
 from analysis.claims.effects import Effect
 from analysis.claims.summary import colour_of, mark
+from analysis.figures.studies import prefix_of
 from analysis.figures.style import (
     BAND,
     BLUE,
@@ -30,6 +31,9 @@ from analysis.figures.style import (
     save,
     styled,
 )
+from analysis.records import published
+from analysis.records.reading import load
+from analysis.records.studies import split
 
 NAME = "claims"
 LOOK = {"holds": (BLUE, "o"), "by_less": (SKY, "o"), "fails": (VERMILLION, "s"), "open": ("#b4b4b4", "o")}
@@ -42,7 +46,7 @@ LINEAR = 10
 """Per cent up to which the axis is linear; it is logarithmic beyond."""
 LOWEST, HIGHEST = (-90, -50, -20, -10), (10, 20, 50, 100, 200, 600)
 """Where the axis may end."""
-TICKS = (-50, -20, -10, -5, 0, 5, 10, 20, 50, 100, 200, 500)
+TICKS = (-50, -20, -10, -5, 0, 5, 10, 20, 50, 100, 500)
 FEWER_TICKS = (-50, -10, 0, 10, 50, 200)
 
 
@@ -61,7 +65,7 @@ class Layout:
 
 
 WIDE = Layout(WIDTH, 3.55, 0.125, 0.05, 0.62, TICKS, is_narrow=False)
-NARROW = Layout(3.6, 1.22, 0.14, 0.2, 0.74, FEWER_TICKS, is_narrow=True)
+NARROW = Layout(3.2, 1.24, 0.14, 0.2, 0.74, FEWER_TICKS, is_narrow=True)
 ABOVE, RIGHT = 0.2, 0.12
 """Inches beside the axes."""
 SCALES = {
@@ -135,12 +139,13 @@ def _claim(axes: Axes, row: Mapping[Any, Any], top: float, layout: Layout) -> No
     name = f"{mark(row)} {row['name']}"
     place = axes.get_yaxis_transform()
     in_figure = -layout.left / (layout.width - layout.left - RIGHT)
+    look_of_name: Any = {"transform": place, "size": size, "color": ink, "va": "center"}
     if layout.is_narrow:
-        axes.text(
-            in_figure + 0.02, top + layout.gap * 0.6, name, transform=place, size=size, color=ink, va="center"
-        )
+        # On white, since the line of no difference runs below it.
+        look_of_name["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
+        axes.text(in_figure + 0.02, top + layout.gap * 0.55, name, **look_of_name)
     else:
-        axes.text(in_figure + 0.015, first, name, transform=place, size=size, color=ink, va="center")
+        axes.text(in_figure + 0.015, first, name, **look_of_name)
         axes.axhline(top + layout.gap / 2, color=BAND, linewidth=0.5, zorder=0)
     for number, effect in enumerate(row["effects"]):
         height = first + number * layout.row
@@ -265,3 +270,11 @@ def draw(
         caption = drawing.caption
         files += save(drawing, data.folder / "figures", name, formats if layout is WIDE else ("svg",))
     return caption, files
+
+
+def draw_all_claims(results: Path) -> list[Path]:
+    """Draw the claims of every study of a results folder in all formats; return the first file of each."""
+    studies = split(load(results))
+    times = published.load()
+    drawn = [draw(Data(study, studies, times, results), prefix_of(study, studies))[1] for study in studies]
+    return [files[0] for files in drawn if files]
