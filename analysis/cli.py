@@ -1,4 +1,4 @@
-"""The verbs of `carom` that tell of what was measured: report, claims, figures, movie and a few more."""
+"""The verbs of `carom` that tell of what was measured: report, claims, figures, export and a few more."""
 
 import argparse
 import json
@@ -45,7 +45,9 @@ def _parser() -> argparse.ArgumentParser:
     figures = verb(_figures, "draw the figures of whatever records are there", "results")
     figures.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
     verb(_report, "write report.html and report.pdf", "results").add_argument("--study", **asked)
-    verb(_claims, "print each published claim with its verdict", "results")
+    claims = verb(_claims, "print each published claim with its verdict, a line each", "results")
+    claims.add_argument("--verbose", action="store_true", help="and below it all that is known of it")
+    _add_export(verb(_export, "write a table with a row a timed repetition, for other tools", "results"))
     told = "answer each line of standard input, as a running study asks: open, page, report"
     verb(_follow, told, "results").add_argument("--study", **asked)
     verb(_performance, "print the ladder and the limits as Markdown tables", "results")
@@ -56,7 +58,19 @@ def _parser() -> argparse.ArgumentParser:
     compare.add_argument("first", type=Path, metavar="A")
     compare.add_argument("second", type=Path, metavar="B")
     compare.add_argument("--experiment", metavar="NAME", help="only this experiment")
-    movie = verb(_movie, "draw a run as an animation, or one step of it as a picture")
+    _add_movie(verb(_movie, "draw a run as an animation, or one step of it as a picture"))
+    return parser
+
+
+def _add_export(export: argparse.ArgumentParser) -> None:
+    kind = export.add_mutually_exclusive_group()
+    kind.add_argument("--csv", action="store_true", help="as CSV (the default)")
+    kind.add_argument("--parquet", action="store_true", help="as Parquet (needs pyarrow)")
+    told = "default: measurements.csv or .parquet in the results; - is standard output"
+    export.add_argument("--output", type=Path, metavar="FILE", help=told)
+
+
+def _add_movie(movie: argparse.ArgumentParser) -> None:
     movie.add_argument("scene", type=Path, metavar="SCENE", help="a scene file")
     told = "its run, from `carom run --trajectory`; without it the scene is simulated"
     movie.add_argument("trajectory", type=Path, nargs="?", metavar="TRAJECTORY", help=told)
@@ -65,7 +79,6 @@ def _parser() -> argparse.ArgumentParser:
     movie.add_argument("--program", type=Path, help=argparse.SUPPRESS)  # `carom` tells where it is
     movie.add_argument("--output", type=Path, metavar="FILE", help="*.mp4 (needs ffmpeg), *.gif or *.png")
     movie.add_argument("--step", type=_step, metavar="S", help="of a picture (default: the last)")
-    return parser
 
 
 def _step(text: str) -> int:
@@ -84,6 +97,11 @@ def _figures(options: argparse.Namespace) -> int:
     drawn = draw_all(options.results, options.experiment.split(",") if options.experiment else ())
     for figure in drawn:
         print(figure.files[0])
+    if not options.experiment:
+        from analysis.report.all_claims import draw_all_claims
+
+        for file in draw_all_claims(options.results):
+            print(file)
     if not drawn:
         print(f"{options.results}: no records to draw yet", file=sys.stderr)
     return 0
@@ -135,7 +153,7 @@ def _asked(options: argparse.Namespace) -> list[str]:
 
 def _claims(options: argparse.Namespace) -> int:
     from analysis import claims
-    from analysis.claims import missing
+    from analysis.commands.claims_told import told
     from analysis.records import published
     from analysis.records.reading import load
     from analysis.records.studies import split
@@ -144,12 +162,19 @@ def _claims(options: argparse.Namespace) -> int:
     if not studies:
         raise InputError(f"{options.results}: no records yet (they are made by `make experiments`)")
     for study in studies:
-        print(study.name)
         table = claims.evaluate(study, studies, published.load(), claims.load(options.results))
-        print("  " + ", ".join(f"{amount} {state}" for state, amount in missing.tally(table).items()))
-        for row in table.itertuples():
-            detail = "; ".join(part for part in (row.measured, row.why) if part)
-            print(f"  {row.id:27}{row.said:25} {detail}")
+        print(*told(study.name, table, verbose=options.verbose), sep="\n")
+    if not options.verbose:
+        print("What was measured, on what, and why it is open: carom claims --verbose")
+    return 0
+
+
+def _export(options: argparse.Namespace) -> int:
+    from analysis.commands.export import write
+
+    written = write(options.results, options.output, parquet=options.parquet)
+    if written is not None:
+        print(written)
     return 0
 
 

@@ -35,7 +35,7 @@ TESTS: dict[str, Callable[..., Outcome]] = {
 
 COLUMNS = [
     "id", "claim", "effect", "claimed_threads", "experiments", "tested_threads", "said", "verdict",
-    "measured", "why", "figures", "missing", "p", "blocks", "needed",
+    "measured", "why", "figures", "missing", "p", "blocks", "needed", "name", "effects",
 ]  # fmt: skip
 
 Tested = dict[str, tuple[object, Outcome]]
@@ -53,7 +53,8 @@ def evaluate(
 
     Columns: `id`, `claim`, `effect` and `claimed_threads` as published, `experiments`, `tested_threads`,
     `verdict` with `said`, the same in words, `measured`, `why`, `figures`, `missing`, the `blocks` it rests
-    on and, where more can settle it, how many are `needed`.
+    on and, where more can settle it, how many are `needed`; `name`, the claim in few words, and its
+    `effects`, as published and as measured.
 
     Everything is judged on the records of `study`, except the claim about machines, which needs all of them.
     Those that are decided at its scale are corrected for their number (see `family`). Raises InputError
@@ -112,7 +113,9 @@ def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[st
         "experiments": list(claim.experiments),
         "tested_threads": tested,
         "said": _said(outcome.verdict, claim, tested, study.scale),
-        **asdict(replace(outcome, figures=())),
+        **asdict(replace(outcome, figures=(), effects=())),
+        "name": claim.name,
+        "effects": outcome.effects,
         "figures": figures if len(runs) else (),
     }
 

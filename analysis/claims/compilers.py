@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pandas as pd
 
+from analysis.claims.effects import effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import Compared, Outcome, directed, judged, no_records, told
 from analysis.statistics.pairs import log_ratios
@@ -38,7 +39,8 @@ def _against(reference: pd.DataFrame, candidate: pd.DataFrame, margin: float) ->
     measured = f"{names[0]} against {names[1]}: {change(row)} of time, {blocks(row)} ({said})"
     figure = Compared(f"time of {names[0]} against {names[1]}", "–", change(row))
     outcome = judged(row, "faster", measured, (figure,))
-    return replace(outcome, why=outcome.why or f"{said} with the same runtime")
+    effect = effect_of(" against ".join(name.split()[0] for name in names), row, margin=margin)
+    return replace(outcome, why=outcome.why or f"{said} with the same runtime", effects=(effect,))
 
 
 def _told(reference: pd.DataFrame, candidate: pd.DataFrame, margin: float) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from analysis.claims.effects import effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, directed, judged, no_records, told
 from analysis.statistics.pairs import PAIR, ratios_of
@@ -54,7 +55,8 @@ def fewer_wasted_attempts(
         figures.append(Compared("time", "–", change(row)))
     unsettled = TOO_FEW.replace("blocks or a quieter machine", "seeds")
     found = judged(wasted, "faster", measured, tuple(figures), unsettled, unit="seed")
-    return replace(found, blocks=0)  # more blocks bring no further seed
+    effect = effect_of("wasted attempts", wasted)
+    return replace(found, blocks=0, effects=(effect,))  # more blocks bring no further seed
 
 
 def _told(row: Mapping[str, Any]) -> str:

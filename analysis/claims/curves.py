@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import isfinite
+from math import isfinite, nan
+from typing import Any
 
 import pandas as pd
 
 from analysis.claims.alternatives import alternatives
+from analysis.claims.effects import EXPONENT, NOT_MEASURED, Effect, effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records
@@ -14,6 +16,8 @@ from analysis.records.studies import Study
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.pairs import log_ratios, ratios_of
 from analysis.statistics.trends import Minimum, growth, linearity, minimum
+from analysis.statistics.verdicts import MARGIN
+from analysis.support.values import Interval
 from analysis.support.wording import blocks, change, exact, factor, interval, listed, number
 
 ONE_POINT = "needs at least two values of the swept parameter"
@@ -37,12 +41,21 @@ def grows(evidence: Evidence, experiments: Sequence[str]) -> Outcome:
 
 
 def _grows(evidence: Evidence, experiment: str) -> Outcome:
+    row, outcome = _growth_tested(evidence, experiment)
+    curve = evidence.published.without_degenerate(experiment, evidence.published.curve(experiment))
+    published = growth(curve).change["ratio"] if curve["x"].nunique() > 1 else nan
+    what = experiment.replace("_", " ")
+    return replace(outcome, effects=(effect_of(what, row, published, evidence.margin(experiment)),))
+
+
+def _growth_tested(evidence: Evidence, experiment: str) -> tuple[dict[str, Any] | None, Outcome]:
+    """Return the row of the change over the whole range, if it was measured, and the outcome."""
     processes = published_processes(evidence.study, experiment)
     if processes.empty:
-        return no_records(experiment)
+        return None, no_records(experiment)
     kept = evidence.published.without_degenerate(experiment, processes)
     if kept["x"].nunique() < 2:
-        return Outcome(OPEN, why=ONE_POINT)
+        return None, Outcome(OPEN, why=ONE_POINT)
     trend = growth(kept, evidence.margin(experiment))
     name = processes["x_name"].iloc[0]
     without = sorted(set(processes["x"]) - set(kept["x"]))
@@ -52,7 +65,7 @@ def _grows(evidence: Evidence, experiment: str) -> Outcome:
     ) + (f" (without the degenerate {name} = {listed(without)})" if without else "")
     figures = (_growth_compared(evidence, experiment, kept),)
     row = {"blocks": trend.change["blocks"], "p": trend.p, "verdict": trend.verdict}
-    return judged(row, "grows", measured, figures)
+    return trend.change, judged(row, "grows", measured, figures)
 
 
 def _growth_compared(evidence: Evidence, experiment: str, processes: pd.DataFrame) -> Compared:
@@ -74,9 +87,10 @@ def _factor(processes: pd.DataFrame) -> str:
 def linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> Outcome:
     """Test that the time is a straight line over x: its exponent, over any fixed cost, is within bounds."""
     processes = published_processes(evidence.study, experiment)
-    if processes.empty:
-        return no_records(experiment)
     curve = evidence.published.curve(experiment)
+    if processes.empty:
+        effect = _exponent(linearity(curve, within).exponent.estimate, within)
+        return replace(no_records(experiment), effects=(effect,))
     outcome = _linear(processes, curve, within)
     grown = _growth_compared(evidence, experiment, processes)
     return replace(outcome, figures=(*outcome.figures, grown))
@@ -84,10 +98,11 @@ def linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> 
 
 def _linear(processes: pd.DataFrame, published: pd.DataFrame, within: tuple[float, float]) -> Outcome:
     line = linearity(processes, within)
-    if pd.isna(line.exponent.estimate):
-        return Outcome(OPEN, why=FOUR_POINTS)
     theirs = linearity(published, within).exponent.estimate
     name = processes["x_name"].iloc[0]
+    effect = _exponent(theirs, within, line.exponent)
+    if pd.isna(line.exponent.estimate):
+        return Outcome(OPEN, why=FOUR_POINTS, effects=(effect,))
     measured = (
         f"time = fixed + slope × {name}^e with e = {interval(line.exponent)}, "
         f"taken as linear between {within[0]} and {within[1]}"
@@ -95,7 +110,12 @@ def _linear(processes: pd.DataFrame, published: pd.DataFrame, within: tuple[floa
     figures = (Compared(f"exponent over {name}", number(theirs), interval(line.exponent)),)
     row = {"blocks": line.blocks, "p": line.p, "verdict": line.verdict}
     why = "the exponent's interval reaches across a bound: more blocks would decide"
-    return judged(row, "linear", measured, figures, why)
+    return replace(judged(row, "linear", measured, figures, why), effects=(effect,))
+
+
+def _exponent(published: float, within: tuple[float, float], here: Interval = NOT_MEASURED) -> Effect:
+    """Return the exponent as an effect: of a straight line it is 1."""
+    return Effect(EXPONENT, here, published, (within[0], within[1]))
 
 
 def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = None) -> Outcome:
@@ -103,12 +123,13 @@ def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = 
     nowhere in the range it is less than there, by more than the margin.
     """
     processes = published_processes(evidence.study, experiment)
+    curve = evidence.published.curve(experiment)
     if processes.empty:
-        return no_records(experiment)
+        return replace(no_records(experiment), effects=_ends(curve, None))
     if processes["x"].nunique() < 3:
         return Outcome(OPEN, why="needs at least three values of the swept parameter")
     margin = evidence.margin(experiment)
-    shape = _shape(processes, evidence.published.curve(experiment), margin)
+    shape = _shape(processes, curve, margin)
     return shape if least is None else both([shape, _least_at(processes, least, margin)])
 
 
@@ -127,7 +148,21 @@ def _shape(processes: pd.DataFrame, published: pd.DataFrame, margin: float) -> O
     )
     row = {"blocks": ours.fall["blocks"], "p": ours.p, "verdict": ours.verdict}
     outcome = judged(row, "falls then rises", measured, figures)
-    return replace(outcome, why=outcome.why or ours.verdict)
+    return replace(outcome, why=outcome.why or ours.verdict, effects=_ends(published, ours, margin))
+
+
+def _ends(published: pd.DataFrame, ours: Minimum | None, margin: float = MARGIN) -> tuple[Effect, ...]:
+    """Return the times at both ends of the range against the least."""
+    theirs = minimum(published) if len(published) else None
+    return tuple(
+        effect_of(
+            f"at the {end}",
+            getattr(ours, side) if ours else None,
+            getattr(theirs, side)["ratio"] if theirs else nan,
+            margin,
+        )
+        for end, side in (("smallest", "fall"), ("largest", "rise"))
+    )
 
 
 def _break(least: Minimum) -> str:
@@ -153,16 +188,18 @@ def _least_at(processes: pd.DataFrame, least: float, margin: float) -> Outcome:
         return Outcome(OPEN, why=f"needs another {name} in a block with {exact(least)}")
     found = alternatives(pairs, margin)
     best = found.best
-    return found.outcome(f"{best['name']} against {exact(least)}: {change(best)} of time, {blocks(best)}")
+    outcome = found.outcome(f"{best['name']} against {exact(least)}: {change(best)} of time, {blocks(best)}")
+    return replace(outcome, effects=(effect_of("best other", best, margin=margin),))
 
 
 def spike_then_linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> Outcome:
     """Test for a fall at the small end of x and a straight line from the lowest point on."""
     spike = falls_then_rises(evidence, experiment)
-    if not spike.measured:
-        return spike
-    ours = _from_the_lowest(published_processes(evidence.study, experiment))
     theirs = _from_the_lowest(evidence.published.curve(experiment))
+    if not spike.measured:
+        line = _exponent(linearity(theirs, within).exponent.estimate, within)
+        return replace(spike, effects=(*spike.effects, line))
+    ours = _from_the_lowest(published_processes(evidence.study, experiment))
     return both([spike, _linear(ours, theirs, within)])
 
 

@@ -37,7 +37,7 @@ class Claim:
 
     On a scale of `smaller_scales` its question can be settled as well, with a verdict that speaks of that
     scale alone; `other_scales` says why records of another scale do not decide the claim itself; `questions`
-    is the folder of its question, empty for a published one.
+    is the folder of its question, empty for a published one. `short` is the claim in few words.
     """
 
     id: str
@@ -49,6 +49,12 @@ class Claim:
     arguments: Mapping[str, Any] = field(default_factory=dict)
     questions: str = ""
     smaller_scales: tuple[str, ...] = ()
+    short: str = ""
+
+    @property
+    def name(self) -> str:
+        """The claim in few words, or its id."""
+        return self.short or self.id.replace("_", " ")
 
     def speaks_of(self, scale: str) -> bool:
         """Tell whether records of a scale settle the claim, or its question at that scale."""

@@ -41,6 +41,7 @@ def both(outcomes: Sequence[Outcome]) -> Outcome:
         all(outcome.missing for outcome in outcomes),
         (min(p) if verdict == FAILS else max(p)) if p else None,
         blocks=_blocks(decisive, verdict),
+        effects=tuple(effect for outcome in outcomes for effect in outcome.effects),
         against=_against(parts) if verdict == OPEN else None,
     )
 

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import pandas as pd
 
+from analysis.claims.effects import Effect, effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records
@@ -47,22 +48,35 @@ def clock(evidence: Evidence, experiment: str) -> Outcome:
     each with the next faster clock; all on one number of threads, or not at all.
     """
     machines = _machines(evidence, experiment)
+    theirs = _published_effects(evidence.published, experiment)
     if not machines:
-        return no_records(experiment)
+        return replace(no_records(experiment), effects=theirs)
     figures = _figures(evidence.published, experiment, machines)
     measured = "; ".join(one.said for one in machines)
     why = _undecidable(machines)
     if why:
-        return Outcome(OPEN, measured if len(machines) > 1 else "", why, figures)
+        return Outcome(OPEN, measured if len(machines) > 1 else "", why, figures, effects=theirs)
     ordered = sorted((one for one in machines if one.gigahertz), key=lambda one: one.gigahertz or 0)
-    rows = [
-        judge_unpaired(slow.processes["steps_seconds"], fast.processes["steps_seconds"])
-        for slow, fast in pairwise(ordered)
-        if slow.gigahertz != fast.gigahertz
-    ]
+    faster = [two for two in pairwise(ordered) if two[0].gigahertz != two[1].gigahertz]
+    rows = [judge_unpaired(*(one.processes["steps_seconds"] for one in two)) for two in faster]
     joined = both([judged(row, "faster", "", unit="process") for row in rows])
     why = "a higher clock was not faster" if joined.verdict == FAILS else joined.why
-    return replace(joined, measured=measured, why=why, figures=figures)
+    effects = tuple(
+        effect_of(f"{fast.gigahertz} against {slow.gigahertz} GHz", row)
+        for (slow, fast), row in zip(faster, rows, strict=True)
+    )
+    return replace(joined, measured=measured, why=why, figures=figures, effects=effects)
+
+
+def _published_effects(published: Published, experiment: str) -> tuple[Effect, ...]:
+    """Return the times of the published machines, each against the one with the next lower clock."""
+    times = published.experiment(experiment).groupby("series")["seconds"].median()
+    known = published.machines[published.machines["machine"].isin(times.index)]
+    ordered = known.sort_values("maximum_gigahertz")[["maximum_gigahertz", "machine"]]
+    return tuple(
+        effect_of(f"{fast[0]} against {slow[0]} GHz", None, float(times[fast[1]] / times[slow[1]]))
+        for slow, fast in pairwise(ordered.itertuples(index=False, name=None))
+    )
 
 
 def _undecidable(machines: Sequence[Measured]) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from analysis.claims.effects import Effect
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.looks import ERROR
 from analysis.statistics.verdicts import MARGIN, judge_one
@@ -74,6 +75,8 @@ class Outcome:
     p: float | None = None
     against: float | None = None
     blocks: int = 0
+    effects: tuple[Effect, ...] = ()
+    """What it is about as numbers."""
 
 
 def no_records(experiment: str, missing: str = "") -> Outcome:

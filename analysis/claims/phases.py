@@ -1,10 +1,12 @@
 """The claim about where the time of a step goes."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from analysis.claims.effects import effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import Compared, Outcome, directed, judged, no_records
 from analysis.statistics.pairs import PAIR
@@ -36,7 +38,8 @@ def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str)
         f"{number(row['high'])}], {count(row['blocks'], 'block')}"
     )
     figures = (Compared("share of a step that resolving takes", "–", said),)
-    return judged(row, "slower", measured, figures)
+    effect = effect_of("resolving against the rest", row)
+    return replace(judged(row, "slower", measured, figures), effects=(effect,))
 
 
 def _judged(

@@ -1,11 +1,13 @@
 """The claim about threads: what the curve does up to the cores, to the hardware threads, and beyond."""
 
 from dataclasses import dataclass, replace
+from math import nan
 from typing import Any
 
 import pandas as pd
 
 from analysis.claims.curves import published_processes
+from analysis.claims.effects import Effect, effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, Compared, Outcome, directed, judged, no_records, told
@@ -45,7 +47,8 @@ def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_m
     """
     processes = published_processes(evidence.study, experiment)
     if processes.empty:
-        return no_records(experiment)
+        effects = _effects(evidence, experiment, None, None, published_machine)
+        return replace(no_records(experiment), effects=effects)
     study = evidence.study
     cores = study.cores or study.hardware_threads
     margin = evidence.margin(experiment)
@@ -54,7 +57,8 @@ def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_m
     tested = [_judged(stretch, processes, cores) for stretch in there]
     absent = [Outcome(OPEN, why=f"needs {one.needs}") for one in stretches if one not in there]
     figures = _compared(evidence, experiment, stretches, processes, published_machine)
-    return both([*tested, *absent, Outcome(HOLDS, figures=figures)])
+    effects = _effects(evidence, experiment, stretches, processes, published_machine)
+    return both([*tested, *absent, Outcome(HOLDS, figures=figures, effects=effects)])
 
 
 def _stretches(
@@ -90,8 +94,7 @@ def _compared(
 ) -> tuple[Compared, ...]:
     """Return each stretch's factor of time on the study's machine and on this one."""
     curve = evidence.published.curve(experiment)
-    size = evidence.published.machines.set_index("machine").loc[machine]
-    theirs = _stretches(curve, int(size["cores"]), int(size["hardware_threads"]), MARGIN)
+    theirs = _published_stretches(evidence, experiment, machine)
 
     def said(stretch: Stretch, one: pd.DataFrame) -> str:
         if stretch.start >= stretch.end:
@@ -102,3 +105,29 @@ def _compared(
         Compared(f"time {their.what}", said(their, curve), said(our, processes))
         for their, our in zip(theirs, ours, strict=True)
     )
+
+
+def _published_stretches(evidence: Evidence, experiment: str, machine: str) -> list[Stretch]:
+    curve = evidence.published.curve(experiment)
+    size = evidence.published.machines.set_index("machine").loc[machine]
+    return _stretches(curve, int(size["cores"]), int(size["hardware_threads"]), MARGIN)
+
+
+def _effects(
+    evidence: Evidence,
+    experiment: str,
+    ours: list[Stretch] | None,
+    processes: pd.DataFrame | None,
+    machine: str,
+) -> tuple[Effect, ...]:
+    """Return the change of time over each stretch; one that is not here is not measured."""
+    curve = evidence.published.curve(experiment)
+    found = []
+    for number, their in enumerate(_published_stretches(evidence, experiment, machine)):
+        our = None if ours is None else ours[number]
+        has_it = our is not None and processes is not None and our.start < our.end
+        row = our.judge(processes) if our is not None and processes is not None and has_it else None
+        published = their.judge(curve)["ratio"] if their.start < their.end else nan
+        margin = MARGIN if our is None else our.margin
+        found.append(effect_of(their.what, row, float(published), margin))
+    return tuple(found)

@@ -1,11 +1,13 @@
 """Claims that one schedule and chunk is the one to choose."""
 
 from dataclasses import replace
+from math import nan
 
 import numpy as np
 import pandas as pd
 
 from analysis.claims.alternatives import alternatives
+from analysis.claims.effects import Effect, effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, directed, judged, no_records, told
@@ -30,8 +32,9 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     choices, and so it does here. The average is that of the log ratios within each block.
     """
     processes = evidence.study.times_of(experiment)
+    theirs = _published_effects(evidence, experiment, schedule, chunk)
     if processes.empty:
-        return no_records(experiment)
+        return replace(no_records(experiment), effects=theirs)
     kind = processes[axis].str.split("_").str[0]
     chosen = processes[(kind == schedule) & (processes["x"] == chunk)]
     others = processes.drop(chosen.index)
@@ -55,18 +58,37 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
         f"{schedule} {chunk}: {seconds} s on {count(int(chosen['threads'].iloc[0]), 'thread')}; "
         f"best other, {best['name']}: {change(best)} of time, {blocks(best)}"
     )
-    theirs = _best_other(evidence, experiment, schedule, chunk)
     medians = processes.groupby(["series", "x"], as_index=False)["steps_seconds"].median()
     fastest = _least(evidence.published.experiment(experiment), "seconds"), _least(medians, "steps_seconds")
     figures = (
         Compared("fastest measured", *fastest),
-        Compared("best other against the choice", theirs, f"{best['name']}: {change(best)}"),
+        Compared(
+            "best other against the choice",
+            _best_other(evidence, experiment, schedule, chunk),
+            f"{best['name']}: {change(best)}",
+        ),
     )
     against = f"against the others on average {change(average)} of time, {blocks(average)}"
     matters = judged(average, "faster", against)
     if matters.verdict == FAILS:
         matters = replace(matters, why=NOT_BETTER[told(average, "faster")])
-    return replace(both([found.outcome(measured), matters]), figures=figures)
+    measured_here = zip(theirs, (best, average), strict=True)
+    effects = tuple(effect_of(one.what, row, one.published, margin) for one, row in measured_here)
+    return replace(both([found.outcome(measured), matters]), figures=figures, effects=effects)
+
+
+def _published_effects(
+    evidence: Evidence, experiment: str, schedule: str, chunk: int
+) -> tuple[Effect, Effect]:
+    """Return the published best other against the choice, and that against the mean of the others."""
+    times = evidence.published.experiment(experiment)
+    chosen = (times["series"] == schedule) & (times["x"] == chunk)
+    logs = np.log(times["seconds"])
+    best = mean = nan
+    if chosen.any() and not chosen.all():
+        choice, others = logs[chosen].iloc[0], logs[~chosen]
+        best, mean = np.exp(others.min() - choice), np.exp(choice - others.mean())
+    return effect_of("best other", None, float(best)), effect_of("against the others", None, float(mean))
 
 
 def _least(table: pd.DataFrame, value: str) -> str:

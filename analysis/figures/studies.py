@@ -31,9 +31,13 @@ def draw_study(
     formats: Sequence[str] = FORMATS,
 ) -> list[Drawn]:  # fmt: skip
     """Draw one study; the files of any but the first carry its name."""
-    prefix = "" if study is studies[0] else f"{slug(study.name)}-"
     data = Data(study, studies, published.load(), results)
-    return list(draw(data, results / "figures", prefix, wanted, formats))
+    return list(draw(data, results / "figures", prefix_of(study, studies), wanted, formats))
+
+
+def prefix_of(study: Study, studies: Sequence[Study]) -> str:
+    """Return what the names of a study's files begin with: nothing of the first one."""
+    return "" if study is studies[0] else f"{slug(study.name)}-"
 
 
 def slug(name: str) -> str:

@@ -12,6 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 
 from analysis.records.reading import load
 from analysis.report.content import content
+from analysis.support.wording import NO_BREAK
 from support.files import replacing
 
 TEMPLATE = "report.html.jinja"
@@ -97,4 +98,4 @@ def _page(gathered: dict[str, Any], *, images: bool = False, goes_on: str = "") 
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template(TEMPLATE).render(gathered, images=images, goes_on=goes_on)
+    return environment.get_template(TEMPLATE).render(gathered, images=images, goes_on=goes_on, nbsp=NO_BREAK)

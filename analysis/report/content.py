@@ -1,6 +1,8 @@
 """Everything that the report says, gathered from the records; the template only lays it out."""
 
-from collections.abc import Collection, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
+from html import escape, unescape
 from pathlib import Path
 from typing import Any
 
@@ -8,17 +10,16 @@ import pandas as pd
 from markupsafe import Markup
 
 from analysis import claims
-from analysis.claims import missing
+from analysis.claims import missing, summary
 from analysis.claims.entry import CLAIMS_FILE, questions_folder
-from analysis.derived.ladder import headlines
 from analysis.figures import Drawn, titles
-from analysis.figures.studies import draw_study
-from analysis.figures.style import FORMATS
+from analysis.figures.studies import draw_study, prefix_of
+from analysis.figures.style import FORMATS, Data
 from analysis.records import published
 from analysis.records.reading import Records
 from analysis.records.studies import Study, split
-from analysis.report import graphs, provenance
-from analysis.report.parts import contents, parts
+from analysis.report import all_claims, first_screen, graphs, provenance
+from analysis.report.parts import contents, inline, parts
 from analysis.statistics.levels import in_order, levels, shifting
 from analysis.statistics.looks import ERROR
 from analysis.statistics.noise import needed_said, process_noise, warning
@@ -46,6 +47,7 @@ def content(
         study["anchor"] = f"study-{position}"
         study["contents"] = contents(study)
     shown = [part for study in reversed(found) for part in (*study["asked"], *study["parts"])]
+    told = {part.experiment for study in found for part in (*study["trust"], *shown)}
     return {
         "style": Markup(STYLE.read_text(encoding="utf-8")),
         "margin": share(MARGIN),
@@ -62,7 +64,7 @@ def content(
         "skipped": records.skipped,
         "verbs": provenance.verbs(records, questions_folder(results)),
         "scale": _scale(records.runs),
-        "commands": provenance.commands(records.runs),
+        "commands": [row for row in provenance.commands(records.runs) if row["experiment"] not in told],
     }
 
 
@@ -70,8 +72,13 @@ def _study(
     study: Study, studies: Sequence[Study], results: Path, asked: Collection[str], formats: Sequence[str]
 ) -> dict[str, Any]:
     drawn = draw_study(study, studies, results, formats=formats)
-    shown = parts(study, drawn)
     table = claims.evaluate(study, studies, published.load(), claims.load(results))
+    rows = table.to_dict("records")
+    shown = parts(study, drawn, rows)
+    places = {part.experiment: (part.anchor, part.title) for part in shown}
+    prefix = prefix_of(study, studies)
+    anchors = _anchors(rows, places, prefix)
+    data = Data(study, studies, published.load(), results)
     noise, settled = process_noise(study.times), _settled(table, drawn)
     return {
         "name": study.name,
@@ -80,13 +87,16 @@ def _study(
         "parts": [part for part in shown if part.experiment not in (*asked, CONTROL)],
         "trust": [part for part in shown if part.experiment == CONTROL],
         "control": control_sentence(study),
-        "headlines": headlines(study),
         "warning": warning(noise, settled),
         "noise": [_noise_row(row, settled) for row in noise.to_dict("records")],
         "checks": provenance.checks(study),
         "partners": provenance.partners(study),
         "states": missing.tally(table if study is studies[0] else table[~table["missing"]]),
-        **_claims(table, {part.experiment: (part.anchor, part.title) for part in shown}, asked),
+        **_claims(table, places, asked),
+        "prefix": prefix,
+        "said": first_screen.sentences(study, rows, drawn, anchors),
+        "figure": _all_claims(all_claims.draw(data, prefix, table, formats), rows, anchors, prefix),
+        "beside": first_screen.beside(study, table, is_first=study is studies[0]),
         "without_records": list(table.loc[table["missing"], "id"]) if study is studies[0] else [],
     }
 
@@ -98,11 +108,66 @@ def _claims(
     figures, and how many have each verdict.
     """
     rows = [
-        {**row, "places": [places[name] for name in row["experiments"] if name in places]}
+        {
+            **row,
+            "places": [places[name] for name in row["experiments"] if name in places],
+            "sign": summary.mark(row),
+            "look": summary.colour_of(row),
+            "short": summary.verdict_in_short(row),
+            "numbers": [
+                {
+                    "what": one.what if len(row["effects"]) > 1 or one.is_exponent else "",
+                    "published": summary.published_in_short(one),
+                    "here": summary.change_in_short(one),
+                }
+                for one in row["effects"]
+            ],
+        }
         for row in table[~table["missing"]].to_dict("records")
     ]
     rows.sort(key=lambda row: bool(asked) and not set(row["experiments"]) & set(asked))
     return {"claims": rows, "tally": pd.Series([row["verdict"] for row in rows]).value_counts().to_dict()}
+
+
+def _anchors(
+    rows: Sequence[Mapping[str, Any]], places: Mapping[str, tuple[str, str]], prefix: str
+) -> dict[str, str]:
+    """Return where each claim leads to: the section of its first question that was drawn, or its row in the
+    table; the whole table where it has none.
+    """
+    found = {}
+    for row in rows:
+        drawn = [places[name][0] for name in row["experiments"] if name in places]
+        found[row["id"]] = (
+            drawn[0] if drawn else f"{prefix}claim{'s-table' if row['missing'] else '-' + row['id']}"
+        )
+    return found
+
+
+def _all_claims(
+    drawn: tuple[str, list[Path]], rows: Sequence[Mapping[str, Any]], anchors: Mapping[str, str], prefix: str
+) -> dict[str, Any] | None:
+    """Return the figure of all claims, wide and narrow, whose rows lead to their sections and tell their
+    verdicts when the pointer rests on them.
+    """
+    caption, files = drawn
+    if not files:
+        return None
+    said = {
+        row["id"]: escape(f"{row['claim']} {summary.mark(row)} {summary.verdict_in_short(row)}")
+        for row in rows
+    }
+
+    def link(found: re.Match[str]) -> str:
+        name = unescape(found[1])
+        return f'<a href="#{anchors[name]}"><title>{said[name]}</title>'
+
+    names = (f"{prefix}{all_claims.NAME}", f"{prefix}{all_claims.NAME}-narrow")
+    pictures = []
+    for name in names:
+        svg = inline((files[0].parent / f"{name}.svg").read_text(encoding="utf-8"), name)
+        pictures.append(Markup(re.sub(r'<a xlink:href="\.\./report\.html#claim-([^"]+)"[^>]*>', link, svg)))
+    return {"name": names[0], "caption": caption, "wide": pictures[0], "narrow": pictures[1]}
 
 
 def _settled(table: pd.DataFrame, drawn: Sequence[Drawn]) -> set[str]:

@@ -10,7 +10,9 @@ from markupsafe import Markup
 from analysis.derived.accuracy import MEASURES, errors
 from analysis.figures import HARD_CASES, OF_ERRORS, SPEED_AGAINST_ERROR, Drawn
 from analysis.records.studies import Study
+from analysis.report.answers import Answer, answer, questions
 from analysis.report.horizons import horizons
+from analysis.report.provenance import commands_of
 from analysis.support.wording import blocks, change
 
 PHASES = "phases"
@@ -18,24 +20,26 @@ PHASES = "phases"
 
 @dataclass(frozen=True)
 class Part:
-    """What the report shows of one question: a title, sentences, figures. A figure alone brings its own
-    title, so that `heading` is False.
+    """What the report shows of one question: its `title`, the `question` itself, the answer to it, sentences,
+    figures, and the commands that repeat its points. The anchor of a part with one figure is the figure's.
     """
 
     experiment: str
     anchor: str
     title: str
-    heading: bool
+    question: str
+    answer: Answer
     said: Sequence[str]
     figures: Sequence[Mapping[str, Any]]
+    commands: Sequence[str]
 
 
-def parts(study: Study, drawn: Sequence[Drawn]) -> list[Part]:
+def parts(study: Study, drawn: Sequence[Drawn], claims: Sequence[Mapping[str, Any]] = ()) -> list[Part]:
     """Return a part for each question that was drawn: where the time goes, the others in the order of the
-    figures, those about errors last.
+    figures, those about errors last. Where `claims` (rows of `claims.evaluate`) are about it, they answer it.
     """
     found = [
-        _part(study, [one for one in drawn if one.entry.experiment == experiment])
+        _part(study, [one for one in drawn if one.entry.experiment == experiment], claims)
         for experiment in dict.fromkeys(one.entry.experiment for one in drawn)
     ]
     kinds = {one.entry.experiment: one.entry.kind for one in drawn}
@@ -43,7 +47,7 @@ def parts(study: Study, drawn: Sequence[Drawn]) -> list[Part]:
     return sorted(found, key=lambda part: (part.experiment != PHASES, order.index(kinds[part.experiment])))
 
 
-def _part(study: Study, drawn: Sequence[Drawn]) -> Part:
+def _part(study: Study, drawn: Sequence[Drawn], claims: Sequence[Mapping[str, Any]]) -> Part:
     entry = drawn[0].entry
     said: Sequence[str] = ()
     title = entry.title
@@ -58,9 +62,17 @@ def _part(study: Study, drawn: Sequence[Drawn]) -> Part:
     elif entry.experiment == PHASES:
         title = "Where the time goes"
     figures = [_figure(one) for one in drawn]
-    heading = len(figures) > 1 or bool(said)
     name = str(figures[0]["name"])
-    return Part(entry.experiment, f"part-{name}" if heading else name, title, heading, said, figures)
+    return Part(
+        entry.experiment,
+        f"part-{name}" if len(figures) > 1 or said else name,
+        title,
+        questions().get(entry.experiment, title),
+        answer(study, entry.experiment, drawn, claims),
+        said,
+        figures,
+        commands_of(study, entry.experiment),
+    )
 
 
 def _errors(study: Study, experiment: str) -> list[str]:
@@ -101,14 +113,21 @@ def inline(svg: str, name: str) -> str:
     return head + re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{name}-", root[end:])
 
 
-def contents(study: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Return the study's list of contents: the anchor and the title of each of its places, in their order."""
+def contents(study: Mapping[str, Any]) -> list[tuple[str, str, Answer | None]]:
+    """Return the study's list of contents: the anchor and the title of each of its places, in their order.
+    With each question stands what it came to.
+    """
     anchor = study["anchor"]
+    claims = [(f"{anchor}-claims", "The claims, tested again", None)] if sum(study["states"].values()) else []
     return [
-        *((part.anchor, part.title) for part in study["asked"]),
-        *([(f"{anchor}-claims", "The claims, tested again")] if sum(study["states"].values()) else []),
-        (f"{anchor}-machine", "The machine and the programs"),
-        (f"{anchor}-trust", "Can these numbers be trusted?"),
-        *((part.anchor, part.title) for part in study["trust"]),
-        *((part.anchor, part.title) for part in study["parts"]),
+        *map(_entry, study["asked"]),
+        *claims,
+        (f"{anchor}-machine", "The machine and the programs", None),
+        (f"{anchor}-trust", "Can these numbers be trusted?", None),
+        *map(_entry, study["trust"]),
+        *map(_entry, study["parts"]),
     ]
+
+
+def _entry(part: Part) -> tuple[str, str, Answer | None]:
+    return part.anchor, part.title, part.answer

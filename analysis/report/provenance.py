@@ -143,6 +143,11 @@ def commands(runs: pd.DataFrame) -> list[dict[str, Any]]:
     return [{"experiment": name, "commands": list(found)} for name, found in sorted(rows.items())]
 
 
+def commands_of(study: Study, experiment: str) -> list[str]:
+    """Return the commands behind the points of one experiment."""
+    return [line for row in commands(study.runs_of(experiment)) for line in row["commands"]]
+
+
 def _command(row: dict[str, Any]) -> str:
     if row["kind"] == "process":
         return f"{row['environment']} {row['command']}".strip()

@@ -60,7 +60,7 @@ def test_a_mistake_is_one_line_whoever_does_the_verb(
     assert said in line
 
 
-@pytest.mark.parametrize("verb", ["study", "report", "claims", "figures", "movie"])
+@pytest.mark.parametrize("verb", ["study", "report", "claims", "export", "figures", "movie"])
 def test_help_of_a_verb_is_that_of_whoever_does_it(tmp_path: Path, verb: str) -> None:
     asked = say("help", verb, folder=tmp_path)
     assert asked.returncode == 0

@@ -36,6 +36,8 @@ constexpr std::array python_verbs{
                "Plan, run and look after a study, here or on a cluster; has verbs of its own"},
     PythonVerb{"report", groups::study, "analysis", true, false, "Write the report of whatever was measured"},
     PythonVerb{"claims", groups::study, "analysis", true, false, "Print each claim with its verdict"},
+    PythonVerb{"export", groups::study, "analysis", true, false,
+               "Write a table with a row a measurement, as CSV or Parquet"},
     PythonVerb{"figures", groups::study, "analysis", true, false,
                "Draw the figures of whatever was measured"},
 };

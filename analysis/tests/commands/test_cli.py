@@ -3,6 +3,7 @@ from pathlib import Path
 
 import pytest
 
+from analysis import claims
 from analysis.cli import main
 from analysis.tests.synthetic import Machine, write
 from analysis.tests.synthetic_noise import QUIET, Noise
@@ -112,10 +113,37 @@ def test_claims_are_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     folder(tmp_path)
     assert main(["claims", "--results", str(tmp_path)]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == 2 + 17
+    assert len(lines) == 2 + 17 + 1
+    assert max(map(len, lines)) <= 100
+    assert lines[-1].endswith("carom claims --verbose")
     assert re.fullmatch(r"  \d+ decided, \d+ open, \d+ not measured, \d+ not decidable here", lines[1])
     assert sum(map(int, re.findall(r"\d+", lines[1]))) == 17
-    assert any("four_boxes" in line and "holds" in line for line in lines)
+    assert any(
+        re.fullmatch(r"\(✓\) four_boxes +−4.\d % \[−\S+, −\S+\] +holds at 2 threads", line) for line in lines
+    )
+    assert "  – radius                                            not measured" in lines
+
+
+def test_all_that_is_known_of_a_claim_is_below_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder(tmp_path)
+    assert main(["claims", "--verbose", "--results", str(tmp_path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 100
+    text = " ".join(" ".join(lines).split())
+    for claim in claims.load():
+        assert claim.claim in text
+        assert " ".join(claim.published.effect.split()) in text
+    assert "four against nine: published −4.6 %, here −4." in text
+    assert "why: no records yet (experiment 'radius')" in text
+
+
+def test_no_interval_is_said_in_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder(tmp_path, blocks=3)
+    assert main(["claims", "--results", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "not decided: too few blocks for an interval" in said
+    assert "inf" not in said
+    assert "∞" not in said
 
 
 @pytest.mark.parametrize(

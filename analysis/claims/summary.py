@@ -1,0 +1,79 @@
+"""A claim and its verdict in few words: for the terminal, for tables and for the figure of all claims."""
+
+from collections.abc import Mapping
+from math import isfinite
+from typing import Any
+
+from analysis.claims.effects import Effect
+from analysis.claims.missing import DECIDED
+from analysis.claims.outcome import ELSEWHERE, FAILS, HOLDS, HOLDS_BY_LESS, Verdict
+from analysis.statistics.intervals import FEWEST
+from analysis.support.wording import NO_BREAK, count, number
+
+MARKS = {HOLDS: "✓", HOLDS_BY_LESS: "✓", FAILS: "✗"}
+UNDECIDED, UNMEASURED = "?", "–"
+TOO_FEW_BLOCKS = "too few blocks for an interval"
+_IN_FULL = 100
+"""From this per cent on a change has no decimals."""
+
+
+def mark(row: Mapping[str, Any]) -> str:
+    """Return the sign of a row's verdict, in brackets if it was reached elsewhere than the claim was made."""
+    verdict = row["verdict"]
+    if verdict in MARKS:
+        return MARKS[verdict]
+    plain = {elsewhere: one for one, elsewhere in ELSEWHERE.items()}.get(verdict)
+    if plain is not None:
+        return f"({MARKS[plain]})"
+    return UNMEASURED if row["missing"] else UNDECIDED
+
+
+def colour_of(row: Mapping[str, Any]) -> str:
+    """Return what a verdict is drawn as, wherever it was reached: `holds`, `by_less`, `fails` or `open`."""
+    plain = {elsewhere: one for one, elsewhere in ELSEWHERE.items()}.get(row["verdict"], row["verdict"])
+    return {HOLDS: "holds", HOLDS_BY_LESS: "by_less", FAILS: "fails"}.get(plain, "open")
+
+
+def verdict_in_short(row: Mapping[str, Any]) -> str:
+    """Return the verdict of a row of `evaluate` in few words; of one that is open, what it lacks."""
+    said = str(row["said"]).partition(" (claimed")[0]
+    if row["verdict"] in DECIDED:
+        return said
+    if row["missing"]:
+        return "not measured"
+    if row["verdict"] == Verdict.OTHER_SCALE:
+        return said
+    if 0 < row["blocks"] < FEWEST:
+        return f"not decided: {TOO_FEW_BLOCKS}"
+    if isfinite(row["needed"]):
+        return f"not decided: about {count(int(row['needed']) - row['blocks'], 'more block')}"
+    return "not decided: not in sight" if row["blocks"] else "cannot be decided here"
+
+
+def change_in_short(effect: Effect) -> str:
+    """Return what was measured of an effect, e.g. `−10.0 % [−14.7, −5.0]`; an en dash without records."""
+    if not effect.is_measured:
+        return UNMEASURED
+    estimate = _one(effect, effect.here.estimate, unit=True)
+    if not effect.has_interval:
+        return f"{estimate} ({TOO_FEW_BLOCKS})"
+    low, high = (_one(effect, end) for end in effect.here[1:])
+    return f"{estimate} [{low}, {high}]"
+
+
+def published_in_short(effect: Effect) -> str:
+    """Return what the study measured of an effect, an en dash for what it gives no number of."""
+    return _one(effect, effect.published, unit=True) if isfinite(effect.published) else UNMEASURED
+
+
+def _one(effect: Effect, ratio: float, *, unit: bool = False) -> str:
+    if effect.is_exponent:
+        return number(ratio, 3)
+    change = 100 * (ratio - 1)
+    text = f"{change:+.{0 if abs(change) >= _IN_FULL else 1}f}".replace("-", "−")
+    return f"{text}{NO_BREAK}%" if unit else text
+
+
+def first_effect(row: Mapping[str, Any]) -> Effect | None:
+    """Return the first effect of a row that was measured, None without one."""
+    return next((one for one in row["effects"] if one.is_measured), None)

@@ -1,0 +1,280 @@
+"""The figure of all claims: of each the published effect and the measured interval, on one axis."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Rectangle
+
+from analysis import claims
+from analysis.claims.effects import Effect
+from analysis.claims.summary import colour_of, mark
+from analysis.figures.studies import prefix_of
+from analysis.figures.style import (
+    BAND,
+    BLUE,
+    FAINT,
+    FORMATS,
+    INK,
+    SKY,
+    VERMILLION,
+    WIDTH,
+    Data,
+    Drawing,
+    lighten,
+    save,
+    styled,
+)
+from analysis.records import published
+from analysis.records.reading import load
+from analysis.records.studies import split
+
+NAME = "claims"
+LOOK = {"holds": (BLUE, "o"), "by_less": (SKY, "o"), "fails": (VERMILLION, "s"), "open": ("#b4b4b4", "o")}
+"""The colour and the mark of what a verdict says; of one that is open the mark is hollow."""
+PUBLISHED_LOOK: Any = {"markerfacecolor": "none", "markersize": 4.6, "markeredgewidth": 0.8}
+PALE_INK = "#6e6e6e"
+"""Of the names of what is open: pale, and still to be read."""
+
+LINEAR = 10
+"""Per cent up to which the axis is linear; it is logarithmic beyond."""
+LOWEST, HIGHEST = (-90, -50, -20, -10), (10, 20, 50, 100, 200, 600)
+"""Where the axis may end."""
+TICKS = (-50, -20, -10, -5, 0, 5, 10, 20, 50, 100, 500)
+FEWER_TICKS = (-50, -10, 0, 10, 50, 200)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where things stand, in inches: on a screen and on paper, or on a telephone."""
+
+    width: float
+    left: float
+    row: float
+    gap: float
+    below: float
+    ticks: Sequence[int]
+    is_narrow: bool
+    letters: float = 7
+
+
+WIDE = Layout(WIDTH, 3.55, 0.125, 0.05, 0.62, TICKS, is_narrow=False)
+NARROW = Layout(3.2, 1.24, 0.14, 0.2, 0.74, FEWER_TICKS, is_narrow=True)
+ABOVE, RIGHT = 0.2, 0.12
+"""Inches beside the axes."""
+SCALES = {
+    True: "change of time, %",
+    False: f"change of time, % (linear up to {LINEAR} %, logarithmic beyond)",
+}
+
+
+def all_claims(data: Data, table: pd.DataFrame | None = None, layout: Layout = WIDE) -> Drawing | None:
+    """Draw the claims of a study, of their `table` if it was evaluated; None if no claim has an effect.
+
+    Each row is a link to its claim in the report beside the folder of figures.
+    """
+    if table is None:
+        table = claims.evaluate(data.study, data.studies, data.published, claims.load(data.folder))
+    rows = table.to_dict("records")
+    if not any(one.is_measured for row in rows for one in row["effects"]):
+        return None
+    height = sum(layout.gap + layout.row * max(1, len(row["effects"])) for row in rows)
+    figure = Figure(figsize=(layout.width, height + ABOVE + layout.below))
+    figure.set_layout_engine("none")
+    whole = figure.get_figheight()
+    axes = figure.add_axes(
+        (
+            layout.left / layout.width,
+            layout.below / whole,
+            1 - (layout.left + RIGHT) / layout.width,
+            height / whole,
+        )
+    )
+    _axis(axes, rows, layout, height)
+    top = 0.0
+    for row in rows:
+        bottom = top + layout.gap + layout.row * max(1, len(row["effects"]))
+        _claim(axes, row, top, layout)
+        _link(figure, row["id"], ((whole - ABOVE - bottom) / whole, (bottom - top) / whole))
+        top = bottom
+    _key(figure, layout)
+    return Drawing(figure, _caption(rows))
+
+
+def _axis(axes: Axes, rows: Sequence[Mapping[Any, Any]], layout: Layout, height: float) -> None:
+    effects = [one for row in rows for one in row["effects"]]
+    known = [
+        _per_cent(value) for one in effects for value in (one.here.estimate, one.published) if isfinite(value)
+    ]
+    # Estimates alone stretch the axis: an interval that does not fit ends in an arrow.
+    low = max((end for end in LOWEST if end <= min([*known, -LINEAR])), default=LOWEST[0])
+    high = min((end for end in HIGHEST if end >= max([*known, LINEAR])), default=HIGHEST[-1])
+    axes.set_xscale("symlog", linthresh=LINEAR, linscale=0.8)
+    axes.set(xlim=(low, high), ylim=(height, 0), yticks=[])
+    shown = [tick for tick in layout.ticks if low <= tick <= high]
+    axes.set_xticks(shown, [f"{tick:+d}".replace("-", "−") if tick else "0" for tick in shown])
+    axes.minorticks_off()
+    axes.tick_params(labelsize=6, labeltop=True, top=True, length=2, pad=1.5)
+    axes.set_xlabel(SCALES[layout.is_narrow], fontsize=6.5, labelpad=2)
+    axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
+    axes.spines["left"].set_visible(False)
+
+
+def _per_cent(ratio: float) -> float:
+    return 100 * (ratio - 1)
+
+
+def _claim(axes: Axes, row: Mapping[Any, Any], top: float, layout: Layout) -> None:
+    """Draw the rows of a claim below `top`, with its name and those of its effects."""
+    look = colour_of(row)
+    ink = {"open": PALE_INK, "fails": VERMILLION}.get(look, INK)
+    size = layout.letters
+    first = top + layout.gap + layout.row / 2
+    name = f"{mark(row)} {row['name']}"
+    place = axes.get_yaxis_transform()
+    in_figure = -layout.left / (layout.width - layout.left - RIGHT)
+    look_of_name: Any = {"transform": place, "size": size, "color": ink, "va": "center"}
+    if layout.is_narrow:
+        # On white, since the line of no difference runs below it.
+        look_of_name["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
+        axes.text(in_figure + 0.02, top + layout.gap * 0.55, name, **look_of_name)
+    else:
+        axes.text(in_figure + 0.015, first, name, **look_of_name)
+        axes.axhline(top + layout.gap / 2, color=BAND, linewidth=0.5, zorder=0)
+    for number, effect in enumerate(row["effects"]):
+        height = first + number * layout.row
+        ends = [_per_cent(end) for end in effect.within]
+        axes.add_patch(
+            Rectangle(
+                (ends[0], height - layout.row / 2),
+                ends[1] - ends[0],
+                layout.row,
+                color=BAND,
+                linewidth=0,
+                zorder=0,
+            )
+        )
+        if len(row["effects"]) > 1 or effect.is_exponent or layout.is_narrow:
+            axes.text(
+                -0.02,
+                height,
+                effect.what,
+                transform=place,
+                size=size - 1,
+                color=PALE_INK,
+                ha="right",
+                va="center",
+            )
+        _effect(axes, effect, height, look)
+
+
+def _effect(axes: Axes, effect: Effect, height: float, look: str) -> None:
+    colour, shape = LOOK[look]
+    if effect.has_interval:
+        ends = [_per_cent(end) for end in effect.here[1:]]
+        shown = [_inside(axes, end) for end in ends]
+        axes.plot(shown, [height, height], color=colour, linewidth=2.2, solid_capstyle="butt", zorder=2)
+        for end in ends:
+            _arrow(axes, end, height, colour)
+    if effect.is_measured:
+        face = "white" if look == "open" else colour
+        _mark(
+            axes, shape, effect.here.estimate, height, colour, markerfacecolor=face, markersize=4.2, zorder=4
+        )
+    if isfinite(effect.published):
+        ink = lighten(INK, 0.5) if look == "open" else INK
+        _mark(axes, "D", effect.published, height, ink, **PUBLISHED_LOOK, zorder=5)
+
+
+def _mark(axes: Axes, shape: str, ratio: float, height: float, colour: str, **look: Any) -> None:  # noqa: ANN401
+    value = _per_cent(ratio)
+    if not _arrow(axes, value, height, colour):
+        axes.plot(value, height, shape, color=colour, clip_on=False, **look)
+
+
+def _inside(axes: Axes, value: float) -> float:
+    low, high = axes.get_xlim()
+    return min(max(value, low), high)
+
+
+def _arrow(axes: Axes, value: float, height: float, colour: str) -> bool:
+    """Draw an arrow at the end of the axis if a value lies beyond it; tell whether it does."""
+    shown = _inside(axes, value)
+    if shown != value:
+        shape = ">" if value > shown else "<"
+        axes.plot(shown, height, shape, color=colour, markersize=4.5, clip_on=False, zorder=6)
+    return shown != value
+
+
+def _link(figure: Figure, name: str, place: tuple[float, float]) -> None:
+    """Make the whole row a link. It is next to transparent: what is wholly so cannot be clicked."""
+    link = Rectangle((0, place[0]), 1, place[1], transform=figure.transFigure, linewidth=0)
+    link.set(facecolor=(1, 1, 1, 0.01), zorder=20, url=f"../report.html#claim-{name}")
+    figure.add_artist(link)
+
+
+def _key(figure: Figure, layout: Layout) -> None:
+    def point(look: str, face: str | None = None) -> Line2D:
+        colour, shape = LOOK[look]
+        return Line2D(
+            [], [], color=colour, marker=shape, markersize=4.2, linewidth=2.2, markerfacecolor=face or colour
+        )
+
+    published = Line2D([], [], color=INK, marker="D", linestyle="", **PUBLISHED_LOOK)
+    entries: list[tuple[Any, str]] = [
+        (point("holds"), "measured, 95 % interval: holds"),
+        (point("by_less"), "holds, by less than the margin"),
+        (point("fails"), "does not hold"),
+        (point("open", "white"), "not decided"),
+        (published, "published"),
+        (Patch(color=BAND), "no difference that matters"),
+    ]
+    figure.legend(
+        *zip(*entries, strict=True), loc="lower left", ncols=2 if layout.is_narrow else 3, fontsize=6,
+        frameon=False, handlelength=2.2, columnspacing=1.2, labelspacing=0.3, borderaxespad=0.2,
+    )  # fmt: skip
+
+
+def _caption(rows: Sequence[Mapping[Any, Any]]) -> str:
+    elsewhere = any(mark(row).startswith("(") for row in rows)
+    brackets = " Brackets: a verdict on another number of threads than the claim's, or at a smaller scale."
+    return (
+        "Every claim: the published effect, and what was measured here with its 95 % interval. What is drawn "
+        "of an exponent is how far it is from 1, of attempts how their count changes. ✓ holds, ✗ does not "
+        "hold, ? was not decided, – was not measured. A value beyond the axis, which is logarithmic beyond "
+        f"{LINEAR} %, ends in an arrow. A mark without a bar has too few blocks for an interval."
+        f"{brackets if elsewhere else ''}"
+    )
+
+
+def draw(
+    data: Data, prefix: str = "", table: pd.DataFrame | None = None, formats: Sequence[str] = FORMATS
+) -> tuple[str, list[Path]]:
+    """Write the figure into the folder of figures, wide in these formats and narrow as SVG.
+
+    Return its caption and files, none where there is nothing to draw.
+    """
+    files: list[Path] = []
+    caption = ""
+    for name, layout in ((f"{prefix}{NAME}", WIDE), (f"{prefix}{NAME}-narrow", NARROW)):
+        with styled(name):
+            drawing = all_claims(data, table, layout)
+        if drawing is None:
+            return "", []
+        caption = drawing.caption
+        files += save(drawing, data.folder / "figures", name, formats if layout is WIDE else ("svg",))
+    return caption, files
+
+
+def draw_all_claims(results: Path) -> list[Path]:
+    """Draw the claims of every study of a results folder in all formats; return the first file of each."""
+    studies = split(load(results))
+    times = published.load()
+    drawn = [draw(Data(study, studies, times, results), prefix_of(study, studies))[1] for study in studies]
+    return [files[0] for files in drawn if files]

@@ -1,0 +1,161 @@
+"""The first screen of a study: what was decided, in sentences, and beside the figure what it rests on."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+
+from analysis.claims import missing
+from analysis.claims.missing import DECIDED
+from analysis.claims.summary import (
+    UNDECIDED,
+    change_in_short,
+    colour_of,
+    first_effect,
+    mark,
+    published_in_short,
+    verdict_in_short,
+)
+from analysis.derived.ladder import headlines
+from analysis.figures import Drawn
+from analysis.records.studies import Study
+from analysis.statistics.pairs import log_ratios
+from analysis.statistics.verdicts import judge_one
+from analysis.support.wording import change, count, exact, number
+from support.vocabulary import CONTROL
+
+MOST_SENTENCES = 6
+_ONE_BY_ONE = 3
+"""Claims that hold are told one by one up to so many."""
+
+
+@dataclass(frozen=True)
+class Said:
+    """A sentence with its sign and word, whose class in the style sheet is `look`: links, anchors and texts,
+    after what comes `before` them, and then the rest.
+    """
+
+    sign: str
+    word: str
+    look: str
+    before: str = ""
+    links: Sequence[tuple[str, str]] = ()
+    rest: str = ""
+
+
+def sentences(
+    study: Study, rows: Sequence[Mapping[str, Any]], drawn: Sequence[Drawn], anchors: Mapping[str, str]
+) -> list[Said]:
+    """Return a sentence for each verdict that changed something: what does not hold first; what holds as
+    published one by one if it is little, else in one sentence; what is open in one.
+    """
+    decided = [row for row in rows if row["verdict"] in DECIDED]
+    changed = [row for row in decided if colour_of(row) != "holds"]
+    changed.sort(key=lambda row: colour_of(row) != "fails")
+    holds = [row for row in decided if colour_of(row) == "holds"]
+    said = [_of_claim(row, anchors) for row in changed]
+    if len(holds) <= _ONE_BY_ONE:
+        said += [_of_claim(row, anchors) for row in holds]
+    else:
+        said.append(_of_all(holds, anchors))
+    fastest = [one.removesuffix(" (faster)") for one in headlines(study) if one.endswith("(faster)")]
+    said += [Said("✓", "faster", "holds", f"The fastest variant: {fastest[0]}.")] if fastest else []
+    if not rows:
+        said += _of_comparisons(drawn)
+    return [*_shortened(said), *_open(rows)]
+
+
+def _of_all(holds: Sequence[Mapping[str, Any]], anchors: Mapping[str, str]) -> Said:
+    elsewhere = sum(mark(row).startswith("(") for row in holds)
+    where = f", {elsewhere} of them on other threads or at another scale than claimed" if elsewhere else ""
+    links = [_link(row, anchors) for row in holds]
+    return Said("✓", "holds", "holds", f"{count(len(holds), 'claim')}{where}:", links, ".")
+
+
+def _shortened(said: list[Said]) -> list[Said]:
+    left = len(said) - MOST_SENTENCES
+    if left <= 0:
+        return said
+    more = Said("…", "", "plain", f"{count(left, 'more verdict')} below.")
+    return [*said[:MOST_SENTENCES], more]
+
+
+def _of_claim(row: Mapping[str, Any], anchors: Mapping[str, str]) -> Said:
+    effect = first_effect(row)
+    told = (
+        "."
+        if effect is None
+        else f": {change_in_short(effect)} here, {published_in_short(effect)} published."
+    )
+    claim = (anchors[row["id"]], str(row["claim"]).rstrip("."))
+    return Said(mark(row), verdict_in_short(row), colour_of(row), "", [claim], told)
+
+
+def _link(row: Mapping[str, Any], anchors: Mapping[str, str]) -> tuple[str, str]:
+    return anchors[row["id"]], str(row["name"])
+
+
+def _of_comparisons(drawn: Sequence[Drawn]) -> list[Said]:
+    """Return a sentence for each comparison that came out faster or slower, without claims about any."""
+    return [
+        Said("✓", row["verdict"], "holds", f"{row['name']}: {change(row)} of time.")
+        for one in drawn
+        if one.verdicts is not None and one.entry.experiment != CONTROL
+        for row in one.verdicts.to_dict("records")
+        if row["verdict"] in ("faster", "slower")
+    ]
+
+
+def _open(rows: Sequence[Mapping[str, Any]]) -> list[Said]:
+    still_open = [row for row in rows if row["verdict"] not in DECIDED and not row["missing"]]
+    if not still_open:
+        return []
+    one = len(still_open) == 1
+    text = f"{count(len(still_open), 'claim')} {'is' if one else 'are'} measured, and pale below."
+    return [Said(UNDECIDED, "not decided", "open", text)]
+
+
+def beside(study: Study, table: pd.DataFrame, *, is_first: bool) -> list[tuple[str, str]]:
+    """Return machine, time, control and the share decided, as names and values."""
+    states = missing.tally(table if is_first else table[~table["missing"]])
+    claims = sum(states.values())
+    rest = ", ".join(f"{amount} {state}" for state, amount in list(states.items())[1:] if amount)
+    decided = f"{states['decided']} of {count(claims, 'claim')}{rest and f'; {rest}'}"
+    return [
+        ("Machine", _machine(study)),
+        ("Measured", _time(study)),
+        ("Control", control_in_short(study)),
+        *([("Decided", decided)] if claims else []),
+    ]
+
+
+def _machine(study: Study) -> str:
+    runs = study.runs
+    cores = f"{exact(study.cores)} cores, " if study.cores else ""
+    virtual = ", a virtual machine" if bool(runs["virtualised"].iloc[0]) else ""
+    return f"{study.machine}; {cores}{count(study.hardware_threads, 'hardware thread')}{virtual}"
+
+
+def _time(study: Study) -> str:
+    """Return the days of the first and the last record, and how long the processes took."""
+    days = sorted(
+        {str(one)[:10] for one in (study.runs["recorded_at"].min(), study.runs["recorded_at"].max())}
+    )
+    minutes = float(study.runs["process_seconds"].sum()) / 60
+    return f"{' to '.join(days)}; {number(minutes, 2)} min of processes; {study.scale} scale"
+
+
+def control_in_short(study: Study) -> str:
+    """Return what came of the control in a few words."""
+    sides = [part for _, part in study.times_of(CONTROL).groupby("label")]
+    if len(sides) != 2:
+        return "– not measured: nothing vouches for the rest"
+    row = judge_one(log_ratios(*sides)["log_ratio"])
+    if row["verdict"] == "inconclusive":
+        return f"? not decided: {change(row)}"
+    if row["verdict"] != "equivalent":
+        return f"✗ failed: {change(row)}"
+    if not row["low"] <= 1 <= row["high"]:
+        return f"✗ off: {change(row)}, within the margin"
+    return f"✓ no difference, as it must be: {change(row)}"
