@@ -15,6 +15,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 from scipy.optimize import isotonic_regression
 
+from analysis.figures.recording import POINTS_PER_INCH, when_laid_out
 from analysis.figures.style import WIDTH
 from analysis.support.wording import exact
 
@@ -107,25 +108,28 @@ def from_zero(axes: Axes) -> None:
 
 
 def label_ends(axes: Axes, labels: Sequence[tuple[str, float, str]], size: float = 7) -> None:
-    """Write each label (text, height in data units, colour) right of the axes, at least one line apart.
-
-    Call it last: it needs the final limits and layout of the axes.
-    """
+    """Write each label (text, height in data units, colour) right of the axes, at least one line apart."""
     figure = axes.figure.get_figure(root=True)
-    figure.draw_without_rendering()
-    points = 72 / figure.dpi
-    bottom, top = (axes.transAxes.transform((0, end))[1] * points for end in (0, 1))
-    wanted = [axes.transData.transform((axes.get_xlim()[1], y))[1] * points for _, y, _ in labels]
-    for (text, _, colour), height in zip(labels, spread(wanted, LINE_POINTS), strict=True):
-        at = 1.0, (height - bottom) / (top - bottom)
-        note(axes, text, at, (4, 0), xycoords="axes fraction", va="center", color=colour, fontsize=size)
+    beside: Any = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center"}
+    written = [
+        axes.annotate(text, (1, y), xytext=(4, 0), color=colour, fontsize=size, **beside)
+        for text, y, colour in labels
+    ]
+
+    def move_apart() -> None:
+        points = POINTS_PER_INCH / figure.dpi
+        wanted = [axes.transData.transform((axes.get_xlim()[1], y))[1] * points for _, y, _ in labels]
+        for text, height, place in zip(written, spread(wanted, LINE_POINTS), wanted, strict=True):
+            text.set_position((4, height - place))
+
+    when_laid_out(figure, move_apart)
 
 
 def label_points(axes: Axes, labels: Sequence[tuple[str, float, float]], colour: str, size: float = 6) -> int:
     """Write each label (text, x, y) into a corner of its point where it lies on no other and beside no axes;
     leave out one that has no room. Return how many were written.
 
-    Call it last, after the figure's `draw_without_rendering`: it needs the final limits and layout.
+    Call it when the figure is laid out: it needs the final limits and layout.
     """
     figure = axes.figure.get_figure(root=True)
     window = axes.get_window_extent()

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping
+from functools import partial as bound
 from itertools import groupby
 from operator import itemgetter
 from typing import Any
@@ -15,6 +16,7 @@ from analysis.derived.accuracy import SMALL, Choice, Measure, Race
 from analysis.figures.captions import opening
 from analysis.figures.hover import Told, tell
 from analysis.figures.labels import key, label_points, plain_ticks
+from analysis.figures.recording import when_laid_out
 from analysis.figures.style import FAINT, INK, PALETTE, Data, Drawing, lighten, new_figure
 from analysis.support.values import Cell, Interval, Row, Table, table_of
 from analysis.support.wording import NO_BREAK, exact, interval, number
@@ -59,9 +61,8 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     entries = [(f"{mark} {series}", colour) for series, (colour, mark) in looks.items()]
     entries += [(f"◆ {engine}", INK) for engine in outside["engine"].unique()]
     key(panels[0], [*entries, ("▬ Pareto front (substeps)", FAINT)])
-    figure.draw_without_rendering()
     for axes, texts in zip(panels, labels.values(), strict=True):
-        label_points(axes, texts, INK)
+        when_laid_out(figure, bound(label_points, axes, texts, INK))
     tables = [_advice(table, accuracy.races(data.study, experiment), measure)]
     if measure.converges:
         tables.append(_orders(table))

@@ -14,6 +14,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 
 from analysis.figures.hover import identify, with_titles
+from analysis.figures.recording import Recording, families, lay_out
 from analysis.records.plans import planned_runs
 from analysis.records.published import Published
 from analysis.records.studies import Study
@@ -29,7 +30,6 @@ INK, FAINT, BAND = "#222222", "#8a8a8a", "#ececec"
 FORMATS = ("svg", "png", "pdf")
 WIDTH = 7.0
 SETTINGS: Any = {
-    "font.family": "DejaVu Sans",
     "font.size": 8,
     "axes.titlesize": 8,
     "axes.titlelocation": "left",
@@ -82,7 +82,7 @@ class Drawing:
 @contextmanager
 def styled(name: str) -> Iterator[None]:
     """Draw in the common style; `name` keeps the identifiers inside an SVG the same from run to run."""
-    with mpl.rc_context({**SETTINGS, "svg.hashsalt": name}):
+    with mpl.rc_context({**SETTINGS, "font.family": list(families()), "svg.hashsalt": name}):
         yield
 
 
@@ -141,15 +141,13 @@ def save(drawing: Drawing, folder: Path, name: str, formats: Sequence[str] = FOR
     """Write the figure in these formats and return the files; outdated ones in other formats are removed."""
     files = []
     with styled(name):
-        # The layout is settled once, not once a format.
-        drawing.figure.draw_without_rendering()
-        drawing.figure.set_layout_engine("none")
+        lay_out(drawing.figure)
         lines = identify(drawing.figure)
+        recording = Recording(drawing.figure)
         for suffix in formats:
             target = folder / f"{name}.{suffix}"
-            metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[suffix]
             with replacing(target) as part:
-                drawing.figure.savefig(part, format=suffix, dpi=200, metadata=metadata)
+                recording.write(part, suffix)
                 if suffix == "svg":
                     text = part.read_text(encoding="utf-8")
                     part.write_text(with_titles(text, drawing.figure, lines), encoding="utf-8")
