@@ -60,6 +60,19 @@ def differences(times: pd.DataFrame, against: str, by: Stated | None = None) -> 
     return judge(table, ["series", "x"], by.margin, by.error)
 
 
+def differences_from(times: pd.DataFrame, chosen: pd.Series, by: Stated | None = None) -> pd.DataFrame:
+    """Return a row of `verdicts.judge` for every series and x but that of the rows `chosen`, compared within
+    blocks with these, Holm-corrected over all of them. What is chosen must not depend on the times.
+    """
+    by = by or stated(times)
+    pairs = [
+        log_ratios(times[chosen], group).assign(series=series, x=x)
+        for (series, x), group in times[~chosen].groupby(["series", "x"])
+    ]
+    table = pd.concat(pairs) if pairs else pd.DataFrame(columns=["series", "x", "log_ratio"])
+    return judge(table, ["series", "x"], by.margin, by.error)
+
+
 def _latest(records: pd.DataFrame, tag: str, most: float, default: float) -> float:
     """Return the latest record's number for a tag; the default for none, or for one not up to `most`."""
     if records.empty:

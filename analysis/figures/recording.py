@@ -1,5 +1,5 @@
-"""A figure laid out and drawn once, and written in several formats from what it drew; and the font of figures,
-of which a PDF holds a part.
+"""A figure laid out and drawn once, and written in several formats from what it drew; and the font of
+figures, of which a PDF holds a part.
 """
 
 from collections.abc import Callable
@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 from weakref import WeakKeyDictionary
+from zlib import crc32
 
 import matplotlib as mpl
 from matplotlib import font_manager
@@ -31,7 +32,7 @@ FONT = "DejaVu Sans"
 SMALL_FONT = "DejaVu Sans of figures"
 CHARACTERS = (
     (0x20, 0x17F), (0x370, 0x3FF), (0x2010, 0x2044), (0x2070, 0x208F), (0x2190, 0x2193), (0x2200, 0x2265),
-    (0x25A0, 0x25FF), (0x2713, 0x2717),
+    (0x25A0, 0x25FF), (0x2713, 0x271A),
 )  # fmt: skip
 """Of the small font, from and to: Latin, Greek, punctuation, raised and lowered digits, arrows, signs."""
 
@@ -113,7 +114,7 @@ class _Recorder(RendererBase):
     def close_group(self, s: str) -> None:
         self._take("close_group", None, s)
 
-    def draw_path(self, gc: Any, path: Any, transform: Any, rgbFace: Any = None) -> None:  # noqa: ANN401, N803
+    def draw_path(self, gc: Any, path: Any, transform: Any, rgbFace: Any = None) -> None:  # noqa: ANN401
         self._take("draw_path", gc, path, transform, rgbFace)
 
     def draw_markers(self, gc: Any, *values: Any, **named: Any) -> None:  # noqa: ANN401
@@ -169,7 +170,10 @@ def families() -> tuple[str, ...]:
     """
     try:
         for weight in ("normal", "bold"):
-            kept = Path(mpl.get_cachedir()) / f"carom-{mpl.__version__}-{weight}.ttf"
+            kept = (
+                Path(mpl.get_cachedir())
+                / f"carom-{mpl.__version__}-{crc32(repr(CHARACTERS).encode()):x}-{weight}.ttf"
+            )
             if not kept.exists():
                 with replacing(kept) as part:
                     _write_small_font(part, weight)
