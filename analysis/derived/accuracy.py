@@ -16,7 +16,7 @@ from analysis.records.studies import Study
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.convergence import order
 from analysis.statistics.looks import ERROR
-from analysis.statistics.pairs import log_ratios, scaled
+from analysis.statistics.pairs import log_ratios, narrow, scaled
 from analysis.statistics.pareto import front
 from analysis.statistics.verdicts import error_of_picked, judge_one
 from analysis.support.values import Interval
@@ -223,6 +223,7 @@ class Race:
     """
 
     def __init__(self, timed: pd.DataFrame) -> None:
+        timed = narrow(timed, "series", "x", value="seconds")
         self._timed = dict(iter(timed.groupby(["series", "x"])))
         self._seconds: dict[Entrant, Interval] = {}
         self._slower: dict[tuple[Entrant, Entrant], bool] = {}

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea, VPacker
 from matplotlib.textpath import TextPath
-from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
 from matplotlib.transforms import ScaledTranslation
 from scipy.optimize import isotonic_regression
 
@@ -106,7 +106,8 @@ def plain_ticks(axis: Axis, values: Sequence[float] | None = None) -> None:
     if values is not None:
         axis.set_ticks(list(values))
     axis.set_major_formatter(FuncFormatter(lambda value, _: exact(value)))
-    axis.set_minor_formatter(NullFormatter())
+    # Each is costly, also one without a number.
+    axis.set_minor_locator(NullLocator())
 
 
 def percent_ticks(axis: Axis) -> None:

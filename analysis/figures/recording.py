@@ -31,8 +31,9 @@ DOTS_PER_INCH = 200
 FONT = "DejaVu Sans"
 SMALL_FONT = "DejaVu Sans of figures"
 CHARACTERS = (
-    (0x20, 0x17F), (0x370, 0x3FF), (0x2010, 0x2044), (0x2070, 0x208F), (0x2190, 0x2193), (0x2200, 0x2265),
-    (0x25A0, 0x25FF), (0x2713, 0x271A),
+    (0x20, 0x7E), (0xA0, 0xFF), (0x3B1, 0x3C9), (0x2010, 0x2026), (0x2070, 0x208E), (0x2190, 0x2193),
+    (0x2212, 0x2212), (0x221E, 0x221E), (0x2248, 0x2248), (0x2264, 0x2265), (0x25A0, 0x25A1),
+    (0x25AC, 0x25AC), (0x25B2, 0x25B3), (0x25BC, 0x25C2), (0x25C6, 0x25CF), (0x2713, 0x271A),
 )  # fmt: skip
 """Of the small font, from and to: Latin, Greek, punctuation, raised and lowered digits, arrows, signs."""
 
@@ -187,9 +188,8 @@ def _write_small_font(target: Path, weight: str) -> None:
     # A package without types, which matplotlib brings.
     subset, fonts = import_module("fontTools.subset"), import_module("fontTools.ttLib")
     whole = fonts.TTFont(font_manager.findfont(font_manager.FontProperties(FONT, weight=weight)))
-    options = subset.Options(
-        layout_features=["*"], glyph_names=True, notdef_outline=True, drop_tables=["FFTM"]
-    )
+    options = subset.Options(layout_features=["kern", "liga"], glyph_names=True, notdef_outline=True)
+    options.drop_tables += ["FFTM", "MATH"]
     chosen = subset.Subsetter(options)
     chosen.populate(unicodes=[code for first, last in CHARACTERS for code in range(first, last + 1)])
     chosen.subset(whole)

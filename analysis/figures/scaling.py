@@ -15,7 +15,7 @@ from analysis.figures.sweeps import stacked
 from analysis.records.studies import Study
 from analysis.statistics import scalability
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.pairs import log_ratios
+from analysis.statistics.pairs import log_ratios, narrow
 from analysis.statistics.scalability import ScalabilityLaw
 from analysis.statistics.verdicts import judge
 from analysis.support.wording import count, exact, interval, interval_of, number
@@ -138,8 +138,7 @@ def speed_up(processes: pd.DataFrame) -> pd.DataFrame:
 
 def log_ratios_by_x(reference: pd.DataFrame, processes: pd.DataFrame) -> pd.DataFrame:
     """Return the paired log ratios of every x against the reference, with the column `x`."""
-    tables = [log_ratios(reference, group).assign(x=x) for x, group in processes.groupby("x")]
-    return pd.concat(tables) if tables else pd.DataFrame(columns=["x", "log_ratio"])
+    return log_ratios(narrow(reference), narrow(processes, "x"), by=("x",))
 
 
 def limits(axes: Axes, study: Study, named: bool) -> None:

@@ -15,7 +15,7 @@ from analysis.derived import accuracy
 from analysis.derived.accuracy import SMALL, Choice, Measure, Race
 from analysis.figures.captions import opening
 from analysis.figures.hover import Told, tell
-from analysis.figures.labels import HOLLOW_SIGNS, SIGNS, key, label_points, plain_ticks
+from analysis.figures.labels import HOLLOW_SIGNS, SIGNS, key, label_points, logarithmic_ticks, plain_ticks
 from analysis.figures.recording import when_laid_out
 from analysis.figures.style import FAINT, INK, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.support.values import Cell, Interval, Row, Table, table_of
@@ -171,7 +171,7 @@ def _share_limits(panels: list[Axes], has_zero: bool, zero: float) -> None:
         axes.set(xlim=(limits[0][0] * 0.7, limits[0][1] * 1.2), ylim=(limits[1][0], limits[1][1] * 1.6))
         axes.tick_params(labelleft=axes is panels[0])
         axes.set_xticks([zero, *ticks] if has_zero else ticks)
-        plain_ticks(axes.yaxis)
+        logarithmic_ticks(axes.yaxis)
         plain_ticks(axes.xaxis)
         axes.xaxis.set_major_formatter(
             lambda value, _: "0" if has_zero and value <= zero else power_of_ten(value)
