@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -70,7 +70,7 @@ def _texts(line: Line2D) -> list[str]:
     return ["\n".join(filter(None, one)) for one in values]
 
 
-def _x_label(axes: Axes) -> str:
+def _x_label(axes: Any) -> str:  # noqa: ANN401 - of a line, whose axes have no public type
     """Return what the horizontal axis is called, there or in a panel that shares it."""
     shared = axes.get_shared_x_axes().get_siblings(axes)
     return next(filter(None, (one.get_xlabel() for one in (axes, *shared))), "")
