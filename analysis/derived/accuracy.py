@@ -16,7 +16,7 @@ from analysis.records.studies import Study
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.convergence import order
 from analysis.statistics.looks import ERROR
-from analysis.statistics.pairs import log_ratios, scaled
+from analysis.statistics.pairs import log_ratios, narrow, scaled
 from analysis.statistics.pareto import front
 from analysis.statistics.verdicts import error_of_picked, judge_one
 from analysis.support.values import Interval
@@ -223,8 +223,11 @@ class Race:
     """
 
     def __init__(self, timed: pd.DataFrame) -> None:
+        timed = narrow(timed, "series", "x", value="seconds")
+        self._all = timed
         self._timed = dict(iter(timed.groupby(["series", "x"])))
         self._seconds: dict[Entrant, Interval] = {}
+        self._ratios: dict[Entrant, dict[Entrant, pd.Series]] = {}
         self._slower: dict[tuple[Entrant, Entrant], bool] = {}
 
     def seconds(self, entrant: Entrant) -> Interval:
@@ -239,11 +242,19 @@ class Race:
         """Whether the candidate was found slower, from ratios within blocks, as one of all pairs."""
         key = candidate, reference
         if key not in self._slower:
-            sides = self._timed[reference], self._timed[candidate]
-            ratios = log_ratios(*sides, value="seconds")["log_ratio"]
+            ratios = self._ratios_to(reference).get(candidate, pd.Series(dtype=float))
             row = judge_one(ratios, error=error_of_picked(len(self._timed)))
             self._slower[key] = row["verdict"] == "slower"
         return self._slower[key]
+
+    def _ratios_to(self, reference: Entrant) -> dict[Entrant, pd.Series]:
+        """Return the log ratios of every entrant to one of them, taken at once."""
+        if reference not in self._ratios:
+            first = self._timed[reference].drop(columns=["series", "x"])
+            pairs = log_ratios(first, self._all, value="seconds", by=("series", "x"))
+            groups = pairs.groupby(["series", "x"])["log_ratio"]
+            self._ratios[reference] = {(str(key[0]), float(key[1])): part for key, part in groups}
+        return self._ratios[reference]
 
 
 @cache

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from analysis.statistics.looks import ERROR
-from analysis.statistics.pairs import log_ratios
+from analysis.statistics.pairs import log_ratios, narrow
 from analysis.statistics.verdicts import MARGIN, judge
 
 PUBLISHED = "published"
@@ -52,11 +52,21 @@ def differences(times: pd.DataFrame, against: str, by: Stated | None = None) -> 
     by those given.
     """
     by = by or stated(times)
+    times = narrow(times, "series", "x")
     first, others = (times[(times["series"] == against) == side] for side in (True, False))
-    pairs = [
-        log_ratios(first, part, match=("x",)).assign(series=name) for name, part in others.groupby("series")
-    ]
-    table = pd.concat(pairs) if pairs else pd.DataFrame(columns=["series", "x", "log_ratio"])
+    table = log_ratios(first, others, match=("x",), by=("series",))
+    return judge(table, ["series", "x"], by.margin, by.error)
+
+
+def differences_from(times: pd.DataFrame, chosen: pd.Series, by: Stated | None = None) -> pd.DataFrame:
+    """Return a row of `verdicts.judge` for every series and x but that of the rows `chosen`, compared within
+    blocks with these, Holm-corrected over all of them. What is chosen must not depend on the times.
+    """
+    by = by or stated(times)
+    times = narrow(times, "series", "x")
+    # Both sides have an x, of which only that of the candidates is told.
+    reference = times[chosen].drop(columns=["series", "x"])
+    table = log_ratios(reference, times[~chosen], by=("series", "x"))
     return judge(table, ["series", "x"], by.margin, by.error)
 
 

@@ -1,17 +1,21 @@
-"""Any number of series against one of them: times, differences within blocks, and a verdict for each."""
+"""Any number of series against one of them: differences within blocks with a verdict each, and times beside
+them; and the sequential orders, with the published times on the same axis.
+"""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from analysis.derived.comparisons import USUAL, Stated, differences, reference, stated
 from analysis.figures.captions import differing, opening, time_axis
-from analysis.figures.curves import bounded, difference, dots, margin_band
-from analysis.figures.labels import note
+from analysis.figures.curves import bounded, difference, dots, faint_dots, margin_band
+from analysis.figures.labels import name_rows, note
 from analysis.figures.league import league
 from analysis.figures.pairs import Sides, pair_drawing
-from analysis.figures.style import BLUE, INK, Data, Drawing, new_figure
+from analysis.figures.style import INK, Data, Drawing, Look, looks, new_figure
 from analysis.statistics.bootstrap import summarise
 from analysis.support.values import Row
 from analysis.support.wording import exact
@@ -34,13 +38,56 @@ def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
         return drawing and replace(drawing, verdicts=table, tables=tables)
     summary = summarise(times, ["series", "x"]).iloc[::-1]
     summary["name"] = [_label(row, summary) for row in summary.to_dict("records")]
-    figure, (left, right) = new_figure(0.8 + 0.42 * len(summary), columns=2)
-    dots(left, summary, "name")
-    left.set_xlabel(time_axis(times))
-    _differences(right, table, summary, by.margin)
-    right.set_xlabel(f"time against {against}, %")
+    figure = _against(table, summary, against, time_axis(times), by)
     said = differences_sentence(table, against, by)
     return Drawing(figure, opening(times, subject) + said, table, tables)
+
+
+def sequential_orders(data: Data) -> Drawing | None:
+    """Draw the sequential resolve orders against one of them, the published ones on the same axis."""
+    times = data.study.times_of("sequential_orders")
+    if times.empty:
+        return None
+    against = reference(times)
+    table = differences(times, against)
+    summary = summarise(times, ["series", "x"]).sort_values("median", ascending=False)
+    summary["name"] = summary["series"]
+    theirs = _published_orders(data, table, against)
+    figure = _against(table, summary, against, "time of the steps, s", USUAL, theirs)
+    caption = opening(times, "The sequential resolve orders") + differences_sentence(table, against)
+    if theirs:
+        caption += (
+            " Lighter: the published medians with self-contained resolves, moved as one so that track is "
+            "level."
+        )
+    names = [f"{series} against {against}" for series in table["series"]]
+    return Drawing(figure, caption, table.assign(name=names))
+
+
+def _published_orders(data: Data, table: pd.DataFrame, against: str) -> dict[str, float]:
+    """Return the published times as ratios, moved as one so that track is level with ours, if it is there."""
+    seconds = {
+        name: data.published.experiment(f"self_contained_{name}").query("series == 'on'")["seconds"].median()
+        for name in ("track", "repeat")
+    }
+    level = {against: 1.0, **dict(zip(table["series"], table["ratio"], strict=True))}
+    if "track" not in level:
+        return {}
+    return {name: level["track"] * one / seconds["track"] for name, one in seconds.items() if name in level}
+
+
+def _against(
+    table: pd.DataFrame, summary: pd.DataFrame, against: str, label: str, by: Stated,
+    published: Mapping[str, float] | None = None,
+) -> Figure:  # fmt: skip
+    """Draw the differences, a row each, and the times beside them, small."""
+    figure, (left, right) = new_figure(0.8 + 0.36 * len(summary), columns=2, widths=[2.1, 1.0])
+    shown = looks([against, *dict.fromkeys(summary["series"])])
+    _differences(left, table, summary, by.margin, shown, published or {})
+    left.set_xlabel(f"time against {against}, %")
+    dots(right, summary, "name", INK, named=False)
+    right.set_xlabel(label)
+    return figure
 
 
 def differences_sentence(table: pd.DataFrame, against: str, by: Stated = USUAL) -> str:
@@ -60,13 +107,19 @@ def _whole(fraction: float) -> str:
     return f"{100 * fraction:g} %"
 
 
-def _differences(axes: Axes, table: pd.DataFrame, rows: pd.DataFrame, margin: float) -> None:
+def _differences(
+    axes: Axes, table: pd.DataFrame, rows: pd.DataFrame, margin: float, shown: Mapping[str, Look],
+    published: Mapping[str, float],
+) -> None:  # fmt: skip
     """Draw every difference with the interval that decides at the height of its row in the other panel."""
     margin_band(axes, margin)
     heights = {(row.series, row.x): height for height, row in enumerate(rows.itertuples())}
     for row in table.to_dict("records"):
-        height = heights[row["series"], row["x"]]
-        at = difference(axes, row, height, _label(row, table), BLUE, 1.4)
+        height, look = heights[row["series"], row["x"]], shown[row["series"]]
+        at = difference(axes, row, height, _label(row, table), look.colour, 2.0, marker=look.marker)
         note(axes, row["verdict"], (at, height), (0, 6), ha="center", fontsize=7, color=INK)
-    axes.set_ylim(-0.5, len(rows) - 0.3)
+    known = {name: height for (name, _), height in heights.items()}
+    faint_dots(axes, [(known[name], 100 * (one - 1)) for name, one in published.items()], INK)
     bounded(axes, margin)
+    name_rows(axes, list(rows["name"]))
+    axes.set_ylim(-0.5, len(rows) - 0.3)

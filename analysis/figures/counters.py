@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from analysis.derived.counters import derived
 from analysis.figures.labels import name_rows, note
-from analysis.figures.style import BLUE, WIDTH, Data, Drawing
+from analysis.figures.style import BLUE, INK, WIDTH, Data, Drawing
 from analysis.support.wording import count, number
 
 COLUMNS = 3
@@ -39,7 +39,7 @@ def panels(data: Data, source: str, subject: str) -> Drawing | None:
 def _bars(axes: Axes, rows: pd.DataFrame, quantity: str) -> None:
     heights = np.arange(len(rows))
     axes.barh(heights, rows["value"], color=BLUE, height=0.6)
-    axes.hlines(heights, rows["least"], rows["greatest"], color="black", linewidth=0.8)
+    axes.hlines(heights, rows["least"], rows["greatest"], color=INK, linewidth=0.8)
     top = float(rows["greatest"].max())
     axes.set_xlim(0, top * 1.45 if top > 0 else 1)
     for height, row in zip(heights, rows.to_dict("records"), strict=True):

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -63,10 +64,16 @@ def _places(figure: Figure, line: Line2D) -> np.ndarray:
 
 def _texts(line: Line2D) -> list[str]:
     axes = line.axes
-    labels = (axes.get_xlabel(), axes.get_ylabel()) if axes is not None else ("", "")
+    labels = (_x_label(axes), axes.get_ylabel()) if axes is not None else ("", "")
     x, y = (" ".join(f"{label}: ".split()) + " " if label.strip() else "" for label in labels)
     values = ((told.name, told.x and f"{x}{told.x}", told.y and f"{y}{told.y}") for told in _TOLD[line])
     return ["\n".join(filter(None, one)) for one in values]
+
+
+def _x_label(axes: Any) -> str:  # noqa: ANN401 - of a line, whose axes have no public type
+    """Return what the horizontal axis is called, there or in a panel that shares it."""
+    shared = axes.get_shared_x_axes().get_siblings(axes)
+    return next(filter(None, (one.get_xlabel() for one in (axes, *shared))), "")
 
 
 def _titled(part: str, places: np.ndarray, texts: Sequence[str]) -> str:

@@ -2,6 +2,7 @@
 lies on another.
 """
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -11,15 +12,26 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea, VPacker
 from matplotlib.textpath import TextPath
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
 from matplotlib.transforms import ScaledTranslation
 from scipy.optimize import isotonic_regression
 
+from analysis.figures.recording import POINTS_PER_INCH, when_laid_out
 from analysis.figures.style import WIDTH
 from analysis.support.wording import exact
 
 KEY_SIZE, KEY_GAP, KEY_WIDTH = 7, 9, 72 * WIDTH - 50
 """In points: of the letters of a key, between its entries, and the most of a line, beside an axis."""
+
+SIGNS = {"o": "●", "s": "■", "^": "▲", "D": "◆", "v": "▼", "P": "✚"}
+HOLLOW_SIGNS = {"o": "○", "s": "□", "^": "△", "D": "◇", "v": "▽", "P": "✚"}
+"""How a key writes the marks of curves."""
+
+STEPS = (
+    tuple(1 + part / 20 for part in range(180)), tuple(1 + part / 10 for part in range(90)),
+    (1, 1.2, 1.4, 1.6, 2, 2.5, 3, 4, 5, 6, 8), (1, 1.5, 2, 3, 5, 7), (1, 2, 5), (1, 3), (1,), (),
+)  # fmt: skip
+"""Round numbers of one power of ten, ever fewer."""
 
 LINE_POINTS = 9.0
 
@@ -83,22 +95,57 @@ def note(axes: Axes, text: str, at: tuple[float, float], by: tuple[float, float]
     axes.annotate(text, at, xytext=by, textcoords="offset points", **look)
 
 
+def label_row(axes: Axes, text: str, height: float, above: float, colour: str, size: float = 7) -> None:
+    """Write what a row shows above it, in the middle of the axes."""
+    beside: Any = {"xycoords": ("axes fraction", "data"), "ha": "center"}
+    note(axes, text, (0.5, height), (0, above), color=colour, fontsize=size, **beside)
+
+
 def plain_ticks(axis: Axis, values: Sequence[float] | None = None) -> None:
     """Write the ticks as plain numbers, thousands grouped, also on a logarithmic axis."""
     if values is not None:
         axis.set_ticks(list(values))
     axis.set_major_formatter(FuncFormatter(lambda value, _: exact(value)))
-    axis.set_minor_formatter(NullFormatter())
+    # Each is costly, also one without a number.
+    axis.set_minor_locator(NullLocator())
 
 
-def logarithmic_ticks(axis: Axis) -> None:
-    """Put plain numbers at the powers of ten of a logarithmic axis and between them, over about a decade at
-    2 and 5 times them, over two at 3 times. Call it when the limits of the axis are settled.
-    """
-    low, high = axis.get_view_interval()
-    between = (1.0, 2.0, 5.0) if high < 12 * low else (1.0, 3.0) if high < 200 * low else (1.0,)
-    axis.set_major_locator(LogLocator(subs=between))
+def percent_ticks(axis: Axis) -> None:
+    """Write the ticks of an axis of ratios as changes in per cent."""
+    axis.set_major_locator(_PercentLocator())
+    axis.set_major_formatter(
+        FuncFormatter(lambda value, _: exact(round(100 * (value - 1), 6)).replace("-", "−"))
+    )
+
+
+class _PercentLocator(MaxNLocator):
+    """Puts ticks at whole changes in per cent."""
+
+    def __init__(self) -> None:
+        super().__init__(nbins=6, steps=[1, 2, 2.5, 5, 10])
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:  # noqa: ANN401
+        return 1 + np.asarray(super().tick_values(100 * (vmin - 1), 100 * (vmax - 1))) / 100
+
+
+def logarithmic_ticks(axis: Axis, most: int = 7) -> None:
+    """Put plain numbers on a logarithmic axis, as many as have room. Call it when its limits are settled."""
+    ticks = steps_within(*axis.get_view_interval(), most)
+    if ticks:
+        axis.set_major_locator(FixedLocator(ticks))
     plain_ticks(axis)
+
+
+def steps_within(low: float, high: float, most: int) -> list[float]:
+    """Return round numbers on a logarithmic axis, the densest at most `most` that lie far enough apart."""
+    gap = np.log(high / low) / (most + 1)
+    for steps in STEPS:
+        powers = range(math.floor(math.log10(low)), math.floor(math.log10(high)) + 1)
+        ticks = [float(f"{step * 10.0**power:.6g}") for power in powers for step in steps]
+        ticks = [tick for tick in ticks if low <= tick <= high]
+        if len(ticks) <= most and (len(ticks) < 2 or np.diff(np.log(ticks)).min() >= gap):
+            return ticks
+    return []
 
 
 def from_zero(axes: Axes) -> None:
@@ -107,25 +154,28 @@ def from_zero(axes: Axes) -> None:
 
 
 def label_ends(axes: Axes, labels: Sequence[tuple[str, float, str]], size: float = 7) -> None:
-    """Write each label (text, height in data units, colour) right of the axes, at least one line apart.
-
-    Call it last: it needs the final limits and layout of the axes.
-    """
+    """Write each label (text, height in data units, colour) right of the axes, at least one line apart."""
     figure = axes.figure.get_figure(root=True)
-    figure.draw_without_rendering()
-    points = 72 / figure.dpi
-    bottom, top = (axes.transAxes.transform((0, end))[1] * points for end in (0, 1))
-    wanted = [axes.transData.transform((axes.get_xlim()[1], y))[1] * points for _, y, _ in labels]
-    for (text, _, colour), height in zip(labels, spread(wanted, LINE_POINTS), strict=True):
-        at = 1.0, (height - bottom) / (top - bottom)
-        note(axes, text, at, (4, 0), xycoords="axes fraction", va="center", color=colour, fontsize=size)
+    beside: Any = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center"}
+    written = [
+        axes.annotate(text, (1, y), xytext=(4, 0), color=colour, fontsize=size, **beside)
+        for text, y, colour in labels
+    ]
+
+    def move_apart() -> None:
+        points = POINTS_PER_INCH / figure.dpi
+        wanted = [axes.transData.transform((axes.get_xlim()[1], y))[1] * points for _, y, _ in labels]
+        for text, height, place in zip(written, spread(wanted, LINE_POINTS), wanted, strict=True):
+            text.set_position((4, height - place))
+
+    when_laid_out(figure, move_apart)
 
 
 def label_points(axes: Axes, labels: Sequence[tuple[str, float, float]], colour: str, size: float = 6) -> int:
     """Write each label (text, x, y) into a corner of its point where it lies on no other and beside no axes;
     leave out one that has no room. Return how many were written.
 
-    Call it last, after the figure's `draw_without_rendering`: it needs the final limits and layout.
+    Call it when the figure is laid out: it needs the final limits and layout.
     """
     figure = axes.figure.get_figure(root=True)
     window = axes.get_window_extent()

@@ -96,7 +96,7 @@ def _bars(axes: Axes, rows: list[Row], names: pd.Series, has_both_ends: bool) ->
     axes.set_yticks(ticks, [*names, "in all"] if labelled else [""] * len(ticks))
     axes.tick_params(axis="y", length=0)
     axes.set_xlabel("time per disc and step, ns")
-    logarithmic_ticks(axes.xaxis)
+    logarithmic_ticks(axes.xaxis, most=4)
 
 
 def _figures(axes: Axes, rows: list[Row], names: pd.Series, total: pd.Series | None) -> None:

@@ -65,7 +65,7 @@ def _panel(axes: Axes, table: pd.DataFrame, rows: list[tuple[str, str]]) -> None
                 _dot(axes, row, height, limit, marker, colour)
         _dot(axes, row, height, "wall", "o", INK)
         waiting = 1 - row["busy"] / row["wall"]
-        for right, part, colour in ((5, row["reached"], "black"), (33, waiting, FAINT)):
+        for right, part, colour in ((5, row["reached"], INK), (38, waiting, FAINT)):
             at = row["wall"], height
             note(axes, _percent(part), at, (right, 0), color=colour, va="center", fontsize=6.5)
     axes.set_xlim(axes.get_xlim()[0], axes.get_xlim()[1] * 6)

@@ -10,7 +10,7 @@ from analysis.derived.more_cores import foretold, measured_speed_ups, steps_by_p
 from analysis.figures.curves import curve
 from analysis.figures.hover import Told, tell
 from analysis.figures.labels import key, note, plain_ticks
-from analysis.figures.style import BLUE, FAINT, VERMILLION, Data, Drawing, new_figure
+from analysis.figures.style import BLUE, FAINT, VERMILLION, Data, Drawing, Look, new_figure
 from analysis.support.values import Table, table_of
 from analysis.support.wording import count, exact, interval_of, listed, number
 
@@ -58,7 +58,7 @@ def _panel(axes: Axes, told: pd.DataFrame, measured: pd.DataFrame) -> None:
     ends = [1, rows["threads"].max()]
     axes.plot(ends, ends, color=FAINT, linestyle="--", linewidth=0.9, zorder=1)
     if not measured.empty:
-        curve(axes, measured.rename(columns={"threads": "x"}), BLUE, "speed_up")
+        curve(axes, measured.rename(columns={"threads": "x"}), Look(BLUE), "speed_up")
     axes.set_xscale("log", base=2)
     axes.set_yscale("log", base=2)
     axes.set_xlabel("threads")

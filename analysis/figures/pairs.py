@@ -1,5 +1,8 @@
-"""Two variants against each other: every block of the measurement, the published runs, and the ratio."""
+"""Two variants against each other: the ratio with that of every block, the published one below it on the same
+axis, and the times of both beside it.
+"""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,12 +15,16 @@ from analysis.derived.comparisons import USUAL, Stated
 from analysis.figures.captions import PROCESSES, SCENES, opening, time_axis
 from analysis.figures.curves import bounded, difference, margin_band
 from analysis.figures.hover import Told, tell
-from analysis.figures.labels import label_ends, note, plain_ticks
-from analysis.figures.style import BLUE, INK, VERMILLION, Data, Drawing, lighten, new_figure
+from analysis.figures.labels import label_ends, label_row, name_rows, note, plain_ticks
+from analysis.figures.style import INK, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.statistics.pairs import PAIR, log_ratios
 from analysis.statistics.verdicts import MARGIN, judge_one
+from analysis.support.values import Floats
 from analysis.support.wording import blocks, change, count, exact, number, percent
 from support.vocabulary import COUNTS
+
+MANY = 40
+"""Blocks from which their marks are as small as the line."""
 
 
 @dataclass(frozen=True)
@@ -34,9 +41,9 @@ class Sides:
 def pair_drawing(
     data: Data, sides: Sides, work: bool = False, by: Stated = USUAL, row: dict[str, Any] | None = None
 ) -> Drawing | None:
-    """Draw the times of both sides block by block, the published ones, and the ratio with its verdict, of
-    `row` if it is known, by what the question states; with `work` also the attempts at resolving a pair that
-    each takes.
+    """Draw the ratio of both sides with its verdict, of `row` if it is known, by what the question states.
+    Below it is the published one, beside it are the times block by block. With `work` also the attempts at
+    resolving a pair that each takes.
     """
     times = data.study.times_of(sides.experiment)
     candidate, reference = (
@@ -47,21 +54,42 @@ def pair_drawing(
     if work and (times["question_kind"] == COUNTS).all():
         return _of_counts(data, sides)
     theirs = data.published.ratio(sides.experiment, sides.candidate, sides.reference)
-    extra = work or theirs is not None
-    figure, axes = new_figure(2.4, columns=2 + extra, widths=[1.2, *([1.0] * extra), 1.1])
-    _by_block(axes[0], {sides.names[0]: candidate, sides.names[1]: reference}, time_axis(times))
+    figure, axes = new_figure(2.3, columns=2 + (theirs is not None) + work, widths=_widths(theirs, work))
     pairs = log_ratios(reference, candidate)
     if row is None:
         row = judge_one(pairs["log_ratio"], by.margin, by.error, biases=pairs["bias"])
+    runs = data.published.experiment(sides.experiment)
+    each = [np.exp(pairs["log_ratio"].to_numpy()), _published_ratios(runs, sides)]
+    ratio_panel(axes[0], row, theirs, sides.names, by.margin, each)
+    shown = _shown(sides)
+    _by_block(axes[1], {sides.names[0]: candidate, sides.names[1]: reference}, shown, time_axis(times))
     if theirs:
-        _published_panel(axes[1], data.published.experiment(sides.experiment), sides)
+        _published_panel(axes[2], runs, sides, shown)
     if work:
-        _work(axes[1], data, sides)
-    ratio_panel(axes[-1], row, theirs, sides.names, by.margin)
+        _work(axes[-1], data, sides)
     dots = SCENES if times["x"].nunique() > 1 else PROCESSES
     said = _sentences(row, theirs, sides, by)
     verdicts = pd.DataFrame([{**row, "name": f"{sides.names[0]} against {sides.names[1]}"}])
     return Drawing(figure, opening(times, sides.subject, dots) + said + lost_by_turns(pairs), verdicts)
+
+
+def _widths(theirs: Mapping[str, Any] | None, work: bool) -> list[float]:
+    """Return how wide the panels are: the ratio has most of the room."""
+    return [2.1, 1.0, *([0.9] if theirs else []), *([0.9] if work else [])]
+
+
+def _shown(sides: Sides) -> dict[str, Look]:
+    """Return the look of both sides by the names that the reader is given."""
+    found = looks([sides.reference, sides.candidate])
+    return {sides.names[0]: found[sides.candidate], sides.names[1]: found[sides.reference]}
+
+
+def _published_ratios(published: pd.DataFrame, sides: Sides) -> Floats:
+    """Return the ratio of each published repetition of both."""
+    runs = published.pivot_table(index="x", columns="series", values="seconds")
+    if not {sides.candidate, sides.reference} <= set(runs):
+        return np.empty(0)
+    return np.asarray((runs[sides.candidate] / runs[sides.reference]).dropna(), dtype=float)
 
 
 def _of_counts(data: Data, sides: Sides) -> Drawing:
@@ -84,56 +112,84 @@ def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:
     return table.assign(steps_seconds=np.exp(table["steps_seconds"]))
 
 
-def _by_block(axes: Axes, curves: dict[str, pd.DataFrame], label: str) -> None:
+def _by_block(
+    axes: Axes, curves: dict[str, pd.DataFrame], shown: Mapping[str, Look], label: str
+) -> None:  # fmt: skip
     axes.set(xlabel="block", ylabel=label, title="measured")
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     both = pd.concat(curves)
     # Nodes number their blocks alike: they stand one after another.
     both["position"] = 1 + both.groupby(PAIR).ngroup()
     labels = []
-    for name, colour in zip(curves, (BLUE, VERMILLION), strict=True):
+    for name in curves:
         ordered = both.loc[name].sort_values("position")
-        _runs(axes, ordered["position"], ordered["steps_seconds"], name, colour)
-        labels.append((name, ordered["steps_seconds"].iloc[-1], colour))
+        _runs(axes, ordered["position"], ordered["steps_seconds"], name, shown[name])
+        labels.append((name, ordered["steps_seconds"].iloc[-1], shown[name].colour))
+    _small(axes, both["position"].max(), labels)
+
+
+def _published_panel(
+    axes: Axes, published: pd.DataFrame, sides: Sides, shown: Mapping[str, Look]
+) -> None:  # fmt: skip
+    axes.set(xlabel="repetition", ylabel="time of the process, s", title="published")
+    labels = []
+    for series, name in zip((sides.candidate, sides.reference), sides.names, strict=True):
+        run = published[published["series"] == series]
+        look = shown[name]._replace(colour=lighten(shown[name].colour))
+        _runs(axes, run["x"], run["seconds"], f"{name}, published", look)
+        labels.append((name, run["seconds"].iloc[-1], lighten(shown[name].colour, 0.35)))
+    _small(axes, published["x"].max(), labels)
+
+
+def _small(axes: Axes, last: float, labels: Sequence[tuple[str, float, str]]) -> None:
+    """Settle the axes of a small panel of times over blocks or repetitions."""
+    axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
+    axes.yaxis.set_major_locator(MaxNLocator(5))
     axes.margins(y=0.15)
     # With one block alone the axis would be too short for a whole number.
-    axes.set_xlim(0.5, both["position"].max() + 0.5)
-    label_ends(axes, labels)
+    axes.set_xlim(0.5, last + 0.5)
+    label_ends(
+        axes, [(name.replace(" with ", "\nwith "), at, colour) for name, at, colour in labels], size=6.5
+    )
 
 
-def _published_panel(axes: Axes, published: pd.DataFrame, sides: Sides) -> None:
-    axes.set(xlabel="repetition", ylabel="time of the process, s", title="published")
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    labels = []
-    both = (sides.candidate, sides.reference)
-    for series, name, colour in zip(both, sides.names, (BLUE, VERMILLION), strict=True):
-        run = published[published["series"] == series]
-        _runs(axes, run["x"], run["seconds"], f"{name}, published", lighten(colour))
-        labels.append((name, run["seconds"].iloc[-1], lighten(colour, 0.35)))
-    axes.margins(y=0.15)
-    label_ends(axes, labels)
-
-
-def _runs(axes: Axes, x: pd.Series, seconds: pd.Series, name: str, colour: str) -> None:
-    (line,) = axes.plot(x, seconds, color=colour, marker="o", linewidth=0.8)
+def _runs(axes: Axes, x: pd.Series, seconds: pd.Series, name: str, look: Look) -> None:
+    size = 2.5 if len(x) <= MANY else 1.2
+    (line,) = axes.plot(
+        x,
+        seconds,
+        color=look.colour,
+        marker=look.marker,
+        linestyle=look.dashes,
+        markersize=size,
+        linewidth=0.8,
+    )
     tell(line, [Told(name, exact(one), number(other)) for one, other in zip(x, seconds, strict=True)])
 
 
 def ratio_panel(
-    axes: Axes, ours: dict[str, float], theirs: dict[str, float] | None, names: tuple[str, str],
-    margin: float = MARGIN,
+    axes: Axes, ours: dict[str, Any], theirs: dict[str, Any] | None, names: tuple[str, str],
+    margin: float = MARGIN, each: Sequence[Floats] = (),
 ) -> None:  # fmt: skip
-    """Draw the ratio as a dot with the interval on which the verdict rests."""
+    """Draw the ratio as a dot with the interval on which the verdict rests, the published one below it, and
+    below either the ratios of `each` of its blocks or runs.
+    """
     margin_band(axes, margin)
-    entries = [("measured", ours, INK)] + ([("published", theirs, lighten(INK))] if theirs else [])
-    for height, (name, row, colour) in zip((1.0, 0.0), entries, strict=False):
-        difference(axes, row, height, name, colour, 2.6, markeredgecolor="white", zorder=3)
-        said, beside = f"{name}: {row['verdict']}", ("axes fraction", "data")
-        note(axes, said, (0, height), (0, 9), xycoords=beside, color=colour, fontsize=7)
-    axes.set(ylim=(-0.6, 1.7), title="difference")
-    axes.set_xlabel(f"time of {names[0]}\nagainst {names[1]}, %")
-    axes.xaxis.set_major_locator(MaxNLocator(5))
+    entries = [("measured", ours, INK)] + ([("published", theirs, lighten(INK, 0.4))] if theirs else [])
+    heights = [float(len(entries) - place) for place in range(1, len(entries) + 1)]
+    for height, (name, row, colour) in zip(heights, entries, strict=True):
+        is_bare = name == "published" and np.isinf(row["high"])
+        shown = {**row, "low": np.nan, "high": np.nan} if is_bare else row
+        difference(axes, shown, height, name, colour, 2.6, markeredgecolor="white", zorder=4)
+        label_row(axes, change(row), height, 9, colour)
     bounded(axes, margin)
+    low, high = axes.get_xlim()
+    for height, ratios, (_, _, colour) in zip(heights, each, entries, strict=False):
+        blocks = 100 * (ratios[(100 * (ratios - 1) > low) & (100 * (ratios - 1) < high)] - 1)
+        axes.plot(blocks, np.full(len(blocks), height - 0.24), "|", color=lighten(colour, 0.3), markersize=5)
+    name_rows(axes, [f"{name}:\n{row['verdict']}" for name, row, _ in entries], heights)
+    axes.set(ylim=(-0.5, len(entries) - 0.3), title="difference")
+    axes.set_xlabel(f"time of {names[0]} against {names[1]}, %")
+    axes.xaxis.set_major_locator(MaxNLocator(6))
 
 
 def _work(axes: Axes, data: Data, sides: Sides) -> None:
@@ -142,9 +198,11 @@ def _work(axes: Axes, data: Data, sides: Sides) -> None:
     counts = (
         runs[["pair_resolves", "pair_attempts"]].div(runs["steps"], axis=0).groupby(runs["series"]).median()
     )
-    for height, (series, name, colour) in enumerate(
-        zip((sides.reference, sides.candidate), sides.names[::-1], (VERMILLION, BLUE), strict=True)
+    shown = _shown(sides)
+    for height, (series, name) in enumerate(
+        zip((sides.reference, sides.candidate), sides.names[::-1], strict=True)
     ):
+        colour = shown[name].colour
         resolves, attempts = counts.loc[series]
         counted = not np.isnan(attempts)
         axes.barh(height, attempts if counted else 0, color=lighten(colour, 0.5), height=0.5)
@@ -162,7 +220,8 @@ def _sentences(row: dict[str, float], theirs: dict[str, float] | None, sides: Si
     return (
         f" The time of {sides.names[0]} is {change(row)} against {sides.names[1]}, from {blocks(row)} "
         f"(paired log ratios): {row['verdict']} with a margin of {100 * by.margin:g} % (shaded; "
-        f"the bar is the {100 * (1 - by.error):g} % interval, which decides).{published}"
+        f"the bar is the {100 * (1 - by.error):g} % interval, which decides). Each stroke below is the ratio "
+        f"of one block.{published}"
     )
 
 

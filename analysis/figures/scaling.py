@@ -8,13 +8,14 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from analysis.figures.captions import differing, opening
-from analysis.figures.curves import colours, curve, published_curve
-from analysis.figures.labels import from_zero, key, note, plain_ticks
-from analysis.figures.style import BLUE, FAINT, VERMILLION, Data, Drawing, lighten, new_figure
+from analysis.figures.curves import curve, published_curve, ratio_band, ratio_curve, reach
+from analysis.figures.labels import SIGNS, from_zero, key, note, percent_ticks, plain_ticks
+from analysis.figures.style import BLUE, FAINT, ORANGE, Data, Drawing, Look, lighten, looks, new_figure
+from analysis.figures.sweeps import stacked
 from analysis.records.studies import Study
 from analysis.statistics import scalability
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.pairs import log_ratios
+from analysis.statistics.pairs import log_ratios, narrow
 from analysis.statistics.scalability import ScalabilityLaw
 from analysis.statistics.verdicts import judge
 from analysis.support.wording import count, exact, interval, interval_of, number
@@ -32,16 +33,16 @@ def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
         return None
     published = data.published.experiment(experiment)
     figure, panels = new_figure(2.6, columns=3)
-    shades = colours(times)
+    shown = looks(sorted(times["series"].unique()))
     parts = {str(series): part for series, part in times.groupby("series")}
-    measured = {series: _series(panels, part, shades[series]) for series, part in parts.items()}
+    measured = {series: _series(panels, part, shown[series]) for series, part in parts.items()}
     law = scalability.fit(times, data.study.hardware_threads) if len(parts) == 1 else None
     _published(panels, published)
     _ideal(panels, pd.concat(measured.values()), published)
     if law:
         n = np.geomspace(1, times["x"].max(), 100)
         for axes, y in zip(panels[1:], (law.speed_up(n), law.speed_up(n) / n), strict=True):
-            axes.plot(n, y, color=VERMILLION, linewidth=0.9, zorder=2.5)
+            axes.plot(n, y, color=ORANGE, linewidth=0.9, zorder=2.5)
     first = count(int(times["x"].min()), "thread")
     labels = f"time relative to {first}", f"speed-up over {first}", "efficiency"
     for axes, label in zip(panels, labels, strict=True):
@@ -49,14 +50,14 @@ def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
         from_zero(axes)
         limits(axes, data.study, named=axes is panels[0])
         axes.set_ylabel(label)
-    key(panels[0], _entries(parts, shades, not published.empty, law is not None))
+    key(panels[0], _entries(parts, shown, not published.empty, law is not None))
     cores = data.study.cores or data.study.hardware_threads
     said = "".join(_greatest(series, table, len(parts) > 1, cores) for series, table in measured.items())
     said += _sentences(data.study, not published.empty)
     return Drawing(figure, opening(times, subject) + said + (_law_sentence(law) if len(parts) == 1 else ""))
 
 
-def _series(panels: Sequence[Axes], times: pd.DataFrame, colour: str) -> pd.DataFrame:
+def _series(panels: Sequence[Axes], times: pd.DataFrame, look: Look) -> pd.DataFrame:
     """Draw one series and return its speed-ups."""
     speed_ups, first = speed_up(times), float(times["x"].min())
     summary = summarise(times, ["x"])
@@ -66,23 +67,28 @@ def _series(panels: Sequence[Axes], times: pd.DataFrame, colour: str) -> pd.Data
     efficiency = speed_ups.assign(**{end: speed_ups[end] * first / speed_ups["x"] for end in ends})
     series = times["series"].iloc[0]
     for axes, table in zip(panels, (relative, speed_ups, efficiency), strict=True):
-        curve(axes, table.assign(series=series), colour, "median" if table is relative else "speed_up")
+        curve(axes, table.assign(series=series), look, "median" if table is relative else "speed_up")
     return speed_ups
 
 
 def _entries(
-    parts: Mapping[str, pd.DataFrame], shades: Mapping[str, str], published: bool, law: bool
+    parts: Mapping[str, pd.DataFrame], shown: Mapping[str, Look], published: bool, law: bool
 ) -> list[tuple[str, str]]:
     entries = []
     for series, times in parts.items():
         first = times["x"].min()
         seconds = times.query("x == @first")["steps_seconds"].median()
         name = series if len(parts) > 1 else "measured"
-        entries.append((f"● {name}, {number(seconds)} s on {count(int(first), 'thread')}", shades[series]))
+        entries.append(
+            (
+                f"{SIGNS[shown[series].marker]} {name}, {number(seconds)} s on {count(int(first), 'thread')}",
+                shown[series].colour,
+            )
+        )
     if published:
         entries.append(("● published", lighten(BLUE, 0.4)))
     entries.append(("- - ideal", FAINT))
-    return [*entries, ("— universal scalability law", VERMILLION)] if law else entries
+    return [*entries, ("— universal scalability law", ORANGE)] if law else entries
 
 
 def oversubscription(data: Data) -> Drawing | None:
@@ -91,18 +97,33 @@ def oversubscription(data: Data) -> Drawing | None:
     if times.empty:
         return None
     hardware = data.study.hardware_threads
-    figure, (axes,) = new_figure(2.6)
-    curve(axes, summarise(times, ["x"]), BLUE)
-    _thread_axis(axes, sorted(times["x"].unique()), times["x"].unique())
-    axes.set_ylabel("time of the steps, s")
-    from_zero(axes)
-    limits(axes, data.study, named=True)
+    figure, (above, below) = stacked("threads", 3.4)
+    curve(above, summarise(times, ["x"]), Look(BLUE))
+    above.set_ylabel("time of the steps, s")
+    from_zero(above)
     reference = times[times["x"] == times.loc[times["x"] <= hardware, "x"].max()]
-    table = judge(log_ratios_by_x(reference, times[times["x"] > hardware]), ["x"])
+    pairs = log_ratios_by_x(reference, times[times["x"] > hardware])
+    table = judge(pairs, ["x"])
+    _against_hardware(below, table, reference)
+    _thread_axis(below, sorted(times["x"].unique()), times["x"].unique())
+    limits(above, data.study, named=True)
+    limits(below, data.study, named=False)
     said = differing((f"{x / hardware:g} times as many:" for x in table["x"]), table)
     caption = opening(times, "Time with more threads than the machine has hardware threads")
     against = f" Against {count(hardware, 'thread')}, as many as there are: {said}." if said else ""
     return Drawing(figure, caption + against)
+
+
+def _against_hardware(axes: Axes, table: pd.DataFrame, reference: pd.DataFrame) -> None:
+    """Draw the ratios to as many threads as the machine has in per cent."""
+    own = pd.DataFrame([{"x": x, "ratio": 1.0} for x in reference["x"].unique()], columns=table.columns)
+    table = pd.concat([own, table]) if len(table) else own
+    within = reach(table)
+    axes.set_ylim(*within)
+    ratio_band(axes)
+    ratio_curve(axes, table, Look(BLUE), within)
+    percent_ticks(axes.yaxis)
+    axes.set_ylabel("time against\nall hardware threads, %")
 
 
 def speed_up(processes: pd.DataFrame) -> pd.DataFrame:
@@ -117,8 +138,7 @@ def speed_up(processes: pd.DataFrame) -> pd.DataFrame:
 
 def log_ratios_by_x(reference: pd.DataFrame, processes: pd.DataFrame) -> pd.DataFrame:
     """Return the paired log ratios of every x against the reference, with the column `x`."""
-    tables = [log_ratios(reference, group).assign(x=x) for x, group in processes.groupby("x")]
-    return pd.concat(tables) if tables else pd.DataFrame(columns=["x", "log_ratio"])
+    return log_ratios(narrow(reference), narrow(processes, "x"), by=("x",))
 
 
 def limits(axes: Axes, study: Study, named: bool) -> None:
@@ -150,7 +170,7 @@ def _published(panels: Sequence[Axes], published: pd.DataFrame) -> None:
     x, seconds = published["x"].to_numpy(), published["seconds"].to_numpy()
     speed = seconds[0] / seconds
     for axes, y in zip(panels, (seconds / seconds[0], speed, speed * x[0] / x), strict=True):
-        published_curve(axes, x, y, BLUE)
+        published_curve(axes, x, y, Look(BLUE))
 
 
 def _ideal(panels: Sequence[Axes], speed_ups: pd.DataFrame, published: pd.DataFrame) -> None:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping
+from functools import partial as bound
 from itertools import groupby
 from operator import itemgetter
 from typing import Any
@@ -14,15 +15,17 @@ from analysis.derived import accuracy
 from analysis.derived.accuracy import SMALL, Choice, Measure, Race
 from analysis.figures.captions import opening
 from analysis.figures.hover import Told, tell
-from analysis.figures.labels import key, label_points, plain_ticks
-from analysis.figures.style import FAINT, INK, PALETTE, Data, Drawing, lighten, new_figure
+from analysis.figures.labels import HOLLOW_SIGNS, SIGNS, key, label_points, logarithmic_ticks, plain_ticks
+from analysis.figures.recording import when_laid_out
+from analysis.figures.style import FAINT, INK, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.support.values import Cell, Interval, Row, Table, table_of
 from analysis.support.wording import NO_BREAK, exact, interval, number
 
 Label = tuple[str, float, float]
 """A text beside a point: the text, and the point's x and y."""
 
-COLOURS = [*PALETTE, INK]
+MOST_POWERS = 5
+"""Of ten that have room below a panel."""
 
 MILLI = 1e3
 OTHERS = 2
@@ -39,7 +42,7 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
         return None
     scenes = dict(list(table.groupby("scene_name", sort=False)))
     figure, panels = new_figure(3.0, columns=len(scenes))
-    looks = _looks(table)
+    shown = _looks(table)
     outside = accuracy.outside(data.study, experiment, measure)
     outside = outside[outside["scene_name"].isin(scenes)]
     zero = 10 ** np.floor(np.log10(table.loc[table["error"] > 0, "error"].min()) - 1)
@@ -47,7 +50,7 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     for axes, (scene, part) in zip(panels, scenes.items(), strict=True):
         labels[str(scene)] = _front(axes, part, zero)
         for series, line in part.groupby("series"):
-            _line(axes, line, zero, *looks[str(series)])
+            _line(axes, line, zero, shown[str(series)])
         beside = outside[outside["scene_name"] == scene]
         labels[str(scene)] += _outside(axes, beside, zero) if len(beside) else []
         axes.set(xscale="log", yscale="log")
@@ -56,12 +59,14 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     _share_limits(panels, (table["error"] <= 0).any(), zero)
     panels[0].set_ylabel("time per unit of simulated time, ms")
     figure.supxlabel(measure.label, fontsize=8, color=INK)
-    entries = [(f"{mark} {series}", colour) for series, (colour, mark) in looks.items()]
+    entries = [
+        (f"{(SIGNS if look.dashes == '-' else HOLLOW_SIGNS)[look.marker]} {series}", look.colour)
+        for series, look in shown.items()
+    ]
     entries += [(f"◆ {engine}", INK) for engine in outside["engine"].unique()]
     key(panels[0], [*entries, ("▬ Pareto front (substeps)", FAINT)])
-    figure.draw_without_rendering()
     for axes, texts in zip(panels, labels.values(), strict=True):
-        label_points(axes, texts, INK)
+        when_laid_out(figure, bound(label_points, axes, texts, INK))
     tables = [_advice(table, accuracy.races(data.study, experiment), measure)]
     if measure.converges:
         tables.append(_orders(table))
@@ -69,27 +74,28 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     return Drawing(figure, caption, tables=tables)
 
 
-def _looks(table: pd.DataFrame) -> dict[str, tuple[str, str]]:
-    """Return colour and mark of each series: one colour for a variant's precisions, filled for double."""
-    families: dict[str, str] = {}
-    looks = {}
-    for row in table.drop_duplicates("series").to_dict("records"):
-        family = re.sub(r"(^|-)float(?=-|$)", "", row["variant"]).strip("-") or "published"
-        colour = families.setdefault(family, COLOURS[len(families) % len(COLOURS)])
-        looks[str(row["series"])] = (colour, "●" if row["precision"] == "double" else "○")
-    return looks
+def _looks(table: pd.DataFrame) -> dict[str, Look]:
+    """Return the look of each series: one for a variant's precisions, hollow and dashed for float."""
+    rows = table.drop_duplicates("series")
+    families = [
+        re.sub(r"(^|-)float(?=-|$)", "", variant).strip("-") or "published" for variant in rows["variant"]
+    ]
+    shown = looks(families)
+    return {
+        str(series): shown[family]._replace(dashes="-" if precision == "double" else "--")
+        for series, precision, family in zip(rows["series"], rows["precision"], families, strict=True)
+    }
 
 
-def _line(axes: Axes, part: pd.DataFrame, zero: float, colour: str, mark: str) -> None:
+def _line(axes: Axes, part: pd.DataFrame, zero: float, look: Look) -> None:
     rows = part.sort_values("x")
     error = rows["error"].clip(lower=zero)
-    double = mark == "●"
     points, *_ = axes.errorbar(
         error, MILLI * rows["median"],
         xerr=[error - rows["error_low"].clip(lower=zero), rows["error_high"].clip(lower=zero) - error],
         yerr=[MILLI * (rows["median"] - rows["low"]).clip(lower=0), MILLI * (rows["high"] - rows["median"])],
-        color=colour, linestyle="-" if double else "--", marker="o", linewidth=0.9, elinewidth=0.9, zorder=3,
-        markerfacecolor=colour if double else "white",
+        color=look.colour, linestyle=look.dashes, marker=look.marker, linewidth=0.9, elinewidth=0.9, zorder=3,
+        markerfacecolor=look.colour if look.dashes == "-" else "white",
     )  # fmt: skip
     tell(points, [_told(row) for row in rows.to_dict("records")])
 
@@ -159,13 +165,13 @@ def _share_limits(panels: list[Axes], has_zero: bool, zero: float) -> None:
         for ends in ([one.get_xlim() for one in panels], [one.get_ylim() for one in panels])
     ]
     powers = range(int(np.ceil(np.log10(limits[0][0]))), int(np.floor(np.log10(limits[0][1]))) + 1)
-    every = max(1, len(powers) // 5)
+    every = max(1, -(-len(powers) // MOST_POWERS))
     ticks = [10.0**power for power in powers if power % every == 0 and not (has_zero and 10.0**power <= zero)]
     for axes in panels:
         axes.set(xlim=(limits[0][0] * 0.7, limits[0][1] * 1.2), ylim=(limits[1][0], limits[1][1] * 1.6))
         axes.tick_params(labelleft=axes is panels[0])
         axes.set_xticks([zero, *ticks] if has_zero else ticks)
-        plain_ticks(axes.yaxis)
+        logarithmic_ticks(axes.yaxis)
         plain_ticks(axes.xaxis)
         axes.xaxis.set_major_formatter(
             lambda value, _: "0" if has_zero and value <= zero else power_of_ten(value)

@@ -1,10 +1,10 @@
 """The look that all figures share, and what a figure function returns."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -14,6 +14,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 
 from analysis.figures.hover import identify, with_titles
+from analysis.figures.recording import Recording, families, lay_out
 from analysis.records.plans import planned_runs
 from analysis.records.published import Published
 from analysis.records.studies import Study
@@ -25,11 +26,57 @@ PALETTE = BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = (
 )  # fmt: skip
 """The colour-blind safe palette of Okabe and Ito (2008) without its yellow, too pale for lines."""
 
+
+class Look(NamedTuple):
+    """How a thing is drawn, so that it is told from others in grey as well."""
+
+    colour: str
+    marker: str = "o"
+    dashes: Any = "-"
+
+
+_LOOKS = [
+    Look(BLUE),
+    Look(VERMILLION, "s", "--"),
+    Look(GREEN, "^", "-."),
+    Look(PURPLE, "D", (0, (4, 1, 1, 1, 1, 1))),
+    Look(ORANGE, "v", (0, (1, 1))),
+    Look(SKY, "P", (0, (6, 2))),
+]
+_THINGS: Mapping[str, int] = {
+    "published": 0,
+    "checkered": 0,
+    "four": 0,
+    "four boxes": 0,
+    "on": 0,
+    "A": 0,
+    "guided": 0,
+    "g++ with libomp": 0,
+    "row": 1,
+    "nine": 1,
+    "nine boxes": 1,
+    "off": 1,
+    "self_contained_off": 1,
+    "A-again": 1,
+    "A again": 1,
+    "dynamic": 1,
+    "clang++ with libomp": 1,
+    "fastest": 2,
+    "sorted": 2,
+    "track": 2,
+    "static": 2,
+    "repeat": 3,
+    "g++ with libgomp": 3,
+    "once": 4,
+    "forward": 0,
+    "reverse": 1,
+}
+"""Which look a thing has in all figures; one that is not here gets the first that is left."""
+
 INK, FAINT, BAND = "#222222", "#8a8a8a", "#ececec"
 FORMATS = ("svg", "png", "pdf")
 WIDTH = 7.0
 SETTINGS: Any = {
-    "font.family": "DejaVu Sans",
     "font.size": 8,
     "axes.titlesize": 8,
     "axes.titlelocation": "left",
@@ -82,8 +129,22 @@ class Drawing:
 @contextmanager
 def styled(name: str) -> Iterator[None]:
     """Draw in the common style; `name` keeps the identifiers inside an SVG the same from run to run."""
-    with mpl.rc_context({**SETTINGS, "svg.hashsalt": name}):
+    with mpl.rc_context({**SETTINGS, "font.family": list(families()), "svg.hashsalt": name}):
         yield
+
+
+def looks(names: Iterable[str]) -> dict[str, Look]:
+    """Return the look of each thing that a figure shows. Of two with the same one the latter gets another."""
+    found: dict[str, Look] = {}
+    unknown = []
+    for name in dict.fromkeys(names):
+        look = _LOOKS[_THINGS[name]] if name in _THINGS else None
+        if look is None or look in found.values():
+            unknown.append(name)
+        else:
+            found[name] = look
+    left = [look for look in _LOOKS if look not in found.values()] or _LOOKS
+    return found | {name: left[number % len(left)] for number, name in enumerate(unknown)}
 
 
 def lighten(colour: str, amount: float = 0.55) -> str:
@@ -141,15 +202,13 @@ def save(drawing: Drawing, folder: Path, name: str, formats: Sequence[str] = FOR
     """Write the figure in these formats and return the files; outdated ones in other formats are removed."""
     files = []
     with styled(name):
-        # The layout is settled once, not once a format.
-        drawing.figure.draw_without_rendering()
-        drawing.figure.set_layout_engine("none")
+        lay_out(drawing.figure)
         lines = identify(drawing.figure)
+        recording = Recording(drawing.figure)
         for suffix in formats:
             target = folder / f"{name}.{suffix}"
-            metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[suffix]
             with replacing(target) as part:
-                drawing.figure.savefig(part, format=suffix, dpi=200, metadata=metadata)
+                recording.write(part, suffix)
                 if suffix == "svg":
                     text = part.read_text(encoding="utf-8")
                     part.write_text(with_titles(text, drawing.figure, lines), encoding="utf-8")

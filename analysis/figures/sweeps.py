@@ -1,26 +1,43 @@
-"""Time over one swept parameter, the published series on an axis of its own, scaled to the same median; and
-over the side length with the discs fixed, where the published variant pays for empty space.
+"""Time over one swept parameter, and below it ratios: to one of its points, the published ones on the same
+axis, or to another series at the same point.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from analysis.derived.comparisons import PUBLISHED
+from analysis.derived.comparisons import PUBLISHED, differences, differences_from, reference, stated
 from analysis.derived.ladder import per_disc_step, speed_up
-from analysis.figures.captions import growth_sentence, minimum_sentence, opening, time_axis
-from analysis.figures.curves import colours, curve, curves, published_curve
+from analysis.figures.captions import differing, growth_sentence, minimum_sentence, opening, time_axis
+from analysis.figures.curves import curve, curves, published_curve, ratio_band, ratio_curve, reach
 from analysis.figures.hover import Told, tell
-from analysis.figures.labels import from_zero, key, label_ends, logarithmic_ticks, plain_ticks
-from analysis.figures.style import BLUE, FAINT, GREEN, Data, Drawing, lighten, new_figure
+from analysis.figures.labels import from_zero, label_ends, logarithmic_ticks, percent_ticks, plain_ticks
+from analysis.figures.style import (
+    BLUE,
+    FAINT,
+    GREEN,
+    INK,
+    WIDTH,
+    Data,
+    Drawing,
+    Look,
+    lighten,
+    looks,
+    new_figure,
+)  # fmt: skip
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, ratios_of
-from analysis.statistics.verdicts import error_of_picked, judge_one
+from analysis.statistics.verdicts import error_of_picked, judge, judge_one
 from analysis.support.wording import exact, interval_of, number
 
 SAME_RANGE = 0.75
 GRID_LENGTH, OVER_GRID_LENGTH = "grid_length", "Time over the side length"
+
+FAR = 1.6
+"""Times the least ratio from which the greatest is shown as a factor, not in per cent."""
 
 
 def density(data: Data) -> Drawing | None:
@@ -30,7 +47,7 @@ def density(data: Data) -> Drawing | None:
         return None
     figure, (left, right) = new_figure(2.6, columns=2)
     summary = summarise(times, ["x"])
-    curve(left, summary, BLUE)
+    curve(left, summary, Look(BLUE))
     left.set_ylabel("time of the steps, s")
     runs = data.study.runs_of("density")
     resolves = (runs["pair_resolves"] / (runs["particles"] * runs["steps"])).groupby(runs["x"]).median()
@@ -51,56 +68,123 @@ def trend(
     label: str | None = None,
     describe: Callable[[pd.DataFrame], str] = growth_sentence,
 ) -> Drawing | None:
-    """Draw time over x, a curve a series, with the published series beside a single one; `label` names x."""
+    """Draw time over x, a curve a series, and below it ratios: of several series to the reference at the same
+    x, of a single one to its own time at one x, with the published series on the same axis. `label` names x.
+    """
     times = data.study.times_of(experiment)
     if times.empty:
         return None
-    figure, (axes,) = new_figure(2.9)
     summary = summarise(times, ["series", "x"])
-    shades = colours(times)
-    curves(axes, summary, shades)
-    axes.set(xlabel=label or times["x_name"].iloc[0].replace("_", " "), ylabel=time_axis(times))
-    plain_ticks(axes.xaxis)
-    from_zero(axes)
-    if len(shades) > 1:
-        key(axes, [(f"● {series}", colour) for series, colour in shades.items()])
+    shown = looks(sorted(times["series"].unique()))
+    figure, (above, below) = stacked(label or times["x_name"].iloc[0].replace("_", " "))
+    ends = curves(above, summary, shown)
+    above.set_ylabel(time_axis(times))
+    from_zero(above)
+    plain_ticks(above.xaxis)
+    if len(shown) > 1:
+        label_ends(above, ends)
         said = "".join(f" {series}:{describe(part)}" for series, part in times.groupby("series"))
-        return Drawing(figure, opening(times, subject) + said)
+        return Drawing(figure, opening(times, subject) + said + against_reference(below, times, shown))
     published = data.published.experiment(experiment)
-    entries, own_x = [("● measured, left axis", BLUE)], False
-    if not published.empty:
-        own_x = not ranges_agree(summary["x"], published["x"])
-        _published_beside(axes, summary, published, own_x)
-        entries.append((f"● published, right{' and upper' if own_x else ''} axis", lighten(BLUE, 0.4)))
-        key(axes, entries, raised=18 if own_x else 4)
+    ratios = _against_own(below, times, published, next(iter(shown.values())))
     caption = opening(times, subject) + describe(data.published.without_degenerate(experiment, times))
     if set(times["x"]) & set(data.published.degenerate.get(experiment, ())):
         caption += " At its degenerate end, which is no part of that, all discs start with one velocity."
-    if not published.empty:
-        caption += " Lighter: the published series on axes of its own, scaled so that both medians are level."
-    return Drawing(figure, caption)
+    return Drawing(figure, caption + ratios)
 
 
-def _published_beside(axes: Axes, ours: pd.DataFrame, published: pd.DataFrame, own_x: bool) -> None:
-    """Draw the published curve on a right axis whose scale puts its median level with ours; `own_x` names an
-    upper axis of its own, for scenes of another size."""
-    factor = published["seconds"].median() / ours["median"].median()
-    highest = max(axes.get_ylim()[1], 1.05 * published["seconds"].max() / factor)
-    axes.set_ylim(0, highest)
-    right = axes.twinx()
-    right.spines["right"].set_visible(True)
-    right.tick_params(axis="y", colors=FAINT)
-    right.set_ylabel("time of the process, published, s", color=FAINT)
-    target = right
-    if own_x:
-        target = right.twiny()
-        target.spines["top"].set_visible(True)
-        target.tick_params(axis="x", colors=FAINT)
-        plain_ticks(target.xaxis)
-    axes.set_zorder(right.get_zorder() + 1)
-    axes.patch.set_visible(False)
-    published_curve(target, published["x"].to_list(), published["seconds"].to_list(), BLUE)
-    right.set_ylim(0, highest * factor)
+def stacked(label: str, height: float = 3.7) -> tuple[Figure, tuple[Axes, Axes]]:
+    """Return a figure with the axes of the times above those of the ratios, over the x that `label` names."""
+    figure = Figure(figsize=(WIDTH, height))
+    above, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": [1.0, 1.25]})
+    below.set_xlabel(label)
+    return figure, (above, below)
+
+
+def against_reference(axes: Axes, times: pd.DataFrame, shown: Mapping[str, Look]) -> str:
+    """Draw the ratio of each series to the reference at the same x in per cent; say what it shows."""
+    against = reference(times)
+    table, margin = differences(times, against), stated(times).margin
+    within = reach(table, margin)
+    ratio_band(axes, margin)
+    parts = {str(series): part for series, part in table.groupby("series")}
+    for series, part in parts.items():
+        ratio_curve(axes, part, shown[series], within)
+    label_ends(axes, [(name, _last(part), shown[name].colour) for name, part in parts.items()])
+    _relative(axes, within, against)
+    return (
+        f" Below: ratios to {against} at the same x, of pairs within blocks, with the intervals that "
+        "decide. The margin is shaded."
+    )
+
+
+def _against_own(axes: Axes, times: pd.DataFrame, published: pd.DataFrame, look: Look) -> str:
+    """Draw the ratios of one series to its time at one x, the published ones beside them; say which."""
+    at = _level(times, published)
+    table, margin = differences_from(times, times["x"] == at), stated(times).margin
+    own = pd.DataFrame([{"x": at, "ratio": 1.0, "low": 1.0, "high": 1.0}])
+    table = pd.concat([table, own])
+    theirs, at_theirs = _published_ratios(published, at)
+    within = reach(pd.concat([table, theirs]), margin)
+    ratio_band(axes, margin)
+    ratio_curve(axes, table, look, within)
+    _relative(axes, within, f"that at {exact(at)}")
+    said = (
+        f" Below: ratios to the time at {exact(at)}, of pairs within blocks, with the intervals that decide."
+    )
+    if theirs.empty:
+        return said
+    labels = [
+        ("measured", _last(table), look.colour),
+        ("published", _last(theirs), lighten(look.colour, 0.35)),
+    ]
+    if ranges_agree(times["x"], published["x"]):
+        published_curve(axes, theirs["x"].to_list(), theirs["ratio"].to_list(), look)
+    else:
+        upper = axes.twiny()
+        upper.spines["top"].set_visible(True)
+        upper.tick_params(axis="x", colors=FAINT)
+        published_curve(upper, theirs["x"].to_list(), theirs["ratio"].to_list(), look)
+        plain_ticks(upper.xaxis)
+        upper.set_xlabel("published", color=FAINT, fontsize=7)
+    label_ends(axes, labels)
+    return f"{said} Lighter: the published ratios on the same axis, to the time at {exact(at_theirs)}."
+
+
+def _last(table: pd.DataFrame) -> float:
+    return float(table.loc[table["x"].idxmax(), "ratio"])
+
+
+def _level(times: pd.DataFrame, published: pd.DataFrame) -> float:
+    """Return the x that others are compared with, whatever was measured: where the published time is least,
+    or the smallest one.
+    """
+    least = [] if published.empty else [float(published.loc[published["seconds"].idxmin(), "x"])]
+    return least[0] if least and least[0] in set(times["x"]) else float(times["x"].min())
+
+
+def _published_ratios(published: pd.DataFrame, at: float) -> tuple[pd.DataFrame, float]:
+    """Return the published ratios and the x that they are to: `at`, or else the smallest one."""
+    if published.empty:
+        return pd.DataFrame(columns=["x", "ratio", "low", "high"], dtype=float), at
+    if at not in set(published["x"]):
+        at = float(published["x"].min())
+    level = published.loc[published["x"] == at, "seconds"].iloc[0]
+    return published.assign(ratio=published["seconds"] / level, low=np.nan, high=np.nan), at
+
+
+def _relative(axes: Axes, within: tuple[float, float], against: str) -> None:
+    """Let the vertical axis show ratios: in per cent, or as factors on a logarithmic axis."""
+    if within[1] < FAR * within[0]:
+        axes.set_ylim(*within)
+        percent_ticks(axes.yaxis)
+        axes.set_ylabel(f"time against\n{against}, %")
+        return
+    axes.set_yscale("log", base=2)
+    axes.set_ylim(*within)
+    axes.minorticks_off()
+    logarithmic_ticks(axes.yaxis, most=9)
+    axes.set_ylabel(f"time relative\nto {against}")
 
 
 def ranges_agree(ours: pd.Series, published: pd.Series) -> bool:
@@ -109,25 +193,56 @@ def ranges_agree(ours: pd.Series, published: pd.Series) -> bool:
     return bool(shared >= SAME_RANGE * (published.max() - published.min()))
 
 
+def row(data: Data) -> Drawing | None:
+    """Draw alternate rows against the checkered pattern over scene size: time per disc, paired ratio."""
+    times = data.study.times_of("row")
+    if times.empty:
+        return None
+    scaled = summarise(per_disc_step(times), ["series", "x"], value="nanoseconds")
+    shown = looks(sorted(times["series"].unique()))
+    figure, (above, below) = stacked("discs")
+    label_ends(above, curves(above, scaled, shown))
+    above.set(xscale="log", ylabel="time per disc\nand step, ns")
+    from_zero(above)
+    table = judge(ratios_of(times, "order", "checkered", "row", match=("x",)), ["x"])
+    within = reach(table)
+    below.set_ylim(*within)
+    ratio_band(below)
+    ratio_curve(below, table.assign(series="row"), shown.get("row", Look(INK)), within)
+    percent_ticks(below.yaxis)
+    below.set_ylabel("time of row\nagainst checkered, %")
+    for axes in (above, below):
+        plain_ticks(axes.xaxis)
+    said = differing((f"{exact(x)} discs" for x in table["x"]), table)
+    caption = (
+        opening(times, "Alternate rows against the checkered pattern, over scene size at one density")
+        + f" Time of row against checkered: {said} (Holm-corrected, margin shaded). The published study "
+        "states that row wins on large scenes, without a number."
+    )
+    names = [f"row against checkered, {exact(x)} discs" for x in table["x"]]
+    return Drawing(figure, caption, table.assign(name=names))
+
+
 def grid_length(data: Data) -> Drawing | None:
     """Draw time per disc and step over the side length, on logarithmic axes so that both ends can be read."""
     times = data.study.times_of(GRID_LENGTH)
     if times["series"].nunique() < 2:
         return trend(data, GRID_LENGTH, OVER_GRID_LENGTH, "side length", minimum_sentence)
     summary = summarise(per_disc_step(times), ["series", "x"], value="nanoseconds")
-    shades = colours(times)
-    figure, (axes,) = new_figure(3.2)
-    axes.set(xscale="log", yscale="log", xlabel="side length", ylabel="time per disc and step, ns")
-    labels = curves(axes, summary, shades)
-    plain_ticks(axes.xaxis, _far_apart(summary["x"]))
-    logarithmic_ticks(axes.yaxis)
+    shown = looks(sorted(times["series"].unique()))
+    figure, (above, below) = stacked("side length", 4.2)
+    above.set(xscale="log", yscale="log", ylabel="time per disc and step, ns")
+    labels = curves(above, summary, shown)
+    logarithmic_ticks(above.yaxis)
     published = data.published.experiment(GRID_LENGTH)
     ours = summary[summary["series"].isin(published["series"])]
     caption = opening(times, OVER_GRID_LENGTH) + _sentences(times)
     if not ours.empty and ranges_agree(ours["x"], published["x"]):
-        labels.append(_published_moved(axes, ours, published, shades))
+        labels.append(_published_moved(above, ours, published, shown))
         caption += " Lighter: the published series, its times moved so that its median is level with ours."
-    label_ends(axes, labels)
+    label_ends(above, labels)
+    caption += against_reference(below, times, shown)
+    plain_ticks(below.xaxis, _far_apart(summary["x"]))
     return Drawing(figure, caption)
 
 
@@ -141,15 +256,15 @@ def _far_apart(x: pd.Series) -> list[float]:
 
 
 def _published_moved(
-    axes: Axes, ours: pd.DataFrame, published: pd.DataFrame, shades: dict[str, str]
+    axes: Axes, ours: pd.DataFrame, published: pd.DataFrame, shown: Mapping[str, Look]
 ) -> tuple[str, float, str]:
     """Draw the published curve moved to the median of ours; return its label."""
     factor = ours["median"].median() / published["seconds"].median()
     moved = published["seconds"] * factor
-    colour = shades[str(ours["series"].iloc[0])]
-    published_curve(axes, published["x"].to_list(), moved.to_list(), colour)
+    look = shown[str(ours["series"].iloc[0])]
+    published_curve(axes, published["x"].to_list(), moved.to_list(), look)
     said = f"as published, {number(published['seconds'].iloc[-1])} s"
-    return said, float(moved.iloc[-1]), lighten(colour, 0.4)
+    return said, float(moved.iloc[-1]), lighten(look.colour, 0.4)
 
 
 def _sentences(times: pd.DataFrame) -> str:

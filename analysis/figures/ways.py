@@ -13,13 +13,13 @@ from analysis.derived.pauses import ratios as pause_ratios
 from analysis.derived.ways import APART, TURNS, Comparison, comparisons, overall, said
 from analysis.figures.captions import PROCESSES, opening
 from analysis.figures.hover import Told, tell
-from analysis.figures.labels import key, logarithmic_ticks, name_rows
-from analysis.figures.style import BLUE, FAINT, VERMILLION, Data, Drawing, new_figure
+from analysis.figures.labels import SIGNS, key, logarithmic_ticks, name_rows
+from analysis.figures.style import BLUE, FAINT, VERMILLION, Data, Drawing, Look, new_figure
 from analysis.support.values import Interval, Table, table_of
 from analysis.support.wording import number
 
-COLOURS = {TURNS: BLUE, APART: VERMILLION}
-_COLOUR_OF_STOP = dict(zip(STOPPED_BY, (BLUE, VERMILLION), strict=True))
+LOOKS = {TURNS: Look(BLUE), APART: Look(VERMILLION, "s", "--")}
+_LOOK_OF_STOP = dict(zip(STOPPED_BY, (Look(BLUE), Look(VERMILLION, "s")), strict=True))
 
 
 def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -30,7 +30,7 @@ def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
     figure, (left, right) = new_figure(1.0 + 0.42 * max(len(found), 4), columns=2, widths=[1.1, 1.0])
     _ratios(left, found)
     _widths(right, found)
-    key(right, list(COLOURS.items()))
+    key(right, [(f"{SIGNS[look.marker]} {way}", look.colour) for way, look in LOOKS.items()])
     caption = (
         f"{opening(data.study.times_of(experiment), subject, PROCESSES)} Ratios of the times of the steps "
         "with 95 % intervals, and, a line a comparison, half of these as blocks came, over the time that "
@@ -43,7 +43,7 @@ def _ratios(axes: Axes, found: list[Comparison]) -> None:
     _rows(axes, [one.name.replace(": ", "\n") for one in reversed(found)])
     for height, one in enumerate(reversed(found)):
         for way, aside in ((TURNS, 0.13), (APART, -0.13)):
-            _interval(axes, one.log_ratio(way), height + aside, f"{one.name}, {way}", COLOURS[way])
+            _interval(axes, one.log_ratio(way), height + aside, f"{one.name}, {way}", LOOKS[way])
     axes.set_xlabel("time against the other, %")
 
 
@@ -53,20 +53,28 @@ def _rows(axes: Axes, names: Sequence[str]) -> None:
     axes.set_ylim(-0.5, len(names) - 0.5)
 
 
-def _interval(axes: Axes, value: Interval, height: float, name: str, colour: str, inside: str = "") -> None:
+def _interval(axes: Axes, value: Interval, height: float, name: str, look: Look, inside: str = "") -> None:
     """Draw a log ratio in per cent."""
     estimate, low, high = 100 * (np.exp(value) - 1)
-    axes.plot([low, high], [height, height], color=colour, linewidth=1.4)
-    (dot,) = axes.plot(estimate, height, "o", color=colour, mfc=inside or colour, markersize=4)
+    axes.plot([low, high], [height, height], color=look.colour, linewidth=1.4)
+    (dot,) = axes.plot(
+        estimate, height, look.marker, color=look.colour, mfc=inside or look.colour, markersize=4
+    )
     tell(dot, [Told(name, said(value))])
 
 
 def _widths(axes: Axes, found: list[Comparison]) -> None:
     axes.set(xscale="log", yscale="log", xlabel="time spent, s", ylabel="half of the interval, %")
-    for way, colour in COLOURS.items():
+    for way, look in LOOKS.items():
         for one in found:
             widths = one.half_widths(way)
-            (line,) = axes.plot(widths["seconds"], 100 * widths["half"], color=colour, linewidth=0.9)
+            (line,) = axes.plot(
+                widths["seconds"],
+                100 * widths["half"],
+                color=look.colour,
+                linestyle=look.dashes,
+                linewidth=0.9,
+            )
             spent = [f"{number(seconds)} s" for seconds in widths["seconds"]]
             half = [f"{number(100 * part)} %" for part in widths["half"]]
             tell(line, [Told(f"{one.name}, {way}", *both) for both in zip(spent, half, strict=True)])
@@ -95,7 +103,7 @@ def pauses(data: Data, experiment: str, subject: str) -> Drawing | None:
     programs = list(found["series"].drop_duplicates())
     figure, [axes] = new_figure(1.0 + 0.32 * max(len(programs), 4))
     _pause_ratios(axes, found, programs)
-    key(axes, [(name, _COLOUR_OF_STOP[label]) for label, name in STOPPED_BY.items()])
+    key(axes, [(name, _LOOK_OF_STOP[label].colour) for label, name in STOPPED_BY.items()])
     opened = opening(data.study.times_of(experiment), subject, PROCESSES)
     caption = (
         f"{opened} Time in slices against time without a pause, by pairs within blocks, with 95 % "
@@ -109,8 +117,8 @@ def _pause_ratios(axes: Axes, found: pd.DataFrame, programs: list[str]) -> None:
     for height, program in enumerate(reversed(programs)):
         for aside, (label, name) in zip((0.15, -0.15), STOPPED_BY.items(), strict=True):
             for row in found[(found["series"] == program) & (found["label"] == label)].itertuples():
-                inside, colour = "" if row.sliced else "white", _COLOUR_OF_STOP[label]
-                _interval(axes, row.ratio, height + aside, f"{program}, {name}", colour, inside)
+                inside, look = "" if row.sliced else "white", _LOOK_OF_STOP[label]
+                _interval(axes, row.ratio, height + aside, f"{program}, {name}", look, inside)
     axes.set_xlabel("time in slices against time without a pause, %")
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from analysis.statistics.pairs import runs_of
+from analysis.statistics.pairs import narrow, runs_of
 from analysis.support.values import Floats
 
 REPLICATES = 2000
@@ -27,7 +27,7 @@ def summarise(
     Fewer than `FEWEST` processes give no interval: its ends are NaN.
     """
     rows = []
-    for key, group in times.groupby(by, sort=True):
+    for key, group in narrow(times, *by, value=value).groupby(by, sort=True):
         padded = _padded(group, value)
         medians = _row_medians(padded.reshape(-1, padded.shape[2]))
         median, processes = float(_row_medians(medians[np.newaxis])[0]), group["file"].nunique()

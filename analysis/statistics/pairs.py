@@ -41,9 +41,11 @@ def log_ratios(
     candidate: pd.DataFrame,
     match: tuple[str, ...] = (),
     value: str = "steps_seconds",
+    by: tuple[str, ...] = (),
 ) -> pd.DataFrame:
-    """Return a row a pair, in the order of time: the columns of `match`, those of `PAIR`, `log_ratio` =
-    ln(candidate / reference), and `bias`, by how much turns make it too great (NaN where not known).
+    """Return a row a pair, in the order of time: the columns of `by` and of `match`, those of `PAIR`,
+    `log_ratio` = ln(candidate / reference), and `bias`, by how much turns make it too great (NaN where not
+    known). Each group of candidates that the columns `by` tell apart is compared on its own.
 
     Takes a row a process on either side. Where the two took turns through several whole runs, each run of the
     one stands beside the same run of the other, and the median over the runs is the block's: a burst of noise
@@ -53,18 +55,27 @@ def log_ratios(
     partner of its own session has no ratio: the machine may have been another since.
     """
     keys = [*match, *PAIR]
-    sides = (_per_block(side, keys, value) for side in (reference, candidate))
+    sides = _per_block(reference, keys, value), _per_block(candidate, [*by, *keys], value)
     joined = pd.merge(*sides, on=keys, suffixes=("_reference", "_candidate"))
     ratios = list(map(_block_ratio, joined["logs_reference"], joined["logs_candidate"]))
     biases = list(map(bias, joined["lost_reference"], joined["lost_candidate"]))
-    found = joined[[*keys, "at_reference"]].assign(log_ratio=np.array(ratios, dtype=float), bias=biases)
+    found = joined[[*by, *keys, "at_reference"]].assign(log_ratio=np.array(ratios, dtype=float), bias=biases)
     return found.sort_values(["at_reference", *PAIR], kind="stable").drop(columns="at_reference")
+
+
+def narrow(times: pd.DataFrame, *keys: str, value: str = "steps_seconds") -> pd.DataFrame:
+    """Return the columns `keys` and those that ratios and summaries of `value` need: the fewer a table has,
+    the faster are its parts.
+    """
+    needed = [*keys, *PAIR, "file", "recorded_at", "lost_by_turns", value, runs_of(value)]
+    return times[[column for column in dict.fromkeys(needed) if column in times]]
 
 
 def ratios_of(
     processes: pd.DataFrame, column: str, reference: object, candidate: object, match: tuple[str, ...] = ()
 ) -> pd.DataFrame:
     """Return `log_ratios` of the processes with one value in a column against those with another."""
+    processes = narrow(processes, column, *match)
     sides = [processes[processes[column] == value] for value in (reference, candidate)]
     return log_ratios(sides[0], sides[1], match)
 

@@ -29,7 +29,7 @@ def marks(svg: Path) -> list[tuple[float, float, str]]:
 def test_a_point_tells_its_x_its_value_and_its_interval(tmp_path: Path) -> None:
     write(tmp_path, study(["steps"], blocks=6, noise=QUIET))
     (drawn,) = draw_all(tmp_path, formats=("svg",))
-    measured = [mark for mark in marks(drawn.files[0]) if "published" not in mark[2]]
+    measured = [mark for mark in marks(drawn.files[0]) if "time of the steps" in mark[2]]
     assert len(measured) == 10
     said = sorted(measured)[0][2].split("\n")
     assert said[:2] == ["checkered", "number of steps: 20"]
