@@ -50,6 +50,9 @@ template <class Real> class EventCells {
         before_.resize(count);
     }
 
+    /// Makes room for as many discs.
+    void hold(std::size_t count) { before_.resize(std::max(before_.size(), count)); }
+
     /// What to add to the number of a cell for the cell in the next row; for the next column it is 1.
     int stride() const { return stride_; }
 

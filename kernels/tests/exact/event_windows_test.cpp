@@ -1,3 +1,4 @@
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -17,13 +18,20 @@ struct LastState {
     std::vector<Disc> discs;
     std::int64_t pair_collisions;
     std::int64_t wall_collisions;
+    double wall_impulse;
+    std::array<double, 2> momentum_from_walls;
     bool operator==(const LastState&) const = default;
 };
+
+template <class Simulation> LastState last_state(const Simulation& simulation) {
+    return {simulation.discs(), simulation.pair_collisions(), simulation.wall_collisions(),
+            simulation.wall_impulse(), simulation.momentum_from_walls()};
+}
 
 LastState in_order(const Scene& scene, double time) {
     EventDriven<double> simulation(scene);
     EXPECT_TRUE(simulation.advance(time));
-    return {simulation.discs(), simulation.pair_collisions(), simulation.wall_collisions()};
+    return last_state(simulation);
 }
 
 struct InWindows {
@@ -39,9 +47,7 @@ InWindows in_windows(const Scene& scene, double time, int threads, const WindowS
     for (int look = 1; look <= looks; ++look) {
         EXPECT_TRUE(simulation.advance(time * look / looks));
     }
-    return {{simulation.discs(), simulation.pair_collisions(), simulation.wall_collisions()},
-            simulation.windows(),
-            simulation.repeated()};
+    return {last_state(simulation), simulation.windows(), simulation.repeated()};
 }
 
 struct Case {
@@ -116,6 +122,27 @@ TEST(EventWindows, EndInTheSameBitsForAnyHaloAndLengthAndHoweverOftenOneLooks) {
                 .tiles_per_side = 3, .halo = halo, .collisions_per_disc = collisions};
             EXPECT_TRUE(in_windows(scene, time, 2, settings, looks).last == expected)
                 << name << ", halo " << halo << ", " << collisions << " collisions, " << looks;
+        }
+    }
+}
+
+class Kept : public CollisionLog<double> {
+  public:
+    void collided(const Collision<double>& one) override { all.push_back(one); }
+    std::vector<Collision<double>> all;
+};
+
+TEST(EventWindows, TellTheSameCollisionsInTheSameOrder) {
+    for (const auto& [name, scene, time] : cases()) {
+        Kept expected;
+        EventDriven<double, CollisionLog<double>&> in_one_piece(scene, expected);
+        EXPECT_TRUE(in_one_piece.advance(time));
+        for (const int tiles : {1, 2, 5}) {
+            Kept found;
+            EventWindows<double, CollisionLog<double>&> simulation(scene, 2, {.tiles_per_side = tiles},
+                                                                   found);
+            EXPECT_TRUE(simulation.advance(time));
+            EXPECT_TRUE(found.all == expected.all) << name << ", " << tiles << " tiles";
         }
     }
 }
