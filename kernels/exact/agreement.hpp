@@ -45,39 +45,44 @@ template <class Real> class Agreement {
         window_.grid.for_each_near(
             number, [&](int other) { farthest = std::max(farthest, of_tile(other).excursion()); });
         // Those farther away than the tiles around it have no copies of what it owns.
-        const bool is_alone = window_.tiles.size() == 1;
         bool agreed = tile.ended && tile.clearance() > farthest + near_ &&
-                      (is_alone || 2 * tile.excursion() + near_ < window_.grid.tile_side());
-        for (int k = 0; agreed && k < static_cast<int>(tile.held.size()); ++k) {
-            const Held& one = tile.held[index(k)];
-            agreed = !one.followed || (one.owned ? stays_away(number, k) : is_as_owned(tile, k));
+                      2 * tile.excursion() + near_ < window_.grid.least_side();
+        for (int place = 0; agreed && place < static_cast<int>(tile.held.size()); ++place) {
+            if (tile.held[index(place)].disc == Held::nobody || tile.kind(place) == Kind::own) {
+                continue;
+            }
+            agreed = tile.owns(place) ? stays_away(number, place, farthest) : is_as_owned(tile, place);
         }
         return agreed;
     }
 
   private:
-    /// Does an owned disc keep away from what the tiles around own that have no copy of it?
-    bool stays_away(int number, int k) const {
+    /// Does an owned disc keep away from what the tiles around own that have no copy of it? That of them
+    /// which came out of its bounds farthest came so far.
+    bool stays_away(int number, int place, Real farthest) const {
         const TileHistory<Real>& tile = of_tile(number);
-        const Flight<Real>& before = tile.began[index(k)];
+        const Flight<Real>& before = tile.began[index(place)];
         const std::array<Real, 2> start = position(before, window_.begin);
+        const Bounds<Real> flown = path(tile, before, tile.first(place), window_.begin);
         bool away = true;
+        if (tile.bounds.depth(flown) > farthest + near_) {
+            return away;
+        }
         window_.grid.for_each_near(number, [&](int other) {
             const TileHistory<Real>& around = of_tile(other);
-            if (away && other != number && around.bounds.distance(start) > window_.halo) {
-                away = path(tile, before, tile.first(k), window_.begin).distance(around.bounds) >
-                       around.excursion() + near_;
+            if (other != number && around.bounds.distance(start) > window_.halo) {
+                away = away && flown.distance(around.bounds) > around.excursion() + near_;
             }
         });
         return away;
     }
 
     /// Has a copy the same history as the disc at its owner's, as long as it matters?
-    bool is_as_owned(const TileHistory<Real>& tile, int k) const {
-        const Held& held = tile.held[index(k)];
+    bool is_as_owned(const TileHistory<Real>& tile, int place) const {
+        const Held& held = tile.held[index(place)];
         const TileHistory<Real>& owner = of_tile(held.owner);
-        Flight<Real> flight = tile.began[index(k)];
-        const Change<Real>* copied = tile.first(k);
+        Flight<Real> flight = tile.began[index(place)];
+        const Change<Real>* copied = tile.first(place);
         const Change<Real>* owned = owner.first(held.place);
         while (copied != nullptr && owned != nullptr && copied->is_as(*owned)) {
             flight = flight_after(*copied);

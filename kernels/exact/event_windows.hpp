@@ -21,7 +21,7 @@ namespace carom {
 
 /// How the event-driven simulation shares a scene out. No result depends on it.
 struct WindowSettings {
-    int tiles_per_side = 1;
+    TileCounts tiles = {};
     double halo = 18;                  ///< how far from a tile discs are copied, in radii, at first
     double collisions_per_disc = 2;    ///< of a window
     double widen = 1.3;                ///< the halo by that, when tiles disagree
@@ -30,17 +30,20 @@ struct WindowSettings {
     std::int64_t at_once = 10'000'000; ///< events of one instant in a tile
 };
 
-/// Into how many tiles a side a scene of so many discs is cut for that many threads; 1 where the simulation
-/// in one piece takes less time. Copies are simulated twice, and each tile has some work of its own between
-/// windows (docs/performance.md).
-inline int tiles_per_side(std::size_t discs, int threads) {
-    constexpr int least_threads = 4;
+/// Into how many tiles a scene of so many discs is cut for that many threads; into one where that takes less
+/// time. Copies are simulated twice, and each tile has some work of its own between windows
+/// (docs/performance.md).
+inline TileCounts tiles_for(std::size_t discs, int threads) {
     constexpr double least_discs = 2'000;   // of a tile: of fewer, most have copies
-    constexpr double cached_discs = 12'000; // with all that belongs to them some 1.5 MB, a second cache
+    constexpr double cached_discs = 50'000; // with all that belongs to them some 10 MB
     const auto count = static_cast<double>(discs);
-    const double wanted = std::max(std::sqrt(count / cached_discs), std::sqrt(2.0 * threads));
-    const double most = std::floor(std::sqrt(count / least_discs));
-    return threads < least_threads || most < 3 ? 1 : static_cast<int>(std::min(std::ceil(wanted), most));
+    const double most = count / least_discs;
+    const double wanted = std::min(std::max(count / cached_discs, static_cast<double>(threads)), most);
+    if (wanted < 2) {
+        return {};
+    }
+    const int columns = static_cast<int>(std::ceil(std::sqrt(wanted)));
+    return {.columns = columns, .rows = static_cast<int>(std::ceil(wanted / columns))};
 }
 
 /// The event-driven simulation on several threads, to the same bits as on one (event_driven.hpp).
@@ -60,7 +63,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
   public:
     EventWindows(const Scene& scene, int threads, const WindowSettings& settings, Log log = Log())
         : log_(log), settings_(settings), threads_(threads), side_(static_cast<Real>(scene.side)),
-          radius_(static_cast<Real>(scene.radius)), grid_(side_, settings.tiles_per_side) {
+          radius_(static_cast<Real>(scene.radius)), grid_(side_, settings.tiles) {
         restart(scene);
     }
 
@@ -74,7 +77,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         window_ = first_window(scene);
         std::vector<Flight<Real>> flights;
         begin_flights(scene, flights);
-        cut(settings_.tiles_per_side, flights);
+        cut(settings_.tiles, flights);
     }
 
     /// Goes on to `time`. False if the collisions of one instant do not come to an end.
@@ -113,6 +116,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
 
     /// One window, until `time` at most, again and again until the tiles agree; at last in one tile.
     bool next_window(Real time) {
+        const Real wanted = window_;
         for (int repetition = 0; repetition < settings_.most_repetitions; ++repetition) {
             const Real end = end_of_window(time);
             if (simulate(end)) {
@@ -123,16 +127,17 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
             }
             ++repeated_;
             window_ = (end - now_) / 2;
-            halo_ = std::min(halo_ * static_cast<Real>(settings_.widen), grid_.tile_side());
+            halo_ = std::min(halo_ * static_cast<Real>(settings_.widen), grid_.least_side());
             for_each_tile([&](Tile<Real>& tile) { tile.undo(now_, halo_); });
         }
-        cut(1, flights());
+        window_ = wanted;
+        cut({}, flights());
         const Real end = end_of_window(time);
         const bool ended = simulate(end);
         if (ended) {
             accept(end);
         }
-        cut(settings_.tiles_per_side, flights());
+        cut(settings_.tiles, flights());
         return ended;
     }
 
@@ -149,7 +154,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         for_each_tile([&](Tile<Real>& tile) { tile.take_over(tiles_, now_, halo_); });
         for_each_tile([&](Tile<Real>& tile) {
             tile.hold_copies(tiles_, now_, halo_);
-            tile.simulate(end, settings_.at_once);
+            tile.simulate(end, halo_, settings_.at_once);
         });
         Window<Real> window{.begin = now_, .end = end, .halo = halo_, .grid = grid_, .tiles = {}};
         for (const auto& tile : tiles_) {
@@ -188,10 +193,10 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         now_ = end;
     }
 
-    /// Cuts the box into so many tiles a side, which own discs with these flights.
-    void cut(int tiles_per_side, const std::vector<Flight<Real>>& flights) {
+    /// Cuts the box into so many tiles, which own discs with these flights.
+    void cut(const TileCounts& tiles, const std::vector<Flight<Real>>& flights) {
         tiles_.clear();
-        grid_ = TileGrid<Real>(side_, tiles_per_side);
+        grid_ = TileGrid<Real>(side_, tiles);
         agreed_.assign(index(grid_.count()), 0);
         for (int tile = 0; tile < grid_.count(); ++tile) {
             tiles_.push_back(std::make_unique<Tile<Real>>(grid_, tile, side_, radius_, tells));

@@ -38,13 +38,13 @@ template <class Real> class Foresight {
     /// The numbers of the discs, for begin(): none where they are the places; below 0 where no disc is.
     std::vector<int>& numbers() { return numbers_; }
 
-    /// Begins with the flights that are there. Most of them are in that square, which gets so many cells a
+    /// Begins with the flights that are there. Most of them are in that area, which gets so many cells a
     /// side at most.
-    void begin(Real now, const Square<Real>& square, int most_cells_per_side) {
+    void begin(Real now, const Area<Real>& area, int most_cells_per_side) {
         const int count = static_cast<int>(flights_.size());
         free_.clear();
         new_.clear();
-        cells_.arrange(square, flights_.size(), walls_[0], most_cells_per_side);
+        cells_.arrange(area, flights_.size(), walls_[0], most_cells_per_side);
         nine_ = cells_.nine();
         queue_.clear(count);
         queue_.number(numbers_);

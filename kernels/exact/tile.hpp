@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -38,49 +39,60 @@ template <class Real> class Tile {
     /// Owns that disc of the scene, too, from the beginning.
     void own(int disc, const Flight<Real>& flight) {
         const int place = static_cast<int>(history_.held.size());
-        history_.held.push_back({disc, number_, place, true, false});
+        history_.held.push_back({disc, number_, place});
+        history_.kinds.push_back(Kind::own);
         discs().flights().push_back(flight);
         discs().numbers().push_back(disc);
     }
 
-    /// Begins with what it owns and copies of discs as far as `margin` away.
-    void begin(Real now, Real margin) { engine_.restart(now, grid_.square_around(number_, margin)); }
+    /// Begins with what it owns and copies of discs as far as `halo` away.
+    void begin(Real now, Real halo) {
+        engine_.restart(now, grid_.area_around(number_, halo));
+        find_near(now, halo);
+    }
 
     /// Lists what it owns and has left it.
     void list_leavers(Real now) {
         leavers_.clear();
-        for_each_owned([&](int place, const Flight<Real>& flight) {
+        for (const int place : near_) {
+            const Flight<Real>& flight = discs().flight(place);
             const std::array<Real, 2> at = position(flight, now);
             if (history_.bounds.depth(at) < 0 && grid_.tile_at(at) != number_) {
-                const int disc = history_.held[index(place)].disc;
-                leavers_.push_back({place, grid_.tile_at(at), at, disc, flight});
+                leavers_.push_back({place, grid_.tile_at(at), at, history_.held[index(place)].disc, flight});
             }
-        });
+        }
     }
 
     /// Owns what has come from others, gives up what has left, and lists those of its discs of which others
     /// have copies.
     void take_over(const Tiles& tiles, Real now, Real halo) {
+        for (const Listed& one : border_) {
+            history_.kinds[index(one.place)] = Kind::own;
+        }
         for (const Listed& one : leavers_) {
             drop(one.place);
         }
+        std::erase_if(near_, [&](int place) { return history_.held[index(place)].disc == Held::nobody; });
         grid_.for_each_near(number_, [&](int other) {
             for (const Listed& one : tiles[index(other)]->leavers_) {
                 if (one.to == number_) {
                     const int place = put(one.disc, one.flight, now);
-                    history_.held[index(place)] = {one.disc, number_, place, true, true};
+                    history_.held[index(place)] = {one.disc, number_, place};
+                    near_.push_back(place);
                 }
             }
         });
+        std::ranges::sort(near_);
         border_.clear();
-        for_each_owned([&](int place, const Flight<Real>& flight) {
+        for (const int place : near_) {
+            const Flight<Real>& flight = discs().flight(place);
             const std::array<Real, 2> at = position(flight, now);
-            Held& one = history_.held[index(place)];
-            one.followed = history_.bounds.depth(at) <= halo;
-            if (one.followed) {
-                border_.push_back({place, number_, at, one.disc, flight});
+            const bool shared = history_.bounds.depth(at) <= halo;
+            history_.kinds[index(place)] = shared ? Kind::shared : Kind::own;
+            if (shared) {
+                border_.push_back({place, number_, at, history_.held[index(place)].disc, flight});
             }
-        });
+        }
     }
 
     /// Has a copy of each disc within the halo around it, as it is at its owner's, and of no others.
@@ -101,19 +113,22 @@ template <class Real> class Tile {
     }
 
     /// Goes on to `end`, and remembers how it was before and what has happened.
-    void simulate(Real end, std::int64_t at_once) {
+    void simulate(Real end, Real halo, std::int64_t at_once) {
         history_.began = discs().flights();
         history_.begin();
         history_.ended = engine_.advance(end, {.at_once = at_once});
-        for_each_owned([&](int place, const Flight<Real>& flight) {
-            history_.owned_is_at(place, position(flight, end));
-        });
+        for (const int place : near_) {
+            if (history_.kind(place) == Kind::shared) {
+                history_.shared_is_at(position(discs().flight(place), end));
+            }
+        }
+        find_near(end, halo);
     }
 
     /// Goes back to where simulate() began.
-    void undo(Real now, Real margin) {
+    void undo(Real now, Real halo) {
         discs().flights() = history_.began;
-        begin(now, margin);
+        begin(now, halo);
     }
 
     /// `body(disc, flight)` for each disc that it owns.
@@ -144,10 +159,24 @@ template <class Real> class Tile {
     template <class Body> void for_each_owned(const Body& body) const {
         const std::vector<Flight<Real>>& flights = engine_.foresight().flights();
         for (int place = 0; place < static_cast<int>(flights.size()); ++place) {
-            if (history_.held[index(place)].owned) {
+            if (history_.owns(place)) {
                 body(place, flights[index(place)]);
             }
         }
+    }
+
+    /// Finds what it owns near its border or beyond: more than a halo's width inside nothing is shared.
+    void find_near(Real now, Real halo) {
+        near_.clear();
+        for_each_owned([&](int place, const Flight<Real>& flight) {
+            const std::array<Real, 2> at = position(flight, now);
+            if (history_.kind(place) == Kind::own) {
+                history_.own_is_at(at);
+            }
+            if (history_.bounds.depth(at) <= halo) {
+                near_.push_back(place);
+            }
+        });
     }
 
     Foresight<Real>& discs() { return engine_.foresight(); }
@@ -156,6 +185,7 @@ template <class Real> class Tile {
         const int place = discs().add(flight, disc, now);
         if (index(place) == history_.held.size()) {
             history_.held.emplace_back();
+            history_.kinds.emplace_back();
         }
         return place;
     }
@@ -163,6 +193,7 @@ template <class Real> class Tile {
     void drop(int place) {
         discs().remove(place);
         history_.held[index(place)] = {};
+        history_.kinds[index(place)] = Kind::copy;
     }
 
     /// Drops copies of discs that their owners no longer list, up to that of a disc at a place of its owner.
@@ -179,13 +210,14 @@ template <class Real> class Tile {
 
     /// Has a copy of a listed disc. True if the next of copies_ is it.
     bool copy(std::size_t next, const Listed& one, Real now) {
-        const Held wanted{one.disc, one.to, one.place, false, true};
+        const Held wanted{one.disc, one.to, one.place};
         const bool is_there = next < copies_.size() && history_.held[index(copies_[next])] == wanted;
         const int place = is_there ? copies_[next] : put(one.disc, one.flight, now);
         if (is_there && !discs().flight(place).is_as(one.flight)) {
             discs().replace(place, one.flight, now);
         }
         history_.held[index(place)] = wanted;
+        history_.kinds[index(place)] = Kind::copy;
         copied_.push_back(place);
         return is_there;
     }
@@ -196,6 +228,7 @@ template <class Real> class Tile {
     int number_;
     TileHistory<Real> history_;
     EventDriven<Real, Told> engine_;
+    std::vector<int> near_; ///< places of owned discs that may have left it or be shared
     std::vector<Listed> leavers_;
     std::vector<Listed> border_; ///< by place
     std::vector<int> copies_;    ///< places of copies, by their owners and places there

@@ -30,18 +30,20 @@ template <class Real> struct Change {
     }
 };
 
-/// A disc in a tile: one that it owns, or a copy. Followed are copies, and discs of which others have copies.
+/// A disc in a tile.
 struct Held {
     static constexpr int nobody = -1;
 
     int disc = nobody; ///< its number in the scene; `nobody` where no disc is
     int owner = 0;     ///< the tile that owns it,
     int place = 0;     ///< and its place there
-    bool owned = false;
-    bool followed = false;
 
     bool operator==(const Held&) const = default;
 };
+
+/// What a disc is to a tile: a copy of one that another tile owns; owned, and others have copies; owned, and
+/// no other tile has a copy. What becomes of the former two is remembered.
+enum class Kind : char { copy, shared, own };
 
 /// What happens in one tile during one window (event_windows.hpp): to the discs that it owns, and to copies
 /// of those around it. Discs are told by their places in `held`.
@@ -63,6 +65,7 @@ template <class Real> class TileHistory {
 
     Bounds<Real> bounds; ///< of the tile; infinite beyond the walls
     std::vector<Held> held;
+    std::vector<Kind> kinds;         ///< of each of `held`
     std::vector<Flight<Real>> began; ///< each one when the window began
     bool ended = true;               ///< did the collisions of each instant come to an end?
     bool lists_collisions = false;   ///< are all collisions of owned discs to be listed?
@@ -81,41 +84,43 @@ template <class Real> class TileHistory {
 
     /// Is told every collision in the tile.
     void collided(const Collision<Real>& one) {
-        const Held& first = held[index(one.first)];
-        const Held& second = held[index(one.second)];
-        const bool counts = first.disc < second.disc ? first.owned : second.owned;
-        pair_collisions_ += counts && !one.at_wall() ? 1 : 0;
-        change(one.first, one.at_wall() ? Change<Real>::wall : second.disc, one.time, one.first_after);
-        if (!one.at_wall()) {
-            change(one.second, first.disc, one.time, one.second_after);
+        if (kind(one.first) == Kind::own && kind(one.second) == Kind::own) {
+            pair_collisions_ += one.at_wall() ? 0 : 1;
+            own_is_at({one.first_after.x, one.first_after.y});
+            own_is_at({one.second_after.x, one.second_after.y});
+        } else {
+            remember(one);
         }
-        if (lists_collisions && (first.owned || second.owned)) {
-            list(one, first, second);
+        if (lists_collisions && (owns(one.first) || owns(one.second))) {
+            list(one, held[index(one.first)].disc, held[index(one.second)].disc);
         }
     }
 
     /// Is told what the walls do.
     void met_wall(int place, std::size_t axis, Real velocity) {
-        if (held[index(place)].owned) {
+        if (owns(place)) {
             at_walls_.push_back({held[index(place)].disc, axis, velocity});
         }
     }
 
-    /// An owned disc is there, at a collision or at the end of the window.
-    void owned_is_at(int place, const std::array<Real, 2>& point) {
-        const Real depth = bounds.depth(point);
-        excursion_ = std::max(excursion_, -depth);
-        if (!held[index(place)].followed) {
-            clearance_ = std::min(clearance_, depth);
-        }
+    /// A disc of which there are no copies is there, at a collision or at the end of the window.
+    void own_is_at(const std::array<Real, 2>& point) {
+        clearance_ = std::min(clearance_, bounds.depth(point));
     }
+    /// The same of one of which there are copies.
+    void shared_is_at(const std::array<Real, 2>& point) {
+        excursion_ = std::max(excursion_, -bounds.depth(point));
+    }
+
+    Kind kind(int place) const { return kinds[index(place)]; }
+    bool owns(int place) const { return kind(place) != Kind::copy; }
 
     const Change<Real>* first(int place) const { return change_at(first_[index(place)]); }
     const Change<Real>* after(const Change<Real>& one) const { return change_at(one.next); }
 
-    /// How far an owned disc came out of the bounds at most.
+    /// How far an owned disc of which there are copies came out of the bounds at most.
     Real excursion() const { return excursion_; }
-    /// How far inside the bounds every owned disc stayed of which there is no copy.
+    /// How far inside the bounds every owned disc stayed of which there are none.
     Real clearance() const { return clearance_; }
 
     /// Of owned discs; those of two tiles count where the disc of the lower number is owned.
@@ -131,12 +136,24 @@ template <class Real> class TileHistory {
         return change == Change<Real>::none ? nullptr : &changes_[index(change)];
     }
 
-    void change(int place, int partner, Real time, const BasicDisc<Real>& after) {
-        if (held[index(place)].owned) {
-            owned_is_at(place, {after.x, after.y});
+    void remember(const Collision<Real>& one) {
+        const int first = held[index(one.first)].disc;
+        const int second = held[index(one.second)].disc;
+        const bool counts = first < second ? owns(one.first) : owns(one.second);
+        pair_collisions_ += counts && !one.at_wall() ? 1 : 0;
+        change(one.first, one.at_wall() ? Change<Real>::wall : second, one.time, one.first_after);
+        if (!one.at_wall()) {
+            change(one.second, first, one.time, one.second_after);
         }
-        if (!held[index(place)].followed) {
+    }
+
+    void change(int place, int partner, Real time, const BasicDisc<Real>& after) {
+        if (kind(place) == Kind::own) {
+            own_is_at({after.x, after.y});
             return;
+        }
+        if (kind(place) == Kind::shared) {
+            shared_is_at({after.x, after.y});
         }
         const int added = static_cast<int>(changes_.size());
         int& last = last_[index(place)];
@@ -145,15 +162,15 @@ template <class Real> class TileHistory {
         changes_.push_back({time, partner, Change<Real>::none, after});
     }
 
-    void list(const Collision<Real>& one, const Held& first, const Held& second) {
-        if (first.disc <= second.disc) {
-            collisions_.push_back({{one.time, 0, first.disc, second.disc, one.first_after, one.second_after},
-                                   first.owned,
-                                   second.owned});
+    void list(const Collision<Real>& one, int first, int second) {
+        const bool owns_first = owns(one.first);
+        const bool owns_second = owns(one.second);
+        if (first <= second) {
+            collisions_.push_back(
+                {{one.time, 0, first, second, one.first_after, one.second_after}, owns_first, owns_second});
         } else {
-            collisions_.push_back({{one.time, 0, second.disc, first.disc, one.second_after, one.first_after},
-                                   second.owned,
-                                   first.owned});
+            collisions_.push_back(
+                {{one.time, 0, second, first, one.second_after, one.first_after}, owns_second, owns_first});
         }
     }
 

@@ -24,17 +24,18 @@ class AgreementOfTiles : public testing::Test {
             tiles_[static_cast<std::size_t>(tile)].bounds = grid_.bounds(tile);
         }
         const std::vector<Flight<double>> flights{{.x = 45, .y = 20}, {.x = 53, .y = 20}, {.x = 85, .y = 20}};
-        tiles_[left].held = {{0, left, 0, true, true}, {1, right, 1, false, true}};
+        tiles_[left].held = {{0, left, 0}, {1, right, 1}};
+        tiles_[left].kinds = {Kind::shared, Kind::copy};
         tiles_[left].began = {flights[0], flights[1]};
-        tiles_[right].held = {
-            {0, left, 0, false, true}, {1, right, 1, true, true}, {2, right, 2, true, false}};
+        tiles_[right].held = {{0, left, 0}, {1, right, 1}, {2, right, 2}};
+        tiles_[right].kinds = {Kind::copy, Kind::shared, Kind::own};
         tiles_[right].began = flights;
         for (auto& tile : tiles_) {
             tile.begin();
         }
-        tiles_[left].owned_is_at(0, {45, 20});
-        tiles_[right].owned_is_at(1, {53, 20});
-        tiles_[right].owned_is_at(2, {85, 20});
+        tiles_[left].shared_is_at({45, 20});
+        tiles_[right].shared_is_at({53, 20});
+        tiles_[right].own_is_at({85, 20});
     }
 
     /// A disc meets a wall in one tile, and flies on from there so.
@@ -58,7 +59,7 @@ class AgreementOfTiles : public testing::Test {
         return all;
     }
 
-    TileGrid<double> grid_{100, 2};
+    TileGrid<double> grid_{100, {.columns = 2, .rows = 2}};
     std::vector<TileHistory<double>> tiles_;
 };
 
@@ -110,12 +111,12 @@ TEST_F(AgreementOfTiles, DoesNotAskForWhatACopyDoesFarAway) {
 TEST_F(AgreementOfTiles, AsksForFartherOnesWhereAnOwnedDiscComesOut) {
     begins_at(59);
     meets_wall(right, 1, 0.5, {59, 20, 1, 0});
-    tiles_[left].owned_is_at(0, {57, 20});
+    tiles_[left].shared_is_at({57, 20});
     EXPECT_FALSE(agree());
 }
 
 TEST_F(AgreementOfTiles, FailsWhereADiscWithoutACopyComesNear) {
-    tiles_[right].owned_is_at(2, {51, 20});
+    tiles_[right].own_is_at({51, 20});
     EXPECT_FALSE(agree());
 }
 
@@ -127,9 +128,9 @@ TEST_F(AgreementOfTiles, FailsWhereADiscComesNearATileThatHasNoCopyOfIt) {
 }
 
 TEST_F(AgreementOfTiles, FailsWhereAnOwnedDiscComesFarOut) {
-    tiles_[left].owned_is_at(0, {73, 20});
+    tiles_[left].shared_is_at({73, 20});
     EXPECT_TRUE(agree());
-    tiles_[left].owned_is_at(0, {74.5, 20});
+    tiles_[left].shared_is_at({74.5, 20});
     EXPECT_FALSE(agree()) << "tiles beyond those beside it have no copy of it";
 }
 
