@@ -20,7 +20,7 @@ namespace carom {
 /// How far the reference goes before it gives up.
 struct EventLimits {
     std::int64_t at_once = 10'000'000;                              ///< events at one instant
-    std::int64_t in_all = std::numeric_limits<std::int64_t>::max(); ///< events since the start
+    std::int64_t in_all = std::numeric_limits<std::int64_t>::max(); ///< collisions since the start
 };
 
 /// The exact reference: what the time step tends to as dt -> 0. Discs fly freely from event to event; pairs
@@ -66,7 +66,6 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
     /// that area.
     void restart(Real now, const Area<Real>& area) {
         now_ = now;
-        events_ = 0;
         pair_collisions_ = 0;
         wall_collisions_ = 0;
         wall_sums_.clear(keeps_wall_sums ? foresight_.flights().size() : 0);
@@ -78,18 +77,20 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
     const Foresight<Real>& foresight() const { return foresight_; }
 
     /// Goes on to `time`, from 0 at the start. False if a limit is passed, with more events at one instant
-    /// (as where a disc is wedged) or in all: it then stands at that instant.
+    /// (as where a disc is wedged) or more collisions in all: it then stands at that instant.
     bool advance(Real time, const EventLimits& limits = {}) {
         std::int64_t at_once = 0;
         for (Real next = foresight_.earliest_time(); next <= time; next = foresight_.earliest_time()) {
             at_once = next > now_ ? 0 : at_once + 1;
-            ++events_;
-            if (at_once > limits.at_once || events_ > limits.in_all) {
+            if (at_once > limits.at_once) {
                 return false;
             }
             now_ = std::max(now_, next);
             foresight_.prefetch();
             happen(foresight_.earliest(), next);
+            if (pair_collisions_ + wall_collisions_ > limits.in_all) {
+                return false;
+            }
         }
         now_ = std::max(now_, time);
         return true;
@@ -121,8 +122,6 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
 
     Real time() const { return now_; }
 
-    /// Collisions, crossings from cell to cell, and collisions foreseen in vain.
-    std::int64_t events() const { return events_; }
     std::int64_t pair_collisions() const { return pair_collisions_; }
     std::int64_t wall_collisions() const { return wall_collisions_; }
 
@@ -198,7 +197,6 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
     int most_cells_per_side_ = EventCells<Real>::most_per_side;
     Real now_ = 0;
     Foresight<Real> foresight_;
-    std::int64_t events_ = 0;
     std::int64_t pair_collisions_ = 0;
     std::int64_t wall_collisions_ = 0;
     WallSums<Real> wall_sums_;

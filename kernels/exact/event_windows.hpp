@@ -11,6 +11,7 @@
 
 #include "kernels/exact/agreement.hpp"
 #include "kernels/exact/collisions_in_order.hpp"
+#include "kernels/exact/memory_order.hpp"
 #include "kernels/exact/tile.hpp"
 #include "kernels/exact/tile_grid.hpp"
 #include "kernels/exact/wall_sums.hpp"
@@ -22,28 +23,29 @@ namespace carom {
 /// How the event-driven simulation shares a scene out. No result depends on it.
 struct WindowSettings {
     TileCounts tiles = {};
-    double halo = 18;                  ///< how far from a tile discs are copied, in radii, at first
-    double collisions_per_disc = 2;    ///< of a window
-    double widen = 1.3;                ///< the halo by that, when tiles disagree
-    double narrow = 0.995;             ///< and by that, down to a third, when they agree
-    int most_repetitions = 6;          ///< of a window in tiles; then it is done in one
-    std::int64_t at_once = 10'000'000; ///< events of one instant in a tile
+    double halo = 18;               ///< how far from a tile discs are copied, in radii, at first
+    double collisions_per_disc = 2; ///< of a window
+    double widen = 1.3;             ///< the halo by that, when tiles disagree
+    double narrow = 0.995;          ///< and by that, down to a third, when they agree
+    int most_repetitions = 6;       ///< of a window in tiles; then it is done in one
 };
 
 /// Into how many tiles a scene of so many discs is cut for that many threads; into one where that takes less
-/// time. Copies are simulated twice, and each tile has some work of its own between windows
-/// (docs/performance.md).
+/// time. Copies are simulated twice, and each tile has some work of its own between windows: on one thread
+/// tiles pay only where the whole scene is far larger than a cache (docs/performance.md).
 inline TileCounts tiles_for(std::size_t discs, int threads) {
-    constexpr double least_discs = 2'000;   // of a tile: of fewer, most have copies
-    constexpr double cached_discs = 50'000; // with all that belongs to them some 10 MB
+    constexpr double least_discs = 8'000;   // of a tile: of fewer, too many have copies
+    constexpr double cached_discs = 63'000; // with all that belongs to them some 15 MB
+    constexpr double beyond_cache = 400'000;
     const auto count = static_cast<double>(discs);
-    const double most = count / least_discs;
-    const double wanted = std::min(std::max(count / cached_discs, static_cast<double>(threads)), most);
+    const double for_cache = count >= beyond_cache ? count / cached_discs : 1;
+    const double wanted = std::min(std::max<double>(for_cache, threads), count / least_discs);
     if (wanted < 2) {
         return {};
     }
-    const int columns = static_cast<int>(std::ceil(std::sqrt(wanted)));
-    return {.columns = columns, .rows = static_cast<int>(std::ceil(wanted / columns))};
+    const double columns = std::ceil(std::sqrt(wanted) - 0.01);
+    return {.columns = static_cast<int>(columns),
+            .rows = static_cast<int>(std::ceil(wanted / columns - 0.01))};
 }
 
 /// The event-driven simulation on several threads, to the same bits as on one (event_driven.hpp).
@@ -70,7 +72,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
     /// Goes back to the start of a scene with the same box.
     void restart(const Scene& scene) {
         count_ = scene.discs.size();
-        now_ = 0;
+        now_ = stuck_at_ = 0;
         pair_collisions_ = wall_collisions_ = windows_ = repeated_ = 0;
         wall_sums_.clear(count_);
         halo_ = static_cast<Real>(settings_.halo) * radius_;
@@ -80,10 +82,12 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         cut(settings_.tiles, flights);
     }
 
-    /// Goes on to `time`. False if the collisions of one instant do not come to an end.
-    bool advance(Real time) {
+    /// Goes on to `time`. False if a limit is passed, of the events of one instant in a tile or of collisions
+    /// in all: it then stands at that instant, or soon after the limit.
+    bool advance(Real time, const EventLimits& limits = {}) {
+        at_once_ = limits.at_once;
         do {
-            if (!next_window(time)) {
+            if (!next_window(time) || pair_collisions_ + wall_collisions_ > limits.in_all) {
                 return false;
             }
         } while (now_ < time);
@@ -100,7 +104,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         return result;
     }
 
-    Real time() const { return now_; }
+    Real time() const { return std::max(now_, stuck_at_); }
     std::int64_t pair_collisions() const { return pair_collisions_; }
     std::int64_t wall_collisions() const { return wall_collisions_; }
     /// As of EventDriven, to the same bits.
@@ -134,6 +138,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         cut({}, flights());
         const Real end = end_of_window(time);
         const bool ended = simulate(end);
+        stuck_at_ = tiles_.front()->time();
         if (ended) {
             accept(end);
         }
@@ -154,7 +159,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         for_each_tile([&](Tile<Real>& tile) { tile.take_over(tiles_, now_, halo_); });
         for_each_tile([&](Tile<Real>& tile) {
             tile.hold_copies(tiles_, now_, halo_);
-            tile.simulate(end, halo_, settings_.at_once);
+            tile.simulate(end, halo_, at_once_);
         });
         Window<Real> window{.begin = now_, .end = end, .halo = halo_, .grid = grid_, .tiles = {}};
         for (const auto& tile : tiles_) {
@@ -193,7 +198,8 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         now_ = end;
     }
 
-    /// Cuts the box into so many tiles, which own discs with these flights.
+    /// Cuts the box into so many tiles, which own discs with these flights, near each other in memory as they
+    /// are in space.
     void cut(const TileCounts& tiles, const std::vector<Flight<Real>>& flights) {
         tiles_.clear();
         grid_ = TileGrid<Real>(side_, tiles);
@@ -201,7 +207,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         for (int tile = 0; tile < grid_.count(); ++tile) {
             tiles_.push_back(std::make_unique<Tile<Real>>(grid_, tile, side_, radius_, tells));
         }
-        for (int disc = 0; disc < static_cast<int>(flights.size()); ++disc) {
+        for (const int disc : memory_order(flights, now_, side_)) {
             const Flight<Real>& one = flights[index(disc)];
             tiles_[index(grid_.tile_at(position(one, now_)))]->own(disc, one);
         }
@@ -244,8 +250,10 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
     Real side_;             ///< of the box
     Real radius_;
     Real now_ = 0;
+    Real stuck_at_ = 0; ///< where a window in one tile has ended
     Real halo_ = 0;
-    Real window_ = 0; ///< how long the next one is to be
+    std::int64_t at_once_ = 0; ///< events, at most
+    Real window_ = 0;          ///< how long the next one is to be
     TileGrid<Real> grid_;
     typename Tile<Real>::Tiles tiles_;
     std::vector<char> agreed_; ///< of each tile

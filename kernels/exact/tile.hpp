@@ -35,6 +35,8 @@ template <class Real> class Tile {
     Tile& operator=(const Tile&) = delete;
 
     const TileHistory<Real>& history() const { return history_; }
+    /// How far it has come.
+    Real time() const { return engine_.time(); }
 
     /// Owns that disc of the scene, too, from the beginning.
     void own(int disc, const Flight<Real>& flight) {

@@ -158,8 +158,18 @@ TEST(EventWindows, NoticeThatTilesDisagree) {
 
 TEST(EventWindows, SayThatCollisionsOfAnInstantDoNotEnd) {
     const Scene wedged{.side = 2, .radius = 1, .steps = 0, .discs = {{1, 1, 1, 0}}};
-    EventWindows<double> simulation(wedged, 2, {.tiles = {2, 2}, .at_once = 1000});
-    EXPECT_FALSE(simulation.advance(1));
+    EventWindows<double> simulation(wedged, 2, {.tiles = {2, 2}});
+    EXPECT_FALSE(simulation.advance(1, {.at_once = 1000}));
+}
+
+TEST(EventWindows, AreCutWhereThatPays) {
+    EXPECT_EQ(tiles_for(2'000, 64), TileCounts{});
+    EXPECT_EQ(tiles_for(15'000, 2), TileCounts{});
+    EXPECT_EQ(tiles_for(20'000, 2), (TileCounts{2, 1}));
+    EXPECT_EQ(tiles_for(100'000, 1), TileCounts{});
+    EXPECT_EQ(tiles_for(100'000, 4), (TileCounts{2, 2}));
+    EXPECT_EQ(tiles_for(1'000'000, 1), (TileCounts{4, 4}));
+    EXPECT_EQ(tiles_for(1'000'000, 64), (TileCounts{8, 8}));
 }
 
 TEST(EventWindows, BeginAnew) {
