@@ -16,25 +16,25 @@
 namespace carom {
 namespace {
 
-const Variant& published = *find_variant("published");
+const Variant& plain = *find_variant("published");
 
 TEST(Costs, OfWorkAreSummedAndLieBetweenTheSizesMeasured) {
     Costs costs;
     costs.costs["published"] = {{.discs = 100, .seconds = {1, 2, 3, 4}},
                                 {.discs = 10'000, .seconds = {2, 4, 6, 8}}};
     const Work work{.placed = 1000, .moved = 100, .near = 10, .collisions = 1};
-    EXPECT_DOUBLE_EQ(costs.seconds(published, 100, work), 1234);
-    EXPECT_DOUBLE_EQ(costs.seconds(published, 1, work), 1234) << "smaller than the smallest measured";
-    EXPECT_DOUBLE_EQ(costs.seconds(published, 1e9, work), 2468);
-    EXPECT_DOUBLE_EQ(costs.seconds(published, 1000, work), 1.5 * 1234) << "half way, on a logarithmic axis";
+    EXPECT_DOUBLE_EQ(costs.seconds(plain, 100, work), 1234);
+    EXPECT_DOUBLE_EQ(costs.seconds(plain, 1, work), 1234) << "smaller than the smallest measured";
+    EXPECT_DOUBLE_EQ(costs.seconds(plain, 1e9, work), 2468);
+    EXPECT_DOUBLE_EQ(costs.seconds(plain, 1000, work), 1.5 * 1234) << "half way, on a logarithmic axis";
     EXPECT_DOUBLE_EQ(costs.seconds(event_driven(), 100, work), 1234) << "not measured: as the dearest";
 }
 
 TEST(Costs, CountTheWorkOfAScene) {
     const Scene scene{
         .side = 100, .radius = 1, .steps = 1, .discs = {{10, 10, 1, -2}, {11, 10, 3, 0}, {90, 90, 0, 0}}};
-    EXPECT_EQ(work_of_step(published, scene).moved, 3);
-    EXPECT_EQ(work_of_step(published, scene).near, 4.5 * (2 * 2 + 1));
+    EXPECT_EQ(work_of_step(plain, scene).moved, 3);
+    EXPECT_EQ(work_of_step(plain, scene).near, 4.5 * (2 * 2 + 1));
     EXPECT_DOUBLE_EQ(work_of_events(scene).moved, 6 / 50.0) << "cells of half the side";
 }
 
