@@ -1,5 +1,8 @@
 #include "variants/event_driven_variant.hpp"
 
+#include <algorithm>
+#include <cstddef>
+
 #include "variants/event_driven_simulation.hpp"
 #include "variants/name.hpp"
 
@@ -8,23 +11,21 @@ namespace carom {
 template class EventDriven<double>;
 template class EventDriven<long double>;
 template class EventWindows<double>;
+template class EventWindows<long double>;
+template class ExactSimulation<double>;
+template class ExactSimulation<long double>;
 
 namespace {
 
 std::unique_ptr<Simulation> simulate(const Scene& scene, const Tuning& tuning) {
-    const int tiles = tiles_per_side(scene.discs.size(), tuning.threads);
-    if (tiles == 1) {
-        return std::make_unique<EventDrivenSimulation<EventDriven<double>>>(scene, tuning.substeps);
-    }
-    const WindowSettings settings{.tiles_per_side = tiles};
-    return std::make_unique<EventDrivenSimulation<EventWindows<double>>>(scene, tuning.substeps,
-                                                                         tuning.threads, settings);
+    return std::make_unique<EventDrivenSimulation<ExactSimulation<double>>>(scene, tuning.substeps,
+                                                                            tuning.threads);
 }
 
 } // namespace
 
 int event_driven_threads(std::size_t discs, int threads) {
-    return tiles_per_side(discs, threads) == 1 ? 1 : threads;
+    return std::min(threads, tiles_for(discs, threads).all());
 }
 
 const Variant& event_driven() {

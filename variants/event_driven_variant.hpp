@@ -2,8 +2,7 @@
 
 #include <cstddef>
 
-#include "kernels/exact/event_driven.hpp"
-#include "kernels/exact/event_windows.hpp"
+#include "kernels/exact/exact_simulation.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {
@@ -12,13 +11,20 @@ namespace carom {
 /// compiled in haste, would bring slow ones.
 extern template class EventDriven<double>;
 extern template class EventDriven<long double>;
-extern template class EventWindows<double>;
 extern template class EventDriven<double, CollisionLog<double>&>;
 extern template class EventDriven<long double, CollisionLog<long double>&>;
+extern template class ExactSimulation<double>;
+extern template class ExactSimulation<long double>;
+extern template class ExactSimulation<double, CollisionLog<double>&>;
+extern template class ExactSimulation<long double, CollisionLog<long double>&>;
+extern template class EventWindows<double>;
+extern template class EventWindows<long double>;
+extern template class EventWindows<double, CollisionLog<double>&>;
+extern template class EventWindows<long double, CollisionLog<long double>&>;
 
 /// The event-driven simulation (kernels/exact/event_driven.hpp) as one more variant, beside the table: every
 /// collision at its time, in order, exact to rounding. It ends in the same bits on any number of threads; it
-/// uses more than one where that pays, and none but one where its collisions are told. A step of dt only says
+/// uses more than one where that pays. A step of dt only says
 /// when to look at it. Of scenes whose discs overlap at the start it makes something of
 /// its own.
 const Variant& event_driven();

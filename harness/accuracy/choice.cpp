@@ -50,14 +50,19 @@ std::vector<Method> methods_for(const Scene& scene) {
 }
 
 std::optional<Tried> cheapest_below(std::span<const Tried> tried, double bound, int units) {
-    std::optional<Tried> cheapest;
+    constexpr double as_good_as_equal = 1.1;
+    double least = std::numeric_limits<double>::infinity();
     for (const Tried& one : tried) {
-        const bool reaches = one.largest_error() <= bound;
-        if (reaches && (!cheapest || one.cost(units) < cheapest->cost(units))) {
-            cheapest = one;
+        least = one.largest_error() <= bound ? std::min(least, one.cost(units)) : least;
+    }
+    std::optional<Tried> found;
+    for (const Tried& one : tried) {
+        const bool is_cheap = one.largest_error() <= bound && one.cost(units) <= as_good_as_equal * least;
+        if (is_cheap && (!found || one.largest_error() < found->largest_error())) {
+            found = one;
         }
     }
-    return cheapest;
+    return found;
 }
 
 const Tried& most_exact(std::span<const Tried> tried) {

@@ -34,8 +34,8 @@ struct Tried {
     Method method;
     double error = 0;        ///< as measured in the trial
     double margin = 0;       ///< by which the error of the run may be larger
-    double setting_up = 0;   ///< seconds, for the whole scene
-    double unit_seconds = 0; ///< of a unit of time of the whole scene
+    double setting_up = 0;   ///< seconds, for the whole scene, by the costs of the machine
+    double unit_seconds = 0; ///< of a unit of time of the whole scene, likewise
 
     double largest_error() const { return error + margin; }
 
@@ -43,8 +43,9 @@ struct Tried {
     double cost(int units) const { return setting_up + unit_seconds * units; }
 };
 
-/// Of those whose largest error is at most the bound the one that costs least for so many units of time, of
-/// equal cost the first; empty if there is none.
+/// Of those whose largest error is at most the bound the one that costs least for so many units of time;
+/// empty if there is none. Costs within a tenth of the least are as good as equal: of those the most exact
+/// one, then the first.
 std::optional<Tried> cheapest_below(std::span<const Tried> tried, double bound, int units);
 
 /// The one with the least of the largest errors. There must be one.

@@ -10,7 +10,7 @@
 
 #include "harness/accuracy/error_measures.hpp"
 #include "harness/support/format.hpp"
-#include "kernels/exact/event_driven.hpp"
+#include "kernels/exact/exact_simulation.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {
@@ -32,8 +32,8 @@ double rms_distance(const std::vector<Disc>& discs, const std::vector<BasicDisc<
 /// the run. `Real` is the precision of the reference.
 template <class Real> class Companion {
   public:
-    Companion(const Scene& scene, std::int64_t most_events)
-        : scene_(scene), limits_{.in_all = most_events}, reference_(scene) {}
+    Companion(const Scene& scene, int threads, std::int64_t most_collisions)
+        : scene_(scene), limits_{.in_all = most_collisions}, reference_(scene, threads) {}
 
     /// Compares at the end of unit of time `time`.
     void compare(int time, const std::vector<Disc>& discs) {
@@ -69,10 +69,9 @@ template <class Real> class Companion {
         if (reference_.advance(static_cast<Real>(time), limits_)) {
             return true;
         }
-        reason_ = reference_.events() > limits_.in_all
-                      ? format("the reference is given up at time %.6g of %d after %lld events", //
-                               static_cast<double>(reference_.time()), scene_.steps,
-                               static_cast<long long>(limits_.in_all))
+        reason_ = reference_.pair_collisions() + reference_.wall_collisions() > limits_.in_all
+                      ? format("the reference is given up before time %d of %d, after %lld collisions", time,
+                               scene_.steps, static_cast<long long>(limits_.in_all))
                       : format("the collisions of the reference at time %.6g do not come to an end: a disc "
                                "is wedged",
                                static_cast<double>(reference_.time()));
@@ -90,7 +89,7 @@ template <class Real> class Companion {
 
     const Scene& scene_;
     EventLimits limits_;
-    EventDriven<Real> reference_;
+    ExactSimulation<Real> reference_;
     AgainstReference result_;
     std::string reason_;
 };

@@ -56,7 +56,7 @@ void finish(const Scene& scene, const Totals& totals, const Penetration& penetra
 }
 
 /// |P_end - P_start - what the walls changed|.
-double unexplained_momentum(const Scene& scene, const EventDriven<double>& simulation) {
+double unexplained_momentum(const Scene& scene, const ExactSimulation<double>& simulation) {
     double x = -simulation.momentum_from_walls()[0];
     double y = -simulation.momentum_from_walls()[1];
     const auto end = simulation.discs();
@@ -70,9 +70,9 @@ double unexplained_momentum(const Scene& scene, const EventDriven<double>& simul
 /// How wrong the event-driven simulation itself is. Beside itself it would be without error, so its companion
 /// computes in long double: what parts the two is the rounding of double. (Where long double is double, all
 /// that is compared with it is 0.) Penetration is that at the ends of units of time.
-ErrorMeasures measure_event_driven_errors(const Scene& scene, std::int64_t most_events) {
-    EventDriven<double> simulation(scene);
-    Companion<long double> companion(scene, most_events);
+ErrorMeasures measure_event_driven_errors(const Scene& scene, int threads, std::int64_t most_collisions) {
+    ExactSimulation<double> simulation(scene, threads);
+    Companion<long double> companion(scene, threads, most_collisions);
     const Checker checker(scene.side, scene.radius, 1, Tolerance::relative);
     Penetration penetration(overlapping_pairs(scene.discs, scene.radius), scene.radius);
     ErrorMeasures measures;
@@ -131,16 +131,16 @@ double kolmogorov_smirnov_distance(std::vector<double> one, std::vector<double> 
 }
 
 ErrorMeasures measure_errors(const Scene& scene, const Variant& variant, const Tuning& tuning,
-                             std::int64_t most_events) {
+                             std::int64_t most_collisions) {
     if (variant.engine == Engine::event_driven) {
-        return measure_event_driven_errors(scene, most_events);
+        return measure_event_driven_errors(scene, tuning.threads, most_collisions);
     }
     const auto simulation = variant.simulate(scene, tuning);
     const Rounding rounding = rounding_of(variant.policies);
     const double radius = rounding(scene.radius);
     const double dt = 1.0 / tuning.substeps;
     const Checker checker(scene.side, scene.radius, dt, tuning.tolerance, rounding, variant.policies.impact);
-    Companion<double> companion(scene, most_events);
+    Companion<double> companion(scene, tuning.threads, most_collisions);
     std::vector<Disc> discs = simulation->discs();
     MomentumWatch momentum(scene, rounding, variant.policies.impact, dt, discs);
     Penetration penetration(overlapping_pairs(discs, radius, rounding), radius);

@@ -44,15 +44,14 @@ struct ErrorMeasures {
     std::vector<Disc> discs;      ///< the final state
 };
 
-/// Most events (collisions, changes of cell, events foreseen in vain) that the reference of one run may take:
-/// under a minute or two.
-inline constexpr std::int64_t most_reference_events = 50'000'000;
+/// Most collisions that the reference of one run may take: under half a minute or so.
+inline constexpr std::int64_t most_reference_collisions = 20'000'000;
 
 /// Runs the scene once, with the reference alongside, and measures every step. Takes several times as long as
 /// the run itself: nothing to be timed. The event-driven simulation is compared with itself in long double,
 /// and its penetration is that at the ends of units of time. Throws CheckError if a resolve does not end.
 ErrorMeasures measure_errors(const Scene& scene, const Variant& variant, const Tuning& tuning,
-                             std::int64_t most_events = most_reference_events);
+                             std::int64_t most_collisions = most_reference_collisions);
 
 /// The measures as the field `errors` of a record (record.schema.json).
 nlohmann::ordered_json error_measures_json(const ErrorMeasures& measures);

@@ -47,8 +47,8 @@ double error_of(const ErrorMeasures& errors, Measure measure) {
     return nothing;
 }
 
-Promises::Promises(const Scene& scene, const Tuning& tuning)
-    : scene_(scene), tuning_(tuning), methods_(methods_for(scene)) {}
+Promises::Promises(const Scene& scene, const Tuning& tuning, const Costs& costs)
+    : scene_(scene), tuning_(tuning), costs_(costs), methods_(methods_for(scene)) {}
 
 /// Seconds of a whole run, setting up included; infinite if it takes more than `most`, or does not end.
 double Promises::time_run(const Method& method, double most) const {
@@ -91,7 +91,7 @@ std::vector<Delivered> Promises::rivals_of(const Promise& promise) {
 }
 
 std::optional<Promise> Promises::keep(Measure measure, double bound) {
-    const Trial trial = try_methods(scene_, tuning_, measure, bound);
+    const Trial trial = try_methods(scene_, tuning_, measure, bound, costs_);
     const auto chosen = cheapest_below(trial.tried, bound, scene_.steps);
     if (!chosen) {
         return std::nullopt;

@@ -42,7 +42,7 @@ class Promises {
   public:
     /// What is given must outlive it. The discs must be apart at the start, and the scene have a unit of
     /// time.
-    Promises(const Scene& scene, const Tuning& tuning);
+    Promises(const Scene& scene, const Tuning& tuning, const Costs& costs);
 
     /// Chooses a method as try_methods does, runs the whole scene with it, and with every other one as far as
     /// it takes hardly longer; measures the errors of those; and times the ones that keep the bound, and the
@@ -62,6 +62,7 @@ class Promises {
 
     const Scene& scene_;
     const Tuning& tuning_;
+    const Costs& costs_;
     std::vector<Method> methods_;
     std::vector<Measured> measured_; ///< every error of a run is measured at once
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -18,42 +20,50 @@
 namespace carom {
 namespace {
 
-/// What the event-driven simulation may take of a trial; the others, which are given up as soon as they cost
-/// more than the cheapest that will do, take some ten times as much together.
+/// What the event-driven simulation may cost in a trial; the others, which are given up as soon as they cost
+/// more than the cheapest that will do, cost some ten times as much together.
 constexpr double seconds_of_one = 0.06;
 constexpr double seconds_of_all = 0.8;
 
 /// Of a trial of an average, which needs some units of time to become what it stays.
 constexpr int fewest_units_of_average = 8;
 
-/// Of timing those that will do: a trial is short, and whatever else runs can only lengthen it.
-constexpr int further_rounds = 2;
+/// To tell what a step does to the walls takes some three times as long as the step.
+constexpr double steps_of_watch = 3;
 
 /// Of the error of paths in a piece, which is not the scene.
 constexpr double margin_of_piece = 0.25;
 
+/// The work of a unit of time of the event-driven simulation that made so many collisions in it.
+Work exact_work(const Scene& scene, double collisions) {
+    Work work = work_of_events(scene);
+    work.collisions = collisions;
+    return work;
+}
+
 /// What a trial runs: the scene where it is small, or all of its run costs little, so that nothing of it is
 /// left open; else a piece.
-Scene scene_of_trial(const Scene& scene, Measure measure) {
+Scene scene_of_trial(const Scene& scene, Measure measure, const Costs& costs) {
     Scene piece = fullest_piece(scene, largest_trial(measure));
     if (measure == Measure::path || piece.discs.size() == scene.discs.size()) {
         return piece;
     }
     EventDriven<double> simulation(piece);
-    const double before = process_seconds();
     simulation.advance(1);
-    const double unit_seconds = (process_seconds() - before) * static_cast<double>(scene.discs.size()) /
-                                static_cast<double>(piece.discs.size());
-    return unit_seconds * scene.steps <= seconds_of_one ? scene : piece;
+    const auto discs = static_cast<double>(scene.discs.size());
+    const Work work =
+        discs / static_cast<double>(piece.discs.size()) *
+        exact_work(piece, static_cast<double>(simulation.pair_collisions() + simulation.wall_collisions()));
+    return costs.seconds(event_driven(), discs, work) * scene.steps <= seconds_of_one ? scene : piece;
 }
 
 /// What a trial is of: fixed before a method runs.
 struct TrialCase {
-    double start; ///< of the trial, in seconds of the process
     const Scene& scene;
     const Tuning& tuning;
     Measure measure;
     double bound;
+    const Costs& costs;
     Scene piece; ///< what runs: the scene itself, or a piece of it
 
     bool is_whole() const { return scene.discs.size() == piece.discs.size(); }
@@ -68,24 +78,23 @@ struct TrialCase {
         return measure == Measure::pressure ? scene.side / piece.side : times_larger();
     }
 
-    bool is_out_of_time() const { return process_seconds() - start > seconds_of_all; }
+    /// Seconds of that work on the piece.
+    double seconds(const Method& method, const Work& work) const {
+        return costs.seconds(*method.variant, static_cast<double>(piece.discs.size()), work);
+    }
+    /// Seconds of as much for each disc of the scene.
+    double seconds_of_scene(const Method& method, const Work& work) const {
+        return costs.seconds(*method.variant, static_cast<double>(scene.discs.size()), times_larger() * work);
+    }
+    Work placed() const { return {.placed = static_cast<double>(piece.discs.size())}; }
 };
 
 /// What a method did in a trial.
 struct Ran {
-    std::vector<Disc> at_one;          ///< the state after one unit of time
-    std::vector<double> amounts;       ///< of what the measure is the average of, in each unit of time
-    double setting_up = 0;             ///< seconds
-    std::vector<double> units_seconds; ///< of each unit of time
-
-    /// Of the units of time after the first, which is also the first to touch its memory.
-    double unit_seconds() const {
-        std::vector<double> later(units_seconds.begin() + (units_seconds.size() > 1 ? 1 : 0),
-                                  units_seconds.end());
-        const auto middle = later.begin() + static_cast<std::ptrdiff_t>(later.size() / 2);
-        std::ranges::nth_element(later, middle);
-        return *middle;
-    }
+    std::vector<Disc> at_one;    ///< the state after one unit of time
+    std::vector<double> amounts; ///< of what the measure is the average of, in each unit of time
+    Work work;                   ///< of all units of time, which are as many as amounts
+    double seconds = 0;          ///< that it costs, setting up and watching included
 };
 
 /// What the event-driven simulation did: the others are held against it.
@@ -116,9 +125,10 @@ int affordable_units(const TrialCase& given, double unit_seconds) {
 
 void advance_exactly(const TrialCase& given, int unit, EventDriven<double>& simulation, Ran& ran) {
     const double so_far = amount_of(simulation, given.measure);
-    const double before = process_seconds();
+    const std::int64_t collisions = simulation.pair_collisions() + simulation.wall_collisions();
     require_end(simulation.advance(unit));
-    ran.units_seconds.push_back(process_seconds() - before);
+    ran.work += exact_work(given.piece, static_cast<double>(simulation.pair_collisions() +
+                                                            simulation.wall_collisions() - collisions));
     ran.amounts.push_back(amount_of(simulation, given.measure) - so_far);
     if (unit == 1) {
         ran.at_one = simulation.discs();
@@ -140,18 +150,19 @@ double own_error(const TrialCase& given, const ExactRun& exact) {
 /// The first to run: it says how long a trial may be, and what nobody needs to exceed.
 ExactRun run_exactly(const TrialCase& given) {
     ExactRun exact;
-    const double before = process_seconds();
+    const Method method{.variant = &event_driven()};
     EventDriven<double> simulation(given.piece);
-    exact.ran.setting_up = process_seconds() - before;
     for (int unit = 1; unit <= exact.units; ++unit) {
         advance_exactly(given, unit, simulation, exact.ran);
-        exact.units = unit == 1 ? affordable_units(given, exact.ran.units_seconds.front()) : exact.units;
+        exact.units =
+            unit == 1 ? affordable_units(given, given.seconds(method, exact.ran.work)) : exact.units;
     }
     if (given.measure == Measure::pressure) {
         exact.grain =
             grain_of_impulse(simulation.wall_impulse(), static_cast<double>(simulation.wall_collisions()));
     }
     exact.error = own_error(given, exact);
+    exact.ran.seconds = 2 * given.seconds(method, given.placed()) + 4 * given.seconds(method, exact.ran.work);
     return exact;
 }
 
@@ -166,11 +177,12 @@ Expected error_of(const TrialCase& given, const ExactRun& exact, const Ran& ran)
 }
 
 Tried tried_of(const TrialCase& given, const Method& method, const Ran& ran, const Expected& expected) {
+    const Work unit = 1.0 / static_cast<double>(ran.amounts.size()) * ran.work;
     return {.method = method,
             .error = expected.error,
             .margin = expected.margin,
-            .setting_up = given.times_larger() * ran.setting_up,
-            .unit_seconds = given.times_larger() * ran.unit_seconds()};
+            .setting_up = given.seconds_of_scene(method, given.placed()),
+            .unit_seconds = given.seconds_of_scene(method, unit)};
 }
 
 /// Of the momentum that walls take up, which a step does not tell; none where nobody asks.
@@ -184,104 +196,130 @@ std::optional<MomentumWatch> watch_of(const TrialCase& given, const Method& meth
                          simulation.discs());
 }
 
-/// A unit of time. False if a resolve did not end, or what it does to the walls cannot be told, or not in
-/// time.
-bool advance(const TrialCase& given, Simulation& simulation, int substeps,
-             std::optional<MomentumWatch>& watch, Ran& ran) {
-    double& amount = ran.amounts.emplace_back(0);
-    double& seconds = ran.units_seconds.emplace_back(0);
-    for (int substep = 0; substep < substeps; ++substep) {
-        const double before = process_seconds();
-        const Tally tally = simulation.step();
-        seconds += process_seconds() - before;
-        if (!tally.settled) {
+/// Runs a method, and counts what that costs.
+class MethodRun {
+  public:
+    /// It may cost `most` seconds.
+    MethodRun(const TrialCase& given, const Method& method, double most)
+        : given_(given), method_(method), most_(most),
+          simulation_(method.variant->simulate(given.piece, tuned(given, method))),
+          watch_(watch_of(given, method, *simulation_)), step_(work_of_step(*method.variant, given.piece)) {
+        ran_.seconds = given.seconds(method, given.placed());
+    }
+
+    const Ran& ran() const { return ran_; }
+
+    /// A unit of time. False if a resolve did not end, or what it does to the walls cannot be told, or it
+    /// would cost too much.
+    bool advance() {
+        double& amount = ran_.amounts.emplace_back(0);
+        for (int substep = 0; substep < method_.substeps; ++substep) {
+            const Tally tally = simulation_->step();
+            Work work = step_;
+            work.collisions = static_cast<double>(tally.pair_resolves + tally.wall_resolves);
+            ran_.work += work;
+            ran_.seconds += given_.seconds(method_, work) * (watch_ ? 1 + steps_of_watch : 1);
+            if (!tally.settled) {
+                return false;
+            }
+            amount += watch_ ? watch_->step(simulation_->discs()) : static_cast<double>(tally.pair_resolves);
+            if (watch_ && (watch_->balance().from_wall_to_wall() || ran_.seconds > most_)) {
+                return false;
+            }
+        }
+        if (ran_.amounts.size() == 1) {
+            ran_.at_one = simulation_->discs();
+        }
+        return true;
+    }
+
+  private:
+    static Tuning tuned(const TrialCase& given, const Method& method) {
+        Tuning tuning = given.tuning;
+        tuning.substeps = method.substeps;
+        return tuning;
+    }
+
+    const TrialCase& given_;
+    const Method& method_;
+    double most_;
+    std::unique_ptr<Simulation> simulation_;
+    std::optional<MomentumWatch> watch_;
+    Work step_; ///< without its collisions
+    Ran ran_;
+};
+
+/// All methods on the case, until enough is known.
+class Trials {
+  public:
+    explicit Trials(const TrialCase& given) : given_(given), exact_(run_exactly(given)) {
+        spent_ = exact_.ran.seconds;
+        tried_.push_back(tried_of(given, {.variant = &event_driven()}, exact_.ran, {.error = exact_.error}));
+    }
+
+    /// Whether more substeps of its variant are worth a trial.
+    bool run(const Method& method) {
+        if (spent_ > seconds_of_all) {
             return false;
         }
-        amount += watch ? watch->step(simulation.discs()) : static_cast<double>(tally.pair_resolves);
-        if (watch && (watch->balance().from_wall_to_wall() || given.is_out_of_time())) {
+        MethodRun run(given_, method, seconds_of_all - spent_);
+        const bool ended = run_units(run);
+        spent_ += run.ran().seconds;
+        if (!ended) {
             return false;
         }
+        tried_.push_back(tried_of(given_, method, run.ran(), error_of(given_, exact_, run.ran())));
+        const auto cheapest = cheapest_below(tried_, given_.bound, given_.scene.steps);
+        return !cheapest || cheapest->cost(given_.scene.steps) > tried_.back().cost(given_.scene.steps);
     }
-    if (ran.units_seconds.size() == 1) {
-        ran.at_one = simulation.discs();
-    }
-    return true;
-}
 
-/// Nothing where a unit of time was not run to its end.
-std::optional<Ran> run_method(const TrialCase& given, const ExactRun& exact, const Method& method) {
-    Tuning tuning = given.tuning;
-    tuning.substeps = method.substeps;
-    const double before = process_seconds();
-    const auto simulation = method.variant->simulate(given.piece, tuning);
-    Ran ran;
-    ran.setting_up = process_seconds() - before;
-    auto watch = watch_of(given, method, *simulation);
-    for (int unit = 1; unit <= exact.units; ++unit) {
-        if (!advance(given, *simulation, method.substeps, watch, ran)) {
-            return std::nullopt;
-        }
-        if (given.measure == Measure::path && error_of(given, exact, ran).error > given.bound) {
-            break;
-        }
-    }
-    return ran;
-}
+    int units() const { return exact_.units; }
+    std::vector<Tried>& tried() { return tried_; }
 
-/// Whether more substeps of its variant are worth a trial.
-bool try_method(const TrialCase& given, const ExactRun& exact, const Method& method,
-                std::vector<Tried>& tried) {
-    if (given.is_out_of_time()) {
-        return false;
+  private:
+    /// False where a unit of time was not run to its end.
+    bool run_units(MethodRun& run) const {
+        for (int unit = 1; unit <= exact_.units; ++unit) {
+            if (!run.advance()) {
+                return false;
+            }
+            if (given_.measure == Measure::path && error_of(given_, exact_, run.ran()).error > given_.bound) {
+                break;
+            }
+        }
+        return true;
     }
-    const auto ran = run_method(given, exact, method);
-    if (!ran) {
-        return false;
-    }
-    tried.push_back(tried_of(given, method, *ran, error_of(given, exact, *ran)));
-    const auto cheapest = cheapest_below(tried, given.bound, given.scene.steps);
-    return !cheapest || cheapest->cost(given.scene.steps) > tried.back().cost(given.scene.steps);
-}
 
-void time_again(const TrialCase& given, const ExactRun& exact, std::vector<Tried>& tried) {
-    for (Tried& one : tried) {
-        if (one.largest_error() > given.bound || given.is_out_of_time()) {
-            continue;
-        }
-        if (const auto ran = run_method(given, exact, one.method)) {
-            one.setting_up = std::min(one.setting_up, given.times_larger() * ran->setting_up);
-            one.unit_seconds = std::min(one.unit_seconds, given.times_larger() * ran->unit_seconds());
-        }
-    }
-}
+    const TrialCase& given_;
+    ExactRun exact_;
+    double spent_ = 0; ///< seconds that it costs so far
+    std::vector<Tried> tried_;
+};
 
 } // namespace
 
-Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound) {
-    const TrialCase given{.start = process_seconds(),
-                          .scene = scene,
+Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound,
+                  const Costs& costs) {
+    const double start = process_seconds();
+    const TrialCase given{.scene = scene,
                           .tuning = tuning,
                           .measure = measure,
                           .bound = bound,
-                          .piece = scene_of_trial(scene, measure)};
-    const ExactRun exact = run_exactly(given);
-    std::vector<Tried> tried{
-        tried_of(given, {.variant = &event_driven()}, exact.ran, {.error = exact.error})};
+                          .costs = costs,
+                          .piece = scene_of_trial(scene, measure, costs)};
+    Trials trials(given);
     std::vector<const Variant*> done{&event_driven()};
     for (const Method& method : methods_for(given.piece)) {
         const bool is_open = std::ranges::count(done, method.variant) == 0;
-        if (is_open && !try_method(given, exact, method, tried)) {
+        if (is_open && !trials.run(method)) {
             done.push_back(method.variant);
         }
     }
-    for (int round = 0; round < further_rounds; ++round) {
-        time_again(given, exact, tried);
-    }
-    return {.tried = std::move(tried),
+    return {.tried = std::move(trials.tried()),
             .discs = given.piece.discs.size(),
             .whole_scene = given.is_whole(),
-            .units_of_time = exact.units,
-            .seconds = process_seconds() - given.start};
+            .units_of_time = trials.units(),
+            .seconds = process_seconds() - start};
 }
 
 } // namespace carom

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "harness/accuracy/choice.hpp"
+#include "harness/accuracy/costs.hpp"
 #include "kernels/policies.hpp"
 #include "kernels/scene.hpp"
 
@@ -20,14 +21,16 @@ struct Trial {
 
 /// Tries the methods for the scene until the cheapest of them with an error below `bound` is known: each
 /// variant until its error is below the bound or it costs more than one that is. Each runs on the threads and
-/// with the tolerance of `tuning`, and is timed there; how many threads these are decides nothing.
+/// with the tolerance of `tuning`. No clock decides anything: what a method costs is its work, counted, at
+/// `costs`, so that the same scene, bound and costs choose the same on any number of threads.
 ///
 /// Errors are against the event-driven simulation, as in error_measures.hpp: in double, its own in long
 /// double. A scene of more than `largest_trial` discs is tried on the fullest of its pieces of that size, and
-/// the error of paths there may be a quarter less than in the run. All of it takes about a second at most.
+/// the error of paths there may be a quarter less than in the run. All of it costs a second at most.
 /// The discs must be apart at the start, and the scene have a unit of time. Throws CheckError if the
 /// collisions of an instant do not come to an end.
-Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound);
+Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound,
+                  const Costs& costs);
 
 /// Discs of the largest scene that is tried as a whole. Averages need fewer, for longer.
 constexpr std::size_t largest_trial(Measure measure) { return measure == Measure::path ? 20'000 : 4'000; }

@@ -1,6 +1,7 @@
 #include <iostream>
 #include <memory>
 
+#include "harness/accuracy/costs.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/doctor/findings.hpp"
 #include "harness/support/json.hpp"
@@ -10,16 +11,23 @@ namespace carom {
 void add_doctor_command(CLI::App& program) {
     auto json = std::make_shared<bool>(false);
     auto build = std::make_shared<bool>(false);
+    auto measure = std::make_shared<bool>(false);
     CLI::App* command = program.add_subcommand(
-        "doctor", "Tell what this machine can and cannot measure, and why; changes nothing");
+        "doctor",
+        "Tell what this machine can and cannot measure, and why; without --measure-costs it changes nothing");
     command->add_flag("--json", *json, "Print the findings as one JSON object");
+    command->add_flag("--measure-costs", *measure,
+                      "Measure anew, and keep, what work costs here: `run --error-below` chooses by it");
     command->add_flag("--build", *build, "Print only how this program was built, as one JSON object");
-    command->callback([json, build] {
+    command->callback([json, build, measure] {
         if (*build) {
             auto built = build_json();
             built["openmp"] = {{"runtime", read_openmp().runtime}};
             std::cout << json_text(built, 2) << '\n';
             return;
+        }
+        if (*measure) {
+            keep_costs_anew();
         }
         constexpr double noise_seconds = 2;
         const Findings findings = examine_machine(noise_seconds);

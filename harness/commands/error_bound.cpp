@@ -98,7 +98,7 @@ std::optional<Chosen> choose_method(const Scene& scene, const ErrorBound& bound,
     }
     require_exact_run(scene, bound);
     const std::string option = option_text(bound);
-    Trial trial = try_methods(scene, options.tuning, bound.measure, bound.below);
+    Trial trial = try_methods(scene, options.tuning, bound.measure, bound.below, costs_of_machine());
     const auto cheapest = cheapest_below(trial.tried, bound.below, scene.steps);
     if (!cheapest) {
         const Tried& best = most_exact(trial.tried);
@@ -111,7 +111,7 @@ std::optional<Chosen> choose_method(const Scene& scene, const ErrorBound& bound,
 
 void print_choice(const Chosen& chosen) {
     const Trial& trial = chosen.trial;
-    std::printf("chosen for an error below %s: %s; expected: %s (%s), %.3g ms a unit of time\n",
+    std::printf("chosen for an error below %s: %s; expected: %s (%s), %.3g ms a unit of time on one thread\n",
                 number_text(chosen.bound.below).c_str(), text_of(chosen.tried.method).c_str(),
                 error_text(chosen.tried).c_str(), text_of(chosen.bound.measure).meaning,
                 1e3 * chosen.tried.unit_seconds);

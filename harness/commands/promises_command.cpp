@@ -118,7 +118,8 @@ void keep_promises(const PromisesOptions& options) {
     std::cout << "  error of          below   promised  delivered             run ms    times  chosen\n";
     Suspensions suspensions;
     suspensions.start();
-    Promises promises(loaded.scene, options.tuning);
+    const Costs costs = costs_of_machine();
+    Promises promises(loaded.scene, options.tuning, costs);
     std::vector<Asked> asked;
     for (const ErrorBound& bound : bounds) {
         asked.push_back({.bound = bound, .promise = promises.keep(bound.measure, bound.below)});

@@ -8,6 +8,7 @@
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/commands/measurement_options.hpp"
+#include "harness/machine/threads.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/input_file.hpp"
@@ -23,13 +24,14 @@ struct ReferenceOptions {
     std::string scene;
     std::string output;
     double time = 0;
+    int threads = 1;
     bool extended = false;
     bool check = false;
     bool json = false;
 };
 
 /// The simulation as every one here runs: it tells its collisions, also where nobody asks for them.
-template <class Real> using Told = EventDriven<Real, CollisionLog<Real>&>;
+template <class Real> using Told = ExactSimulation<Real, CollisionLog<Real>&>;
 
 template <class Real> struct Unheard final : CollisionLog<Real> {
     void collided(const Collision<Real>& /*collision*/) override {}
@@ -59,7 +61,8 @@ template <class Real> void simulate(const ReferenceOptions& options, const Scene
     if (options.check) {
         checker.emplace(scene);
     }
-    Told<Real> reference(scene, checker ? static_cast<CollisionLog<Real>&>(*checker) : nobody);
+    Told<Real> reference(scene, options.threads,
+                         checker ? static_cast<CollisionLog<Real>&>(*checker) : nobody);
     const Real start = kinetic_energy(reference.discs());
     const bool ended = reference.advance(static_cast<Real>(options.time));
     const auto wrong = checker ? checker->violation_at(reference.time(), reference.discs()) : std::nullopt;
@@ -100,6 +103,8 @@ void add_reference_command(CLI::App& program) {
     add_number(*command, "--time", options->time, 0.0, largest_number, "Time at which to print the state")
         ->required()
         ->default_str("");
+    add_number(*command, "--threads", options->threads, 1, most_threads, "Threads; the result is the same")
+        ->default_str("1");
     command->add_flag("--extended", options->extended, "Compute in long double instead of double");
     command->add_flag("--check", options->check,
                       "Follow every collision with an independent checker; exit 2 at the first violation");

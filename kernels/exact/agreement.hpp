@@ -11,16 +11,13 @@
 
 namespace carom {
 
-/// What the tiles of a window have begun with, and what they have come to.
+/// A window, and what the tiles have come to in it.
 template <class Real> struct Window {
     Real begin;
     Real end;
     Real halo; ///< how far from its bounds a tile has copies
     const TileGrid<Real>& grid;
-    const std::vector<TileHistory<Real>>& tiles;
-    const std::vector<Flight<Real>>& flights; ///< of each disc, when the window began
-    const std::vector<int>& tile_of;          ///< of each disc: who owns it
-    const std::vector<int>& place;            ///< of each disc, among those that its owner holds
+    std::vector<const TileHistory<Real>*> tiles;
 };
 
 /// Whether what the owners say is what truly happens, as far as one tile has to see to it. They agree if
@@ -43,46 +40,50 @@ template <class Real> class Agreement {
     Agreement(const Window<Real>& window, Real radius) : window_(window), near_(Real(2.001) * radius) {}
 
     bool of(int number) const {
-        const TileHistory<Real>& tile = window_.tiles[index(number)];
+        const TileHistory<Real>& tile = of_tile(number);
         Real farthest = 0;
-        window_.grid.for_each_near(number, [&](int other) {
-            farthest = std::max(farthest, window_.tiles[index(other)].excursion());
-        });
+        window_.grid.for_each_near(
+            number, [&](int other) { farthest = std::max(farthest, of_tile(other).excursion()); });
         // Those farther away than the tiles around it have no copies of what it owns.
-        const bool is_alone = window_.tiles.size() == 1;
         bool agreed = tile.ended && tile.clearance() > farthest + near_ &&
-                      (is_alone || 2 * tile.excursion() + near_ < window_.grid.tile_side());
-        for (int k = 0; agreed && k < static_cast<int>(tile.held.size()); ++k) {
-            const Held& one = tile.held[index(k)];
-            agreed = !one.followed || (one.owned ? stays_away(number, k) : is_as_owned(tile, k));
+                      2 * tile.excursion() + near_ < window_.grid.least_side();
+        for (int place = 0; agreed && place < static_cast<int>(tile.held.size()); ++place) {
+            if (tile.held[index(place)].disc == Held::nobody || tile.kind(place) == Kind::own) {
+                continue;
+            }
+            agreed = tile.owns(place) ? stays_away(number, place, farthest) : is_as_owned(tile, place);
         }
         return agreed;
     }
 
   private:
-    /// Does an owned disc keep away from what the tiles around own that have no copy of it?
-    bool stays_away(int number, int k) const {
-        const TileHistory<Real>& tile = window_.tiles[index(number)];
-        const Flight<Real>& before = window_.flights[index(tile.held[index(k)].disc)];
+    /// Does an owned disc keep away from what the tiles around own that have no copy of it? That of them
+    /// which came out of its bounds farthest came so far.
+    bool stays_away(int number, int place, Real farthest) const {
+        const TileHistory<Real>& tile = of_tile(number);
+        const Flight<Real>& before = tile.began[index(place)];
         const std::array<Real, 2> start = position(before, window_.begin);
+        const Bounds<Real> flown = path(tile, before, tile.first(place), window_.begin);
         bool away = true;
+        if (tile.bounds.depth(flown) > farthest + near_) {
+            return away;
+        }
         window_.grid.for_each_near(number, [&](int other) {
-            const TileHistory<Real>& around = window_.tiles[index(other)];
-            if (away && other != number && around.bounds.distance(start) > window_.halo) {
-                away = path(tile, before, tile.first(k), window_.begin).distance(around.bounds) >
-                       around.excursion() + near_;
+            const TileHistory<Real>& around = of_tile(other);
+            if (other != number && around.bounds.distance(start) > window_.halo) {
+                away = away && flown.distance(around.bounds) > around.excursion() + near_;
             }
         });
         return away;
     }
 
     /// Has a copy the same history as the disc at its owner's, as long as it matters?
-    bool is_as_owned(const TileHistory<Real>& tile, int k) const {
-        const std::size_t disc = index(tile.held[index(k)].disc);
-        const TileHistory<Real>& owner = window_.tiles[index(window_.tile_of[disc])];
-        Flight<Real> flight = window_.flights[disc];
-        const Change<Real>* copied = tile.first(k);
-        const Change<Real>* owned = owner.first(window_.place[disc]);
+    bool is_as_owned(const TileHistory<Real>& tile, int place) const {
+        const Held& held = tile.held[index(place)];
+        const TileHistory<Real>& owner = of_tile(held.owner);
+        Flight<Real> flight = tile.began[index(place)];
+        const Change<Real>* copied = tile.first(place);
+        const Change<Real>* owned = owner.first(held.place);
         while (copied != nullptr && owned != nullptr && copied->is_as(*owned)) {
             flight = flight_after(*copied);
             copied = tile.after(*copied);
@@ -114,6 +115,8 @@ template <class Real> class Agreement {
     static Flight<Real> flight_after(const Change<Real>& one) {
         return {.x = one.after.x, .y = one.after.y, .vx = one.after.vx, .vy = one.after.vy, .time = one.time};
     }
+
+    const TileHistory<Real>& of_tile(int number) const { return *window_.tiles[index(number)]; }
 
     static std::size_t index(int i) { return static_cast<std::size_t>(i); }
 

@@ -9,16 +9,17 @@
 
 namespace carom {
 
-/// A square of the plane, from its lower left corner.
-template <class Real> struct Square {
+/// A rectangle of the plane, from its lower left corner.
+template <class Real> struct Area {
     Real left = 0;
     Real bottom = 0;
-    Real side = 0;
+    Real width = 0;
+    Real height = 0;
 };
 
-/// The cells of the exact reference in a square, at least 2r wide, and which discs are in each. The cells at
-/// the edges reach out to infinity, so that every disc is in one. Around them lies a border of cells that
-/// stay empty, so that every cell has eight neighbours.
+/// The cells of the exact reference in an area, at least 2r wide and high, and which discs are in each. The
+/// cells at the edges reach out to infinity, so that every disc is in one. Around them lies a border of cells
+/// that stay empty, so that every cell has eight neighbours.
 template <class Real> class EventCells {
   public:
     static constexpr int at_hand = 3;
@@ -32,23 +33,31 @@ template <class Real> class EventCells {
     };
 
     EventCells() = default;
-    EventCells(const Square<Real>& square, std::size_t count, Real radius) { arrange(square, count, radius); }
+    EventCells(const Area<Real>& area, std::size_t count, Real radius) { arrange(area, count, radius); }
 
     /// Empty cells for so many discs of that radius, so many a side at most. Keeps the memory it has.
-    void arrange(const Square<Real>& square, std::size_t count, Real radius, int most = most_per_side) {
-        const auto side = static_cast<double>(square.side);
+    void arrange(const Area<Real>& area, std::size_t count, Real radius, int most = most_per_side) {
+        const auto width = static_cast<double>(area.width);
+        const auto height = static_cast<double>(area.height);
         const double spacing = std::max(2.0 * static_cast<double>(radius) * (1 + 1e-9),
-                                        side / std::sqrt(static_cast<double>(count) + 1));
-        const double per_side = std::clamp(std::floor(side / spacing), 1.0, static_cast<double>(most));
-        cell_side_ = square.side / static_cast<Real>(per_side);
-        left_ = square.left;
-        bottom_ = square.bottom;
-        stride_ = static_cast<int>(per_side) + 2;
-        place_edges(edges_x_, left_);
-        place_edges(edges_y_, bottom_);
-        cells_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(stride_), Cell{});
+                                        std::sqrt(width * height / (static_cast<double>(count) + 1)));
+        const auto per_side = [&](double side) {
+            return std::clamp(std::floor(side / spacing), 1.0, static_cast<double>(most));
+        };
+        stride_ = static_cast<int>(per_side(width)) + 2;
+        rows_ = static_cast<int>(per_side(height));
+        cell_width_ = area.width / static_cast<Real>(stride_ - 2);
+        cell_height_ = area.height / static_cast<Real>(rows_);
+        left_ = area.left;
+        bottom_ = area.bottom;
+        place_edges(edges_x_, left_, cell_width_, stride_ - 2);
+        place_edges(edges_y_, bottom_, cell_height_, rows_);
+        cells_.assign(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows_ + 2), Cell{});
         before_.resize(count);
     }
+
+    /// Makes room for as many discs.
+    void hold(std::size_t count) { before_.resize(std::max(before_.size(), count)); }
 
     /// What to add to the number of a cell for the cell in the next row; for the next column it is 1.
     int stride() const { return stride_; }
@@ -58,7 +67,10 @@ template <class Real> class EventCells {
         return {-stride_ - 1, -stride_, -stride_ + 1, -1, 0, 1, stride_ - 1, stride_, stride_ + 1};
     }
 
-    int cell_at(Real x, Real y) const { return (along(y - bottom_) + 1) * stride_ + along(x - left_) + 1; }
+    int cell_at(Real x, Real y) const {
+        const int row = along(y - bottom_, cell_height_, rows_);
+        return (row + 1) * stride_ + along(x - left_, cell_width_, stride_ - 2) + 1;
+    }
 
     /// Where a disc that flies up or down along an axis leaves the cell; infinity at the edge of the box.
     Real edge_x(int cell, bool up) const { return edge(edges_x_, cell % stride_ - 1, up); }
@@ -96,16 +108,16 @@ template <class Real> class EventCells {
     }
 
   private:
-    /// The row or column of a position along its axis.
-    int along(Real position) const {
-        const Real scaled = position / cell_side_;
-        return scaled > 0 ? static_cast<int>(std::min(scaled, static_cast<Real>(stride_ - 3))) : 0;
+    /// The row or column, of so many, of a position along its axis.
+    static int along(Real position, Real cell_side, int count) {
+        const Real scaled = position / cell_side;
+        return scaled > 0 ? static_cast<int>(std::min(scaled, static_cast<Real>(count - 1))) : 0;
     }
 
-    void place_edges(std::vector<Real>& edges, Real begin) const {
+    static void place_edges(std::vector<Real>& edges, Real begin, Real cell_side, int count) {
         edges.clear();
-        for (int edge = 0; edge <= stride_ - 2; ++edge) {
-            edges.push_back(begin + static_cast<Real>(edge) * cell_side_);
+        for (int edge = 0; edge <= count; ++edge) {
+            edges.push_back(begin + static_cast<Real>(edge) * cell_side);
         }
         edges.front() = -std::numeric_limits<Real>::infinity();
         edges.back() = std::numeric_limits<Real>::infinity();
@@ -115,10 +127,12 @@ template <class Real> class EventCells {
         return edges[static_cast<std::size_t>(index + (up ? 1 : 0))];
     }
 
-    Real cell_side_ = 0;
+    Real cell_width_ = 0;
+    Real cell_height_ = 0;
     Real left_ = 0;
     Real bottom_ = 0;
-    int stride_ = 0;
+    int stride_ = 0;            ///< columns and both borders
+    int rows_ = 0;              ///< without the borders
     std::vector<Real> edges_x_; ///< between columns
     std::vector<Real> edges_y_; ///< between rows
     std::vector<Cell> cells_;

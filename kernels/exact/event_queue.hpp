@@ -4,14 +4,16 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace carom {
 
 /// For each of N discs the time of its next event and who else has part in it, the earliest first. Those of
 /// one instant come in the order of the lower, then of the higher of their two numbers, whichever of the two
-/// the event is of. To find the earliest and to change a time takes as long for any N, on average and as long
-/// as events keep coming about as often.
+/// the event is of; a disc's number is its place, unless the discs have been given others. To find the
+/// earliest and to change a time takes as long for any N, on average and as long as events keep coming about
+/// as often.
 ///
 /// A calendar (Brown, Communications of the ACM 31, 1220, 1988; for collisions Paul, J. Comput. Phys. 221,
 /// 615, 2007): the time ahead is divided into buckets of one width, each a list of discs in any order, which
@@ -28,6 +30,7 @@ template <class Real> class EventQueue {
 
     /// Forgets all events and is as one of so many discs at the start, but for the memory it has.
     void clear(int count) {
+        numbers_ = {};
         events_.assign(static_cast<std::size_t>(count), Event{});
         buckets_.resize(events_.size() / 8 + 1);
         for (auto& bucket : buckets_) {
@@ -42,6 +45,13 @@ template <class Real> class EventQueue {
         now_ = 0;
         added_ = 0;
         shifted_ = 0;
+    }
+
+    /// Orders events of one instant by these numbers of the discs from now on, and makes room for as many
+    /// discs. The queue does not keep a copy.
+    void number(std::span<const int> numbers) {
+        numbers_ = numbers;
+        events_.resize(std::max(events_.size(), numbers.size()));
     }
 
     /// The time of the earliest event; infinity if there is none.
@@ -91,14 +101,21 @@ template <class Real> class EventQueue {
 
     struct Entry : Event {
         int disc;
-
-        bool operator<(const Entry& second) const {
-            return this->time < second.time || (this->time == second.time && ranks() < second.ranks());
-        }
-        std::array<int, 3> ranks() const {
-            return {std::min(disc, this->other), std::max(disc, this->other), disc};
-        }
     };
+
+    bool is_before(const Entry& one, const Entry& two) const {
+        return one.time < two.time || (one.time == two.time && ranks(one) < ranks(two));
+    }
+
+    [[gnu::noinline]] std::array<int, 3> ranks(const Entry& one) const {
+        const int disc = number_of(one.disc);
+        const int other = number_of(one.other);
+        return {std::min(disc, other), std::max(disc, other), disc};
+    }
+
+    int number_of(int disc) const {
+        return disc < 0 || numbers_.empty() ? disc : numbers_[static_cast<std::size_t>(disc)];
+    }
 
     const Event& event_of(int disc) const { return events_[static_cast<std::size_t>(disc)]; }
     bool is_stale(const Entry& entry) const { return entry != event_of(entry.disc); }
@@ -112,7 +129,7 @@ template <class Real> class EventQueue {
         if (bucket < opened_) {
             soon_.push_back(entry);
             std::size_t place = soon_.size() - 1;
-            for (; place > front_ && soon_[place] < soon_[place - 1]; --place) {
+            for (; place > front_ && is_before(soon_[place], soon_[place - 1]); --place) {
                 std::swap(soon_[place], soon_[place - 1]);
                 ++shifted_;
             }
@@ -137,7 +154,8 @@ template <class Real> class EventQueue {
             }
         }
         discs.clear();
-        std::sort(soon_.begin() + before, soon_.end());
+        std::sort(soon_.begin() + before, soon_.end(),
+                  [this](const Entry& one, const Entry& two) { return is_before(one, two); });
         opened_ += 1;
         return true;
     }
@@ -167,6 +185,7 @@ template <class Real> class EventQueue {
         return true;
     }
 
+    std::span<const int> numbers_;
     std::vector<Event> events_; ///< the next one of each disc
     std::vector<std::vector<int>> buckets_;
     Real opened_ = 0;         ///< how many

@@ -6,13 +6,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <numeric>
+#include <type_traits>
 #include <vector>
 
 #include "kernels/exact/agreement.hpp"
-#include "kernels/exact/event_driven.hpp"
+#include "kernels/exact/collisions_in_order.hpp"
+#include "kernels/exact/memory_order.hpp"
+#include "kernels/exact/tile.hpp"
 #include "kernels/exact/tile_grid.hpp"
-#include "kernels/exact/tile_history.hpp"
+#include "kernels/exact/wall_sums.hpp"
 #include "kernels/parallel_for.hpp"
 #include "kernels/scene.hpp"
 
@@ -20,27 +22,30 @@ namespace carom {
 
 /// How the event-driven simulation shares a scene out. No result depends on it.
 struct WindowSettings {
-    int tiles_per_side = 1;
-    double halo = 18;                  ///< how far from a tile discs are copied, in radii, at first
-    double collisions_per_disc = 2;    ///< of a window
-    double widen = 1.3;                ///< the halo by that, when tiles disagree
-    double narrow = 0.995;             ///< and by that, down to a third, when they agree
-    int most_repetitions = 6;          ///< of a window in tiles; then it is done in one
-    std::int64_t at_once = 10'000'000; ///< events of one instant in a tile
+    TileCounts tiles = {};
+    double halo = 18;               ///< how far from a tile discs are copied, in radii, at first
+    double collisions_per_disc = 2; ///< of a window
+    double widen = 1.3;             ///< the halo by that, when tiles disagree
+    double narrow = 0.995;          ///< and by that, down to a third, when they agree
+    int most_repetitions = 6;       ///< of a window in tiles; then it is done in one
 };
 
-/// Into how many tiles a side a scene of so many discs is cut for that many threads; 1 where the simulation
-/// in one piece takes less time. Every disc is looked up anew when a window begins, and copies are simulated
-/// twice, so that each thread does about half of what it would do alone (docs/performance.md): two of them
-/// gain nothing.
-inline int tiles_per_side(std::size_t discs, int threads) {
-    constexpr int least_threads = 4;
-    constexpr double least_discs = 2'000;   // of a tile: of fewer, most have copies
-    constexpr double cached_discs = 12'000; // with all that belongs to them some 1.5 MB, a second cache
+/// Into how many tiles a scene of so many discs is cut for that many threads; into one where that takes less
+/// time. Copies are simulated twice, and each tile has some work of its own between windows: on one thread
+/// tiles pay only where the whole scene is far larger than a cache (docs/performance.md).
+inline TileCounts tiles_for(std::size_t discs, int threads) {
+    constexpr double least_discs = 8'000;   // of a tile: of fewer, too many have copies
+    constexpr double cached_discs = 63'000; // with all that belongs to them some 15 MB
+    constexpr double beyond_cache = 400'000;
     const auto count = static_cast<double>(discs);
-    const double wanted = std::max(std::sqrt(count / cached_discs), std::sqrt(2.0 * threads));
-    const double most = std::floor(std::sqrt(count / least_discs));
-    return threads < least_threads || most < 3 ? 1 : static_cast<int>(std::min(std::ceil(wanted), most));
+    const double for_cache = count >= beyond_cache ? count / cached_discs : 1;
+    const double wanted = std::min(std::max<double>(for_cache, threads), count / least_discs);
+    if (wanted < 2) {
+        return {};
+    }
+    const double columns = std::ceil(std::sqrt(wanted) - 0.01);
+    return {.columns = static_cast<int>(columns),
+            .rows = static_cast<int>(std::ceil(wanted / columns - 0.01))};
 }
 
 /// The event-driven simulation on several threads, to the same bits as on one (event_driven.hpp).
@@ -54,35 +59,35 @@ inline int tiles_per_side(std::size_t discs, int threads) {
 /// A window is short, a few collisions a disc, since what is wrong at the edge of the halo spreads inwards no
 /// faster than collisions hand it on. A tile is small enough to stay in a processor's cache for all of a
 /// window, which on large scenes is worth more than what copies cost.
-template <class Real> class EventWindows {
+///
+/// `Log` is told every collision, in order; CollisionLog<Real>& is one that can.
+template <class Real, class Log = NoCollisionLog> class EventWindows {
   public:
-    EventWindows(const Scene& scene, int threads, const WindowSettings& settings)
-        : settings_(settings), threads_(threads), side_(static_cast<Real>(scene.side)),
-          radius_(static_cast<Real>(scene.radius)), grid_(side_, settings.tiles_per_side) {
-        for (int thread = 0; thread < threads; ++thread) {
-            workers_.push_back(std::make_unique<Worker>(side_, radius_));
-        }
+    EventWindows(const Scene& scene, int threads, const WindowSettings& settings, Log log = Log())
+        : log_(log), settings_(settings), threads_(threads), side_(static_cast<Real>(scene.side)),
+          radius_(static_cast<Real>(scene.radius)), grid_(side_, settings.tiles) {
         restart(scene);
     }
 
     /// Goes back to the start of a scene with the same box.
     void restart(const Scene& scene) {
-        begin_flights(scene, flights_);
-        after_.resize(flights_.size());
-        tile_of_.resize(flights_.size());
-        place_.resize(flights_.size());
-        listed_.resize(flights_.size());
-        now_ = 0;
+        count_ = scene.discs.size();
+        now_ = stuck_at_ = 0;
         pair_collisions_ = wall_collisions_ = windows_ = repeated_ = 0;
+        wall_sums_.clear(count_);
         halo_ = static_cast<Real>(settings_.halo) * radius_;
         window_ = first_window(scene);
-        cut(settings_.tiles_per_side);
+        std::vector<Flight<Real>> flights;
+        begin_flights(scene, flights);
+        cut(settings_.tiles, flights);
     }
 
-    /// Goes on to `time`. False if the collisions of one instant do not come to an end.
-    bool advance(Real time) {
+    /// Goes on to `time`. False if a limit is passed, of the events of one instant in a tile or of collisions
+    /// in all: it then stands at that instant, or soon after the limit.
+    bool advance(Real time, const EventLimits& limits = {}) {
+        at_once_ = limits.at_once;
         do {
-            if (!next_window(time)) {
+            if (!next_window(time) || pair_collisions_ + wall_collisions_ > limits.in_all) {
                 return false;
             }
         } while (now_ < time);
@@ -91,46 +96,31 @@ template <class Real> class EventWindows {
 
     /// The discs as they are now, disc i at index i.
     std::vector<BasicDisc<Real>> discs() const {
-        std::vector<BasicDisc<Real>> result;
-        result.reserve(flights_.size());
-        for (const Flight<Real>& one : flights_) {
+        std::vector<BasicDisc<Real>> result(count_);
+        for_each_disc([&](int disc, const Flight<Real>& one) {
             const auto [x, y] = position(one, now_);
-            result.push_back({x, y, one.vx, one.vy});
-        }
+            result[index(disc)] = {x, y, one.vx, one.vy};
+        });
         return result;
     }
 
-    Real time() const { return now_; }
+    Real time() const { return std::max(now_, stuck_at_); }
     std::int64_t pair_collisions() const { return pair_collisions_; }
     std::int64_t wall_collisions() const { return wall_collisions_; }
+    /// As of EventDriven, to the same bits.
+    Real wall_impulse() const { return wall_sums_.impulse(); }
+    std::array<Real, 2> momentum_from_walls() const { return wall_sums_.momentum(); }
 
     /// Windows so far, and how often one had to be done again.
     std::int64_t windows() const { return windows_; }
     std::int64_t repeated() const { return repeated_; }
 
   private:
-    /// Passes on what an engine tells to the tile that it is at.
-    struct ToTile {
-        TileHistory<Real>** tile = nullptr;
-        void collided(const Collision<Real>& one) { (*tile)->collided(one); }
-    };
-
-    /// What a thread simulates tiles with.
-    struct Worker {
-        Worker(Real side, Real radius) : engine(side, radius, ToTile{&tile}) {}
-        TileHistory<Real>* tile = nullptr;
-        EventDriven<Real, ToTile> engine;
-        std::vector<Flight<Real>> flights;
-    };
-
-    /// A disc, and where it is when a window begins.
-    struct Listed {
-        int disc;
-        std::array<Real, 2> at;
-    };
+    static constexpr bool tells = !std::is_same_v<Log, NoCollisionLog>;
 
     /// One window, until `time` at most, again and again until the tiles agree; at last in one tile.
     bool next_window(Real time) {
+        const Real wanted = window_;
         for (int repetition = 0; repetition < settings_.most_repetitions; ++repetition) {
             const Real end = end_of_window(time);
             if (simulate(end)) {
@@ -141,15 +131,18 @@ template <class Real> class EventWindows {
             }
             ++repeated_;
             window_ = (end - now_) / 2;
-            halo_ = std::min(halo_ * static_cast<Real>(settings_.widen), grid_.tile_side());
+            halo_ = std::min(halo_ * static_cast<Real>(settings_.widen), grid_.least_side());
+            for_each_tile([&](Tile<Real>& tile) { tile.undo(now_, halo_); });
         }
-        cut(1);
+        window_ = wanted;
+        cut({}, flights());
         const Real end = end_of_window(time);
         const bool ended = simulate(end);
+        stuck_at_ = tiles_.front()->time();
         if (ended) {
             accept(end);
         }
-        cut(settings_.tiles_per_side);
+        cut(settings_.tiles, flights());
         return ended;
     }
 
@@ -160,114 +153,82 @@ template <class Real> class EventWindows {
         return end > now_ ? std::min(end, time) : time;
     }
 
-    /// Every tile by itself, then whether they agree: if not, nothing has changed.
+    /// Every tile by itself, then whether they agree: what they say holds only if they do.
     bool simulate(Real end) {
-        share_discs();
-        for_each_tile([&](int tile) {
-            hold_discs(tile);
-            simulate_tile(tile, end);
+        for_each_tile([&](Tile<Real>& tile) { tile.list_leavers(now_); });
+        for_each_tile([&](Tile<Real>& tile) { tile.take_over(tiles_, now_, halo_); });
+        for_each_tile([&](Tile<Real>& tile) {
+            tile.hold_copies(tiles_, now_, halo_);
+            tile.simulate(end, halo_, at_once_);
         });
-        const Window<Real> window{.begin = now_,
-                                  .end = end,
-                                  .halo = halo_,
-                                  .grid = grid_,
-                                  .tiles = tiles_,
-                                  .flights = flights_,
-                                  .tile_of = tile_of_,
-                                  .place = place_};
+        Window<Real> window{.begin = now_, .end = end, .halo = halo_, .grid = grid_, .tiles = {}};
+        for (const auto& tile : tiles_) {
+            window.tiles.push_back(&tile->history());
+        }
         const Agreement<Real> agreement(window, radius_);
-        for_each_tile([&](int tile) { agreed_[index(tile)] = agreement.of(tile) ? 1 : 0; });
+        parallel_for<Schedule::dynamic>(threads_, grid_.count(), 1, no_probe_,
+                                        [&](int tile) { agreed_[index(tile)] = agreement.of(tile) ? 1 : 0; });
         return std::ranges::all_of(agreed_, [](char one) { return one != 0; });
     }
 
     /// What the owners say holds.
     void accept(Real end) {
-        flights_.swap(after_);
         std::int64_t pairs = 0;
-        for (const TileHistory<Real>& tile : tiles_) {
-            pairs += tile.pair_collisions();
-            wall_collisions_ += tile.wall_collisions();
+        for (const auto& tile : tiles_) {
+            pairs += tile->history().pair_collisions();
+            for (const auto& [disc, axis, velocity] : tile->history().at_walls()) {
+                wall_sums_.add(disc, axis, velocity);
+                ++wall_collisions_;
+            }
+        }
+        if constexpr (tells) {
+            CollisionsInOrder<Real> collisions;
+            for (int tile = 0; tile < grid_.count(); ++tile) {
+                collisions.add(tile, tiles_[index(tile)]->history());
+            }
+            collisions.tell(log_);
         }
         pair_collisions_ += pairs;
         ++windows_;
         if (end - now_ >= window_ / 2) { // a shorter one says little
-            const Real per_disc = 2 * static_cast<Real>(pairs) / static_cast<Real>(flights_.size() + 1);
+            const Real per_disc = 2 * static_cast<Real>(pairs) / static_cast<Real>(count_ + 1);
             const Real wanted = static_cast<Real>(settings_.collisions_per_disc);
             window_ *= per_disc > 0 ? std::clamp(wanted / per_disc, Real(0.5), Real(2)) : Real(2);
         }
         now_ = end;
     }
 
-    /// Cuts the box into so many tiles a side.
-    void cut(int tiles_per_side) {
-        grid_ = TileGrid<Real>(side_, tiles_per_side);
-        tiles_.resize(index(grid_.count()));
-        agreed_.resize(index(grid_.count()));
+    /// Cuts the box into so many tiles, which own discs with these flights, near each other in memory as they
+    /// are in space.
+    void cut(const TileCounts& tiles, const std::vector<Flight<Real>>& flights) {
+        tiles_.clear();
+        grid_ = TileGrid<Real>(side_, tiles);
+        agreed_.assign(index(grid_.count()), 0);
         for (int tile = 0; tile < grid_.count(); ++tile) {
-            tiles_[index(tile)].bounds = grid_.bounds(tile);
+            tiles_.push_back(std::make_unique<Tile<Real>>(grid_, tile, side_, radius_, tells));
         }
+        for (const int disc : memory_order(flights, now_, side_)) {
+            const Flight<Real>& one = flights[index(disc)];
+            tiles_[index(grid_.tile_at(position(one, now_)))]->own(disc, one);
+        }
+        for_each_tile([&](Tile<Real>& tile) { tile.begin(now_, halo_); });
     }
 
-    /// Tells each disc's tile, and lists the discs by their tiles.
-    void share_discs() {
-        const int count = static_cast<int>(flights_.size());
-        parallel_for<Schedule::static_>(threads_, count, 1, no_probe_, [&](int i) {
-            tile_of_[index(i)] = grid_.tile_at(position(flights_[index(i)], now_));
-        });
-        begin_.assign(tiles_.size() + 1, 0);
-        for (const int tile : tile_of_) {
-            ++begin_[index(tile) + 1];
-        }
-        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-        next_.assign(begin_.begin(), begin_.end() - 1);
-        for (int i = 0; i < count; ++i) {
-            int& next = next_[index(tile_of_[index(i)])];
-            listed_[index(next)] = {i, position(flights_[index(i)], now_)};
-            ++next;
-        }
+    std::vector<Flight<Real>> flights() const {
+        std::vector<Flight<Real>> result(count_);
+        for_each_disc([&](int disc, const Flight<Real>& one) { result[index(disc)] = one; });
+        return result;
     }
 
-    /// Gives a tile its own discs, and copies of those in the halo.
-    void hold_discs(int number) {
-        TileHistory<Real>& tile = tiles_[index(number)];
-        tile.held.clear();
-        grid_.for_each_near(number, [&](int other) {
-            for (int k = begin_[index(other)]; k < begin_[index(other) + 1]; ++k) {
-                const auto& [disc, at] = listed_[index(k)];
-                if (other == number) {
-                    tile.held.push_back({disc, true, tile.bounds.depth(at) <= halo_});
-                } else if (tile.bounds.distance(at) <= halo_) {
-                    tile.held.push_back({disc, false, true});
-                }
-            }
-        });
-        std::ranges::sort(tile.held, {}, &Held::disc);
-        tile.begin();
-    }
-
-    /// Simulates a tile up to `end`, and notes where what it owns is then.
-    void simulate_tile(int number, Real end) {
-        TileHistory<Real>& tile = tiles_[index(number)];
-        auto& [at, engine, flights] = *workers_[index(this_thread())];
-        at = &tile;
-        flights.clear();
-        for (const Held& one : tile.held) {
-            flights.push_back(flights_[index(one.disc)]);
-        }
-        engine.restart(flights, now_, grid_.square_around(number, halo_));
-        tile.ended = engine.advance(end, {.at_once = settings_.at_once});
-        for (int k = 0; k < static_cast<int>(tile.held.size()); ++k) {
-            if (tile.held[index(k)].owned) {
-                const std::size_t disc = index(tile.held[index(k)].disc);
-                after_[disc] = engine.flights()[index(k)];
-                place_[disc] = k;
-                tile.owned_is_at(k, position(after_[disc], end));
-            }
+    template <class Body> void for_each_disc(const Body& body) const {
+        for (const auto& tile : tiles_) {
+            tile->for_each_disc(body);
         }
     }
 
     template <class Body> void for_each_tile(const Body& body) {
-        parallel_for<Schedule::dynamic>(threads_, grid_.count(), 1, no_probe_, body);
+        parallel_for<Schedule::dynamic>(threads_, grid_.count(), 1, no_probe_,
+                                        [&](int tile) { body(*tiles_[index(tile)]); });
     }
 
     /// Until a disc of root mean square speed has flown half a radius.
@@ -282,26 +243,23 @@ template <class Real> class EventWindows {
 
     static std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
+    [[no_unique_address]] Log log_;
     WindowSettings settings_;
     int threads_;
-    Real side_; ///< of the box
+    std::size_t count_ = 0; ///< of discs
+    Real side_;             ///< of the box
     Real radius_;
     Real now_ = 0;
+    Real stuck_at_ = 0; ///< where a window in one tile has ended
     Real halo_ = 0;
-    Real window_ = 0; ///< how long the next one is to be
+    std::int64_t at_once_ = 0; ///< events, at most
+    Real window_ = 0;          ///< how long the next one is to be
     TileGrid<Real> grid_;
-    std::vector<TileHistory<Real>> tiles_;
-    std::vector<char> agreed_;                     ///< of each tile
-    std::vector<std::unique_ptr<Worker>> workers_; ///< one a thread
-    std::vector<Flight<Real>> flights_;            ///< of each disc, when a window begins
-    std::vector<Flight<Real>> after_;              ///< when it ends
-    std::vector<int> tile_of_;                     ///< of each disc
-    std::vector<int> place_;                       ///< of each disc, among those of its tile
-    std::vector<Listed> listed_;                   ///< by tile
-    std::vector<int> begin_;                       ///< of each tile's discs in listed_
-    std::vector<int> next_;
+    typename Tile<Real>::Tiles tiles_;
+    std::vector<char> agreed_; ///< of each tile
     std::int64_t pair_collisions_ = 0;
     std::int64_t wall_collisions_ = 0;
+    WallSums<Real> wall_sums_;
     std::int64_t windows_ = 0;
     std::int64_t repeated_ = 0;
     NoProbe no_probe_;

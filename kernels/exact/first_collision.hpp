@@ -64,16 +64,17 @@ template <class Real> Real time_to_collision(const Approach<Real>& pair, Real re
 }
 
 /// Finds, among the discs of some cells, the one that a disc collides with first; of several at one instant
-/// the one of the lowest number, where a wall has the disc's own.
+/// the one of the lowest number, where a wall has the disc's own. `numbers` are those of the discs; if there
+/// are none, their places are.
 ///
 /// All of them are gathered, then all approaches computed, then the times of those that collide: loops
 /// without branches, of which a compiler computes two passes and more at once. Which of some ten discs near
 /// by collide is as good as random, and a branch foretold wrongly costs as much as the arithmetic of several.
 template <class Real> class FirstCollision {
   public:
-    FirstCollision(std::vector<Flight<Real>>& flights, const EventCells<Real>& cells, int disc,
-                   Real reach_squared)
-        : flights_(flights), cells_(cells), disc_(static_cast<std::size_t>(disc)),
+    FirstCollision(std::vector<Flight<Real>>& flights, const EventCells<Real>& cells,
+                   const std::vector<int>& numbers, int disc, Real reach_squared)
+        : flights_(flights), cells_(cells), numbers_(numbers), disc_(static_cast<std::size_t>(disc)),
           reach_squared_(reach_squared) {}
 
     [[gnu::always_inline]] void look_into(int cell) {
@@ -146,17 +147,20 @@ template <class Real> class FirstCollision {
     [[gnu::noinline]] std::size_t lowest_at(Real time) const {
         const Flight<Real>& one = flights_[disc_];
         std::size_t lowest = most;
-        auto number = one.collision_time == time
-                          ? static_cast<std::size_t>(one.ranks_as(static_cast<int>(disc_)))
-                          : std::numeric_limits<std::size_t>::max();
+        const auto foreseen = static_cast<std::size_t>(one.beside(static_cast<int>(disc_)));
+        int number = one.collision_time == time ? number_of(foreseen) : std::numeric_limits<int>::max();
         for (std::size_t k = 0; k < count_; ++k) {
             const auto pair = approach(one, flights_[candidates_[k]], reach_squared_);
-            if (pair.collide() && candidates_[k] < number && time_with(k, pair) == time) {
+            if (pair.collide() && number_of(candidates_[k]) < number && time_with(k, pair) == time) {
                 lowest = k;
-                number = candidates_[k];
+                number = number_of(candidates_[k]);
             }
         }
         return lowest;
+    }
+
+    int number_of(std::size_t disc) const {
+        return numbers_.empty() ? static_cast<int>(disc) : numbers_[disc];
     }
 
     [[gnu::noinline]] void look_into_rest(const typename EventCells<Real>::Cell& held) {
@@ -173,6 +177,7 @@ template <class Real> class FirstCollision {
 
     std::vector<Flight<Real>>& flights_;
     const EventCells<Real>& cells_;
+    const std::vector<int>& numbers_;
     std::size_t disc_;
     Real reach_squared_;
     std::size_t count_ = 0;

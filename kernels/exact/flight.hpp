@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -7,6 +8,11 @@
 #include "kernels/scene.hpp"
 
 namespace carom {
+
+/// Equal, and not 0 and -0.
+template <class Real> bool same_bits(Real one, Real other) {
+    return one == other && std::signbit(one) == std::signbit(other);
+}
 
 /// A disc in free flight since its last collision, and the collision that it has foreseen. In double it fills
 /// one cache line of most processors, 64 bytes: nothing else is asked of a disc that is near another one.
@@ -24,9 +30,14 @@ template <class Real> struct alignas(64) Flight {
     std::uint32_t age = 0;                                       ///< collisions so far
     int cell = 0;                                                ///< of EventCells
 
-    /// The number that orders collisions of one instant beside that of the disc itself: of its partner, of a
-    /// wall the disc's own.
-    int ranks_as(int disc) const { return partner >= 0 ? partner : disc; }
+    /// Who else has part in the next collision: its partner, of a wall the disc itself.
+    int beside(int disc) const { return partner >= 0 ? partner : disc; }
+
+    /// Does it fly the same way since the same collision, to the bit?
+    bool is_as(const Flight& other) const {
+        return same_bits(x, other.x) && same_bits(y, other.y) && same_bits(vx, other.vx) &&
+               same_bits(vy, other.vy) && same_bits(time, other.time);
+    }
 
     void move_to(Real now) {
         const Real elapsed = now - time;

@@ -39,6 +39,10 @@ template <class Real> struct Bounds {
     Real depth(const std::array<Real, 2>& point) const {
         return std::min({point[0] - left, right - point[0], point[1] - bottom, top - point[1]});
     }
+    /// The same of all of another one.
+    Real depth(const Bounds& other) const {
+        return std::min({other.left - left, right - other.right, other.bottom - bottom, top - other.top});
+    }
 };
 
 /// Where a disc is at a time from its last collision on.
@@ -47,58 +51,79 @@ template <class Real> std::array<Real, 2> position(const Flight<Real>& one, Real
     return {one.x + one.vx * elapsed, one.y + one.vy * elapsed};
 }
 
-/// A square box cut into equal square tiles, row by row. Tiles at the walls reach out to infinity.
+/// Into how many tiles a box is cut.
+struct TileCounts {
+    int columns = 1;
+    int rows = 1;
+
+    int all() const { return columns * rows; }
+    bool operator==(const TileCounts&) const = default;
+};
+
+/// A square box cut into equal rectangular tiles, row by row. Tiles at the walls reach out to infinity.
 template <class Real> class TileGrid {
   public:
-    TileGrid(Real box_side, int per_side)
-        : per_side_(per_side), side_(box_side / static_cast<Real>(per_side)) {}
+    TileGrid(Real box_side, const TileCounts& counts)
+        : counts_(counts), width_(box_side / static_cast<Real>(counts.columns)),
+          height_(box_side / static_cast<Real>(counts.rows)) {}
 
-    int count() const { return per_side_ * per_side_; }
-    Real tile_side() const { return side_; }
+    int count() const { return counts_.all(); }
+
+    /// How far it is, at least, across a tile from one that is beside it to one that is not; infinity if all
+    /// are beside each other.
+    Real least_side() const {
+        return std::min(counts_.columns > 1 ? width_ : Bounds<Real>::infinity,
+                        counts_.rows > 1 ? height_ : Bounds<Real>::infinity);
+    }
 
     /// The tile of a point; the nearest one for a point outside.
     int tile_at(const std::array<Real, 2>& point) const {
-        return along(point[1]) * per_side_ + along(point[0]);
+        return along(point[1], height_, counts_.rows) * counts_.columns +
+               along(point[0], width_, counts_.columns);
     }
 
     Bounds<Real> bounds(int tile) const {
-        const int row = tile / per_side_;
-        const int column = tile % per_side_;
-        return {edge(column), edge(row), edge(column + 1), edge(row + 1)};
+        const int row = tile / counts_.columns;
+        const int column = tile % counts_.columns;
+        return {edge(column, width_, counts_.columns), edge(row, height_, counts_.rows),
+                edge(column + 1, width_, counts_.columns), edge(row + 1, height_, counts_.rows)};
     }
 
     /// A tile and `margin` around it.
-    Square<Real> square_around(int tile, Real margin) const {
-        return {.left = static_cast<Real>(tile % per_side_) * side_ - margin,
-                .bottom = static_cast<Real>(tile / per_side_) * side_ - margin,
-                .side = side_ + 2 * margin};
+    Area<Real> area_around(int tile, Real margin) const {
+        return {.left = static_cast<Real>(tile % counts_.columns) * width_ - margin,
+                .bottom = static_cast<Real>(tile / counts_.columns) * height_ - margin,
+                .width = width_ + 2 * margin,
+                .height = height_ + 2 * margin};
     }
 
     /// `body(other)` for a tile and those around it.
     template <class Body> void for_each_near(int tile, const Body& body) const {
-        const int row = tile / per_side_;
-        const int column = tile % per_side_;
-        for (int r = std::max(row - 1, 0); r <= std::min(row + 1, per_side_ - 1); ++r) {
-            for (int c = std::max(column - 1, 0); c <= std::min(column + 1, per_side_ - 1); ++c) {
-                body(r * per_side_ + c);
+        const auto [columns, rows] = counts_;
+        const int row = tile / columns;
+        const int column = tile % columns;
+        for (int r = std::max(row - 1, 0); r <= std::min(row + 1, rows - 1); ++r) {
+            for (int c = std::max(column - 1, 0); c <= std::min(column + 1, columns - 1); ++c) {
+                body(r * columns + c);
             }
         }
     }
 
   private:
-    int along(Real position) const {
-        const Real scaled = position / side_;
-        return scaled > 0 ? static_cast<int>(std::min(scaled, static_cast<Real>(per_side_ - 1))) : 0;
+    static int along(Real position, Real side, int count) {
+        const Real scaled = position / side;
+        return scaled > 0 ? static_cast<int>(std::min(scaled, static_cast<Real>(count - 1))) : 0;
     }
 
-    Real edge(int k) const {
-        return k == 0           ? -Bounds<Real>::infinity
-               : k == per_side_ ? Bounds<Real>::infinity
-                                : static_cast<Real>(k) * side_;
+    static Real edge(int k, Real side, int count) {
+        return k == 0       ? -Bounds<Real>::infinity
+               : k == count ? Bounds<Real>::infinity
+                            : static_cast<Real>(k) * side;
     }
 
-    int per_side_;
-    Real side_;
+    TileCounts counts_;
+    Real width_; ///< of a tile
+    Real height_;
 };
 
 } // namespace carom

@@ -40,6 +40,12 @@ TEST(CheapestBelow, IsTheCheapestOfThoseThatReachTheBound) {
     EXPECT_EQ(cheapest_below({}, 1, 10), std::nullopt);
 }
 
+TEST(CheapestBelow, TakesTheMostExactOfThoseThatCostAboutAsLittle) {
+    const std::vector<Tried> all{tried(1, 0.1, 1), tried(2, 0.05, 1.09), tried(4, 0.02, 1.11)};
+    EXPECT_EQ(cheapest_below(all, 0.2, 10)->method.substeps, 2);
+    EXPECT_EQ(cheapest_below(all, 0.03, 10)->method.substeps, 4);
+}
+
 TEST(CheapestBelow, CountsWhatTheTrialLeavesOpenAgainstAMethod) {
     const std::vector<Tried> all{tried(1, 0.009, 1, 0.002), tried(2, 0.005, 2, 0.002)};
     EXPECT_EQ(cheapest_below(all, 0.01, 10)->method.substeps, 2);
@@ -139,7 +145,7 @@ TEST_P(KeptPromise, OnScenesNotSeenBefore) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         const Scene scene = unseen(seed);
         for (const double bound : {0.1, 0.01, 1e-9}) {
-            const Trial trial = try_methods(scene, {}, GetParam(), bound);
+            const Trial trial = try_methods(scene, {}, GetParam(), bound, typical_costs());
             const auto choice = cheapest_below(trial.tried, bound, scene.steps);
             ASSERT_TRUE(choice) << seed << ": the event-driven simulation reaches " << bound;
             const Method method = choice->method;
@@ -165,7 +171,8 @@ TEST(KeepPromise, NamesTheCheapestOfAllThatKeepTheBound) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
         const Scene scene = unseen(seed);
         const Tuning tuning;
-        const auto promise = Promises(scene, tuning).keep(Measure::path, 0.05);
+        const Costs costs = typical_costs();
+        const auto promise = Promises(scene, tuning, costs).keep(Measure::path, 0.05);
         ASSERT_TRUE(promise);
         EXPECT_TRUE(promise->is_kept());
         EXPECT_EQ(promise->delivered.method, promise->promised.method);
@@ -179,7 +186,8 @@ TEST(KeepPromise, NamesTheCheapestOfAllThatKeepTheBound) {
 TEST(KeepPromise, OfNoSuchMethodIsNotMade) {
     const Scene scene = unseen(3);
     const Tuning tuning;
-    EXPECT_FALSE(Promises(scene, tuning).keep(Measure::path, 1e-30));
+    const Costs costs = typical_costs();
+    EXPECT_FALSE(Promises(scene, tuning, costs).keep(Measure::path, 1e-30));
 }
 
 TEST(ErrorOf, IsNotANumberWhereThereIsNoReference) {
@@ -199,7 +207,7 @@ TEST(ErrorOf, IsNotANumberWhereThereIsNoReference) {
 
 TEST(TryMethods, TriesNothingThatCostsMoreThanWhatReachesTheBound) {
     const Scene scene = unseen(3);
-    const Trial trial = try_methods(scene, {}, Measure::path, 0.5);
+    const Trial trial = try_methods(scene, {}, Measure::path, 0.5, typical_costs());
     EXPECT_EQ(trial.tried.front().method.variant, &event_driven());
     for (const Tried& one : trial.tried) {
         EXPECT_EQ(one.method.substeps, 1) << one.method.variant->name << ": the first step is good enough";
@@ -211,7 +219,7 @@ TEST(TryMethods, TriesNothingThatCostsMoreThanWhatReachesTheBound) {
 TEST(TryMethods, TriesFewSubstepsOfAllBeforeManyOfOne) {
     const Scene scene = unseen(1);
     const double out_of_reach = 1e-300;
-    const Trial trial = try_methods(scene, {}, Measure::path, out_of_reach);
+    const Trial trial = try_methods(scene, {}, Measure::path, out_of_reach, typical_costs());
     std::vector<int> substeps;
     for (const Tried& one : trial.tried) {
         substeps.push_back(one.method.substeps);
@@ -231,7 +239,7 @@ TEST(TryMethods, TriesAllOfALargeSceneWhoseRunCostsLittle) {
                                   .seed = 7,
                                   .placement = Placement::random,
                                   .isotropic = true});
-    const Trial trial = try_methods(scene, {}, Measure::collision_rate, 0.5);
+    const Trial trial = try_methods(scene, {}, Measure::collision_rate, 0.5, typical_costs());
     EXPECT_TRUE(trial.whole_scene);
     EXPECT_EQ(trial.units_of_time, 8);
     for (const Tried& one : trial.tried) {

@@ -150,8 +150,8 @@ TEST(MeasureErrors, GivesTheReferenceUpAtItsLimitAndSaysSo) {
     const Scene scene = tests::random_scene(200, 60, 1, 5, 1, 41);
     const ErrorMeasures measures = measure_errors(scene, published, {}, 100);
     EXPECT_FALSE(measures.reference);
-    EXPECT_PRED_FORMAT2(testing::IsSubstring, "given up at time", measures.reference_reason);
-    EXPECT_PRED_FORMAT2(testing::IsSubstring, "of 5 after 100 events", measures.reference_reason);
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "given up before time", measures.reference_reason);
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "of 5, after 100 collisions", measures.reference_reason);
     const auto json = error_measures_json(measures);
     EXPECT_TRUE(json["trajectory"].is_null());
     EXPECT_EQ(json["reference_reason"], measures.reference_reason);

@@ -19,20 +19,23 @@ class AgreementOfTiles : public testing::Test {
     static constexpr int left = 0;
     static constexpr int right = 1;
 
-    AgreementOfTiles()
-        : flights_{{.x = 45, .y = 20}, {.x = 53, .y = 20}, {.x = 85, .y = 20}}, tile_of_{left, right, right},
-          place_{0, 1, 2}, tiles_(4) {
+    AgreementOfTiles() : tiles_(4) {
         for (int tile = 0; tile < grid_.count(); ++tile) {
             tiles_[static_cast<std::size_t>(tile)].bounds = grid_.bounds(tile);
         }
-        tiles_[left].held = {{0, true, true}, {1, false, true}};
-        tiles_[right].held = {{0, false, true}, {1, true, true}, {2, true, false}};
+        const std::vector<Flight<double>> flights{{.x = 45, .y = 20}, {.x = 53, .y = 20}, {.x = 85, .y = 20}};
+        tiles_[left].held = {{0, left, 0}, {1, right, 1}};
+        tiles_[left].kinds = {Kind::shared, Kind::copy};
+        tiles_[left].began = {flights[0], flights[1]};
+        tiles_[right].held = {{0, left, 0}, {1, right, 1}, {2, right, 2}};
+        tiles_[right].kinds = {Kind::copy, Kind::shared, Kind::own};
+        tiles_[right].began = flights;
         for (auto& tile : tiles_) {
             tile.begin();
         }
-        tiles_[left].owned_is_at(0, {45, 20});
-        tiles_[right].owned_is_at(1, {53, 20});
-        tiles_[right].owned_is_at(2, {85, 20});
+        tiles_[left].shared_is_at({45, 20});
+        tiles_[right].shared_is_at({53, 20});
+        tiles_[right].own_is_at({85, 20});
     }
 
     /// A disc meets a wall in one tile, and flies on from there so.
@@ -40,15 +43,14 @@ class AgreementOfTiles : public testing::Test {
         tiles_[static_cast<std::size_t>(tile)].collided({time, 0, place, place, after, after});
     }
 
+    /// Disc 1 begins there in both tiles.
+    void begins_at(double x) { tiles_[left].began[1].x = tiles_[right].began[1].x = x; }
+
     bool agree() const {
-        const Window<double> window{.begin = 0,
-                                    .end = 1,
-                                    .halo = halo,
-                                    .grid = grid_,
-                                    .tiles = tiles_,
-                                    .flights = flights_,
-                                    .tile_of = tile_of_,
-                                    .place = place_};
+        Window<double> window{.begin = 0, .end = 1, .halo = halo, .grid = grid_, .tiles = {}};
+        for (const auto& tile : tiles_) {
+            window.tiles.push_back(&tile);
+        }
         const Agreement<double> agreement(window, 1);
         bool all = true;
         for (int tile = 0; tile < grid_.count(); ++tile) {
@@ -57,10 +59,7 @@ class AgreementOfTiles : public testing::Test {
         return all;
     }
 
-    TileGrid<double> grid_{100, 2};
-    std::vector<Flight<double>> flights_;
-    std::vector<int> tile_of_;
-    std::vector<int> place_;
+    TileGrid<double> grid_{100, {.columns = 2, .rows = 2}};
     std::vector<TileHistory<double>> tiles_;
 };
 
@@ -98,7 +97,7 @@ TEST_F(AgreementOfTiles, FailsWhereACopyNearByCollidesAtAnotherTime) {
 }
 
 TEST_F(AgreementOfTiles, DoesNotAskForWhatACopyDoesFarAway) {
-    flights_[1].x = 59;
+    begins_at(59);
     meets_wall(right, 1, 0.5, {59, 20, 1, 0});
     EXPECT_TRUE(agree());
     tiles_[right].begin();
@@ -110,14 +109,14 @@ TEST_F(AgreementOfTiles, DoesNotAskForWhatACopyDoesFarAway) {
 }
 
 TEST_F(AgreementOfTiles, AsksForFartherOnesWhereAnOwnedDiscComesOut) {
-    flights_[1].x = 59;
+    begins_at(59);
     meets_wall(right, 1, 0.5, {59, 20, 1, 0});
-    tiles_[left].owned_is_at(0, {57, 20});
+    tiles_[left].shared_is_at({57, 20});
     EXPECT_FALSE(agree());
 }
 
 TEST_F(AgreementOfTiles, FailsWhereADiscWithoutACopyComesNear) {
-    tiles_[right].owned_is_at(2, {51, 20});
+    tiles_[right].own_is_at({51, 20});
     EXPECT_FALSE(agree());
 }
 
@@ -129,9 +128,9 @@ TEST_F(AgreementOfTiles, FailsWhereADiscComesNearATileThatHasNoCopyOfIt) {
 }
 
 TEST_F(AgreementOfTiles, FailsWhereAnOwnedDiscComesFarOut) {
-    tiles_[left].owned_is_at(0, {73, 20});
+    tiles_[left].shared_is_at({73, 20});
     EXPECT_TRUE(agree());
-    tiles_[left].owned_is_at(0, {74.5, 20});
+    tiles_[left].shared_is_at({74.5, 20});
     EXPECT_FALSE(agree()) << "tiles beyond those beside it have no copy of it";
 }
 

@@ -176,5 +176,18 @@ TEST(EventQueue, KnowsWhatComesNextAsARule) {
     EXPECT_GT(known, 0.99 * events * (1 + EventQueue<double>::ahead));
 }
 
+TEST(EventQueue, OrdersEventsOfOneInstantByTheNumbersOfTheDiscs) {
+    const std::vector<int> falling = {30, 20, 10};
+    EventQueue<double> queue(2);
+    queue.set(0, 1, 1);
+    queue.number(falling); // makes room for a third disc
+    queue.set(2, 1, 2);
+    EXPECT_EQ(queue.earliest_time(), 1);
+    EXPECT_EQ(queue.earliest(), 2);
+    queue.set(1, 1, -1); // of nobody else: before all others
+    EXPECT_EQ(queue.earliest_time(), 1);
+    EXPECT_EQ(queue.earliest(), 1);
+}
+
 } // namespace
 } // namespace carom::tests

@@ -1,3 +1,4 @@
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -17,13 +18,20 @@ struct LastState {
     std::vector<Disc> discs;
     std::int64_t pair_collisions;
     std::int64_t wall_collisions;
+    double wall_impulse;
+    std::array<double, 2> momentum_from_walls;
     bool operator==(const LastState&) const = default;
 };
+
+template <class Simulation> LastState last_state(const Simulation& simulation) {
+    return {simulation.discs(), simulation.pair_collisions(), simulation.wall_collisions(),
+            simulation.wall_impulse(), simulation.momentum_from_walls()};
+}
 
 LastState in_order(const Scene& scene, double time) {
     EventDriven<double> simulation(scene);
     EXPECT_TRUE(simulation.advance(time));
-    return {simulation.discs(), simulation.pair_collisions(), simulation.wall_collisions()};
+    return last_state(simulation);
 }
 
 struct InWindows {
@@ -39,9 +47,7 @@ InWindows in_windows(const Scene& scene, double time, int threads, const WindowS
     for (int look = 1; look <= looks; ++look) {
         EXPECT_TRUE(simulation.advance(time * look / looks));
     }
-    return {{simulation.discs(), simulation.pair_collisions(), simulation.wall_collisions()},
-            simulation.windows(),
-            simulation.repeated()};
+    return {last_state(simulation), simulation.windows(), simulation.repeated()};
 }
 
 struct Case {
@@ -93,10 +99,11 @@ std::vector<Case> cases() {
 TEST(EventWindows, EndInTheSameBitsForAnyTilesAndThreads) {
     for (const auto& [name, scene, time] : cases()) {
         const LastState expected = in_order(scene, time);
-        for (const int tiles : {1, 2, 3, 7}) {
-            for (const int threads : tiles == 3 ? std::vector{1, 2, 3, 8} : std::vector{2}) {
-                const InWindows found = in_windows(scene, time, threads, {.tiles_per_side = tiles});
-                EXPECT_TRUE(found.last == expected) << name << ", " << tiles << " tiles, " << threads;
+        for (const TileCounts& tiles :
+             {TileCounts{}, TileCounts{2, 1}, TileCounts{1, 3}, TileCounts{3, 3}, TileCounts{7, 7}}) {
+            for (const int threads : tiles.all() == 9 ? std::vector{1, 2, 3, 8} : std::vector{2}) {
+                const InWindows found = in_windows(scene, time, threads, {.tiles = tiles});
+                EXPECT_TRUE(found.last == expected) << name << ", " << tiles.all() << " tiles, " << threads;
             }
         }
     }
@@ -112,10 +119,29 @@ TEST(EventWindows, EndInTheSameBitsForAnyHaloAndLengthAndHoweverOftenOneLooks) {
         const LastState expected = in_order(scene, time);
         for (const auto& [halo, collisions, looks] :
              {Shared{0, 0.5, 1}, Shared{3, 0.1, 7}, Shared{30, 20, 1}, Shared{0, 20, 7}}) {
-            const WindowSettings settings{
-                .tiles_per_side = 3, .halo = halo, .collisions_per_disc = collisions};
+            const WindowSettings settings{.tiles = {3, 3}, .halo = halo, .collisions_per_disc = collisions};
             EXPECT_TRUE(in_windows(scene, time, 2, settings, looks).last == expected)
                 << name << ", halo " << halo << ", " << collisions << " collisions, " << looks;
+        }
+    }
+}
+
+class Kept : public CollisionLog<double> {
+  public:
+    void collided(const Collision<double>& one) override { all.push_back(one); }
+    std::vector<Collision<double>> all;
+};
+
+TEST(EventWindows, TellTheSameCollisionsInTheSameOrder) {
+    for (const auto& [name, scene, time] : cases()) {
+        Kept expected;
+        EventDriven<double, CollisionLog<double>&> in_one_piece(scene, expected);
+        EXPECT_TRUE(in_one_piece.advance(time));
+        for (const TileCounts& tiles : {TileCounts{}, TileCounts{1, 2}, TileCounts{5, 5}}) {
+            Kept found;
+            EventWindows<double, CollisionLog<double>&> simulation(scene, 2, {.tiles = tiles}, found);
+            EXPECT_TRUE(simulation.advance(time));
+            EXPECT_TRUE(found.all == expected.all) << name << ", " << tiles.all() << " tiles";
         }
     }
 }
@@ -123,8 +149,8 @@ TEST(EventWindows, EndInTheSameBitsForAnyHaloAndLengthAndHoweverOftenOneLooks) {
 /// A halo that is too narrow is noticed: more of the windows have to be done again than with a wide one.
 TEST(EventWindows, NoticeThatTilesDisagree) {
     const Scene scene = lattice_scene(60, 0.6, 3);
-    const WindowSettings narrow{.tiles_per_side = 3, .halo = 0, .widen = 1, .narrow = 1};
-    const WindowSettings wide{.tiles_per_side = 3, .halo = 14, .widen = 1, .narrow = 1};
+    const WindowSettings narrow{.tiles = {3, 3}, .halo = 0, .widen = 1, .narrow = 1};
+    const WindowSettings wide{.tiles = {3, 3}, .halo = 14, .widen = 1, .narrow = 1};
     EXPECT_GT(in_windows(scene, 3, 2, narrow).repeated, 3);
     EXPECT_EQ(in_windows(scene, 3, 2, wide).repeated, 0);
     EXPECT_GT(in_windows(scene, 3, 2, wide).windows, 3);
@@ -132,23 +158,23 @@ TEST(EventWindows, NoticeThatTilesDisagree) {
 
 TEST(EventWindows, SayThatCollisionsOfAnInstantDoNotEnd) {
     const Scene wedged{.side = 2, .radius = 1, .steps = 0, .discs = {{1, 1, 1, 0}}};
-    EventWindows<double> simulation(wedged, 2, {.tiles_per_side = 2, .at_once = 1000});
-    EXPECT_FALSE(simulation.advance(1));
+    EventWindows<double> simulation(wedged, 2, {.tiles = {2, 2}});
+    EXPECT_FALSE(simulation.advance(1, {.at_once = 1000}));
 }
 
 TEST(EventWindows, AreCutWhereThatPays) {
-    EXPECT_EQ(tiles_per_side(1'000'000, 1), 1);
-    EXPECT_EQ(tiles_per_side(1'000'000, 3), 1);
-    EXPECT_EQ(tiles_per_side(2'000, 64), 1);
-    EXPECT_EQ(tiles_per_side(20'000, 16), 3);
-    EXPECT_EQ(tiles_per_side(100'000, 4), 3);
-    EXPECT_EQ(tiles_per_side(100'000, 16), 6);
-    EXPECT_EQ(tiles_per_side(1'000'000, 16), 10);
+    EXPECT_EQ(tiles_for(2'000, 64), TileCounts{});
+    EXPECT_EQ(tiles_for(15'000, 2), TileCounts{});
+    EXPECT_EQ(tiles_for(20'000, 2), (TileCounts{2, 1}));
+    EXPECT_EQ(tiles_for(100'000, 1), TileCounts{});
+    EXPECT_EQ(tiles_for(100'000, 4), (TileCounts{2, 2}));
+    EXPECT_EQ(tiles_for(1'000'000, 1), (TileCounts{4, 4}));
+    EXPECT_EQ(tiles_for(1'000'000, 64), (TileCounts{8, 8}));
 }
 
 TEST(EventWindows, BeginAnew) {
     const Scene scene = lattice_scene(30, 0.5, 2);
-    EventWindows<double> simulation(scene, 2, {.tiles_per_side = 2});
+    EventWindows<double> simulation(scene, 2, {.tiles = {2, 2}});
     EXPECT_TRUE(simulation.advance(2));
     const std::vector<Disc> first = simulation.discs();
     simulation.restart(scene);

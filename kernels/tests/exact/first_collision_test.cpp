@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -81,7 +82,8 @@ int compare(const Scene& scene, double foreseen = no_meeting) {
         }
         one.collision_time = foreseen;
         one.partner = -7;
-        FirstCollision<double> first(flights.all, flights.cells, static_cast<int>(i),
+        const std::vector<int> in_order;
+        FirstCollision<double> first(flights.all, flights.cells, in_order, static_cast<int>(i),
                                      4 * scene.radius * scene.radius);
         for (const int offset : flights.cells.nine()) {
             first.look_into(one.cell + offset);
@@ -157,13 +159,20 @@ TEST(FirstCollision, OfSeveralAtOneInstantIsThatOfTheLowestNumber) {
                 flights.push_back({.x = disc.x, .y = disc.y, .vx = disc.vx, .vy = disc.vy, .cell = cell});
                 cells.insert(static_cast<int>(flights.size()) - 1, cell);
             }
-            FirstCollision<double> first(flights, cells, static_cast<int>(middle), 4);
-            for (int cell = cells.stride() + 1; cell < cells.stride() * (cells.stride() - 1); ++cell) {
-                first.look_into(cell);
+            const int lowest = middle == 0 ? 1 : 0;
+            const int highest = middle == around.size() ? 3 : 4;
+            const std::vector<int> falling = {50, 40, 30, 20, 10};
+            for (const auto& [numbers, partner] :
+                 {std::pair{std::vector<int>(), lowest}, std::pair{falling, highest}}) {
+                std::vector<Flight<double>> anew = flights;
+                FirstCollision<double> first(anew, cells, numbers, static_cast<int>(middle), 4);
+                for (int cell = cells.stride() + 1; cell < cells.stride() * (cells.stride() - 1); ++cell) {
+                    first.look_into(cell);
+                }
+                first.foresee();
+                EXPECT_EQ(anew[middle].collision_time, 2);
+                EXPECT_EQ(anew[middle].partner, partner);
             }
-            first.foresee();
-            EXPECT_EQ(flights[middle].collision_time, 2);
-            EXPECT_EQ(flights[middle].partner, middle == 0 ? 1 : 0);
         }
     }
 }
