@@ -200,9 +200,6 @@ auto take_turns(int threads, Lanes<Turn>& lanes, SomeProbe& probe, const Body& b
     return total;
 }
 
-/// The number of the calling thread, in a loop.
-inline int this_thread() { return omp_get_thread_num(); }
-
 /// Runs `body(thread)` once on each of the same threads that `parallel_for` with as many threads uses.
 template <class Body> void on_each_thread(int threads, const Body& body) {
 #pragma omp parallel num_threads(threads)
