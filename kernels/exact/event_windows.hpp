@@ -44,8 +44,9 @@ inline TileCounts tiles_for(std::size_t discs, int threads) {
         return {};
     }
     const double columns = std::ceil(std::sqrt(wanted) - 0.01);
-    return {.columns = static_cast<int>(columns),
-            .rows = static_cast<int>(std::ceil(wanted / columns - 0.01))};
+    const double rows = std::ceil(wanted / columns - 0.01);
+    const double fitting = std::max(std::floor(count / least_discs / columns), 1.0);
+    return {.columns = static_cast<int>(columns), .rows = static_cast<int>(std::min(rows, fitting))};
 }
 
 /// The event-driven simulation on several threads, to the same bits as on one (event_driven.hpp).

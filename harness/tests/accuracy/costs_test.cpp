@@ -6,6 +6,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "harness/accuracy/choice.hpp"
 #include "harness/accuracy/costs.hpp"
@@ -41,7 +42,8 @@ TEST(Costs, CountTheWorkOfAScene) {
 /// A cache of its own, and the usual one again at the end.
 class KeptCosts : public testing::Test {
   protected:
-    KeptCosts() : folder_(std::filesystem::temp_directory_path() / "carom_costs_test") {
+    KeptCosts()
+        : folder_(std::filesystem::temp_directory_path() / ("carom_costs_test_" + std::to_string(getpid()))) {
         const char* usual = std::getenv("XDG_CACHE_HOME");
         usual_ = usual != nullptr ? usual : "";
         std::filesystem::remove_all(folder_);

@@ -166,7 +166,9 @@ TEST(EventWindows, AreCutWhereThatPays) {
     EXPECT_EQ(tiles_for(2'000, 64), TileCounts{});
     EXPECT_EQ(tiles_for(15'000, 2), TileCounts{});
     EXPECT_EQ(tiles_for(20'000, 2), (TileCounts{2, 1}));
+    EXPECT_EQ(tiles_for(20'000, 16), (TileCounts{2, 1}));
     EXPECT_EQ(tiles_for(100'000, 1), TileCounts{});
+    EXPECT_EQ(tiles_for(100'000, 3), (TileCounts{2, 2}));
     EXPECT_EQ(tiles_for(100'000, 4), (TileCounts{2, 2}));
     EXPECT_EQ(tiles_for(1'000'000, 1), (TileCounts{4, 4}));
     EXPECT_EQ(tiles_for(1'000'000, 64), (TileCounts{8, 8}));
