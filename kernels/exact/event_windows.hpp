@@ -23,7 +23,8 @@ namespace carom {
 /// How the event-driven simulation shares a scene out. No result depends on it.
 struct WindowSettings {
     TileCounts tiles = {};
-    double halo = 18;               ///< how far from a tile discs are copied, in radii, at first
+    double halo = 12;               ///< how far from a tile discs are copied at first, in radii,
+    double halo_paths = 4;          ///< and so many mean free paths more
     double collisions_per_disc = 2; ///< of a window
     double widen = 1.3;             ///< the halo by that, when tiles disagree
     double narrow = 0.995;          ///< and by that, down to a third, when they agree
@@ -76,7 +77,8 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         now_ = stuck_at_ = 0;
         pair_collisions_ = wall_collisions_ = windows_ = repeated_ = 0;
         wall_sums_.clear(count_);
-        halo_ = static_cast<Real>(settings_.halo) * radius_;
+        first_halo_ = first_halo(scene);
+        halo_ = first_halo_;
         window_ = first_window(scene);
         std::vector<Flight<Real>> flights;
         begin_flights(scene, flights);
@@ -125,8 +127,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         for (int repetition = 0; repetition < settings_.most_repetitions; ++repetition) {
             const Real end = end_of_window(time);
             if (simulate(end)) {
-                const auto least = static_cast<Real>(settings_.halo / 3) * radius_;
-                halo_ = std::max(halo_ * static_cast<Real>(settings_.narrow), least);
+                halo_ = std::max(halo_ * static_cast<Real>(settings_.narrow), first_halo_ / 3);
                 accept(end);
                 return true;
             }
@@ -194,7 +195,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         if (end - now_ >= window_ / 2) { // a shorter one says little
             const Real per_disc = 2 * static_cast<Real>(pairs) / static_cast<Real>(count_ + 1);
             const Real wanted = static_cast<Real>(settings_.collisions_per_disc);
-            window_ *= per_disc > 0 ? std::clamp(wanted / per_disc, Real(0.5), Real(2)) : Real(2);
+            window_ *= per_disc > 0 ? std::clamp(wanted / per_disc, Real(0.5), Real(1.5)) : Real(1.5);
         }
         now_ = end;
     }
@@ -232,6 +233,16 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
                                         [&](int tile) { body(*tiles_[index(tile)]); });
     }
 
+    /// In a window what is wrong at the edge comes the farther the farther discs fly between collisions. The
+    /// mean free path in a dilute gas of discs of diameter d, n of them an area, is 1 / (sqrt(8) d n).
+    Real first_halo(const Scene& scene) const {
+        const double discs = static_cast<double>(scene.discs.size()) / scene.side / scene.side;
+        const double path = 1 / (std::sqrt(8.0) * 2 * scene.radius * discs);
+        const auto halo =
+            static_cast<Real>(settings_.halo * scene.radius + (discs > 0 ? settings_.halo_paths * path : 0));
+        return std::min(halo, grid_.least_side());
+    }
+
     /// Until a disc of root mean square speed has flown half a radius.
     Real first_window(const Scene& scene) const {
         double squares = 0;
@@ -252,6 +263,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
     Real radius_;
     Real now_ = 0;
     Real stuck_at_ = 0; ///< where a window in one tile has ended
+    Real first_halo_ = 0;
     Real halo_ = 0;
     std::int64_t at_once_ = 0; ///< events, at most
     Real window_ = 0;          ///< how long the next one is to be

@@ -119,7 +119,8 @@ TEST(EventWindows, EndInTheSameBitsForAnyHaloAndLengthAndHoweverOftenOneLooks) {
         const LastState expected = in_order(scene, time);
         for (const auto& [halo, collisions, looks] :
              {Shared{0, 0.5, 1}, Shared{3, 0.1, 7}, Shared{30, 20, 1}, Shared{0, 20, 7}}) {
-            const WindowSettings settings{.tiles = {3, 3}, .halo = halo, .collisions_per_disc = collisions};
+            const WindowSettings settings{
+                .tiles = {3, 3}, .halo = halo, .halo_paths = 0, .collisions_per_disc = collisions};
             EXPECT_TRUE(in_windows(scene, time, 2, settings, looks).last == expected)
                 << name << ", halo " << halo << ", " << collisions << " collisions, " << looks;
         }
@@ -149,8 +150,8 @@ TEST(EventWindows, TellTheSameCollisionsInTheSameOrder) {
 /// A halo that is too narrow is noticed: more of the windows have to be done again than with a wide one.
 TEST(EventWindows, NoticeThatTilesDisagree) {
     const Scene scene = lattice_scene(60, 0.6, 3);
-    const WindowSettings narrow{.tiles = {3, 3}, .halo = 0, .widen = 1, .narrow = 1};
-    const WindowSettings wide{.tiles = {3, 3}, .halo = 14, .widen = 1, .narrow = 1};
+    const WindowSettings narrow{.tiles = {3, 3}, .halo = 0, .halo_paths = 0, .widen = 1, .narrow = 1};
+    const WindowSettings wide{.tiles = {3, 3}, .halo = 14, .halo_paths = 0, .widen = 1, .narrow = 1};
     EXPECT_GT(in_windows(scene, 3, 2, narrow).repeated, 3);
     EXPECT_EQ(in_windows(scene, 3, 2, wide).repeated, 0);
     EXPECT_GT(in_windows(scene, 3, 2, wide).windows, 3);
