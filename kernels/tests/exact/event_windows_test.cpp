@@ -81,10 +81,19 @@ Scene at_rest_but_one() {
     return scene;
 }
 
+/// A blow is handed on at one instant, from higher numbers to lower ones and from tile to tile.
+Scene touching() {
+    return {.side = 20,
+            .radius = 1,
+            .steps = 0,
+            .discs = {{14, 10, 0, 0}, {12, 10, 0, 0}, {10, 10, 0, 0}, {8, 10, 0, 0}, {4, 10, 1, 0}}};
+}
+
 std::vector<Case> cases() {
     return {{"nothing", {.side = 10, .radius = 1, .steps = 0, .discs = {}}, 5},
             {"one disc", {.side = 10, .radius = 1, .steps = 0, .discs = {{5, 5, 2, 1}}}, 30},
             {"cradle", cradle(), 20},
+            {"touching", touching(), 20},
             {"from outside", outside(), 9},
             {"tied", tied(), 8},
             {"a fast one", a_fast_one_among_slow_ones(), 2},
