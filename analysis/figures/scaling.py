@@ -117,7 +117,7 @@ def oversubscription(data: Data) -> Drawing | None:
 def _against_hardware(axes: Axes, table: pd.DataFrame, reference: pd.DataFrame) -> None:
     """Draw the ratios to as many threads as the machine has in per cent."""
     own = pd.DataFrame([{"x": x, "ratio": 1.0} for x in reference["x"].unique()], columns=table.columns)
-    table = pd.concat([own, table]) if len(table) else own
+    table = pd.concat([own, table], ignore_index=True) if len(table) else own
     within = reach(table)
     axes.set_ylim(*within)
     ratio_band(axes)

@@ -123,7 +123,7 @@ def _against_own(axes: Axes, times: pd.DataFrame, published: pd.DataFrame, look:
     at = _level(times, published)
     table, margin = differences_from(times, times["x"] == at), stated(times).margin
     own = pd.DataFrame([{"x": at, "ratio": 1.0, "low": 1.0, "high": 1.0}])
-    table = pd.concat([table, own])
+    table = pd.concat([table, own], ignore_index=True)
     theirs, at_theirs = _published_ratios(published, at)
     within = reach(pd.concat([table, theirs]), margin)
     ratio_band(axes, margin)

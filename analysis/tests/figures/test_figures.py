@@ -72,13 +72,16 @@ def test_a_pair_has_the_names_of_the_series_of_its_question(experiment: str) -> 
 
 
 @pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.name)
-@pytest.mark.parametrize("kept", ["one block", "one point", "half"])
+@pytest.mark.parametrize("kept", ["one block", "one point", "half", "both ends"])
 def test_partial_data_are_drawn_or_left_out_but_never_fail(tmp_path: Path, entry: Entry, kept: str) -> None:
     records = study([entry.experiment], blocks=3, noise=Noise(), seed=3)
     if kept == "one block":
         records = [record for record in records if record["tags"]["block"] == 0]
     elif kept == "one point":
         records = [record for record in records if record["tags"]["point"] == records[0]["tags"]["point"]]
+    elif kept == "both ends":
+        x = [float(record["tags"].get("x", 0)) for record in records]
+        records = [record for record, one in zip(records, x, strict=True) if one in (min(x), max(x))]
     else:
         records = records[::2]
     write(tmp_path, records)
