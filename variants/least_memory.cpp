@@ -6,6 +6,7 @@
 
 #include "kernels/contacts.hpp"
 #include "kernels/exact/flight.hpp"
+#include "kernels/exact/tile_history.hpp"
 #include "kernels/grid.hpp"
 #include "kernels/state.hpp"
 #include "variants/event_driven_variant.hpp"
@@ -74,9 +75,10 @@ std::int64_t least_memory(const Variant& variant, const Scene& box, std::int64_t
     Bytes bytes;
     bytes.add<Disc>(discs);
     if (variant.engine == Engine::event_driven) {
-        const bool in_windows = event_driven_threads(static_cast<std::size_t>(discs), threads) > 1;
-        bytes.add<Flight<double>>((in_windows ? 2 : 1) * discs); // at both ends of a window
-        bytes.add<std::array<double, 2>>(discs);                 // in the queue, or by tile
+        const bool in_tiles = tiles_for(static_cast<std::size_t>(discs), threads).all() > 1;
+        bytes.add<Flight<double>>((in_tiles ? 2 : 1) * discs); // now, and as the window began
+        bytes.add<Held>(in_tiles ? discs : 0);
+        bytes.add<std::array<double, 2>>(discs); // in the queue
         return bytes.sum();
     }
     const std::int64_t steps = variant.policies.precision == Precision::float_

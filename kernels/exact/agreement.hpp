@@ -64,10 +64,10 @@ template <class Real> class Agreement {
         const Flight<Real>& before = tile.began[index(place)];
         const std::array<Real, 2> start = position(before, window_.begin);
         const Bounds<Real> flown = path(tile, before, tile.first(place), window_.begin);
-        bool away = true;
         if (tile.bounds.depth(flown) > farthest + near_) {
-            return away;
+            return true;
         }
+        bool away = true;
         window_.grid.for_each_near(number, [&](int other) {
             const TileHistory<Real>& around = of_tile(other);
             if (other != number && around.bounds.distance(start) > window_.halo) {
