@@ -80,7 +80,7 @@ Work work_of_events(const Scene& scene) {
     for (const Disc& disc : scene.discs) {
         flown += std::abs(disc.vx) + std::abs(disc.vy);
     }
-    return {.moved = flown / cell};
+    return {.moved = flown / cell, .near = count};
 }
 
 nlohmann::ordered_json costs_json(const Costs& costs) {

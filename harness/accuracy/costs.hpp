@@ -17,7 +17,8 @@ namespace carom {
 struct Work {
     double placed = 0;     ///< discs put in place at the start
     double moved = 0;      ///< discs times steps; of the event-driven simulation, crossings between cells
-    double near = 0;       ///< pairs near enough to be looked at; not counted of the event-driven one
+    double near = 0;       ///< pairs near enough to be looked at; of the event-driven simulation, discs times
+                           ///< units of time, since it may look through them all when it is looked at
     double collisions = 0; ///< made
 
     Work& operator+=(const Work& more);

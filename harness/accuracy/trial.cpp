@@ -9,11 +9,10 @@
 #include <utility>
 
 #include "harness/accuracy/companion.hpp"
-#include "harness/accuracy/momentum_balance.hpp"
+#include "harness/accuracy/method_run.hpp"
 #include "harness/scenes/piece.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/process_clock.hpp"
-#include "harness/verify/rounding.hpp"
 #include "kernels/exact/event_driven.hpp"
 #include "variants/event_driven_variant.hpp"
 
@@ -27,9 +26,6 @@ constexpr double seconds_of_all = 0.8;
 
 /// Of a trial of an average, which needs some units of time to become what it stays.
 constexpr int fewest_units_of_average = 8;
-
-/// To tell what a step does to the walls takes some three times as long as the step.
-constexpr double steps_of_watch = 3;
 
 /// Of the error of paths in a piece, which is not the scene.
 constexpr double margin_of_piece = 0.25;
@@ -56,46 +52,6 @@ Scene scene_of_trial(const Scene& scene, Measure measure, const Costs& costs) {
         exact_work(piece, static_cast<double>(simulation.pair_collisions() + simulation.wall_collisions()));
     return costs.seconds(event_driven(), discs, work) * scene.steps <= seconds_of_one ? scene : piece;
 }
-
-/// What a trial is of: fixed before a method runs.
-struct TrialCase {
-    const Scene& scene;
-    const Tuning& tuning;
-    Measure measure;
-    double bound;
-    const Costs& costs;
-    Scene piece; ///< what runs: the scene itself, or a piece of it
-
-    bool is_whole() const { return scene.discs.size() == piece.discs.size(); }
-
-    /// How many times as many discs as the piece the scene has, and how many times as much of what is
-    /// averaged.
-    double times_larger() const {
-        return static_cast<double>(scene.discs.size()) /
-               static_cast<double>(std::max<std::size_t>(piece.discs.size(), 1));
-    }
-    double times_more() const {
-        return measure == Measure::pressure ? scene.side / piece.side : times_larger();
-    }
-
-    /// Seconds of that work on the piece.
-    double seconds(const Method& method, const Work& work) const {
-        return costs.seconds(*method.variant, static_cast<double>(piece.discs.size()), work);
-    }
-    /// Seconds of as much for each disc of the scene.
-    double seconds_of_scene(const Method& method, const Work& work) const {
-        return costs.seconds(*method.variant, static_cast<double>(scene.discs.size()), times_larger() * work);
-    }
-    Work placed() const { return {.placed = static_cast<double>(piece.discs.size())}; }
-};
-
-/// What a method did in a trial.
-struct Ran {
-    std::vector<Disc> at_one;    ///< the state after one unit of time
-    std::vector<double> amounts; ///< of what the measure is the average of, in each unit of time
-    Work work;                   ///< of all units of time, which are as many as amounts
-    double seconds = 0;          ///< that it costs, setting up and watching included
-};
 
 /// What the event-driven simulation did: the others are held against it.
 struct ExactRun {
@@ -162,7 +118,9 @@ ExactRun run_exactly(const TrialCase& given) {
             grain_of_impulse(simulation.wall_impulse(), static_cast<double>(simulation.wall_collisions()));
     }
     exact.error = own_error(given, exact);
-    exact.ran.seconds = 2 * given.seconds(method, given.placed()) + 4 * given.seconds(method, exact.ran.work);
+    constexpr double in_long_double = 3; // times as much as in double, about
+    exact.ran.seconds = (1 + in_long_double) *
+                        (given.seconds(method, given.placed()) + given.seconds(method, exact.ran.work));
     return exact;
 }
 
@@ -184,70 +142,6 @@ Tried tried_of(const TrialCase& given, const Method& method, const Ran& ran, con
             .setting_up = given.seconds_of_scene(method, given.placed()),
             .unit_seconds = given.seconds_of_scene(method, unit)};
 }
-
-/// Of the momentum that walls take up, which a step does not tell; none where nobody asks.
-std::optional<MomentumWatch> watch_of(const TrialCase& given, const Method& method,
-                                      const Simulation& simulation) {
-    if (given.measure != Measure::pressure) {
-        return std::nullopt;
-    }
-    const Policies& policies = method.variant->policies;
-    return MomentumWatch(given.piece, rounding_of(policies), policies.impact, 1.0 / method.substeps,
-                         simulation.discs());
-}
-
-/// Runs a method, and counts what that costs.
-class MethodRun {
-  public:
-    /// It may cost `most` seconds.
-    MethodRun(const TrialCase& given, const Method& method, double most)
-        : given_(given), method_(method), most_(most),
-          simulation_(method.variant->simulate(given.piece, tuned(given, method))),
-          watch_(watch_of(given, method, *simulation_)), step_(work_of_step(*method.variant, given.piece)) {
-        ran_.seconds = given.seconds(method, given.placed());
-    }
-
-    const Ran& ran() const { return ran_; }
-
-    /// A unit of time. False if a resolve did not end, or what it does to the walls cannot be told, or it
-    /// would cost too much.
-    bool advance() {
-        double& amount = ran_.amounts.emplace_back(0);
-        for (int substep = 0; substep < method_.substeps; ++substep) {
-            const Tally tally = simulation_->step();
-            Work work = step_;
-            work.collisions = static_cast<double>(tally.pair_resolves + tally.wall_resolves);
-            ran_.work += work;
-            ran_.seconds += given_.seconds(method_, work) * (watch_ ? 1 + steps_of_watch : 1);
-            if (!tally.settled) {
-                return false;
-            }
-            amount += watch_ ? watch_->step(simulation_->discs()) : static_cast<double>(tally.pair_resolves);
-            if (watch_ && (watch_->balance().from_wall_to_wall() || ran_.seconds > most_)) {
-                return false;
-            }
-        }
-        if (ran_.amounts.size() == 1) {
-            ran_.at_one = simulation_->discs();
-        }
-        return true;
-    }
-
-  private:
-    static Tuning tuned(const TrialCase& given, const Method& method) {
-        Tuning tuning = given.tuning;
-        tuning.substeps = method.substeps;
-        return tuning;
-    }
-
-    const TrialCase& given_;
-    const Method& method_;
-    double most_;
-    std::unique_ptr<Simulation> simulation_;
-    std::optional<MomentumWatch> watch_;
-    Work step_; ///< without its collisions
-    Ran ran_;
-};
 
 /// All methods on the case, until enough is known.
 class Trials {

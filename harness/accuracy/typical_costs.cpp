@@ -12,8 +12,8 @@ std::vector<UnitCosts> typical_of(const Variant& variant) {
         return UnitCosts{.discs = discs, .seconds = 1e-9 * nanoseconds};
     };
     if (variant.engine == Engine::event_driven) {
-        return {at(2'000, {100, 60, 0, 310}), at(40'000, {120, 200, 0, 380}),
-                at(400'000, {400, 650, 0, 640})};
+        return {at(2'000, {100, 120, 0, 300}), at(40'000, {150, 150, 0, 380}),
+                at(400'000, {400, 240, 50, 600})};
     }
     const double collision = variant.policies.impact == Impact::at_contact ? 75 : 20;
     return {at(40'000, {3, 0, 3.5, collision}), at(400'000, {13, 10, 4, 2 * collision})};

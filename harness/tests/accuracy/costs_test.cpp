@@ -37,6 +37,7 @@ TEST(Costs, CountTheWorkOfAScene) {
     EXPECT_EQ(work_of_step(plain, scene).moved, 3);
     EXPECT_EQ(work_of_step(plain, scene).near, 4.5 * (2 * 2 + 1));
     EXPECT_DOUBLE_EQ(work_of_events(scene).moved, 6 / 50.0) << "cells of half the side";
+    EXPECT_EQ(work_of_events(scene).near, 3);
 }
 
 /// A cache of its own, and the usual one again at the end.
