@@ -58,5 +58,18 @@ TEST(ReferenceCommand, PrintsTheSameWhenItsCollisionsAreChecked) {
     EXPECT_GT(json["pair_collisions"], 10);
 }
 
+/// Enough discs for tiles on two threads.
+TEST(ReferenceCommand, PrintsTheSameOnAnyNumberOfThreadsAndPassesItsCheck) {
+    const tests::TemporaryDirectory directory;
+    const std::string scene = directory.write("scene.in", scene_text(tests::lattice_scene(130, 0.5, 3)));
+    for (const std::string format : {"--json", "--output=-"}) {
+        const auto alone = run_carom({"reference", scene, "--time", "0.3", "--check", format});
+        const auto shared =
+            run_carom({"reference", scene, "--time", "0.3", "--check", format, "--threads", "2"});
+        EXPECT_EQ(shared.exit_code, 0) << shared.error;
+        EXPECT_EQ(shared.output, alone.output);
+    }
+}
+
 } // namespace
 } // namespace carom
