@@ -66,6 +66,14 @@ def published_in_short(effect: Effect) -> str:
     return _one(effect, effect.published, unit=True) if isfinite(effect.published) else UNMEASURED
 
 
+def both_in_short(effect: Effect) -> str:
+    """Return what was measured of an effect and what the study measured of it, as part of a sentence."""
+    theirs = (
+        f"{published_in_short(effect)} published" if isfinite(effect.published) else "no number published"
+    )
+    return f"{change_in_short(effect)} here, {theirs}"
+
+
 def _one(effect: Effect, ratio: float, *, unit: bool = False) -> str:
     if effect.is_exponent:
         return number(ratio, 3)

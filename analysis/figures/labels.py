@@ -154,7 +154,8 @@ def from_zero(axes: Axes) -> None:
 
 
 def label_ends(axes: Axes, labels: Sequence[tuple[str, float, str]], size: float = 7) -> None:
-    """Write each label (text, height in data units, colour) right of the axes, at least one line apart."""
+    """Write each label (text, height in data units, colour) right of the axes, none on another."""
+    lines = max((text.count("\n") + 1 for text, _, _ in labels), default=1)
     figure = axes.figure.get_figure(root=True)
     beside: Any = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center"}
     written = [
@@ -165,7 +166,7 @@ def label_ends(axes: Axes, labels: Sequence[tuple[str, float, str]], size: float
     def move_apart() -> None:
         points = POINTS_PER_INCH / figure.dpi
         wanted = [axes.transData.transform((axes.get_xlim()[1], y))[1] * points for _, y, _ in labels]
-        for text, height, place in zip(written, spread(wanted, LINE_POINTS), wanted, strict=True):
+        for text, height, place in zip(written, spread(wanted, lines * LINE_POINTS), wanted, strict=True):
             text.set_position((4, height - place))
 
     when_laid_out(figure, move_apart)

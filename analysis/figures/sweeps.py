@@ -120,7 +120,7 @@ def against_reference(axes: Axes, times: pd.DataFrame, shown: Mapping[str, Look]
 
 def _against_own(axes: Axes, times: pd.DataFrame, published: pd.DataFrame, look: Look) -> str:
     """Draw the ratios of one series to its time at one x, the published ones beside them; say which."""
-    at = _level(times, published)
+    at = level_of(times, published)
     table, margin = differences_from(times, times["x"] == at), stated(times).margin
     own = pd.DataFrame([{"x": at, "ratio": 1.0, "low": 1.0, "high": 1.0}])
     table = pd.concat([table, own], ignore_index=True)
@@ -155,12 +155,15 @@ def _last(table: pd.DataFrame) -> float:
     return float(table.loc[table["x"].idxmax(), "ratio"])
 
 
-def _level(times: pd.DataFrame, published: pd.DataFrame) -> float:
+def level_of(times: pd.DataFrame, published: pd.DataFrame) -> float:
     """Return the x that others are compared with, whatever was measured: where the published time is least,
-    or the smallest one.
+    if both sweeps cover much the same range, or the smallest one.
     """
-    least = [] if published.empty else [float(published.loc[published["seconds"].idxmin(), "x"])]
-    return least[0] if least and least[0] in set(times["x"]) else float(times["x"].min())
+    if not published.empty and ranges_agree(times["x"], published["x"]):
+        least = float(published.loc[published["seconds"].idxmin(), "x"])
+        if least in set(times["x"]):
+            return least
+    return float(times["x"].min())
 
 
 def _published_ratios(published: pd.DataFrame, at: float) -> tuple[pd.DataFrame, float]:

@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.claims.missing import DECIDED
-from analysis.claims.summary import change_in_short, colour_of, mark, published_in_short, verdict_in_short
+from analysis.claims.summary import both_in_short, colour_of, mark, verdict_in_short
 from analysis.derived.ladder import headlines
 from analysis.figures import Drawn
 from analysis.records.studies import Study
@@ -62,11 +62,7 @@ def answer(
 
 def of_claim(row: Mapping[str, Any]) -> Answer:
     """Return the answer that a claim's verdict is."""
-    effects = [
-        f"{one.what} {change_in_short(one)} here, {published_in_short(one)} published"
-        for one in row["effects"]
-        if one.is_measured
-    ]
+    effects = [f"{one.what} {both_in_short(one)}" for one in row["effects"] if one.is_measured]
     said = verdict_in_short(row)
     told = f": {'; '.join(effects)}" if effects else ""
     word = said.partition(" at ")[0] if row["verdict"] in DECIDED else "not decided"

@@ -10,11 +10,10 @@ from analysis.claims import missing
 from analysis.claims.missing import DECIDED
 from analysis.claims.summary import (
     UNDECIDED,
-    change_in_short,
+    both_in_short,
     colour_of,
     first_effect,
     mark,
-    published_in_short,
     verdict_in_short,
 )
 from analysis.derived.ladder import headlines
@@ -83,11 +82,7 @@ def _shortened(said: list[Said]) -> list[Said]:
 
 def _of_claim(row: Mapping[str, Any], anchors: Mapping[str, str]) -> Said:
     effect = first_effect(row)
-    told = (
-        "."
-        if effect is None
-        else f": {change_in_short(effect)} here, {published_in_short(effect)} published."
-    )
+    told = "." if effect is None else f": {both_in_short(effect)}."
     claim = (anchors[row["id"]], str(row["claim"]).rstrip("."))
     return Said(mark(row), verdict_in_short(row), colour_of(row), "", [claim], told)
 

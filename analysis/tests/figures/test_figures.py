@@ -7,15 +7,18 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib import image
 
 from analysis import figures
 from analysis.figures import FIGURES, Entry
-from analysis.figures.labels import spread
+from analysis.figures.labels import label_ends, spread
 from analysis.figures.pairs import ratio_panel
+from analysis.figures.recording import lay_out
 from analysis.figures.studies import draw_all
 from analysis.figures.style import Data, new_figure, styled
+from analysis.figures.sweeps import level_of
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import split
@@ -215,6 +218,22 @@ def test_labels_are_moved_apart_as_little_as_needed() -> None:
     assert all(upper - lower >= 10 - 1e-9 for lower, upper in pairwise(ordered))
     assert moved[3] == 40
     assert moved[0] < moved[2] < moved[1]
+
+
+def test_labels_of_two_lines_do_not_cover_each_other() -> None:
+    figure, (axes,) = new_figure(2)
+    label_ends(axes, [("g++\nactive", 0.50, "black"), ("clang++\nactive", 0.51, "black")])
+    lay_out(figure)
+    lower, upper = (text.get_window_extent() for text in axes.texts)
+    assert lower.y1 < upper.y0
+
+
+@pytest.mark.parametrize(("xs", "level"), [([1, 2, 4, 8], 4), ([1, 2, 8], 1), ([4, 5], 4), ([0.1, 4], 0.1)])
+def test_the_level_is_where_the_published_time_is_least_if_the_sweeps_are_alike(
+    xs: list[float], level: float
+) -> None:
+    published_sweep = pd.DataFrame({"x": [1, 2, 4, 8], "seconds": [4.0, 3.0, 1.0, 2.0]})
+    assert level_of(pd.DataFrame({"x": xs}), published_sweep) == level
 
 
 def test_a_ratio_without_an_interval_does_not_stretch_the_axis() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from analysis import claims, report
 from analysis.claims.effects import Effect
-from analysis.claims.summary import change_in_short, published_in_short
+from analysis.claims.summary import both_in_short, change_in_short, published_in_short
 from analysis.cli import main
 from analysis.figures import titles
 from analysis.figures.style import Data
@@ -180,6 +180,8 @@ def test_effects_in_words() -> None:
     few = replace(effect, here=Interval(0.9, -math.inf, math.inf))
     assert change_in_short(few) == "−10.0\u00a0% (too few blocks for an interval)"
     assert change_in_short(Effect("exponent", Interval(1.0, 0.98, 1.02))) == "1.00 [0.980, 1.02]"
+    assert both_in_short(few).endswith("interval) here, −4.6\u00a0% published")
+    assert both_in_short(replace(effect, published=math.nan)).endswith("here, no number published")
     assert change_in_short(Effect("x")) == published_in_short(Effect("x")) == "–"
 
 
