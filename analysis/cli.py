@@ -50,7 +50,11 @@ def _parser() -> argparse.ArgumentParser:
     _add_export(verb(_export, "write a table with a row a timed repetition, for other tools", "results"))
     told = "answer each line of standard input, as a running study asks: open, page, report"
     verb(_follow, told, "results").add_argument("--study", **asked)
-    verb(_performance, "print the ladder and the limits as Markdown tables", "results")
+    verb(
+        _performance,
+        "print the ladder, the limits and the speed of the exact simulation as Markdown tables",
+        "results",
+    )
     told = "tell how often verdicts are wrong here, from what `carom study calibrate` measured"
     verb(_calibration, told, "results/calibration")
     told = "Compare results B with A. Exit code 3: something is slower; 4: something is undecided."
@@ -185,7 +189,7 @@ def _performance(options: argparse.Namespace) -> int:
 
     texts = [(study.name, markdown(study)) for study in split(load(options.results))]
     if not any(text for _, text in texts):
-        raise InputError(f"{options.results}: no records of the ladder or the limits yet")
+        raise InputError(f"{options.results}: no records of the ladder, the limits or exact_threads yet")
     print("\n\n".join(f"{name}:\n\n{text}" for name, text in texts if text))
     return 0
 

@@ -1,12 +1,13 @@
-"""The ladder and the limits as Markdown tables, for documents."""
+"""The ladder, the limits and the speed of the exact simulation as Markdown tables, for documents."""
 
 import pandas as pd
 
+from analysis.derived.exact_threads import CURVE, rates
 from analysis.derived.ladder import RUNG, claims, factors, named, rungs, scene_title, speed_up, tables_of
 from analysis.derived.limits import against_limits
 from analysis.records.studies import Study
 from analysis.support.values import Row
-from analysis.support.wording import markdown_table, number, share
+from analysis.support.wording import count, interval_of, markdown_table, number, share
 
 RUNGS = [
     *("rung", "ns per disc and step", "factor", "resolves per disc and step", "sweeps per step"),
@@ -16,7 +17,12 @@ RUNGS = [
 
 def markdown(study: Study) -> str:
     """Return every table that the study has records for, empty if there is none."""
-    parts = [_ladder(study, "ladder"), _limits(study), _phases(study, "limits")]
+    parts = [
+        _ladder(study, "ladder"),
+        _limits(study),
+        _phases(study, "limits"),
+        _rates(study, "exact_threads"),
+    ]
     return "\n\n".join(part for part in parts if part)
 
 
@@ -71,3 +77,24 @@ def _phases(study: Study, experiment: str) -> str:
     ]  # fmt: skip
     head = ["scene", "variant", "phase", "bytes", "operations", "least by copying, ns", "by arithmetic, ns"]
     return markdown_table([*head, "measured, ns", "reached", "waiting"], body) if body else ""
+
+
+def _rates(study: Study, experiment: str) -> str:
+    runs, times = study.of(experiment, "runs", "times")
+    if times.empty:
+        return ""
+    table = rates(runs[runs["check_verdict"] != "failed"], times)
+    threads = sorted(table["x"].unique())
+    head = [f"million collisions a second, {count(int(x), 'thread')}" for x in threads]
+    head += [f"speed-up, {count(int(x), 'thread')}" for x in threads[1:]]
+    body = []
+    for (scene, series), rows in table.groupby(CURVE, sort=False):
+        by_x = rows.set_index("x")
+        body.append(
+            [
+                scene or series,
+                *(number(1e-6 * by_x.loc[x, "rate"], 2) if x in by_x.index else "–" for x in threads),
+                *(interval_of(by_x.loc[x], "speed_up") if x in by_x.index else "–" for x in threads[1:]),
+            ]
+        )
+    return markdown_table(["scene", *head], body)

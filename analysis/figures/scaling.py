@@ -15,8 +15,7 @@ from analysis.figures.sweeps import stacked
 from analysis.records.studies import Study
 from analysis.statistics import scalability
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.pairs import log_ratios, narrow
-from analysis.statistics.scalability import ScalabilityLaw
+from analysis.statistics.scalability import ScalabilityLaw, log_ratios_by_x, speed_up
 from analysis.statistics.verdicts import judge
 from analysis.support.wording import count, exact, interval, interval_of, number
 
@@ -24,13 +23,14 @@ THREADS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 
 
 def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
-    """Draw time, speed-up against ideal, and efficiency over threads, a curve a series; the law is fitted to
-    a single one. None without records whose x is the number of threads.
+    """Draw time, speed-up against ideal, and efficiency over threads, a curve a series and scene; the law is
+    fitted to a single one. None without records whose x is the number of threads.
     """
     times = data.study.times_of(experiment)
     times = times[times["x_name"] == "threads"]
     if times.empty:
         return None
+    times = _by_curve(times)
     published = data.published.experiment(experiment)
     figure, panels = new_figure(2.6, columns=3)
     shown = looks(sorted(times["series"].unique()))
@@ -55,6 +55,15 @@ def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
     said = "".join(_greatest(series, table, len(parts) > 1, cores) for series, table in measured.items())
     said += _sentences(data.study, not published.empty)
     return Drawing(figure, opening(times, subject) + said + (_law_sentence(law) if len(parts) == 1 else ""))
+
+
+def _by_curve(times: pd.DataFrame) -> pd.DataFrame:
+    """Return the times with a series for each scene, if there are several."""
+    scenes = times["scene_name"]
+    if scenes.nunique() < 2:
+        return times
+    one = times["series"].nunique() == 1
+    return times.assign(series=scenes if one else times["series"] + ", " + scenes)
 
 
 def _series(panels: Sequence[Axes], times: pd.DataFrame, look: Look) -> pd.DataFrame:
@@ -124,21 +133,6 @@ def _against_hardware(axes: Axes, table: pd.DataFrame, reference: pd.DataFrame) 
     ratio_curve(axes, table, Look(BLUE), within)
     percent_ticks(axes.yaxis)
     axes.set_ylabel("time against\nall hardware threads, %")
-
-
-def speed_up(processes: pd.DataFrame) -> pd.DataFrame:
-    """Return `x`, `speed_up`, `low`, `high` over the smallest thread count, from ratios within blocks."""
-    reference = processes[processes["x"] == processes["x"].min()]
-    table = judge(log_ratios_by_x(reference, processes), ["x"])
-    # Below, a time ratio becomes a speed-up: its ends change places. Its own reference has no interval.
-    return pd.DataFrame(
-        {"x": table["x"], "speed_up": 1 / table["ratio"], "low": 1 / table["high"], "high": 1 / table["low"]}
-    ).replace([0, np.inf], np.nan)
-
-
-def log_ratios_by_x(reference: pd.DataFrame, processes: pd.DataFrame) -> pd.DataFrame:
-    """Return the paired log ratios of every x against the reference, with the column `x`."""
-    return log_ratios(narrow(reference), narrow(processes, "x"), by=("x",))
 
 
 def limits(axes: Axes, study: Study, named: bool) -> None:

@@ -1,4 +1,4 @@
-"""The universal scalability law, fitted to times over threads."""
+"""Speed-ups over threads, and the universal scalability law fitted to their times."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,8 @@ import pandas as pd
 from scipy.optimize import nnls
 
 from analysis.statistics.intervals import FEWEST, centre
-from analysis.statistics.pairs import PAIR
+from analysis.statistics.pairs import PAIR, log_ratios, narrow
+from analysis.statistics.verdicts import judge
 from analysis.support.values import Floats, Interval
 from analysis.support.wording import number
 
@@ -25,6 +26,21 @@ class ScalabilityLaw:
         """Return the speed-up over one thread that the law gives."""
         contention, coherency = self.contention.estimate, self.coherency.estimate
         return threads / (1 + contention * (threads - 1) + coherency * threads * (threads - 1))
+
+
+def speed_up(processes: pd.DataFrame) -> pd.DataFrame:
+    """Return `x`, `speed_up`, `low`, `high` over the smallest thread count, from ratios within blocks."""
+    reference = processes[processes["x"] == processes["x"].min()]
+    table = judge(log_ratios_by_x(reference, processes), ["x"])
+    # Below, a time ratio becomes a speed-up: its ends change places. Its own reference has no interval.
+    return pd.DataFrame(
+        {"x": table["x"], "speed_up": 1 / table["ratio"], "low": 1 / table["high"], "high": 1 / table["low"]}
+    ).replace([0, np.inf], np.nan)
+
+
+def log_ratios_by_x(reference: pd.DataFrame, processes: pd.DataFrame) -> pd.DataFrame:
+    """Return the paired log ratios of every x against the reference, with the column `x`."""
+    return log_ratios(narrow(reference), narrow(processes, "x"), by=("x",))
 
 
 def fit(processes: pd.DataFrame, most_threads: int) -> ScalabilityLaw | None:

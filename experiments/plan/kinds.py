@@ -33,7 +33,9 @@ KINDS = {
     "comparison": Kind("times", _EACH, _OF_TIMES),
     "control": Kind("times of the same under two labels", _EACH, ("control", "comparison")),
     "trend": Kind("times", _LARGE, ("trend", *(one for one in _OF_TIMES if one != "trend"))),
-    "scaling": Kind("times", _LARGE, ("scaling", *(one for one in _OF_TIMES if one != "scaling"))),
+    "scaling": Kind(
+        "times", _LARGE, ("scaling", *(one for one in _OF_TIMES if one != "scaling")), scenes=True
+    ),
     "schedule": Kind("times", "whether one choice is the best", ("schedule", "trend", "comparison")),
     "machine": Kind("times on each machine", _LARGE, ("machine",)),
     "ladder": Kind("times", "each series against the one before", ("ladder", "comparison"), scenes=True),

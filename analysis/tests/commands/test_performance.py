@@ -1,5 +1,6 @@
-"""The ladder and the limits as Markdown, by the command that prints them."""
+"""The tables that `analysis performance` prints."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -29,6 +30,26 @@ def test_every_rung_rate_and_phase_is_a_row(tmp_path: Path, capsys: pytest.Captu
     assert all(line.count("|") > 2 for line in rows)
 
 
+def test_collisions_a_second_are_told_by_scene_and_threads(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    records = []
+    for scene in ("all threads", "two threads"):
+        for record in study(["threads"], blocks=6, noise=QUIET):
+            of_scene = {"experiment": "exact_threads", "scene_name": scene}
+            of_scene["point"] = f"{record['tags']['point']}, {scene}"
+            if scene == "all threads" or record["tags"]["x"] < 3:
+                records.append(record | {"tags": record["tags"] | of_scene})
+    write(tmp_path, records)
+    head, _, more, two = [line for line in printed(tmp_path, capsys) if line.startswith("| ")]
+    assert head.startswith(
+        "| scene | million collisions a second, 1 thread | million collisions a second, 2 thr"
+    )
+    assert more.startswith("| all threads | 1.9 | 3.5 | 3.6 |")
+    assert re.search(r"\| 1\.8[0-9] \[1\.[78][0-9]*, 1\.[89][0-9]*\] \|", more)
+    assert two.startswith("| two threads | 1.9 | 3.5 | – | – |")
+
+
 def test_what_was_not_measured_is_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write(tmp_path, study(["ladder"], blocks=2, noise=QUIET))
     assert not any("| phase |" in line or "copy within" in line for line in printed(tmp_path, capsys))
@@ -37,4 +58,4 @@ def test_what_was_not_measured_is_left_out(tmp_path: Path, capsys: pytest.Captur
 def test_without_any_record_it_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write(tmp_path, study(["steps"], blocks=2))
     assert main(["performance", "--results", str(tmp_path)]) == 1
-    assert "no records of the ladder or the limits yet" in capsys.readouterr().err
+    assert "no records of the ladder, the limits or exact_threads yet" in capsys.readouterr().err

@@ -104,6 +104,18 @@ def test_scaling_draws_several_series(tmp_path: Path) -> None:
     assert "scalability" not in drawn.caption
 
 
+def test_scaling_draws_a_curve_a_scene(tmp_path: Path) -> None:
+    records = []
+    for scene in ("small", "large"):
+        records += [
+            record | {"tags": record["tags"] | {"point": f"{record['tags']['point']}-{scene}"}}
+            for record in unknown("threads", "scaling", scene_name=scene)
+        ]
+    drawn = drawn_of(tmp_path, records)
+    assert "Greatest speed-up of small" in drawn.caption
+    assert "Greatest speed-up of large" in drawn.caption
+
+
 def test_a_name_that_is_a_file_of_another_figure_takes_nothing_away(tmp_path: Path) -> None:
     write(tmp_path, study(["phases"], blocks=2))
     drawn = drawn_of(tmp_path, unknown("radius", "trend", name="counters_software"))
