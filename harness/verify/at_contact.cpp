@@ -61,12 +61,12 @@ class TwoBodies {
           gap_((distance_of(d_) - reach_) * (distance_of(d_) + reach_)),
           discriminant_(closing_ * closing_ - speed_squared() * gap_) {}
 
-    /// Flies on for `dt`, through the contact if there is one.
-    void fly(double dt) {
+    /// Flies on for `dt`, through the contact if there is one before the time `latest`.
+    void fly(double dt, double latest) {
         const bool meet = closing_ > 0 && discriminant_ >= 0;
-        const double contact = meet ? gap_ / (closing_ + std::sqrt(discriminant_)) : 2 * dt;
-        fly_freely(std::min(contact, dt));
-        if (contact <= dt) {
+        const double contact = meet ? gap_ / (closing_ + std::sqrt(discriminant_)) : dt;
+        fly_freely(meet && contact <= latest ? contact : dt);
+        if (meet && contact <= latest) {
             const double nx = (two.x - one.x) / reach_;
             const double ny = (two.y - one.y) / reach_;
             const double exchanged = d_.vx * nx + d_.vy * ny;
@@ -84,6 +84,12 @@ class TwoBodies {
         const double uncertain = 2 * reach_ * position * speed_squared();
         const double root = std::sqrt(std::max(discriminant_, 0.0)) + std::sqrt(uncertain);
         return root > 0 ? uncertain / root / reach_ : 0;
+    }
+
+    /// How wrong the time of contact may be if positions are uncertain by `position`; infinite of a grazing
+    /// pair.
+    double uncertain_time(double position) const {
+        return position * reach_ / std::sqrt(std::max(discriminant_, 0.0));
     }
 
     Disc one;
@@ -131,9 +137,14 @@ std::optional<std::string> pair_violation(const Step& step, const OverlappingPai
     allowed.position = std::max(allowed.position, other.position);
     allowed.velocity = std::max(allowed.velocity, other.velocity) + bodies.uncertain_speed(allowed.position);
     allowed.position += bodies.uncertain_speed(allowed.position) * step.dt;
-    bodies.fly(step.dt);
-    if (agree(step.after[first], bodies.one, allowed) && agree(step.after[second], bodies.two, allowed)) {
-        return std::nullopt;
+    const double uncertain = bodies.uncertain_time(allowed.position);
+    TwoBodies later = bodies; // met by the latest that rounding may still take for the end of the step
+    later.fly(step.dt, step.dt + uncertain);
+    bodies.fly(step.dt, step.dt - uncertain);
+    for (const TwoBodies& end : {bodies, later}) {
+        if (agree(step.after[first], end.one, allowed) && agree(step.after[second], end.two, allowed)) {
+            return std::nullopt;
+        }
     }
     return format("discs %d and %d, which met with nothing else near, are at %s and %s instead of at %s and "
                   "%s",

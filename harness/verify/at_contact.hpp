@@ -34,7 +34,8 @@ std::vector<OverlappingPair> colliding_pairs(const std::vector<Disc>& free, cons
 ///    and their angular momentum: all of these are kept by collisions along the line of centres at the moment
 ///    of contact, with free flight before and after.
 ///  - A pair that met in this step, with nothing else near, ends where the two-body problem says: followed
-///    forward from the start of the step, to rounding.
+///    forward from the start of the step, to rounding. Where rounding decides whether it met in this step or
+///    meets in the next one, both are right.
 ///  - A disc that met a wall in this step, and no other disc, ends where the reflected path ends.
 std::optional<std::string> at_contact_violation(const std::vector<Disc>& before,
                                                 const std::vector<Disc>& free, const std::vector<Disc>& after,

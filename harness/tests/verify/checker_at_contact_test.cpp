@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -172,6 +173,41 @@ TEST(CheckerAtContact, KnowsStepsOfAFractionOfTime) {
     end[lone] = {35.75, 34.25, 1, -1};
     EXPECT_EQ(checker(0.75).step(before, end), std::nullopt);
     EXPECT_NE(checker(0.5).step(before, end), std::nullopt);
+}
+
+/// In a large box two floats round by more than what is left to fly.
+TEST(CheckerAtContact, LetsRoundingDecideWhetherAPairMetAtTheEndOfTheStep) {
+    const double dt = 0.25;
+    const double large = 44'840;
+    const Rounding rounding(std::numeric_limits<float>::epsilon());
+    const Checker floats(large, 16, dt, Tolerance::relative, rounding, Impact::at_contact);
+    int apart = 0;
+    for (int shift = -4; shift <= 4; ++shift) {
+        const std::vector<Disc> start{{40'846.359375, 7'159.63427734375, 0.328125, 2.328125},
+                                      {40'877.41796875 + shift / 256.0, 7'172.13818359375, -4.125, -2.5}};
+        std::vector<Disc> met = start;
+        for (Disc& disc : met) {
+            disc.x = rounding(disc.x + disc.vx * dt);
+            disc.y = rounding(disc.y + disc.vy * dt);
+        }
+        const std::vector<Disc> free = met;
+        const double distance = std::hypot(free[1].x - free[0].x, free[1].y - free[0].y);
+        const double nx = (free[1].x - free[0].x) / distance;
+        const double ny = (free[1].y - free[0].y) / distance;
+        const double exchanged = (free[1].vx - free[0].vx) * nx + (free[1].vy - free[0].vy) * ny;
+        for (const std::size_t one : {0U, 1U}) {
+            const double sign = one == 0 ? 1 : -1;
+            met[one].vx = rounding(met[one].vx + sign * exchanged * nx);
+            met[one].vy = rounding(met[one].vy + sign * exchanged * ny);
+        }
+        EXPECT_EQ(floats.step(start, met), std::nullopt) << shift;
+        if (distance > 32) {
+            EXPECT_EQ(floats.step(start, free), std::nullopt) << shift;
+            ++apart;
+        }
+    }
+    EXPECT_GT(apart, 0);
+    EXPECT_LT(apart, 9);
 }
 
 /// What collides at the end of the step is no step at contact, and the other way round.
