@@ -155,7 +155,7 @@ def points(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
     parts = [
         part.assign(on_front=front(part["error"], part["median"])) for _, part in table.groupby("scene_name")
     ]
-    return pd.concat(parts).sort_values(["area_fraction", "series", "x"], ignore_index=True)
+    return pd.concat(parts).sort_values(["particles", "area_fraction", "series", "x"], ignore_index=True)
 
 
 @cache

@@ -262,7 +262,7 @@ def _exact_sentence(table: pd.DataFrame) -> str:
     if len(names) == 0:
         return ""
     return (
-        f" {' and '.join(names)}: on one thread and without steps, the simulation that the others are "
+        f" {' and '.join(names)}: without steps, the simulation that the others are "
         "compared with; its own error is against the same in long double, and so the rounding of double."
     )
 

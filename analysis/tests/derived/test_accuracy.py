@@ -286,7 +286,7 @@ def test_the_caption_says_what_the_error_of_the_exact_simulation_is_against(tmp_
     stepped = records()
     write(tmp_path, [*stepped, *exact_ones(stepped, 3.0)])
     drawn = drawing(split(load(tmp_path))[0], "path", tmp_path)
-    assert "event-driven: on one thread and without steps" in drawn.caption
+    assert "event-driven: without steps" in drawn.caption
     assert "against the same in long double" in drawn.caption
     (advice,) = (table for table in drawn.tables if "cheapest" in table.title)
     assert "event-driven: " in advice.rows[-1][1].text
