@@ -110,7 +110,7 @@ TEST(EventWindows, EndInTheSameBitsForAnyTilesAndThreads) {
         const LastState expected = in_order(scene, time);
         for (const TileCounts& tiles :
              {TileCounts{}, TileCounts{2, 1}, TileCounts{1, 3}, TileCounts{3, 3}, TileCounts{7, 7}}) {
-            for (const int threads : tiles.all() == 9 ? std::vector{1, 2, 3, 8} : std::vector{2}) {
+            for (const int threads : tiles.all() == 9 ? std::vector{1, 2, 3, 8, 64} : std::vector{2}) {
                 const InWindows found = in_windows(scene, time, threads, {.tiles = tiles});
                 EXPECT_TRUE(found.last == expected) << name << ", " << tiles.all() << " tiles, " << threads;
             }
