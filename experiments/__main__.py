@@ -159,7 +159,9 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     add("--blocks", type=positive_number, help="repeat every experiment so many times, whatever the budget")
     budget = "time for the whole study, or further time for one that is finished (default: the scale's)"
     add("--budget", type=minutes, dest="budget_seconds", metavar="MINUTES", help=budget)
-    until = "measure until what can be decided is, instead of for a time (with --budget: at most so long)"
+    until = (
+        "measure until all that can be decided is decided, instead of for a time (--budget: the longest time)"
+    )
     add("--until-decided", action="store_true", help=until)
     add("--seed", type=int, help="of the order within blocks (default: %(default)s)")
     add("--no-figures", action="store_false", dest="figures", help="write no report, look at no verdict")

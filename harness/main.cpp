@@ -57,7 +57,7 @@ void add_verbs(CLI::App& program) {
                add_help_command});
     program.footer(
         "Exit codes: 0 done; 1 wrong usage or bad input, told in one line; 2 a result failed its check; "
-        "3 this build has not what was asked for. A scene of `-` is read from standard input.");
+        "3 this build lacks what was asked for. A scene of `-` is read from standard input.");
 }
 
 } // namespace

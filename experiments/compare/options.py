@@ -116,10 +116,22 @@ def _parser() -> argparse.ArgumentParser:
         "command differs from itself, so that nothing is certain.",
     )
     add = parser.add_argument
-    add("lines", nargs="*", metavar="COMMAND", help="a line; only one with more than plain words has a shell")
-    add("-n", "--name", action="append", default=[], metavar="NAME", help="of a command, in their order")
+    add(
+        "lines",
+        nargs="*",
+        metavar="COMMAND",
+        help="a command line; a shell runs it only if it has more than plain words",
+    )
+    add(
+        "-n",
+        "--name",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="name of a command; given once for each, in their order",
+    )
     add("--reference", metavar="NAME", help="what the others are compared with (default: the first)")
-    told = "a line run before each run, untimed; for all, or once for each command"
+    told = "a command line that runs before each run, untimed; given once for all commands, or once for each"
     add("--prepare", action="append", default=[], metavar="COMMAND", help=told)
     add("--conclude", action="append", default=[], metavar="COMMAND", help="the same after each run")
     add("--input", type=Path, metavar="FILE", help="standard input of each run (default: nothing)")
@@ -144,11 +156,11 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
     add(
         "--error", type=values.fraction, default=0.05, metavar="5%", help="how often any verdict may be wrong"
     )
-    add("--time", type=values.duration, default=60.0, metavar="60s", help="measure so long at most")
+    add("--time", type=values.duration, default=60.0, metavar="60s", help="the longest time to measure")
     told = "stop a run that takes longer (default: five times --time, a minute at least)"
     add("--timeout", type=values.duration, metavar="300s", help=told)
     add("--warmup", type=values.count, default=0, metavar="N", help="untimed runs before each timed one")
-    add("--setup", metavar="COMMAND", help="a line for a shell, run once before everything")
+    add("--setup", metavar="COMMAND", help="a command line for a shell that runs once, before everything")
     add("--cleanup", metavar="COMMAND", help="the same after everything, whatever happened")
     add(
         "--ignore-exit",
@@ -162,7 +174,10 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
     told = "the commands are Google Benchmarks, whose cases are paired by name (default: it is found out)"
     add("--gb", action=argparse.BooleanOptionalAction, help=told)
     add("--filter", metavar="REGEX", help="the cases whose names match (default: all)")
-    told = "stop the others while one runs, in slices so long; auto: unless a command minds it; on, off"
+    told = (
+        "length of a turn: one command runs, the others are stopped; off: nothing is stopped; auto: nothing "
+        "that a stop makes slower or ends in another way"
+    )
     add("--turns", type=values.turns, default=(None, None), metavar="auto|50ms|off", help=told)
     told = "OMP_NUM_THREADS and the binding of a study (default: your own environment)"
     add("--threads", type=values.positive, metavar="N", help=told)
@@ -170,5 +185,5 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
     add("--fixed-layout", action="store_true", help=told)
     for kind in EXPORTS:
         also = ("--html",) if kind == "html" else ()
-        add(f"--export-{kind}", *also, type=Path, metavar="FILE", help=f"write the result as {kind}, too")
+        add(f"--export-{kind}", *also, type=Path, metavar="FILE", help=f"also write the result as {kind}")
     add("-q", "--quiet", action="store_true", help="print the result alone")

@@ -110,14 +110,14 @@ void add_check_command(CLI::App& program) {
     auto options = std::make_shared<CheckOptions>();
     CLI::App* command = program.add_subcommand(
         "check",
-        "Run and verify every step with an independent checker, of event_driven and at_contact every "
-        "collision; exit 2 at the first violation");
+        "Run, and verify every step with an independent checker (every collision of event_driven and "
+        "at_contact); exit 2 at the first violation");
     add_simulation_options(*command, options->simulation);
     command->add_option(
         "--trajectory", options->trajectory,
         "Check the steps in this file instead, lines `step i x y vx vy` that any program may have "
-        "written (gzip too); --variant says in which precision and with which impact. Of its collisions "
-        "it sees what they leave");
+        "written (gzip too); --variant says in which precision and with which impact. Only states are "
+        "checked then, not collisions");
     command->add_flag(
         "--json", options->json,
         "Print the verdict as one JSON object, also of what fails, with the scope: every-collision, "

@@ -12,9 +12,9 @@ void add_doctor_command(CLI::App& program) {
     auto json = std::make_shared<bool>(false);
     auto build = std::make_shared<bool>(false);
     auto measure = std::make_shared<bool>(false);
-    CLI::App* command = program.add_subcommand(
-        "doctor",
-        "Tell what this machine can and cannot measure, and why; without --measure-costs it changes nothing");
+    CLI::App* command =
+        program.add_subcommand("doctor", "Tell what this machine can and cannot measure, and why. It changes "
+                                         "nothing, unless --measure-costs is given");
     command->add_flag("--json", *json, "Print the findings as one JSON object");
     command->add_flag("--measure-costs", *measure,
                       "Measure anew, and keep, what work costs here: `run --error-below` chooses by it");

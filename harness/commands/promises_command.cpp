@@ -137,8 +137,9 @@ void keep_promises(const PromisesOptions& options) {
 
 void add_promises_command(CLI::App& program) {
     auto options = std::make_shared<PromisesOptions>();
-    CLI::App* command = program.add_subcommand(
-        "promises", "See whether what `run --error-below` chooses keeps its word, and what would cost less");
+    CLI::App* command =
+        program.add_subcommand("promises", "Test whether the choice of `run --error-below` stays below its "
+                                           "bound, and whether another one costs less");
     add_scene_option(*command, options->scene);
     add_number(*command, "--threads", options->tuning.threads, 1, most_threads, "OpenMP threads");
     command->add_option("--error-below", options->bounds, "Bound of the error; may be repeated")

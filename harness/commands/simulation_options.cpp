@@ -95,9 +95,9 @@ void add_simulation_options(CLI::App& command, SimulationOptions& options) {
 
 void add_tuning_options(CLI::App& command, Tuning& tuning) {
     add_number(command, "--find-chunk", tuning.find_chunk, 1, most,
-               "Boxes a thread takes at a time, if find has a chunk");
+               "Chunk of the find schedule: boxes that a thread takes at a time");
     add_number(command, "--resolve-chunk", tuning.resolve_chunk, 1, most,
-               "Boxes or rows a thread takes at a time, if resolve has a chunk");
+               "Chunk of the resolve schedule: boxes or rows that a thread takes at a time");
     add_number(command, "--substeps", tuning.substeps, 1, most, "Steps per unit of time, dt = 1/K");
     add_number(command, "--sweep-limit", tuning.sweep_limit, 1, most,
                "Sweeps after which a resolve is given up");
