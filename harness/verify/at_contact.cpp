@@ -112,6 +112,13 @@ class TwoBodies {
     double discriminant_;
 };
 
+/// How far apart two discs may seem to be at the end of their free flights, and are not: each coordinate has
+/// been rounded twice, and so has their distance.
+double rounded_by(const Step& step, const Disc& one, const Disc& two) {
+    const double largest = std::max({std::abs(one.x), std::abs(one.y), std::abs(two.x), std::abs(two.y)});
+    return 8 * step.walls.rounding.epsilon() * (largest + 2 * step.walls.radius);
+}
+
 /// A pair that is apart before the step, overlaps after its free flight or collided, and has nothing else
 /// near it.
 std::optional<std::string> pair_violation(const Step& step, const OverlappingPair& pair) {
@@ -137,7 +144,7 @@ std::optional<std::string> pair_violation(const Step& step, const OverlappingPai
     allowed.position = std::max(allowed.position, other.position);
     allowed.velocity = std::max(allowed.velocity, other.velocity) + bodies.uncertain_speed(allowed.position);
     allowed.position += bodies.uncertain_speed(allowed.position) * step.dt;
-    const double uncertain = bodies.uncertain_time(allowed.position);
+    const double uncertain = bodies.uncertain_time(rounded_by(step, step.free[first], step.free[second]));
     TwoBodies later = bodies; // met by the latest that rounding may still take for the end of the step
     later.fly(step.dt, step.dt + uncertain);
     bodies.fly(step.dt, step.dt - uncertain);

@@ -175,39 +175,70 @@ TEST(CheckerAtContact, KnowsStepsOfAFractionOfTime) {
     EXPECT_NE(checker(0.5).step(before, end), std::nullopt);
 }
 
-/// In a large box two floats round by more than what is left to fly.
+// In a large box two floats round by more than what is left to fly at the end of a step.
+
+constexpr double large = 44'840;
+constexpr double large_radius = 16;
+constexpr double quarter = 0.25;
+const Rounding to_float(std::numeric_limits<float>::epsilon());
+
+/// Two discs in the large box that are near each other at the end of a step, one of them moved by `shift`.
+std::vector<Disc> nearly_met(double shift) {
+    return {{40'846.359375, 7'159.63427734375, 0.328125, 2.328125},
+            {40'877.41796875 + shift, 7'172.13818359375, -4.125, -2.5}};
+}
+
+std::vector<Disc> flown_on(std::vector<Disc> discs) {
+    for (Disc& disc : discs) {
+        disc.x = to_float(disc.x + disc.vx * quarter);
+        disc.y = to_float(disc.y + disc.vy * quarter);
+    }
+    return discs;
+}
+
+double distance_of_both(const std::vector<Disc>& discs) {
+    return std::hypot(discs[1].x - discs[0].x, discs[1].y - discs[0].y);
+}
+
+/// Exchanges what they have along the line between them, where they are.
+std::vector<Disc> collided(std::vector<Disc> discs) {
+    const double nx = (discs[1].x - discs[0].x) / distance_of_both(discs);
+    const double ny = (discs[1].y - discs[0].y) / distance_of_both(discs);
+    const double exchanged = (discs[1].vx - discs[0].vx) * nx + (discs[1].vy - discs[0].vy) * ny;
+    for (const double sign : {1.0, -1.0}) {
+        Disc& disc = sign > 0 ? discs[0] : discs[1];
+        disc.vx = to_float(disc.vx + sign * exchanged * nx);
+        disc.vy = to_float(disc.vy + sign * exchanged * ny);
+    }
+    return discs;
+}
+
 TEST(CheckerAtContact, LetsRoundingDecideWhetherAPairMetAtTheEndOfTheStep) {
-    const double dt = 0.25;
-    const double large = 44'840;
-    const Rounding rounding(std::numeric_limits<float>::epsilon());
-    const Checker floats(large, 16, dt, Tolerance::relative, rounding, Impact::at_contact);
+    const Checker floats(large, large_radius, quarter, Tolerance::relative, to_float, Impact::at_contact);
     int apart = 0;
     for (int shift = -4; shift <= 4; ++shift) {
-        const std::vector<Disc> start{{40'846.359375, 7'159.63427734375, 0.328125, 2.328125},
-                                      {40'877.41796875 + shift / 256.0, 7'172.13818359375, -4.125, -2.5}};
-        std::vector<Disc> met = start;
-        for (Disc& disc : met) {
-            disc.x = rounding(disc.x + disc.vx * dt);
-            disc.y = rounding(disc.y + disc.vy * dt);
-        }
-        const std::vector<Disc> free = met;
-        const double distance = std::hypot(free[1].x - free[0].x, free[1].y - free[0].y);
-        const double nx = (free[1].x - free[0].x) / distance;
-        const double ny = (free[1].y - free[0].y) / distance;
-        const double exchanged = (free[1].vx - free[0].vx) * nx + (free[1].vy - free[0].vy) * ny;
-        for (const std::size_t one : {0U, 1U}) {
-            const double sign = one == 0 ? 1 : -1;
-            met[one].vx = rounding(met[one].vx + sign * exchanged * nx);
-            met[one].vy = rounding(met[one].vy + sign * exchanged * ny);
-        }
-        EXPECT_EQ(floats.step(start, met), std::nullopt) << shift;
-        if (distance > 32) {
+        const std::vector<Disc> start = nearly_met(shift / 256.0);
+        const std::vector<Disc> free = flown_on(start);
+        EXPECT_EQ(floats.step(start, collided(free)), std::nullopt) << shift;
+        if (distance_of_both(free) > 2 * large_radius) {
             EXPECT_EQ(floats.step(start, free), std::nullopt) << shift;
             ++apart;
         }
     }
     EXPECT_GT(apart, 0);
     EXPECT_LT(apart, 9);
+}
+
+TEST(CheckerAtContact, LetsRoundingDecideNothingWhereAPairIsApart) {
+    const Checker floats(large, large_radius, quarter, Tolerance::relative, to_float, Impact::at_contact);
+    for (const double gap : {0.1, 0.5, 2.0}) {
+        const std::vector<Disc> start = nearly_met(gap);
+        const std::vector<Disc> free = flown_on(start);
+        EXPECT_EQ(floats.step(start, free), std::nullopt) << gap;
+        EXPECT_PRED_FORMAT2(testing::IsSubstring, "which met with nothing else near",
+                            floats.step(start, collided(free)).value_or(""))
+            << gap;
+    }
 }
 
 /// What collides at the end of the step is no step at contact, and the other way round.
