@@ -4,7 +4,7 @@ if(INDEX STREQUAL none)
   set(name none)
   file(MAKE_DIRECTORY ${TREE})
 else()
-  include(${SOURCE}/harness/tests/collisions/mutants/make_mutant.cmake)
+  include(${SOURCE}/kernels/tests/make_mutant.cmake)
 endif()
 
 set(tests event_windows_test agreement_test event_queue_test first_collision_test)
