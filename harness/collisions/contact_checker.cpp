@@ -251,8 +251,9 @@ std::optional<std::string> ContactChecker::wrong_after(const std::vector<Disc>& 
             return violation;
         }
     }
-    return conservation_violation(
-        discs_, after, overlapping_pairs(after, rules_.walls.radius, rules_.walls.rounding), rules_.walls);
+    return conservation_violation(discs_, after,
+                                  overlapping_pairs(after, rules_.walls.radius, rules_.walls.rounding),
+                                  rules_.walls, Impact::step_end);
 }
 
 } // namespace carom

@@ -266,7 +266,7 @@ std::optional<std::string> at_contact_violation(const std::vector<Disc>& before,
             }
         }
     }
-    return conservation_violation(free, after, step.near, widened(walls));
+    return conservation_violation(free, after, step.near, widened(walls), Impact::at_contact);
 }
 
 } // namespace carom

@@ -52,7 +52,7 @@ std::optional<std::string> Checker::step(const std::vector<Disc>& before,
         return violation;
     }
     return impact_ == Impact::at_contact ? at_contact_violation(before, free, after, dt_, walls_)
-                                         : conservation_violation(free, after, pairs, walls_);
+                                         : conservation_violation(free, after, pairs, walls_, impact_);
 }
 
 std::optional<std::string> Checker::left_colliding(const std::vector<Disc>& free,

@@ -37,7 +37,7 @@ double fastest(const std::vector<Disc>& discs) {
 }
 
 void add(GroupTotals& group, const Disc& free, const Disc& after, const Disc& lowest, double unit,
-         double epsilon) {
+         double epsilon, Impact impact) {
     const double old_x = free.vx / unit;
     const double old_y = free.vy / unit;
     const double new_x = after.vx / unit;
@@ -63,6 +63,8 @@ void add(GroupTotals& group, const Disc& free, const Disc& after, const Disc& lo
         group.centre_slack += slack;
         group.angular_change += moved_x * old_y - moved_y * old_x;
         group.angular_slack += slack * speeds;
+    } else if (impact == Impact::at_contact && after != free) {
+        group.angular_slack += epsilon * (std::abs(free.x) + std::abs(free.y)) * speeds;
     }
 }
 
@@ -111,7 +113,7 @@ std::optional<std::string> violation_alone(const Disc& free, const Disc& after, 
 std::optional<std::string> conservation_violation(const std::vector<Disc>& free,
                                                   const std::vector<Disc>& after,
                                                   const std::vector<OverlappingPair>& pairs,
-                                                  const Walls& walls) {
+                                                  const Walls& walls, Impact impact) {
     const double tolerance = walls.rounding.is_double() ? 1e-10 : 1e-4;
     OverlapGroups groups(after.size(), pairs);
     const double unit = fastest(free);
@@ -120,7 +122,7 @@ std::optional<std::string> conservation_violation(const std::vector<Disc>& free,
         const auto lowest = static_cast<std::size_t>(groups.lowest(static_cast<int>(i)));
         GroupTotals& group = totals[lowest];
         group.at_wall = group.at_wall || walls.touches(free[i].x) || walls.touches(free[i].y);
-        add(group, free[i], after[i], after[lowest], unit, walls.rounding.epsilon());
+        add(group, free[i], after[i], after[lowest], unit, walls.rounding.epsilon(), impact);
     }
     for (std::size_t i = 0; i < totals.size(); ++i) {
         const int lowest = static_cast<int>(i);

@@ -229,6 +229,33 @@ TEST(CheckerAtContact, LetsRoundingDecideWhetherAPairMetAtTheEndOfTheStep) {
     EXPECT_LT(apart, 9);
 }
 
+/// Two that met just before the end of the step were moved by less than a rounding. The normal of their
+/// contact is another one than that of the places to which they were rounded.
+TEST(CheckerAtContact, KnowsThatADiscIsMovedByLessThanARounding) {
+    const Checker floats(4 * large, large_radius, quarter, Tolerance::relative, to_float, Impact::at_contact);
+    for (int shift = -40; shift <= 40; ++shift) {
+        std::vector<Disc> start = nearly_met(-2.0 / 256);
+        for (Disc& disc : start) {
+            disc.x += 3 * large;
+            disc.y += 3 * large;
+        }
+        start[0].vy += shift / 256.0;
+        start[1].vx -= shift / 256.0;
+        const std::vector<Disc> free = flown_on(start);
+        std::vector<Disc> met = start;
+        for (Disc& disc : met) { // in double
+            disc.x += disc.vx * quarter;
+            disc.y += disc.vy * quarter;
+        }
+        met = collided(met);
+        for (std::size_t i = 0; i < met.size(); ++i) {
+            met[i].x = free[i].x;
+            met[i].y = free[i].y;
+        }
+        EXPECT_EQ(floats.step(start, met), std::nullopt) << shift;
+    }
+}
+
 TEST(CheckerAtContact, LetsRoundingDecideNothingWhereAPairIsApart) {
     const Checker floats(large, large_radius, quarter, Tolerance::relative, to_float, Impact::at_contact);
     for (const double gap : {0.1, 0.5, 2.0}) {
