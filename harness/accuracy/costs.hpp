@@ -18,7 +18,7 @@ struct Work {
     double placed = 0;     ///< discs put in place at the start
     double moved = 0;      ///< discs times steps; of the event-driven simulation, crossings between cells
     double near = 0;       ///< pairs near enough to be looked at; of the event-driven simulation, discs times
-                           ///< units of time, since it may look through them all when it is looked at
+                           ///< units of time, since each unit ends with every disc brought to one time
     double collisions = 0; ///< made
 
     Work& operator+=(const Work& more);
