@@ -52,7 +52,7 @@ def commands_of(options: argparse.Namespace, words_behind: Sequence[str]) -> tup
     """The commands that the options give as lines, or that stand as words behind `--`. Raises InputError."""
     split = _split(words_behind)
     if options.lines and split:
-        raise InputError(f"found lines and words behind {WORDS}, expected either")
+        raise InputError(f"found commands as lines and as words behind {WORDS}, expected only one of the two")
     swept = combinations(options.list, options.range, MOST_COMMANDS)
     levels: list[Levels] = [()] * len(split)
     if split:

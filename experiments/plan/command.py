@@ -113,7 +113,7 @@ def command_of(
         series.fresh_folder, series.exit_codes, series.turns, series.kept_by,
     )  # fmt: skip
     if trajectory and command.writes_trajectory:
-        raise InputError(f"{key}.trajectory: found beside {{out}} in command, expected either")
+        raise InputError(f"{key}.trajectory: found beside {{out}} in command, expected only one of the two")
     return _resolved(command, series, key, place)
 
 

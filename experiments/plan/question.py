@@ -139,7 +139,7 @@ def _scenes(
     path: Path, one: dict[str, Any] | None, several: list[dict[str, Any]] | None
 ) -> tuple[NamedScene, ...]:
     if one is not None and several is not None:
-        raise InputError(f"{path}: scene: found beside scenes, expected either")
+        raise InputError(f"{path}: scene: found beside scenes, expected only one of the two")
     if several is None:
         return (_named_scene(one) if one is not None else NamedScene(NoScene()),)
     named: dict[str, NamedScene] = {}

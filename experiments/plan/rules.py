@@ -140,7 +140,7 @@ def _blocks_and_sweep(question: "Question") -> Iterator[str]:
     if blocks.wanted < blocks.minimum:
         yield f"blocks.wanted: found {blocks.wanted}, expected at least {blocks.minimum}"
     if sweep.parameter == "substeps" and question.substeps != 1:
-        yield "substeps: found beside a sweep of it, expected either"
+        yield "substeps: found beside a sweep of it, expected only one of the two"
     for key, only in (("unit", "threads"), ("limit", "threads"), ("constant", "particles")):
         if getattr(sweep, key) is not None and sweep.parameter != only:
             yield f"sweep.{key}: found for {sweep.parameter}, expected for {only} only"
@@ -161,7 +161,7 @@ def _values_of(series: Series, question: "Question") -> Iterator[str]:
     if parameter is not None and not series.values:
         yield f"values: missing; expected the values of {parameter}"
     if parameter in _OF_SERIES and getattr(series, parameter) is not None:
-        yield f"{parameter}: found beside a sweep of it, expected either"
+        yield f"{parameter}: found beside a sweep of it, expected only one of the two"
     for value in (*series.values, *series.quick_values):
         if not unit and parameter in _WHOLE_NUMBERS and value != int(value):
             yield f"values: found {value}, expected whole numbers"
@@ -174,7 +174,7 @@ def _replicated(series: Series, question: "Question") -> Iterator[str]:
     if series.replicated and question.figure != "schedule":
         yield f"replicated: found for figure {question.figure}, expected for schedule only"
     if series.replicated and question.sweep.unit is not None:
-        yield "replicated: found beside sweep.unit, expected either"
+        yield "replicated: found beside sweep.unit, expected only one of the two"
     for name in ("values", "quick_values"):
         for value in series.replicated:
             if value not in getattr(series, name):

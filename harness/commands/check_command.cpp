@@ -38,8 +38,8 @@ struct Verdict {
 Verdict check_file(const CheckOptions& options, const Scene& scene, const Variant& variant) {
     const Tuning& tuning = options.simulation.tuning;
     if (tuning.substeps != 1) {
-        throw InputError(
-            "--substeps: found beside --trajectory, whose states are whole steps apart; expected either");
+        throw InputError("--substeps: found beside --trajectory, whose states are whole steps apart; "
+                         "expected only one of the two");
     }
     const Rounding rounding = rounding_of(variant.policies);
     const Checker checker(scene.side, scene.radius, 1, tuning.tolerance, rounding, variant.policies.impact,

@@ -84,7 +84,7 @@ void ThreadCounters::on_each(const std::function<void(Thread&)>& body) {
 
 void ThreadCounters::require_same(const Thread& thread) {
     if (thread.identity != pthread_self()) {
-        throw CounterError("not the thread any more that was prepared to count");
+        throw CounterError("OpenMP has replaced the thread that was made ready to count");
     }
 }
 

@@ -87,7 +87,7 @@ Keeper::Keeper(const ProcessCommand& command, const Cgroup* group) {
     if (!await_end(most_seconds_to_start) || read(line_, &ready, 1) != 1) {
         close(line_);
         kill(process_, SIGKILL);
-        throw InputError(command.words.front() + ": nothing could be started that looks after it");
+        throw InputError(command.words.front() + ": the process that is to watch over it did not start");
     }
 }
 

@@ -13,7 +13,7 @@ namespace {
 std::string hash_of_file(const std::string& path) {
     struct stat status{};
     if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
-        throw InputError(path + ": is no plain file, and is part of a program; expected one");
+        throw InputError(path + ": found no plain file, expected one, since it is part of a program");
     }
     return sha256(read_file(path));
 }

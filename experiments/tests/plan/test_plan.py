@@ -316,7 +316,7 @@ MISTAKES = {
         CHUNKS.replace('"find_chunk"', '"threads"\nunit = "hardware_threads"').replace(
             '"published"', '"published"\nreplicated = [1]'
         ),
-        "series[1].replicated: found beside sweep.unit, expected either",
+        "series[1].replicated: found beside sweep.unit, expected only one of the two",
     ),
     "nothing left": (
         CHUNKS.replace('"find_chunk"', '"threads"').replace("[1, 2, 3]", "[9]\nlimit = 1"),

@@ -105,7 +105,7 @@ MISTAKES = {
     ),
     "swept and fixed": (
         CHUNKS.replace('variant = "published"', 'variant = "published"\nfind_chunk = 3'),
-        "series[1].find_chunk: found beside a sweep of it, expected either",
+        "series[1].find_chunk: found beside a sweep of it, expected only one of the two",
     ),
     "limit of something else": (
         CHUNKS.replace("[1, 2, 3]", "[1, 2, 3]\nlimit = 2"),
@@ -154,7 +154,7 @@ MISTAKES = {
     ),
     "one scene and several": (
         ERRORS.replace("[sweep]", f"{SCENE}[sweep]"),
-        "scene: found beside scenes, expected either",
+        "scene: found beside scenes, expected only one of the two",
     ),
     "velocities of the second scene": (
         ERRORS.replace(
@@ -168,7 +168,7 @@ MISTAKES = {
     ),
     "substeps swept and fixed": (
         f"substeps = 2\n{ERRORS}",
-        "substeps: found beside a sweep of it, expected either",
+        "substeps: found beside a sweep of it, expected only one of the two",
     ),
     "neither kind nor figure": (
         CHUNKS.replace('figure = "schedule"\n', ""),
