@@ -1,8 +1,6 @@
 """The table of kinds: what a question is about, and how it is drawn where the file does not say."""
 
 import json
-import re
-from pathlib import Path
 
 import pytest
 
@@ -12,8 +10,6 @@ from experiments.plan.question import FOLDER, load_question
 from experiments.tests.conftest import CHUNKS, ERRORS, Workplace
 from experiments.tests.plan.test_plan import surroundings
 from support.vocabulary import COUNTS
-
-README = Path(__file__).parents[2] / "README.md"
 
 
 def tags_of(place: Workplace, head: str) -> tuple[object, object]:
@@ -58,14 +54,3 @@ def test_every_kind_can_be_asked_for_and_its_usual_figure_is_its_own() -> None:
     for name, kind in KINDS.items():
         assert kind.figures[0] == ("comparison" if name == COUNTS else name)
         assert set(kind.figures) <= set(KINDS)
-
-
-def test_the_page_has_the_table() -> None:
-    rows = re.findall(
-        r"^\| `(\w+)` \| (.*) \| (.*) \| (.*) \|$", README.read_text(encoding="utf-8"), re.MULTILINE
-    )
-    said = {name: rest for name, *rest in rows if name in KINDS}
-    assert said == {
-        name: [kind.measured, kind.judged, ", ".join(f"`{one}`" for one in kind.figures)]
-        for name, kind in KINDS.items()
-    }
