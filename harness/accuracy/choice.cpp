@@ -93,6 +93,33 @@ Expected expected_average_error(const Amounts& amounts, int units, double times_
     return {.error = error, .margin = 2 * share * std::sqrt(amounts.grain * (2 / exact_late + 2 / open))};
 }
 
+Expected expected_path_error(std::span<const double> squares, double moved) {
+    constexpr double unseen = 3;
+    constexpr double discs_of_one = 3;
+    if (squares.empty()) {
+        return {};
+    }
+    const auto count = static_cast<double>(squares.size());
+    const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
+    const double fourth_powers = std::inner_product(squares.begin(), squares.end(), squares.begin(), 0.0);
+    const double error = std::sqrt(sum / count);
+    const double most =
+        std::sqrt((sum + 2 * std::sqrt(discs_of_one * fourth_powers) + unseen * moved) / count);
+    return {.error = error, .margin = std::max(most - error, least_margin_of_piece * error)};
+}
+
+double moved_by_one_collision(const Scene& scene) {
+    double speeds = 0;
+    double cubes = 0;
+    for (const Disc& disc : scene.discs) {
+        const double speed = std::hypot(disc.vx, disc.vy) / scene.radius;
+        speeds += speed;
+        cubes += speed * speed * speed;
+    }
+    // Of three discs, and of the mean of t^2, a third, from a time that is as likely as any other.
+    return speeds > 0 ? 2 * cubes / speeds : 0;
+}
+
 double grain_of_impulse(double impulse, double collisions) {
     return collisions > 0 ? 4 / std::numbers::pi * impulse / collisions : 0;
 }

@@ -74,6 +74,24 @@ struct Expected {
 /// for independent, of variance `grain` times their mean. If the trial was the whole run nothing is open.
 Expected expected_average_error(const Amounts& amounts, int units, double times_more = 1);
 
+/// The error of paths over a scene, if the discs of a piece of it are off by so much: the squares of their
+/// distances to the exact paths, in radii. `moved` is what these squares add up to after one collision that
+/// was missed, or made in another order (moved_by_one_collision).
+///
+/// Few discs make most of such an error, since a collision out of order is rare and moves its discs far. A
+/// piece may have none of them. So the margin covers twice the standard deviation of what was seen, the three
+/// discs of such a collision moving together, and as many collisions that were not seen as a Poisson
+/// distribution leaves possible where none is, three (95 %).
+Expected expected_path_error(std::span<const double> squares, double moved);
+
+/// The least share of an error in a piece by which it may be larger in the scene.
+constexpr double least_margin_of_piece = 0.25;
+
+/// What one collision that is missed or made in another order adds to the sum of squared distances to the
+/// exact paths within a unit of time, in radii: three discs fly on with a velocity that is off by what two of
+/// them differ in, from some time of the unit on. Fast discs collide more often in proportion.
+double moved_by_one_collision(const Scene& scene);
+
 /// The grain of the momentum that `collisions` with walls took up, `impulse` in all: its mean square over its
 /// mean. Where velocities are distributed as in equilibrium those that arrive at a wall have <v^2> = 4/pi
 /// <v>^2 (Maxwell 1860); where all discs are about as fast it is less.

@@ -27,9 +27,6 @@ constexpr double seconds_of_all = 0.8;
 /// Of a trial of an average, which needs some units of time to become what it stays.
 constexpr int fewest_units_of_average = 8;
 
-/// Of the error of paths in a piece, which is not the scene.
-constexpr double margin_of_piece = 0.25;
-
 /// The work of a unit of time of the event-driven simulation that made so many collisions in it.
 Work exact_work(const Scene& scene, double collisions) {
     Work work = work_of_events(scene);
@@ -59,6 +56,7 @@ struct ExactRun {
     int units = 1;    ///< of time, that each method runs
     double grain = 1; ///< of what is averaged
     double error = 0; ///< its own
+    double moved = 0; ///< by one collision that another method has not (moved_by_one_collision)
 };
 
 void require_end(bool settled) {
@@ -96,7 +94,9 @@ double own_error(const TrialCase& given, const ExactRun& exact) {
     EventDriven<long double> extended(given.piece);
     require_end(extended.advance(given.measure == Measure::path ? 1 : exact.units));
     if (given.measure == Measure::path) {
-        return rms_distance(exact.ran.at_one, extended.discs(), given.piece.radius);
+        // Numbers are the larger in the scene, and so is what double rounds of them.
+        const double times_wider = given.scene.side / given.piece.side;
+        return times_wider * rms_distance(exact.ran.at_one, extended.discs(), given.piece.radius);
     }
     const double in_all = std::accumulate(exact.ran.amounts.begin(), exact.ran.amounts.end(), 0.0);
     return expected_average_error({.exact = {amount_of(extended, given.measure)}, .other = {in_all}}, 1)
@@ -118,6 +118,7 @@ ExactRun run_exactly(const TrialCase& given) {
             grain_of_impulse(simulation.wall_impulse(), static_cast<double>(simulation.wall_collisions()));
     }
     exact.error = own_error(given, exact);
+    exact.moved = given.is_whole() ? 0 : moved_by_one_collision(given.scene);
     constexpr double in_long_double = 3; // times as much as in double, about
     exact.ran.seconds = (1 + in_long_double) *
                         (given.seconds(method, given.placed()) + given.seconds(method, exact.ran.work));
@@ -130,8 +131,9 @@ Expected error_of(const TrialCase& given, const ExactRun& exact, const Ran& ran)
             {.exact = exact.ran.amounts, .other = ran.amounts, .grain = exact.grain}, given.scene.steps,
             given.times_more());
     }
-    const double error = rms_distance(ran.at_one, exact.ran.at_one, given.piece.radius);
-    return {.error = error, .margin = given.is_whole() ? 0 : margin_of_piece * error};
+    const auto squares = squared_distances(ran.at_one, exact.ran.at_one, given.piece.radius);
+    const Expected expected = expected_path_error(squares, exact.moved);
+    return given.is_whole() ? Expected{.error = expected.error} : expected;
 }
 
 Tried tried_of(const TrialCase& given, const Method& method, const Ran& ran, const Expected& expected) {
@@ -148,7 +150,9 @@ class Trials {
   public:
     explicit Trials(const TrialCase& given) : given_(given), exact_(run_exactly(given)) {
         spent_ = exact_.ran.seconds;
-        tried_.push_back(tried_of(given, {.variant = &event_driven()}, exact_.ran, {.error = exact_.error}));
+        const double margin = given.is_whole() ? 0 : least_margin_of_piece * exact_.error;
+        tried_.push_back(tried_of(given, {.variant = &event_driven()}, exact_.ran,
+                                  {.error = exact_.error, .margin = margin}));
     }
 
     /// Whether more substeps of its variant are worth a trial.
@@ -177,11 +181,16 @@ class Trials {
             if (!run.advance()) {
                 return false;
             }
-            if (given_.measure == Measure::path && error_of(given_, exact_, run.ran()).error > given_.bound) {
+            if (given_.measure == Measure::path && path_error_is_too_large(run.ran())) {
                 break;
             }
         }
         return true;
+    }
+
+    bool path_error_is_too_large(const Ran& ran) const {
+        const Expected expected = error_of(given_, exact_, ran);
+        return expected.error + expected.margin > given_.bound;
     }
 
     const TrialCase& given_;

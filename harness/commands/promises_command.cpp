@@ -27,7 +27,7 @@ namespace {
 struct PromisesOptions {
     std::string scene;
     Tuning tuning{.threads = default_threads()};
-    std::vector<double> bounds{0.1, 0.01, 0.001};
+    std::vector<double> bounds{0.1, 0.01, 0.001, 1e-6};
     std::vector<std::string> measures;
     std::string record;
     std::vector<std::string> tags;

@@ -37,12 +37,12 @@ TEST_F(PromisesCommand, SaysWhatBecameOfEachBoundOfEachError) {
     const auto result = run_carom({"promises", apart, "--threads", "1", "--record", kept, "--tag", "a=b"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_NE(result.output.find("kept "), std::string::npos);
-    EXPECT_NE(result.output.find(" of 9\n"), std::string::npos) << result.output;
+    EXPECT_NE(result.output.find(" of 12\n"), std::string::npos) << result.output;
     const auto record = this->record();
     EXPECT_EQ(record["kind"], "promises");
     EXPECT_EQ(record["tags"]["a"], "b");
     std::set<std::string> measures;
-    ASSERT_EQ(record["promises"].size(), 9);
+    ASSERT_EQ(record["promises"].size(), 12);
     for (const auto& promise : record["promises"]) {
         measures.insert(promise["measure"]);
         EXPECT_LE(promise["promised"], promise["error_below"]);
