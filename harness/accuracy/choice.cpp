@@ -93,13 +93,13 @@ Expected expected_average_error(const Amounts& amounts, int units, double times_
     return {.error = error, .margin = 2 * share * std::sqrt(amounts.grain * (2 / exact_late + 2 / open))};
 }
 
-Expected expected_path_error(std::span<const double> squares, double moved) {
+Expected expected_path_error(std::span<const double> squares, double moved, double whole_over_piece) {
     constexpr double unseen = 3;
     constexpr double discs_of_one = 3;
     if (squares.empty()) {
         return {};
     }
-    const auto count = static_cast<double>(squares.size());
+    const double count = static_cast<double>(squares.size()) / std::max(whole_over_piece, 1.0);
     const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
     const double fourth_powers = std::inner_product(squares.begin(), squares.end(), squares.begin(), 0.0);
     const double error = std::sqrt(sum / count);

@@ -82,7 +82,9 @@ Expected expected_average_error(const Amounts& amounts, int units, double times_
 /// piece may have none of them. So the margin covers twice the standard deviation of what was seen, the three
 /// discs of such a collision moving together, and as many collisions that were not seen as a Poisson
 /// distribution leaves possible where none is, three (95 %).
-Expected expected_path_error(std::span<const double> squares, double moved);
+///
+/// `whole_over_piece` is the mean square in the scene over that in the piece; one below 1 counts as 1.
+Expected expected_path_error(std::span<const double> squares, double moved, double whole_over_piece = 1);
 
 /// The least share of an error in a piece by which it may be larger in the scene.
 constexpr double least_margin_of_piece = 0.25;

@@ -22,7 +22,8 @@ struct TrialCase {
     Measure measure;
     double bound;
     const Costs& costs;
-    Scene piece; ///< what runs: the scene itself, or a piece of it
+    Scene piece;                 ///< what runs: the scene itself, or a piece of it
+    double whole_over_piece = 1; ///< of squared errors (harness/scenes/piece.hpp)
 
     bool is_whole() const { return scene.discs.size() == piece.discs.size(); }
 

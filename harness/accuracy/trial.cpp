@@ -36,10 +36,11 @@ Work exact_work(const Scene& scene, double collisions) {
 
 /// What a trial runs: the scene where it is small, or all of its run costs little, so that nothing of it is
 /// left open; else a piece.
-Scene scene_of_trial(const Scene& scene, Measure measure, const Costs& costs) {
-    Scene piece = fullest_piece(scene, largest_trial(measure));
+Piece scene_of_trial(const Scene& scene, Measure measure, const Costs& costs) {
+    Piece found = busiest_piece(scene, largest_trial(measure));
+    const Scene& piece = found.scene;
     if (measure == Measure::path || piece.discs.size() == scene.discs.size()) {
-        return piece;
+        return found;
     }
     EventDriven<double> simulation(piece);
     simulation.advance(1);
@@ -47,7 +48,8 @@ Scene scene_of_trial(const Scene& scene, Measure measure, const Costs& costs) {
     const Work work =
         discs / static_cast<double>(piece.discs.size()) *
         exact_work(piece, static_cast<double>(simulation.pair_collisions() + simulation.wall_collisions()));
-    return costs.seconds(event_driven(), discs, work) * scene.steps <= seconds_of_one ? scene : piece;
+    return costs.seconds(event_driven(), discs, work) * scene.steps <= seconds_of_one ? Piece{.scene = scene}
+                                                                                      : found;
 }
 
 /// What the event-driven simulation did: the others are held against it.
@@ -132,7 +134,7 @@ Expected error_of(const TrialCase& given, const ExactRun& exact, const Ran& ran)
             given.times_more());
     }
     const auto squares = squared_distances(ran.at_one, exact.ran.at_one, given.piece.radius);
-    const Expected expected = expected_path_error(squares, exact.moved);
+    const Expected expected = expected_path_error(squares, exact.moved, given.whole_over_piece);
     return given.is_whole() ? Expected{.error = expected.error} : expected;
 }
 
@@ -204,15 +206,17 @@ class Trials {
 Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound,
                   const Costs& costs) {
     const double start = process_seconds();
+    Piece piece = scene_of_trial(scene, measure, costs);
     const TrialCase given{.scene = scene,
                           .tuning = tuning,
                           .measure = measure,
                           .bound = bound,
                           .costs = costs,
-                          .piece = scene_of_trial(scene, measure, costs)};
+                          .piece = std::move(piece.scene),
+                          .whole_over_piece = piece.whole_over_piece};
     Trials trials(given);
     std::vector<const Variant*> done{&event_driven()};
-    for (const Method& method : methods_for(given.piece)) {
+    for (const Method& method : methods_for(given.scene)) {
         const bool is_open = std::ranges::count(done, method.variant) == 0;
         if (is_open && !trials.run(method)) {
             done.push_back(method.variant);

@@ -14,8 +14,6 @@
 #include "harness/accuracy/promise.hpp"
 #include "harness/accuracy/trial.hpp"
 #include "harness/scenes/generate.hpp"
-#include "harness/scenes/piece.hpp"
-#include "harness/verify/event_driven_violation.hpp"
 #include "variants/event_driven_variant.hpp"
 
 namespace carom {
@@ -104,57 +102,6 @@ TEST(ExpectedAverageError, IsLessSureOfFewLargeAmountsThanOfManySmallOnes) {
     const Expected large = expected_average_error({.exact = {100, 100}, .other = {100, 80}, .grain = 9}, 10);
     EXPECT_DOUBLE_EQ(large.error, small.error);
     EXPECT_DOUBLE_EQ(large.margin, 3 * small.margin);
-}
-
-TEST(ExpectedPathError, CountsWhatAPieceMayNotHaveSeen) {
-    const std::vector<double> exact(10'000, 0.0);
-    EXPECT_EQ(expected_path_error(exact, 0).margin, 0);
-    const Expected none_seen = expected_path_error(exact, 0.1);
-    EXPECT_EQ(none_seen.error, 0);
-    EXPECT_NEAR(none_seen.margin, std::sqrt(3 * 0.1 / 10'000), 1e-12) << "three such collisions";
-    EXPECT_EQ(expected_path_error({}, 0.1).margin, 0);
-}
-
-TEST(ExpectedPathError, IsLessSureOfFewDiscsFarOffThanOfManyNearby) {
-    const std::vector<double> many(1000, 1e-4);
-    std::vector<double> few(1000, 0.0);
-    few.front() = 0.1;
-    const Expected of_many = expected_path_error(many, 0);
-    const Expected of_few = expected_path_error(few, 0);
-    EXPECT_NEAR(of_many.error, 0.01, 1e-12);
-    EXPECT_NEAR(of_few.error, 0.01, 1e-12);
-    EXPECT_NEAR(of_many.margin, 0.0025, 1e-12) << "a quarter at least";
-    EXPECT_NEAR(of_few.margin, 0.01 * (std::sqrt(1 + 2 * std::sqrt(3.0)) - 1), 1e-12);
-}
-
-TEST(MovedByOneCollision, GrowsAsTheSquareOfSpeeds) {
-    Scene scene{.side = 100, .radius = 2, .steps = 1, .discs = {{10, 10, 3, 4}, {20, 20, 0, 0}}};
-    EXPECT_DOUBLE_EQ(moved_by_one_collision(scene), 2 * 2.5 * 2.5) << "the disc at rest collides less often";
-    scene.discs = {{10, 10, 0, 0}};
-    EXPECT_EQ(moved_by_one_collision(scene), 0);
-}
-
-/// Of a dilute scene of more discs than a trial has, in which a step at contact is exact for all but a few.
-TEST(TryMethods, PromisesNoErrorThatAPieceCannotTell) {
-    for (std::uint64_t seed = 0; seed < 6; ++seed) {
-        const Scene scene = generate({.count = 40'000,
-                                      .side = 1121,
-                                      .radius = 1,
-                                      .steps = 1,
-                                      .least_velocity = 0.125,
-                                      .largest_velocity = 0.3125,
-                                      .seed = seed,
-                                      .placement = Placement::random,
-                                      .isotropic = true});
-        const Method at_contact = methods_for(scene)[1];
-        const Trial trial = try_methods(scene, {}, Measure::path, 1e-9, typical_costs());
-        ASSERT_FALSE(trial.whole_scene);
-        const auto tried = std::ranges::find(trial.tried, at_contact, &Tried::method);
-        ASSERT_NE(tried, trial.tried.end());
-        const double error =
-            error_of(measure_errors(scene, *at_contact.variant, {.substeps = 1}), Measure::path);
-        EXPECT_LE(error, tried->largest_error()) << "seed " << seed << ", expected " << tried->error;
-    }
 }
 
 TEST(GrainOfImpulse, IsThatOfEquilibrium) {
@@ -296,39 +243,6 @@ TEST(TryMethods, TriesAllOfALargeSceneWhoseRunCostsLittle) {
     for (const Tried& one : trial.tried) {
         EXPECT_EQ(one.margin, 0) << one.method.variant->name;
     }
-}
-
-TEST(FullestPiece, IsTheSceneItselfIfThatIsSmallEnough) {
-    const Scene scene = unseen(1);
-    EXPECT_EQ(fullest_piece(scene, scene.discs.size()).discs, scene.discs);
-}
-
-TEST(FullestPiece, HasWallsDiscsApartAndNearlyTheDensityOfTheWhole) {
-    const Scene scene = generate({.count = 30'000,
-                                  .side = 434,
-                                  .radius = 1,
-                                  .steps = 3,
-                                  .least_velocity = 0.1,
-                                  .largest_velocity = 1,
-                                  .seed = 77,
-                                  .placement = Placement::random,
-                                  .isotropic = true});
-    const Scene piece = fullest_piece(scene, 4000);
-    EXPECT_LE(piece.discs.size(), 4000);
-    EXPECT_GE(piece.discs.size(), 3000);
-    EXPECT_EQ(overlap_at_start(piece), std::nullopt);
-    EXPECT_NEAR(area_fraction(piece), area_fraction(scene), 0.05 * area_fraction(scene));
-}
-
-TEST(FullestPiece, IsWhereTheDiscsAre) {
-    Scene scene{.side = 4000, .radius = 1, .steps = 1, .discs = {{10, 10, 0, 0}}};
-    for (int i = 0; i < 900; ++i) {
-        scene.discs.push_back({3000.0 + 4 * (i % 30), 3000.0 + 4 * (i / 30), 1, 0});
-    }
-    const Scene piece = fullest_piece(scene, 400);
-    EXPECT_LE(piece.discs.size(), 400);
-    EXPECT_GE(piece.discs.size(), 50);
-    EXPECT_TRUE(std::ranges::all_of(piece.discs, [](const Disc& disc) { return disc.vx == 1; }));
 }
 
 } // namespace
