@@ -97,7 +97,7 @@ Expected expected_path_error(std::span<const double> squares, double moved, doub
     constexpr double unseen = 3;
     constexpr double discs_of_one = 3;
     if (squares.empty()) {
-        return {};
+        return {.margin = std::numeric_limits<double>::infinity()};
     }
     const double count = static_cast<double>(squares.size()) / std::max(whole_over_piece, 1.0);
     const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
