@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from analysis.records.tables import PLACE, Record, Row, place
+from analysis.records.tables import PLACE, Record, Row, place, revision_of
 
 NUMBERS = ["error_below", "promised", "delivered", "seconds", "trial_seconds", "methods", "ratio"]
-COLUMNS = [*PLACE, "particles", "threads", "measure", "kept", "method", "cheapest", *NUMBERS]
+COLUMNS = [*PLACE, "revision", "particles", "threads", "measure", "kept", "method", "cheapest", *NUMBERS]
 
 
 def promises(name: str, record: Record) -> Iterable[Row]:
@@ -19,6 +19,7 @@ def promises(name: str, record: Record) -> Iterable[Row]:
     return (
         {
             **place(name, record),
+            "revision": revision_of(record["provenance"]),
             "particles": record["scene"]["particles"],
             "threads": record["axes"]["threads"],
             **_row(row),

@@ -84,12 +84,10 @@ def context(name: str, record: Record) -> Row:
     """Return where a record stands: its tags, axes, scene and origin, one column each.
 
     `machine` is what may be compared as one machine: the host with its CPU model or, under Slurm, the
-    partition with its CPU model (`node` then tells its nodes apart). `revision` is the commit with the hash
-    of what was changed on top of it.
+    partition with its CPU model (`node` then tells its nodes apart).
     """
     tags, scene, origin = record["tags"], record["scene"] or NO_SCENE, record["provenance"]
     slurm = origin["slurm"] or {}
-    changes = f" with changes {str(origin['diff_sha256'])[:8]}" if origin["dirty"] else ""
     return {
         "file": name,
         "kind": record["kind"],
@@ -118,7 +116,7 @@ def context(name: str, record: Record) -> Row:
         "compiler_family": _compiler_family(origin["compiler"]),
         "node": slurm.get("SLURMD_NODENAME", origin["host"]),
         "machine": machine_of(origin),
-        "revision": f"{origin['commit'][:10]}{changes}" if origin["commit"] else "no commit known",
+        "revision": revision_of(origin),
     }
 
 
@@ -140,6 +138,12 @@ def _replicate(tags: dict[str, Any]) -> dict[str, Any]:
     if "replicate" in tags or old is None:
         return {"label": label, "replicate": tags.get("replicate", 1)}
     return {"label": old[1] or None, "replicate": int(old[2])}
+
+
+def revision_of(origin: dict[str, Any]) -> str:
+    """Return the commit with the hash of what was changed on top of it."""
+    changes = f" with changes {str(origin['diff_sha256'])[:8]}" if origin["dirty"] else ""
+    return f"{origin['commit'][:10]}{changes}" if origin["commit"] else "no commit known"
 
 
 def machine_of(origin: dict[str, Any]) -> str:

@@ -110,9 +110,9 @@ def _parser() -> argparse.ArgumentParser:
         prog="carom gate",
         usage="carom gate --base COMMIT [--build LINE] [OPTIONS] -- WORDS",
         description="Build two commits, run a command of both in turns, and say whether one is slower.",
-        epilog="Exit codes: 0 not slower by more than the margin; 1 wrong usage, or a build that failed; 2 a "
-        "command failed; 3 slower by more than the margin; 4 not settled within the time; 5 the base "
-        "differs from itself. 0 and 3 are established; after 5 nothing is certain.",
+        epilog="Exit codes: 0 not slower by more than the margin; 1 wrong usage or a failed build; 2 a "
+        "failed command; 3 slower by more than the margin; 4 not settled in time; 5 the base differs from "
+        "itself. 0 and 3 are established; after 5 nothing is certain.",
     )
     add = parser.add_argument
     add("--base", required=True, metavar="COMMIT", help="what it is compared with, such as origin/main")

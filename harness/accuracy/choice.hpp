@@ -83,8 +83,8 @@ Expected expected_average_error(const Amounts& amounts, int units, double times_
 /// discs of such a collision moving together, and as many collisions that were not seen as a Poisson
 /// distribution leaves possible where none is, three (95 %).
 ///
-/// `whole_over_piece` is the mean square in the scene over that in the piece; one below 1 counts as 1. A piece
-/// without discs tells nothing, so that its margin is infinite.
+/// `whole_over_piece` is the mean square in the scene over that in the piece; one below 1 counts as 1. Of a
+/// piece without discs the margin is infinite.
 Expected expected_path_error(std::span<const double> squares, double moved, double whole_over_piece = 1);
 
 /// The least share of an error in a piece by which it may be larger in the scene.

@@ -44,6 +44,16 @@ def test_the_caption_counts_what_is_kept_and_what_it_costs(
     assert [row[4].mark for row in table.rows].count("open") == 6
 
 
+def test_what_an_earlier_revision_promised_is_not_shown_beside(
+    tmp_path: Path, runs: list[dict[str, Any]]
+) -> None:
+    earlier = synthetic.promises(runs[1], broken="path")
+    earlier["provenance"] = earlier["provenance"] | {"commit": "0" * 40}
+    drawing = drawn(tmp_path, [*runs, synthetic.promises(runs[0]), earlier])
+    assert drawing is not None
+    assert "Kept: paths 3 of 3; collision rate 3 of 3; pressure 3 of 3." in drawing.caption
+
+
 def test_a_bound_for_which_no_method_is_known_is_neither_kept_nor_drawn(
     tmp_path: Path, runs: list[dict[str, Any]]
 ) -> None:
