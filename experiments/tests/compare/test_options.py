@@ -105,7 +105,7 @@ def test_the_unit_stands_behind_the_group(pattern: str, unit: str) -> None:
         (["-n", "7", "-n", "8", "a", "b"], "expected a name that is no number"),
         (["--reference", "c", "a", "b"], '--reference: found "c", expected one of a, b'),
         (["a", " "], "found an empty line"),
-        (["a", "--", "b"], "found lines and words behind --"),
+        (["a", "--", "b"], "found commands as lines and as words behind --"),
         (["--", "a", "--vs"], "found --vs with no word of a command"),
         (["-L", "x", "1,2", "a", "b"], "found values for x, expected {x} in a command"),
         (["-P", "x", "2", "1", "a {x}"], "expected numbers that rise"),
