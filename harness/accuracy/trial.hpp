@@ -26,9 +26,9 @@ struct Trial {
 ///
 /// Errors are against the event-driven simulation, as in error_measures.hpp: in double, its own in long
 /// double. A scene of more than `largest_trial` discs is tried on the busiest of its pieces of that size. The
-/// error of paths may be less there than in the run, by how much says expected_path_error. All of it costs a
-/// second at most. The discs must be apart at the start, and the scene have a unit of time. Throws CheckError
-/// if the collisions of an instant do not come to an end.
+/// error of paths may be less there than in the run, by how much says expected_path_error. All of it costs
+/// about a second at most. The discs must be apart at the start, and the scene have a unit of time. Throws
+/// CheckError if the collisions of an instant do not come to an end.
 Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound,
                   const Costs& costs);
 
