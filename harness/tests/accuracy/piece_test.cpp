@@ -134,7 +134,6 @@ TEST(BusiestPiece, IsWhereDiscsAreFast) {
     const Scene scene = slow_and_fast();
     const Piece piece = busiest_piece(scene, 20'000);
     EXPECT_LT(piece.scene.discs.size(), scene.discs.size());
-    EXPECT_TRUE(std::ranges::all_of(piece.scene.discs, [](const Disc& disc) { return disc.vx != 0; }));
     const auto fast = std::ranges::count_if(
         piece.scene.discs, [](const Disc& disc) { return std::hypot(disc.vx, disc.vy) > 0.1; });
     EXPECT_EQ(fast, piece.scene.discs.size());
