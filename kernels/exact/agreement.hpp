@@ -45,15 +45,11 @@ template <class Real> class Agreement {
         window_.grid.for_each_near(
             number, [&](int other) { farthest = std::max(farthest, of_tile(other).excursion()); });
         // Those farther away than the tiles around it have no copies of what it owns.
-        bool agreed = tile.ended && tile.clearance() > farthest + near_ &&
-                      2 * tile.excursion() + near_ < window_.grid.least_side();
-        for (int place = 0; agreed && place < static_cast<int>(tile.held.size()); ++place) {
-            if (tile.held[index(place)].disc == Held::nobody || tile.kind(place) == Kind::own) {
-                continue;
-            }
-            agreed = tile.owns(place) ? stays_away(number, place, farthest) : is_as_owned(tile, place);
-        }
-        return agreed;
+        const bool agreed = tile.ended && tile.clearance() > farthest + near_ &&
+                            2 * tile.excursion() + near_ < window_.grid.least_side();
+        return agreed && std::ranges::all_of(tile.remembered, [&](int place) {
+                   return tile.owns(place) ? stays_away(number, place, farthest) : is_as_owned(tile, place);
+               });
     }
 
   private:
@@ -61,7 +57,7 @@ template <class Real> class Agreement {
     /// which came out of its bounds farthest came so far.
     bool stays_away(int number, int place, Real farthest) const {
         const TileHistory<Real>& tile = of_tile(number);
-        const Flight<Real>& before = tile.began[index(place)];
+        const Flight<Real>& before = tile.began(place);
         const std::array<Real, 2> start = position(before, window_.begin);
         const Bounds<Real> flown = path(tile, before, tile.first(place), window_.begin);
         if (tile.bounds.depth(flown) > farthest + near_) {
@@ -81,7 +77,7 @@ template <class Real> class Agreement {
     bool is_as_owned(const TileHistory<Real>& tile, int place) const {
         const Held& held = tile.held[index(place)];
         const TileHistory<Real>& owner = of_tile(held.owner);
-        Flight<Real> flight = tile.began[index(place)];
+        Flight<Real> flight = tile.began(place);
         const Change<Real>* copied = tile.first(place);
         const Change<Real>* owned = owner.first(held.place);
         while (copied != nullptr && owned != nullptr && copied->is_as(*owned)) {

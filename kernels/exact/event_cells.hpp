@@ -7,15 +7,9 @@
 #include <limits>
 #include <vector>
 
-namespace carom {
+#include "kernels/exact/rectangle.hpp"
 
-/// A rectangle of the plane, from its lower left corner.
-template <class Real> struct Area {
-    Real left = 0;
-    Real bottom = 0;
-    Real width = 0;
-    Real height = 0;
-};
+namespace carom {
 
 /// The cells of the exact reference in an area, at least 2r wide and high, and which discs are in each. The
 /// cells at the edges reach out to infinity, so that every disc is in one. Around them lies a border of cells
@@ -81,6 +75,20 @@ template <class Real> class EventCells {
     /// The disc that came into the same cell before disc i, unless disc i is at hand and not the last there.
     int before(int i) const { return before_[static_cast<std::size_t>(i)]; }
 
+    /// `body(disc)` for each disc in a cell that is not wholly inside a rectangle.
+    template <class Body> void for_each_disc_outside(const Bounds<Real>& inside, const Body& body) const {
+        const int columns_in_all = stride_ - 2;
+        const auto [first_column, end_column] = within(edges_x_, inside.left, inside.right);
+        const auto [first_row, end_row] = within(edges_y_, inside.bottom, inside.top);
+        for (int row = 0; row < rows_; ++row) {
+            const bool goes_through = first_row <= row && row < end_row;
+            const int first = (row + 1) * stride_ + 1;
+            for_each_disc_in(first, first + (goes_through ? first_column : columns_in_all), body);
+            for_each_disc_in(first + (goes_through ? end_column : columns_in_all), first + columns_in_all,
+                             body);
+        }
+    }
+
     void insert(int i, int cell) {
         Cell& one = cells_[static_cast<std::size_t>(cell)];
         const auto [first, second, third] = one.discs;
@@ -112,6 +120,24 @@ template <class Real> class EventCells {
     static int along(Real position, Real cell_side, int count) {
         const Real scaled = position / cell_side;
         return scaled > 0 ? static_cast<int>(std::min(scaled, static_cast<Real>(count - 1))) : 0;
+    }
+
+    /// Of the rows or columns between edges, the first and the one after the last wholly between two places.
+    static std::array<int, 2> within(const std::vector<Real>& edges, Real begin, Real end) {
+        const auto first = std::ranges::lower_bound(edges, begin) - edges.begin();
+        const auto last = std::ranges::upper_bound(edges, end) - edges.begin() - 1;
+        return {static_cast<int>(first), static_cast<int>(std::max(first, last))};
+    }
+
+    /// The same for each disc in cells from the first one until before the last one.
+    template <class Body> void for_each_disc_in(int first, int last, const Body& body) const {
+        for (int cell = first; cell < last; ++cell) {
+            const Cell& one = (*this)[cell];
+            for (int k = 0, disc = 0; k < one.count; ++k) {
+                disc = k < at_hand ? one.discs[static_cast<std::size_t>(k)] : before(disc);
+                body(disc);
+            }
+        }
     }
 
     static void place_edges(std::vector<Real>& edges, Real begin, Real cell_side, int count) {

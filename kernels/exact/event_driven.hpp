@@ -41,7 +41,8 @@ struct EventLimits {
 /// they part; so do walls. Centres that coincide have no normal and do not collide (first_collision.hpp).
 ///
 /// `Log` is told every collision, with the places of its discs; CollisionLog<Real>& is one that can. One that
-/// has `met_wall(place, axis, velocity)` is told what walls do, too.
+/// has `met_wall(place, axis, velocity)` is told what walls do, too, and one that has
+/// `will_change(place, flight)` how a disc flies before it collides.
 template <class Real, class Log = NoCollisionLog> class EventDriven {
   public:
     /// So many cells a side at most: no result depends on it.
@@ -143,6 +144,7 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
             return;
         }
         if (one.partner < 0) {
+            will_change(i, one);
             one.move_to(one.collision_time);
             bounce(i, one);
             log_.collided(Collision<Real>{one.time, 0, i, i, disc_of(one), disc_of(one)});
@@ -157,10 +159,18 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
     void meet(int first, int second, Real time) {
         Flight<Real>& one = foresight_.flight(first);
         Flight<Real>& other = foresight_.flight(second);
+        will_change(first, one);
+        will_change(second, other);
         one.move_to(time);
         other.move_to(time);
         collide(one, other);
         log_.collided(Collision<Real>{time, 0, first, second, disc_of(one), disc_of(other)});
+    }
+
+    void will_change(int i, const Flight<Real>& flight) {
+        if constexpr (requires { log_.will_change(i, flight); }) {
+            log_.will_change(i, flight);
+        }
     }
 
     static BasicDisc<Real> disc_of(const Flight<Real>& one) { return {one.x, one.y, one.vx, one.vy}; }

@@ -31,25 +31,6 @@ struct WindowSettings {
     int most_repetitions = 6;       ///< of a window in tiles; then it is done in one
 };
 
-/// Into how many tiles a scene of so many discs is cut for that many threads; into one where that takes less
-/// time. Copies are simulated twice, and each tile has some work of its own between windows: on one thread
-/// tiles pay only where the whole scene is far larger than a cache (docs/performance.md).
-inline TileCounts tiles_for(std::size_t discs, int threads) {
-    constexpr double least_discs = 8'000;   // of a tile: of fewer, too many have copies
-    constexpr double cached_discs = 63'000; // with all that belongs to them some 15 MB
-    constexpr double beyond_cache = 400'000;
-    const auto count = static_cast<double>(discs);
-    const double for_cache = count >= beyond_cache ? count / cached_discs : 1;
-    const double wanted = std::min(std::max<double>(for_cache, threads), count / least_discs);
-    if (wanted < 2) {
-        return {};
-    }
-    const double columns = std::ceil(std::sqrt(wanted) - 0.01);
-    const double rows = std::ceil(wanted / columns - 0.01);
-    const double fitting = std::max(std::floor(count / least_discs / columns), 1.0);
-    return {.columns = static_cast<int>(columns), .rows = static_cast<int>(std::min(rows, fitting))};
-}
-
 /// The event-driven simulation on several threads, to the same bits as on one (event_driven.hpp).
 ///
 /// Space is cut into tiles and time into windows. In a window each tile simulates by itself the discs that it
@@ -168,8 +149,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
             window.tiles.push_back(&tile->history());
         }
         const Agreement<Real> agreement(window, radius_);
-        parallel_for<Schedule::dynamic>(threads_, grid_.count(), 1, no_probe_,
-                                        [&](int tile) { agreed_[index(tile)] = agreement.of(tile) ? 1 : 0; });
+        for_each_number([&](int tile) { agreed_[index(tile)] = agreement.of(tile) ? 1 : 0; });
         return std::ranges::all_of(agreed_, [](char one) { return one != 0; });
     }
 
@@ -229,8 +209,18 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
     }
 
     template <class Body> void for_each_tile(const Body& body) {
-        parallel_for<Schedule::dynamic>(threads_, grid_.count(), 1, no_probe_,
-                                        [&](int tile) { body(*tiles_[index(tile)]); });
+        for_each_number([&](int tile) { body(*tiles_[index(tile)]); });
+    }
+
+    /// `body(tile)` for the number of each tile. Where there is a thread for each, it is always the same one,
+    /// whose cache the tile is in.
+    template <class Body> void for_each_number(const Body& body) {
+        const int count = grid_.count();
+        if (count <= threads_) {
+            parallel_for<Schedule::static_>(count, count, 1, no_probe_, body);
+        } else {
+            parallel_for<Schedule::dynamic>(threads_, count, 1, no_probe_, body);
+        }
     }
 
     /// In a window what is wrong at the edge comes the farther the farther discs fly between collisions. The

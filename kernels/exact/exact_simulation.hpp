@@ -7,6 +7,7 @@
 
 #include "kernels/exact/event_driven.hpp"
 #include "kernels/exact/event_windows.hpp"
+#include "kernels/exact/tiles_for.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
 

@@ -96,6 +96,11 @@ template <class Real> class Foresight {
         new_.clear();
     }
 
+    /// `body(place)` for each disc in a cell that is not wholly inside a rectangle.
+    template <class Body> void for_each_outside(const Bounds<Real>& inside, const Body& body) const {
+        cells_.for_each_disc_outside(inside, body);
+    }
+
     /// When the next event of all is; infinity if there is none.
     Real earliest_time() { return queue_.earliest_time(); }
     /// The disc of that event.

@@ -26,8 +26,9 @@ template <class Real> class Tile {
 
     /// In a box of that side, with discs of that radius.
     Tile(const TileGrid<Real>& grid, int number, Real box_side, Real radius, bool lists_collisions)
-        : grid_(grid), number_(number), engine_(box_side, radius, Told{&history_}) {
+        : grid_(grid), number_(number), radius_(radius), engine_(box_side, radius, Told{&history_}) {
         history_.bounds = grid.bounds(number);
+        history_.flights = &engine_.foresight().flights();
         history_.lists_collisions = lists_collisions;
     }
 
@@ -116,20 +117,21 @@ template <class Real> class Tile {
 
     /// Goes on to `end`, and remembers how it was before and what has happened.
     void simulate(Real end, Real halo, std::int64_t at_once) {
-        history_.began = discs().flights();
+        history_.remembered = copies_;
+        for (const Listed& one : border_) {
+            history_.remembered.push_back(one.place);
+        }
         history_.begin();
         history_.ended = engine_.advance(end, {.at_once = at_once});
-        for (const int place : near_) {
-            if (history_.kind(place) == Kind::shared) {
-                history_.shared_is_at(position(discs().flight(place), end));
-            }
+        for (const Listed& one : border_) {
+            history_.shared_is_at(position(discs().flight(one.place), end));
         }
         find_near(end, halo);
     }
 
     /// Goes back to where simulate() began.
     void undo(Real now, Real halo) {
-        discs().flights() = history_.began;
+        history_.undo(discs().flights());
         begin(now, halo);
     }
 
@@ -143,6 +145,7 @@ template <class Real> class Tile {
     /// What the engine tells.
     struct Told {
         TileHistory<Real>* history;
+        void will_change(int place, const Flight<Real>& flight) { history->will_change(place, flight); }
         void collided(const Collision<Real>& one) { history->collided(one); }
         void met_wall(int place, std::size_t axis, Real velocity) {
             history->met_wall(place, axis, velocity);
@@ -167,18 +170,31 @@ template <class Real> class Tile {
         }
     }
 
-    /// Finds what it owns near its border or beyond: more than a halo's width inside nothing is shared.
+    /// Finds what it owns near its border or beyond: more than a halo's width inside nothing is shared. Where
+    /// little happened it does not look into cells farther inside, whose discs are so deep, but for what
+    /// positions are rounded by.
     void find_near(Real now, Real halo) {
         near_.clear();
-        for_each_owned([&](int place, const Flight<Real>& flight) {
-            const std::array<Real, 2> at = position(flight, now);
+        const auto look_at = [&](int place) {
+            if (!history_.owns(place)) {
+                return;
+            }
+            const std::array<Real, 2> at = position(discs().flight(place), now);
             if (history_.kind(place) == Kind::own) {
                 history_.own_is_at(at);
             }
             if (history_.bounds.depth(at) <= halo) {
                 near_.push_back(place);
             }
-        });
+        };
+        if (history_.much_happened() || grid_.count() == 1) {
+            for (int place = 0; place < static_cast<int>(history_.held.size()); ++place) {
+                look_at(place);
+            }
+        } else {
+            history_.own_are_deeper_than(halo + 3 * radius_);
+            discs().for_each_outside(history_.bounds.shrunk(halo + 4 * radius_), look_at);
+        }
     }
 
     Foresight<Real>& discs() { return engine_.foresight(); }
@@ -228,6 +244,7 @@ template <class Real> class Tile {
 
     const TileGrid<Real>& grid_;
     int number_;
+    Real radius_; ///< of the discs
     TileHistory<Real> history_;
     EventDriven<Real, Told> engine_;
     std::vector<int> near_; ///< places of owned discs that may have left it or be shared

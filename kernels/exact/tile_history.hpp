@@ -65,25 +65,42 @@ template <class Real> class TileHistory {
 
     Bounds<Real> bounds; ///< of the tile; infinite beyond the walls
     std::vector<Held> held;
-    std::vector<Kind> kinds;         ///< of each of `held`
-    std::vector<Flight<Real>> began; ///< each one when the window began
-    bool ended = true;               ///< did the collisions of each instant come to an end?
-    bool lists_collisions = false;   ///< are all collisions of owned discs to be listed?
+    std::vector<Kind> kinds;                            ///< of each of `held`
+    std::vector<int> remembered;                        ///< places of copies and shared discs
+    const std::vector<Flight<Real>>* flights = nullptr; ///< of each of `held`, as they are now
+    bool ended = true;             ///< did the collisions of each instant come to an end?
+    bool lists_collisions = false; ///< are all collisions of owned discs to be listed?
 
-    /// Forgets the last window. All discs are known.
+    /// Forgets the last window. All discs are known. Keeps how they fly now: all at once, if much happened in
+    /// the last window, else each when it changes, so that a window in which little happens takes little
+    /// time.
     void begin() {
-        changes_.clear();
-        at_walls_.clear();
-        collisions_.clear();
-        first_.assign(held.size(), Change<Real>::none);
-        last_.assign(held.size(), Change<Real>::none);
-        excursion_ = 0;
-        clearance_ = Bounds<Real>::infinity;
-        pair_collisions_ = 0;
+        const bool much = much_happened();
+        forget();
+        keeps_all_ = much;
+        if (keeps_all_) {
+            kept_ = *flights;
+        }
+        first_.resize(held.size(), Change<Real>::none);
+        last_.resize(held.size(), Change<Real>::none);
+        kept_at_.resize(held.size(), not_kept);
+    }
+
+    /// Did so many discs collide that to look at all of them in the order of memory takes little time beside?
+    bool much_happened() const { return 4 * told_ >= held.size(); }
+
+    /// Is told how a disc flies, before that changes.
+    void will_change(int place, const Flight<Real>& flight) {
+        if (!keeps_all_ && kept_at_[index(place)] == not_kept) {
+            kept_at_[index(place)] = static_cast<int>(kept_.size());
+            kept_places_.push_back(place);
+            kept_.push_back(flight);
+        }
     }
 
     /// Is told every collision in the tile.
     void collided(const Collision<Real>& one) {
+        ++told_;
         if (kind(one.first) == Kind::own && kind(one.second) == Kind::own) {
             pair_collisions_ += one.at_wall() ? 0 : 1;
             own_is_at({one.first_after.x, one.first_after.y});
@@ -107,13 +124,30 @@ template <class Real> class TileHistory {
     void own_is_at(const std::array<Real, 2>& point) {
         clearance_ = std::min(clearance_, bounds.depth(point));
     }
-    /// The same of one of which there are copies.
+    /// The same of all of which nothing else is said.
+    void own_are_deeper_than(Real depth) { clearance_ = std::min(clearance_, depth); }
+    /// Of one of which there are copies.
     void shared_is_at(const std::array<Real, 2>& point) {
         excursion_ = std::max(excursion_, -bounds.depth(point));
     }
 
     Kind kind(int place) const { return kinds[index(place)]; }
     bool owns(int place) const { return kind(place) != Kind::copy; }
+
+    /// How a disc flew when the window began.
+    const Flight<Real>& began(int place) const {
+        const int at = keeps_all_ ? place : kept_at_[index(place)];
+        return at == not_kept ? (*flights)[index(place)] : kept_[index(at)];
+    }
+    /// Lets all fly as they did then.
+    void undo(std::vector<Flight<Real>>& now) const {
+        if (keeps_all_) {
+            now = kept_;
+        }
+        for (std::size_t at = 0; at < kept_places_.size(); ++at) {
+            now[index(kept_places_[at])] = kept_[at];
+        }
+    }
 
     const Change<Real>* first(int place) const { return change_at(first_[index(place)]); }
     const Change<Real>* after(const Change<Real>& one) const { return change_at(one.next); }
@@ -130,7 +164,28 @@ template <class Real> class TileHistory {
     const std::vector<Listed>& collisions() const { return collisions_; }
 
   private:
+    static constexpr int not_kept = -1;
+
     static std::size_t index(int place) { return static_cast<std::size_t>(place); }
+
+    void forget() {
+        for (const int place : changed_) {
+            first_[index(place)] = last_[index(place)] = Change<Real>::none;
+        }
+        for (const int place : kept_places_) {
+            kept_at_[index(place)] = not_kept;
+        }
+        changed_.clear();
+        kept_places_.clear();
+        kept_.clear();
+        changes_.clear();
+        at_walls_.clear();
+        collisions_.clear();
+        told_ = 0;
+        excursion_ = 0;
+        clearance_ = Bounds<Real>::infinity;
+        pair_collisions_ = 0;
+    }
 
     const Change<Real>* change_at(int change) const {
         return change == Change<Real>::none ? nullptr : &changes_[index(change)];
@@ -157,7 +212,12 @@ template <class Real> class TileHistory {
         }
         const int added = static_cast<int>(changes_.size());
         int& last = last_[index(place)];
-        (last == Change<Real>::none ? first_[index(place)] : changes_[index(last)].next) = added;
+        if (last == Change<Real>::none) {
+            first_[index(place)] = added;
+            changed_.push_back(place);
+        } else {
+            changes_[index(last)].next = added;
+        }
         last = added;
         changes_.push_back({time, partner, Change<Real>::none, after});
     }
@@ -177,8 +237,14 @@ template <class Real> class TileHistory {
     std::vector<Change<Real>> changes_;
     std::vector<int> first_; ///< of each place's changes
     std::vector<int> last_;
+    std::vector<int> changed_; ///< the places that have any
+    bool keeps_all_ = false;
+    std::vector<Flight<Real>> kept_;
+    std::vector<int> kept_places_; ///< of each of kept_, if not all are kept
+    std::vector<int> kept_at_;     ///< the inverse
     std::vector<AtWall> at_walls_;
     std::vector<Listed> collisions_;
+    std::size_t told_ = 0; ///< collisions
     Real excursion_ = 0;
     Real clearance_ = 0;
     std::int64_t pair_collisions_ = 0;

@@ -19,17 +19,20 @@ class AgreementOfTiles : public testing::Test {
     static constexpr int left = 0;
     static constexpr int right = 1;
 
-    AgreementOfTiles() : tiles_(4) {
+    AgreementOfTiles() : tiles_(4), flights_(4) {
         for (int tile = 0; tile < grid_.count(); ++tile) {
             tiles_[static_cast<std::size_t>(tile)].bounds = grid_.bounds(tile);
+            tiles_[static_cast<std::size_t>(tile)].flights = &flights_[static_cast<std::size_t>(tile)];
         }
         const std::vector<Flight<double>> flights{{.x = 45, .y = 20}, {.x = 53, .y = 20}, {.x = 85, .y = 20}};
         tiles_[left].held = {{0, left, 0}, {1, right, 1}};
         tiles_[left].kinds = {Kind::shared, Kind::copy};
-        tiles_[left].began = {flights[0], flights[1]};
+        tiles_[left].remembered = {0, 1};
+        flights_[left] = {flights[0], flights[1]};
         tiles_[right].held = {{0, left, 0}, {1, right, 1}, {2, right, 2}};
         tiles_[right].kinds = {Kind::copy, Kind::shared, Kind::own};
-        tiles_[right].began = flights;
+        tiles_[right].remembered = {0, 1};
+        flights_[right] = flights;
         for (auto& tile : tiles_) {
             tile.begin();
         }
@@ -40,11 +43,13 @@ class AgreementOfTiles : public testing::Test {
 
     /// A disc meets a wall in one tile, and flies on from there so.
     void meets_wall(int tile, int place, double time, const Disc& after) {
+        tiles_[static_cast<std::size_t>(tile)].will_change(
+            place, flights_[static_cast<std::size_t>(tile)][static_cast<std::size_t>(place)]);
         tiles_[static_cast<std::size_t>(tile)].collided({time, 0, place, place, after, after});
     }
 
     /// Disc 1 begins there in both tiles.
-    void begins_at(double x) { tiles_[left].began[1].x = tiles_[right].began[1].x = x; }
+    void begins_at(double x) { flights_[left][1].x = flights_[right][1].x = x; }
 
     bool agree() const {
         Window<double> window{.begin = 0, .end = 1, .halo = halo, .grid = grid_, .tiles = {}};
@@ -61,6 +66,7 @@ class AgreementOfTiles : public testing::Test {
 
     TileGrid<double> grid_{100, {.columns = 2, .rows = 2}};
     std::vector<TileHistory<double>> tiles_;
+    std::vector<std::vector<Flight<double>>> flights_; ///< of each tile's discs
 };
 
 TEST_F(AgreementOfTiles, HoldsWhereNothingHappens) { EXPECT_TRUE(agree()); }

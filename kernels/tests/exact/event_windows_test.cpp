@@ -9,6 +9,7 @@
 
 #include "kernels/exact/event_driven.hpp"
 #include "kernels/exact/event_windows.hpp"
+#include "kernels/exact/tiles_for.hpp"
 #include "kernels/tests/scenes.hpp"
 
 namespace carom::tests {
@@ -173,15 +174,18 @@ TEST(EventWindows, SayThatCollisionsOfAnInstantDoNotEnd) {
 }
 
 TEST(EventWindows, AreCutWhereThatPays) {
+    EXPECT_EQ(tiles_for(0, 64), TileCounts{});
     EXPECT_EQ(tiles_for(2'000, 64), TileCounts{});
-    EXPECT_EQ(tiles_for(15'000, 2), TileCounts{});
+    EXPECT_EQ(tiles_for(6'000, 2), TileCounts{});
     EXPECT_EQ(tiles_for(20'000, 2), (TileCounts{2, 1}));
-    EXPECT_EQ(tiles_for(20'000, 16), (TileCounts{2, 1}));
+    EXPECT_EQ(tiles_for(20'000, 16), (TileCounts{4, 4}));
     EXPECT_EQ(tiles_for(100'000, 1), TileCounts{});
-    EXPECT_EQ(tiles_for(100'000, 3), (TileCounts{2, 2}));
+    EXPECT_EQ(tiles_for(100'000, 3), (TileCounts{3, 1}));
     EXPECT_EQ(tiles_for(100'000, 4), (TileCounts{2, 2}));
+    EXPECT_EQ(tiles_for(100'000, 8), (TileCounts{4, 2})) << "not 3 x 3, of which one thread would have two";
     EXPECT_EQ(tiles_for(1'000'000, 1), (TileCounts{4, 4}));
     EXPECT_EQ(tiles_for(1'000'000, 64), (TileCounts{8, 8}));
+    EXPECT_NEAR(tiles_for(100'000'000, 1).all(), 100'000'000 / 63'000, 100);
 }
 
 TEST(EventWindows, BeginAnew) {
