@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -18,14 +20,19 @@ template <class Exact> class EventDrivenSimulation final : public Simulation {
     EventDrivenSimulation(const Scene& scene, int substeps, More&&... more)
         : exact_(scene, std::forward<More>(more)...), substeps_(substeps) {}
 
-    Tally step() override {
+    Tally step() override { return steps(1).work; }
+
+    /// In one go, since wherever somebody may look a window ends (event_windows.hpp).
+    Steps steps(std::int64_t most) override {
         const std::int64_t pairs = exact_.pair_collisions();
         const std::int64_t walls = exact_.wall_collisions();
-        ++steps_;
-        const bool settled = exact_.advance(static_cast<double>(steps_) / substeps_);
-        return {.pair_resolves = exact_.pair_collisions() - pairs,
-                .wall_resolves = exact_.wall_collisions() - walls,
-                .settled = settled};
+        const bool settled = exact_.advance(static_cast<double>(steps_ + most) / substeps_);
+        const std::int64_t count = settled ? most : std::clamp(steps_begun() - steps_, std::int64_t{1}, most);
+        steps_ += count;
+        return {.work = {.pair_resolves = exact_.pair_collisions() - pairs,
+                         .wall_resolves = exact_.wall_collisions() - walls,
+                         .settled = settled},
+                .count = count};
     }
 
     void restart(const Scene& scene) override {
@@ -36,6 +43,11 @@ template <class Exact> class EventDrivenSimulation final : public Simulation {
     std::vector<Disc> discs() const override { return exact_.discs(); }
 
   private:
+    /// Where it stands.
+    std::int64_t steps_begun() const {
+        return static_cast<std::int64_t>(std::ceil(static_cast<double>(exact_.time()) * substeps_));
+    }
+
     Exact exact_;
     double substeps_;
     std::int64_t steps_ = 0;

@@ -21,6 +21,21 @@ class Simulation {
     /// One time step of dt = 1 / substeps.
     virtual Tally step() = 0;
 
+    /// What time steps did, and how many they were.
+    struct Steps {
+        Tally work;
+        std::int64_t count = 0;
+    };
+
+    /// Up to so many time steps, at whose ends nobody looks; the last one if it does not settle.
+    virtual Steps steps(std::int64_t most) {
+        Steps taken;
+        for (; taken.count < most && taken.work.settled; ++taken.count) {
+            taken.work += step();
+        }
+        return taken;
+    }
+
     /// Goes back to the start of the scene it was made of, and keeps its memory: what follows are the same
     /// bits as of a new one, with no memory touched for the first time and no list grown twice.
     virtual void restart(const Scene& scene) = 0;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -183,13 +184,16 @@ Run simulate(const RunOptions& options, const Scene& scene, const Variant& varia
         trajectory->write(trajectory_lines(0, scene.discs));
     }
     ProgressBar progress("simulating", scene.steps);
-    Run run =
-        run_scene(scene, *simulation, tuning, CheckScope::nothing, [&](int step, const Simulation& now) {
-            progress.show(step);
-            if (trajectory) {
-                trajectory->write(trajectory_lines(step, now.discs()));
-            }
-        });
+    const int at_once = trajectory ? 1 : progress.on_terminal() ? std::max(scene.steps / 100, 1) : scene.steps;
+    RunInParts parts(scene, *simulation, tuning, CheckScope::nothing);
+    while (!parts.ended()) {
+        parts.advance(at_once);
+        progress.show(parts.done());
+        if (trajectory) {
+            trajectory->write(trajectory_lines(parts.done(), simulation->discs()));
+        }
+    }
+    const Run run = parts.finish();
     progress.clear();
     if (run.violation) {
         throw CheckError(shown_name(options.simulation.scene) + ", variant " + std::string(variant.name) +

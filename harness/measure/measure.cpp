@@ -38,18 +38,48 @@ RunInParts::RunInParts(const Scene& scene, Simulation& simulation, const Tuning&
 
 TurnTime RunInParts::advance(int steps) {
     const double before = stopwatch_.wall_seconds();
-    const int end = std::min(done_ + steps, scene_.steps);
+    const int end = done_ + std::min(steps, scene_.steps - done_);
     std::optional<double> returning;
     stopwatch_.start();
     if (end - done_ > 1 && !run_.violation) {
-        advance_by_one();
+        go_on_to(done_ + 1);
         returning = stopwatch_.running_wall_seconds() - before;
     }
-    while (done_ < end && !run_.violation) {
-        advance_by_one();
-    }
+    go_on_to(end);
     stopwatch_.stop();
     return {.seconds = stopwatch_.wall_seconds() - before, .returning_seconds = returning};
+}
+
+void RunInParts::go_on_to(int end) {
+    while (done_ < end && !run_.violation) {
+        const int unseen = unseen_until(end);
+        if (unseen > 1) {
+            advance_unseen(unseen);
+        } else {
+            advance_by_one();
+        }
+    }
+}
+
+/// Units of time from here on at whose ends nobody looks.
+int RunInParts::unseen_until(int end) const {
+    if (on_step_ || check_.scope == CheckScope::every_step) {
+        return 0;
+    }
+    return std::min(end, check_.scope == CheckScope::last_step ? scene_.steps - 1 : scene_.steps) - done_;
+}
+
+void RunInParts::advance_unseen(int units) {
+    const auto [work, count] = simulation_.steps(std::int64_t{units} * tuning_.substeps);
+    run_.work += work;
+    if (!work.settled) {
+        const int before_last = static_cast<int>(count - 1);
+        stopwatch_.stop();
+        run_.violation = at_step(done_ + before_last / tuning_.substeps + 1, before_last % tuning_.substeps + 1,
+                                 tuning_.substeps, violation_unsettled());
+        stopwatch_.start();
+    }
+    done_ += units;
 }
 
 void RunInParts::advance_by_one() {

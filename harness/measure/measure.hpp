@@ -47,7 +47,8 @@ struct Run {
 /// Called after each unit of time with its number, from 1.
 using OnStep = std::function<void(int step, const Simulation& simulation)>;
 
-/// A run from the scene's initial state, some steps at a time. The stopwatch runs while it steps, but not
+/// A run from the scene's initial state, some steps at a time; of those at whose ends nobody looks, as many at
+/// once as there are. The stopwatch runs while it steps, but not
 /// while the checker and `on_step` work or the checker's copy is made. A resolve given up at the sweep limit
 /// ends the run with a violation. What it is given must outlive it.
 class RunInParts {
@@ -59,10 +60,19 @@ class RunInParts {
     /// the wall time that they took.
     TurnTime advance(int steps);
 
+    /// Units of time so far.
+    int done() const { return done_; }
+
+    /// Is there nothing left to simulate?
+    bool ended() const { return done_ >= scene_.steps || run_.violation; }
+
     /// What was run, with the state as it is now.
     Run finish();
 
   private:
+    void go_on_to(int end);
+    int unseen_until(int end) const;
+    void advance_unseen(int units);
     void advance_by_one();
     void step(int substep);
     std::optional<std::string> violation_after(const std::vector<Disc>& after) const;

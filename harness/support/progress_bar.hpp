@@ -10,6 +10,9 @@ class ProgressBar {
   public:
     ProgressBar(std::string label, int total);
 
+    /// Is there anybody to show it to?
+    bool on_terminal() const { return on_terminal_; }
+
     /// Shows that `done` of the total are done, ten times a second at most.
     void show(int done);
 

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -68,6 +70,54 @@ TEST(RunScene, LooksAtTheLastStepAloneIfAskedTo) {
 
 TEST(RunScene, LooksAtNothingIfAskedTo) {
     EXPECT_EQ(run_leaky(5, CheckScope::nothing).violation, std::nullopt);
+}
+
+/// A simulation without discs that notes how many steps it is asked for at once, and does not settle in one.
+class Noting final : public Simulation {
+  public:
+    explicit Noting(std::int64_t unsettled) : unsettled_(unsettled) {}
+
+    Tally step() override { return steps(1).work; }
+    Steps steps(std::int64_t most) override {
+        asked.push_back(most);
+        const std::int64_t left = unsettled_ - done_;
+        const std::int64_t count = std::min(most, left);
+        done_ += count;
+        return {.work = {.sweeps = count, .settled = most < left}, .count = count};
+    }
+    void restart(const Scene& /*some_scene*/) override { done_ = 0; }
+    std::vector<Disc> discs() const override { return {}; }
+
+    std::vector<std::int64_t> asked;
+
+  private:
+    std::int64_t unsettled_;
+    std::int64_t done_ = 0;
+};
+
+TEST(RunScene, TakesThoseStepsAtOnceAtWhoseEndsNobodyLooks) {
+    const Scene empty{.side = 50, .radius = 1, .steps = 5, .discs = {}};
+    const auto asked = [&](const Check& check, const OnStep& on_step = nullptr) {
+        Noting simulation(100);
+        const Run run = run_scene(empty, simulation, {.substeps = 4}, check, on_step);
+        EXPECT_EQ(run.violation, std::nullopt);
+        EXPECT_EQ(run.work.sweeps, 20);
+        return simulation.asked;
+    };
+    using Asked = std::vector<std::int64_t>;
+    EXPECT_EQ(asked(CheckScope::nothing), (Asked{1, 1, 1, 1, 16})) << "the first unit is timed by itself";
+    EXPECT_EQ(asked(CheckScope::last_step), (Asked{1, 1, 1, 1, 12, 1, 1, 1, 1}));
+    EXPECT_EQ(asked(CheckScope::every_step), Asked(20, 1));
+    EXPECT_EQ(asked(CheckScope::nothing, [](int, const Simulation&) {}), Asked(20, 1));
+}
+
+TEST(RunScene, NamesTheSubstepThatDidNotSettleAmongThoseTakenAtOnce) {
+    const Scene empty{.side = 50, .radius = 1, .steps = 5, .discs = {}};
+    Noting simulation(14);
+    const Run run = run_scene(empty, simulation, {.substeps = 4}, CheckScope::nothing);
+    ASSERT_NE(run.violation, std::nullopt);
+    EXPECT_TRUE(run.violation->starts_with("step 4 substep 2 of 4: the resolve did not end")) << *run.violation;
+    EXPECT_EQ(run.work.sweeps, 14);
 }
 
 TEST(RunScene, NamesTheSubstepThatWentWrong) {

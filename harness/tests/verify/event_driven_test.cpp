@@ -59,6 +59,29 @@ TEST(EventDrivenChecked, EndsInTheSameBitsHoweverOftenItIsLookedAt) {
     EXPECT_GT(once.work.wall_resolves, 10);
 }
 
+TEST(EventDrivenChecked, TakesStepsAtOnceToTheSameBits) {
+    const Scene scene = apart(0.5, 8);
+    for (const int threads : {1, 2}) {
+        const Tuning tuning{.threads = threads, .substeps = 3};
+        const auto simulation = event_driven().simulate(scene, tuning);
+        const Run at_once = run_scene(scene, *simulation, tuning, CheckScope::nothing);
+        const Run one_by_one = checked(scene, tuning);
+        EXPECT_EQ(at_once.discs, one_by_one.discs);
+        EXPECT_EQ(at_once.work, one_by_one.work);
+    }
+}
+
+/// A disc as wide as its box is wedged when it meets the wall.
+TEST(EventDrivenChecked, NamesTheStepInWhichADiscIsWedgedHoweverManyAreTakenAtOnce) {
+    const Scene wedged{.side = 20, .radius = 10, .steps = 9, .discs = {{9.1, 10, 0.25, 0}}};
+    for (const CheckScope scope : {CheckScope::nothing, CheckScope::every_step}) {
+        const auto simulation = event_driven().simulate(wedged, {});
+        const Run run = run_scene(wedged, *simulation, {}, {scope, event_driven()});
+        ASSERT_NE(run.violation, std::nullopt);
+        EXPECT_TRUE(run.violation->starts_with("step 4: ")) << *run.violation;
+    }
+}
+
 /// What the checker says of a unit of time whose end is changed by `mutate`.
 template <class Mutate> std::string said_of(const Scene& scene, Mutate mutate) {
     EventDriven<double> exact(scene);
