@@ -184,7 +184,9 @@ Run simulate(const RunOptions& options, const Scene& scene, const Variant& varia
         trajectory->write(trajectory_lines(0, scene.discs));
     }
     ProgressBar progress("simulating", scene.steps);
-    const int at_once = trajectory ? 1 : progress.on_terminal() ? std::max(scene.steps / 100, 1) : scene.steps;
+    const int at_once = trajectory               ? 1
+                        : progress.on_terminal() ? std::max(scene.steps / 100, 1)
+                                                 : scene.steps;
     RunInParts parts(scene, *simulation, tuning, CheckScope::nothing);
     while (!parts.ended()) {
         parts.advance(at_once);

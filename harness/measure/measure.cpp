@@ -75,8 +75,8 @@ void RunInParts::advance_unseen(int units) {
     if (!work.settled) {
         const int before_last = static_cast<int>(count - 1);
         stopwatch_.stop();
-        run_.violation = at_step(done_ + before_last / tuning_.substeps + 1, before_last % tuning_.substeps + 1,
-                                 tuning_.substeps, violation_unsettled());
+        run_.violation = at_step(done_ + before_last / tuning_.substeps + 1,
+                                 before_last % tuning_.substeps + 1, tuning_.substeps, violation_unsettled());
         stopwatch_.start();
     }
     done_ += units;

@@ -47,10 +47,10 @@ struct Run {
 /// Called after each unit of time with its number, from 1.
 using OnStep = std::function<void(int step, const Simulation& simulation)>;
 
-/// A run from the scene's initial state, some steps at a time; of those at whose ends nobody looks, as many at
-/// once as there are. The stopwatch runs while it steps, but not
-/// while the checker and `on_step` work or the checker's copy is made. A resolve given up at the sweep limit
-/// ends the run with a violation. What it is given must outlive it.
+/// A run from the scene's initial state, some steps at a time; of those at whose ends nobody looks, as many
+/// at once as there are. The stopwatch runs while it steps, but not while the checker and `on_step` work or
+/// the checker's copy is made. A resolve given up at the sweep limit ends the run with a violation. What it
+/// is given must outlive it.
 class RunInParts {
   public:
     RunInParts(const Scene& scene, Simulation& simulation, const Tuning& tuning, const Check& check,

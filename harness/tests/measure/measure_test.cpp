@@ -99,7 +99,7 @@ TEST(RunScene, TakesThoseStepsAtOnceAtWhoseEndsNobodyLooks) {
     const Scene empty{.side = 50, .radius = 1, .steps = 5, .discs = {}};
     const auto asked = [&](const Check& check, const OnStep& on_step = nullptr) {
         Noting simulation(100);
-        const Run run = run_scene(empty, simulation, {.substeps = 4}, check, on_step);
+        const carom::Run run = run_scene(empty, simulation, {.substeps = 4}, check, on_step);
         EXPECT_EQ(run.violation, std::nullopt);
         EXPECT_EQ(run.work.sweeps, 20);
         return simulation.asked;
@@ -114,9 +114,10 @@ TEST(RunScene, TakesThoseStepsAtOnceAtWhoseEndsNobodyLooks) {
 TEST(RunScene, NamesTheSubstepThatDidNotSettleAmongThoseTakenAtOnce) {
     const Scene empty{.side = 50, .radius = 1, .steps = 5, .discs = {}};
     Noting simulation(14);
-    const Run run = run_scene(empty, simulation, {.substeps = 4}, CheckScope::nothing);
+    const carom::Run run = run_scene(empty, simulation, {.substeps = 4}, CheckScope::nothing);
     ASSERT_NE(run.violation, std::nullopt);
-    EXPECT_TRUE(run.violation->starts_with("step 4 substep 2 of 4: the resolve did not end")) << *run.violation;
+    EXPECT_TRUE(run.violation->starts_with("step 4 substep 2 of 4: the resolve did not end"))
+        << *run.violation;
     EXPECT_EQ(run.work.sweeps, 14);
 }
 

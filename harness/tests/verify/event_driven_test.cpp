@@ -64,8 +64,8 @@ TEST(EventDrivenChecked, TakesStepsAtOnceToTheSameBits) {
     for (const int threads : {1, 2}) {
         const Tuning tuning{.threads = threads, .substeps = 3};
         const auto simulation = event_driven().simulate(scene, tuning);
-        const Run at_once = run_scene(scene, *simulation, tuning, CheckScope::nothing);
-        const Run one_by_one = checked(scene, tuning);
+        const carom::Run at_once = run_scene(scene, *simulation, tuning, CheckScope::nothing);
+        const carom::Run one_by_one = checked(scene, tuning);
         EXPECT_EQ(at_once.discs, one_by_one.discs);
         EXPECT_EQ(at_once.work, one_by_one.work);
     }
@@ -74,9 +74,9 @@ TEST(EventDrivenChecked, TakesStepsAtOnceToTheSameBits) {
 /// A disc as wide as its box is wedged when it meets the wall.
 TEST(EventDrivenChecked, NamesTheStepInWhichADiscIsWedgedHoweverManyAreTakenAtOnce) {
     const Scene wedged{.side = 20, .radius = 10, .steps = 9, .discs = {{9.1, 10, 0.25, 0}}};
-    for (const CheckScope scope : {CheckScope::nothing, CheckScope::every_step}) {
+    for (const OnStep& on_step : {OnStep(), OnStep([](int, const Simulation&) {})}) {
         const auto simulation = event_driven().simulate(wedged, {});
-        const Run run = run_scene(wedged, *simulation, {}, {scope, event_driven()});
+        const carom::Run run = run_scene(wedged, *simulation, {}, CheckScope::nothing, on_step);
         ASSERT_NE(run.violation, std::nullopt);
         EXPECT_TRUE(run.violation->starts_with("step 4: ")) << *run.violation;
     }
