@@ -79,11 +79,12 @@ def _commit() -> str:
 
 
 @contextmanager
-def _beside(loops: int) -> Iterator[None]:
-    """So many loops that keep a processor busy, until the block ends."""
-    children = [subprocess.Popen(["sh", "-c", "while :; do :; done"]) for _ in range(loops)]
+def _beside(loops: int) -> Iterator[list[int]]:
+    """So many loops that keep a processor busy, until the block ends, or this process does: their numbers."""
+    busy = "while kill -0 $PPID 2>/dev/null; do :; done"
+    children = [subprocess.Popen(["sh", "-c", busy]) for _ in range(loops)]
     try:
-        yield
+        yield [child.pid for child in children]
     finally:
         for child in children:
             child.kill()

@@ -11,7 +11,7 @@ namespace carom {
 
 /// The work of the thread that has most of it in a window, in discs in one piece: each has as many tiles as
 /// any other or one less. A tile simulates its copies, too, compares and remembers, and whatever it has must
-/// be put right between windows. The figures are of two cores (docs/performance.md).
+/// be put right between windows. The figures are of two cores (docs/notebook/2026-11-27-exact.md).
 inline double work_in_tiles(double discs, const TileCounts& tiles, int threads) {
     constexpr double halo = 6;         // is so wide, in mean distances between discs
     constexpr double comparing = 1.15; // takes so many times the work,
@@ -35,6 +35,7 @@ inline TileCounts tiles_for(std::size_t discs, int threads) {
     const auto count = static_cast<double>(discs);
     const double fewest = count >= beyond_cache ? count / cached_discs : 1;
     const double most = count / least_discs;
+    // Of tiles in a row: a number of threads without divisors near its root is served by longer rows.
     const int longest = 2 * static_cast<int>(std::ceil(std::sqrt(std::max<double>(fewest, threads))));
     TileCounts best;
     double least = fewest > 1 ? std::numeric_limits<double>::infinity() : count / least_gain;
