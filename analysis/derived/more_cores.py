@@ -22,6 +22,7 @@ import pandas as pd
 from analysis.derived.ladder import named
 from analysis.statistics.pairs import log_ratios
 from analysis.statistics.verdicts import judge
+from analysis.support.wording import exact
 
 PHASES = ["move", "bin", "find", "resolve"]
 ROWS_OF_A_STRIP = 4
@@ -98,7 +99,9 @@ def _grown(scene: pd.Series, times: int) -> pd.Series:
     grown[[*PHASES, "particles"]] = scene[[*PHASES, "particles"]] * times
     grown["side"] = scene["side"] * math.sqrt(times)
     millions = grown["particles"] / 1e6
-    grown["scene_name"] = f"{millions:g} million discs" if millions >= 1 else f"{grown['particles']:g} discs"
+    grown["scene_name"] = (
+        f"{millions:g} million discs" if millions >= 1 else f"{exact(grown['particles'])} discs"
+    )
     return grown
 
 

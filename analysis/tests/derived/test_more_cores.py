@@ -90,6 +90,8 @@ def test_larger_boxes_take_as_much_longer() -> None:
     seconds = told(step("one", 1, 1.0, particles=1e6), *TWO_DISCS)
     assert seconds["10 million discs", 1] == pytest.approx(40.0)
     assert seconds["100 million discs", 1] == pytest.approx(400.0)
+    quick = told(step("one", 1, 1.0, particles=1e4), *TWO_DISCS)
+    assert quick["100\xa0000 discs", 1] == pytest.approx(40.0)
 
 
 def test_nothing_is_foretold_without_loops_on_two_threads() -> None:
