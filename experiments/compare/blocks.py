@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from experiments.compare.others import Others
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.results.store import Store
@@ -62,6 +63,7 @@ class Blocks:
         self._store = store
         self._runner = runner
         self.began = time.monotonic()
+        self.others = Others()
         self._plan(experiment, 1)
 
     def _plan(self, experiment: Experiment, in_a_row: int) -> None:
@@ -140,7 +142,9 @@ class Blocks:
         order = list(enumerate(self.experiment.block(block)))
         for group in together(self.experiment, block, order):
             tasks = [Task(self.experiment, point, block, at, block + 1, size) for at, point in group]
-            for task, outcome in zip(tasks, self._runner.run(tasks), strict=True):
+            with self.others.watching():
+                outcomes = self._runner.run(tasks)
+            for task, outcome in zip(tasks, outcomes, strict=True):
                 if outcome.seconds is None:
                     self.runs[key_of(task.point)].reason = outcome.reason
                 else:

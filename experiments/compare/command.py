@@ -69,7 +69,7 @@ def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[i
         with Line(asked.quiet) as line:
             line.show("making ready")
             stopped = course.run(judge, earlier, line)
-        found = course.found(_remarks(course.asked))
+        found = course.found(_remarks(course))
         said = result(found)
         print(*said, sep="\n")
         earlier.keep(course.blocks)
@@ -96,9 +96,10 @@ def _write_down(asked: Asked, store: Store) -> None:
     store.keep_note(ASKED, {"cases": asked.cases, "contrasts": told})
 
 
-def _remarks(asked: Asked) -> tuple[str, ...]:
+def _remarks(course: Course) -> tuple[str, ...]:
     """What is to be known of how it was measured."""
-    remarks = []
+    asked, busy = course.asked, course.blocks.others.remark()
+    remarks = [] if busy is None else [busy]
     if asked.in_a_row > 1:
         remarks.append(
             f"each time is of {asked.in_a_row} runs in a row, which a shell starts one after the other, "

@@ -57,6 +57,7 @@ class Course:
             before=self.blocks.before,
             seconds=self._seconds,
             machine=self._around.machine.name,
+            others=self.blocks.others.busy(),
             looks=tuple(self._looks),
             remarks=remarks,
         )

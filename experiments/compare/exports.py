@@ -48,6 +48,7 @@ def _json(found: Found) -> str:
     content = {
         "schema_version": SCHEMA_VERSION,
         "machine": found.machine,
+        "processors_of_others": found.others,
         "reference": asked.reference,
         "margin": asked.margin,
         "error": asked.error,

@@ -32,6 +32,8 @@ class Found:
     before: int
     seconds: float
     machine: str
+    others: float | None = None
+    """How many processors other programs kept busy meanwhile, None where the system does not tell."""
     looks: tuple[Look, ...] = ()
     remarks: tuple[str, ...] = field(default=())
     """Lines on how it was measured."""
