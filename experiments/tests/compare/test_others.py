@@ -2,6 +2,8 @@
 
 import json
 import os
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -42,17 +44,26 @@ def test_what_is_neither_idle_nor_own_is_of_others(
     assert (seen.remark() is not None) == (processors * (1 - busy_share) <= 0.5)
 
 
-def test_own_work_is_not_of_others(kernel: Path) -> None:
-    seen = Others()
-    processors = len(os.sched_getaffinity(0))
+def test_own_work_is_not_of_others(kernel: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # One processor of all works all the time, for this process.
+    monkeypatch.setattr(others, "_own_seconds", time.monotonic)
+    seen, processors = Others(), len(os.sched_getaffinity(0))
     with seen.watching():
-        end = time.process_time() + 0.3
-        while time.process_time() < end:
-            pass
-        # One processor of all is in use, by this process.
-        stat(kernel, 1000 + 30 * (processors - 1), 1000 + 30)
-    expected = 30 * processors / (30 * (processors - 1) + 30) - 1
-    assert seen.busy() == pytest.approx(max(0.0, expected), abs=0.5)
+        time.sleep(0.2)
+        used = 100 // processors
+        stat(kernel, 1000 + 100 - used, 1000 + used)
+    assert seen.busy() == pytest.approx(0, abs=0.1)
+    assert seen.remark() is None
+
+
+def test_own_work_is_that_of_this_process_and_of_its_children() -> None:
+    spent = "import time\nwhile time.process_time() < 0.2: pass"
+    before = others._own_seconds()
+    subprocess.run([sys.executable, "-c", spent], check=True)
+    own = time.process_time()
+    while time.process_time() < own + 0.2:
+        pass
+    assert others._own_seconds() - before >= 0.35
 
 
 @pytest.mark.parametrize("text", ["", "cpu 1 2 3 4\n", None])
