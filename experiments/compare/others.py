@@ -46,7 +46,7 @@ class Others:
 
     def busy(self) -> float | None:
         """How many processors others kept busy on average, the host of a virtual machine among them; None
-        where the system does not tell.
+        where the system does not tell. What a command has a daemon do, as `docker run` does, is of others.
         """
         if self.ticks <= 0:
             return None
