@@ -5,6 +5,7 @@ import json
 import signal
 import sys
 from collections.abc import Callable, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -97,15 +98,19 @@ def _step(text: str) -> int:
 
 def _figures(options: argparse.Namespace) -> int:
     from analysis.figures.studies import draw_all
+    from analysis.report.all_claims import draw_all_claims
+    from analysis.support.parallel import in_parallel
 
-    drawn = draw_all(options.results, options.experiment.split(",") if options.experiment else ())
-    for figure in drawn:
-        print(figure.files[0])
-    if not options.experiment:
-        from analysis.report.all_claims import draw_all_claims
+    wanted = options.experiment.split(",") if options.experiment else ()
 
-        for file in draw_all_claims(options.results):
-            print(file)
+    def files(of_claims: int) -> list[Path]:
+        if of_claims:
+            return draw_all_claims(options.results)
+        return [figure.files[0] for figure in draw_all(options.results, wanted)]
+
+    drawn, *claims = in_parallel(files, 1 if wanted else 2)
+    for file in chain(drawn, *claims):
+        print(file)
     if not drawn:
         print(f"{options.results}: no records to draw yet", file=sys.stderr)
     return 0

@@ -65,19 +65,19 @@ QUANTITIES = [
 ]
 
 
-def derived(counters: pd.DataFrame) -> pd.DataFrame:
+def derived(counters: pd.DataFrame, quantities: Sequence[Quantity] = QUANTITIES) -> pd.DataFrame:
     """Return `experiment`, `series`, `source`, `quantity`, `value` (median), `least`, `greatest`, `runs`.
 
-    Takes the rows of `tables.counters`. A counter's threads are summed within each profiled run; a run in
-    which one of them has no value gives none, rather than too small a sum. Quantities without any value are
-    left out.
+    Takes the rows of `tables.counters`, and works out these quantities. A counter's threads are summed within
+    each profiled run; a run in which one of them has no value gives none, rather than too small a sum.
+    Quantities without any value are left out.
     """
     keys = ["experiment", "series", "file", "source", "discs", "time_steps"]
     steps = counters["steps"] * counters["substeps"]
     measured = counters.assign(discs=counters["particles"], time_steps=steps)
     totals = measured.groupby([*keys, "name"])["value"].agg(lambda values: values.sum(skipna=False))
     wide = totals.unstack("name").reset_index()
-    tables = [_quantity(wide[wide["source"] == one.source], one) for one in QUANTITIES]
+    tables = [_quantity(wide[wide["source"] == one.source], one) for one in quantities]
     known = pd.concat(tables).dropna(subset="value")
     groups = known.groupby(["experiment", "series", "source", "quantity"], sort=False)
     return groups["value"].agg(value="median", least="min", greatest="max", runs="count").reset_index()

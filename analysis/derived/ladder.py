@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pandas as pd
 
-from analysis.derived.counters import derived
+from analysis.derived.counters import QUANTITIES, derived
 from analysis.records.studies import Study
 from analysis.records.tables import COLUMN_OF, LATER_AXES
 from analysis.statistics.bootstrap import summarise
@@ -23,6 +23,7 @@ POLICIES = [
 ]  # fmt: skip
 INSTRUCTIONS = "instructions per disc and step"
 SOURCES = ("papi-hardware", "cachegrind")
+COUNTED = [one for one in QUANTITIES if one.name == INSTRUCTIONS]
 
 PairsOf = Callable[[list[float]], list[tuple[float, float]]]
 
@@ -151,8 +152,7 @@ def _instructions(table: pd.DataFrame, counters: pd.DataFrame) -> dict[str, Sequ
     keys = ["variant", "particles", "side", "radius"]
     found: dict[object, tuple[float, str]] = {}
     for key, group in known.groupby(keys):
-        rows = derived(group)
-        medians = rows[rows["quantity"] == INSTRUCTIONS].groupby("source")["value"].median()
+        medians = derived(group, COUNTED).groupby("source")["value"].median()
         found |= [(key, (medians[source], source)) for source in reversed(SOURCES) if source in medians]
     pairs = [found.get(scene, (np.nan, "")) for scene in table[keys].itertuples(index=False, name=None)]
     return {"instructions": [value for value, _ in pairs], "source": [source for _, source in pairs]}

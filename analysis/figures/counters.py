@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analysis.derived.counters import derived
+from analysis.derived.counters import QUANTITIES, derived
 from analysis.figures.labels import name_rows, note
 from analysis.figures.style import BLUE, INK, WIDTH, Data, Drawing
 from analysis.support.wording import count, number
@@ -16,7 +16,8 @@ COLUMNS = 3
 def panels(data: Data, source: str, subject: str) -> Drawing | None:
     """Draw what one source counted of the published variants, a panel a quantity."""
     (counters,) = data.study.of("phases", "counters")
-    rows = derived(counters[counters["source"] == source])
+    asked = [one for one in QUANTITIES if one.source == source]
+    rows = derived(counters[counters["source"] == source], asked)
     if rows.empty:
         return None
     quantities = list(dict.fromkeys(rows["quantity"]))

@@ -74,13 +74,11 @@ SCALES = {
 }
 
 
-def all_claims(data: Data, table: pd.DataFrame | None = None, layout: Layout = WIDE) -> Drawing | None:
-    """Draw the claims of a study, of their `table` if it was evaluated; None if no claim has an effect.
+def all_claims(table: pd.DataFrame, layout: Layout = WIDE) -> Drawing | None:
+    """Draw the `table` of a study's claims; None if no claim has an effect.
 
     Each row is a link to its claim in the report beside the folder of figures.
     """
-    if table is None:
-        table = claims.evaluate(data.study, data.studies, data.published, claims.load(data.folder))
     rows = table.to_dict("records")
     if not any(one.is_measured for row in rows for one in row["effects"]):
         return None
@@ -258,13 +256,16 @@ def draw(
 ) -> tuple[str, list[Path]]:
     """Write the figure into the folder of figures, wide in these formats and narrow as SVG.
 
-    Return its caption and files, none where there is nothing to draw.
+    The claims are evaluated unless their `table` is given. Return the figure's caption and files, none where
+    there is nothing to draw.
     """
+    if table is None:
+        table = claims.evaluate(data.study, data.studies, data.published, claims.load(data.folder))
     files: list[Path] = []
     caption = ""
     for name, layout in ((f"{prefix}{NAME}", WIDE), (f"{prefix}{NAME}-narrow", NARROW)):
         with styled(name):
-            drawing = all_claims(data, table, layout)
+            drawing = all_claims(table, layout)
         if drawing is None:
             return "", []
         caption = drawing.caption

@@ -141,12 +141,12 @@ def test_every_question_with_a_figure_has_words() -> None:
 def test_a_missing_interval_does_not_stretch_the_axis(refuted: Path, layout: Layout) -> None:
     data = data_of(refuted)
     table = claims.evaluate(data.study, data.studies, data.published)
-    plain = all_claims(data, table, layout)
+    plain = all_claims(table, layout)
     assert plain is not None
     wide = Effect("x", Interval(0.9, 1e-9, 1e9), 0.95)
     none = Effect("y", Interval(1.05, -math.inf, math.inf))
     stretched = table.assign(effects=[(*row, wide, none) for row in table["effects"]])
-    drawn = all_claims(data, stretched, layout)
+    drawn = all_claims(stretched, layout)
     assert drawn is not None
     (axes,), (before,) = drawn.figure.axes, plain.figure.axes
     assert axes.get_xlim() == before.get_xlim()
@@ -158,7 +158,6 @@ def test_a_missing_interval_does_not_stretch_the_axis(refuted: Path, layout: Lay
 
 def test_nothing_measured_is_no_figure(tmp_path: Path) -> None:
     write(tmp_path, study(["sequential_orders"], blocks=2))
-    assert all_claims(data_of(tmp_path)) is None
     assert draw(data_of(tmp_path)) == ("", [])
     assert 'class="claims-figure"' not in report.render(tmp_path)
 

@@ -1,6 +1,7 @@
 """What `carom compare` makes of its measurements: tables, files, a page, and a file that it goes on with."""
 
 import csv
+import itertools
 import json
 import re
 from pathlib import Path
@@ -15,6 +16,12 @@ from experiments.tests.compare.calls import (
 )
 
 pytestmark = needs_the_program
+
+
+def table_behind(words: str, said: str) -> list[str]:
+    """The lines of the table, which remarks may follow."""
+    rows = [line.strip() for line in said.split(words)[1].splitlines()[1:]]
+    return list(itertools.takewhile(lambda row: "   " in row, rows))
 
 
 def test_the_result_is_written_as_files(folder: Path) -> None:
@@ -36,8 +43,8 @@ def test_products_of_lists_have_a_table_of_effects(folder: Path) -> None:
     lists = ("-L", "a", "100,200", "-L", "b", "1,3")
     done = run(folder, "compare", *lists, "./prints {a} {b}", *TOOK, "--time", "60s")
     assert done.returncode == 0, done.stderr
-    told = done.stdout.split("what each value changes")[1]
-    rows = [re.split(" {3,}", line.strip()) for line in told.splitlines()[1:]]
+    told = table_behind("what each value changes", done.stdout)
+    rows = [re.split(" {3,}", line) for line in told]
     more, none = "more time, by more than 2 %", "below 2 %"
     assert rows == [
         ["a 200 instead of 100", "+100.0 % [+100.0, +100.0]", more],
@@ -105,5 +112,5 @@ def test_three_commands_are_a_league(folder: Path) -> None:
         script(folder / name, f"echo took {time_taken} ms")
     done = run(folder, "compare", "./a", "./b", "./c", "--time", "60s", "--time-from", "took ([0-9]+) ms")
     assert "c against a   −50.0 %" in done.stdout
-    places = [line.split() for line in done.stdout.split("told apart:\n")[1].splitlines()]
+    places = [line.split() for line in table_behind("told apart:", done.stdout)]
     assert [place[-2:] for place in places] == [["b", "a"], ["c", "a"], ["a", "b"]]
