@@ -124,7 +124,6 @@ def _follow(options: argparse.Namespace) -> int:
     from analysis.claims import Tested
     from analysis.commands.open_questions import open_questions
     from analysis.commands.programs_compared import programs_compared
-    from analysis.report import write, write_meanwhile
 
     remembered: Tested = {}
     for line in sys.stdin:
@@ -138,9 +137,13 @@ def _follow(options: argparse.Namespace) -> int:
 
                 answer = str(programs_picture(options.results))
             case ["report" | "page" as wanted]:
+                from analysis.report import write
+
                 written = write(options.results, _asked(options), pdf=wanted == "report")
                 answer = [str(path) for path in written]
             case ["report", *how_far]:
+                from analysis.report import write_meanwhile
+
                 answer = [str(write_meanwhile(options.results, _asked(options), " ".join(how_far)))]
             case _:
                 expected = "expected `open`, `compared N`, `picture`, `page`, `report` or `report ...`"
