@@ -60,7 +60,7 @@ class Others:
             return None
         return (
             f"the machine was busy: other programs took {busy:.1f} of its {processors} processors meanwhile, "
-            "which makes times longer and verdicts rare; repeat it on a quiet one"
+            "and such verdicts are wrong more often; repeat it on a quiet machine"
         )
 
 
