@@ -6,12 +6,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from experiments.calibration.busy import busy
 from experiments.calibration.kinds import KINDS
 from experiments.calibration.stream import measure
 from experiments.plan.program import GENERATOR, Program, find_programs
 from experiments.plan.site import load_site, this_machine
 from experiments.run.progress import ProgressDisplay
+from experiments.support.busy import busy
 from experiments.support.places import BUILDS
 from support.command_line import number_above_zero
 from support.errors import InputError

@@ -59,8 +59,8 @@ class Others:
         if busy is None or busy < _LEAST * processors or processors * self.idle / self.ticks > _ROOM:
             return None
         return (
-            f"the machine was busy: other programs took {busy:.1f} of its {processors} processors meanwhile, "
-            "and such verdicts are wrong more often; repeat it on a quiet machine"
+            f"the machine was busy: other programs took {busy:.1f} of its {processors} processors meanwhile. "
+            "Verdicts may be wrong more often then: repeat it on a quiet machine"
         )
 
 

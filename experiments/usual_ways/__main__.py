@@ -9,12 +9,11 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 
 from experiments.plan.site import this_machine
+from experiments.support.busy import busy
 from experiments.support.places import BUILDS
 from experiments.usual_ways.programs import build_loop, pair
 from experiments.usual_ways.tables import COLUMNS, read, table
@@ -42,7 +41,7 @@ def _run(options: argparse.Namespace) -> int:
         raise InputError(
             f"found no {', '.join(missing)}, expected them: apt-get install hyperfine linux-perf"
         )
-    with tempfile.TemporaryDirectory() as folder, _beside(options.busy):
+    with tempfile.TemporaryDirectory() as folder, busy(options.busy):
         program = build_loop(Path(folder)) if options.rounds else Path()
         for _ in range(options.rounds):
             _round(program, f"beside {options.busy} loops" if options.busy else "quiet", options.output)
@@ -76,19 +75,6 @@ def _commit() -> str:
         ["git", "describe", "--always", "--dirty"], capture_output=True, text=True, check=False
     )
     return done.stdout.strip()
-
-
-@contextmanager
-def _beside(loops: int) -> Iterator[list[int]]:
-    """So many loops that keep a processor busy, until the block ends, or this process does: their numbers."""
-    busy = "while kill -0 $PPID 2>/dev/null; do :; done"
-    children = [subprocess.Popen(["sh", "-c", busy]) for _ in range(loops)]
-    try:
-        yield [child.pid for child in children]
-    finally:
-        for child in children:
-            child.kill()
-            child.wait()
 
 
 if __name__ == "__main__":

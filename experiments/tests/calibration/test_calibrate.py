@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from experiments.calibration.busy import busy
 from experiments.calibration.command import CONDITIONS, FILE, UNFINISHED
 from experiments.calibration.kinds import KINDS, PERCENT_MORE
+from experiments.support.busy import busy
 
 ROOT = Path(__file__).resolve().parents[3]
 PROGRAM = ROOT / "build" / "gcc" / "carom"
@@ -70,7 +70,7 @@ def test_the_loops_beside_end_with_the_block_and_with_their_parent() -> None:
         assert len(inside) == 2
     assert not any(map(is_running, inside))
     code = (
-        "import time\nfrom experiments.calibration.busy import busy\n"
+        "import time\nfrom experiments.support.busy import busy\n"
         "with busy(2):\n  print(1, flush=True)\n  time.sleep(60)"
     )
     parent = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE)

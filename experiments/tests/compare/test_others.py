@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from experiments.calibration.busy import busy
 from experiments.compare import others
 from experiments.compare.others import Others
+from experiments.support.busy import busy
 from experiments.tests.compare.calls import needs_the_program, run
 
 

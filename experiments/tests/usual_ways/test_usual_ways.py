@@ -2,12 +2,7 @@
 
 import csv
 import math
-import os
 import shutil
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -57,36 +52,3 @@ def test_the_table_counts_what_each_way_said(tmp_path: Path) -> None:
     assert carom == "| quiet | 5 % | carom compare | 1 of 1 | 0 of 1 | 0 of 1 | 0 of 1 | 0.0 % | 9 |"
     assert hyperfine == "| quiet | 5 % | hyperfine | 1 of 2 | 0 of 2 | 0 of 2 | 1 of 2 | 20.0 % | 4 |"
     assert busy == "| beside 2 loops | 0 % | hyperfine | 0 of 1 | 1 of 1 | 0 of 1 | 0 of 1 | 10.0 % | 4 |"
-
-
-HOLDS_LOOPS = """
-import time
-from experiments.usual_ways.__main__ import _beside
-with _beside(2) as loops:
-    print(*loops, flush=True)
-    time.sleep(60)
-"""
-
-
-@pytest.mark.parametrize("sent", [signal.SIGTERM, signal.SIGKILL])
-def test_the_loops_beside_end_with_whoever_started_them(sent: signal.Signals) -> None:
-    with subprocess.Popen(
-        [sys.executable, "-c", HOLDS_LOOPS], cwd=ROOT, stdout=subprocess.PIPE, text=True
-    ) as holder:
-        assert holder.stdout is not None
-        loops = [int(word) for word in holder.stdout.readline().split()]
-        assert len(loops) == 2
-        holder.send_signal(sent)
-    deadline = time.monotonic() + 10
-    while any(map(_runs, loops)) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert not any(map(_runs, loops))
-
-
-def _runs(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
-    except (ProcessLookupError, FileNotFoundError):
-        return False
-    return state != "Z"
