@@ -79,6 +79,16 @@ def test_compare_refuses_what_cannot_be_compared(tmp_path: Path, capsys: pytest.
         assert said in lines[0]
 
 
+def test_a_damaged_record_is_told_once_while_figures_are_drawn(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    write(tmp_path, study(["steps"], blocks=2))
+    torn = tmp_path / "records" / "torn.json"
+    torn.write_text("{", encoding="utf-8")
+    assert main(["figures", "--results", str(tmp_path)]) == 0
+    assert capfd.readouterr().err.count(f"{torn}: skipped: ") == 1
+
+
 def test_figures_of_one_experiment(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder(tmp_path, blocks=2)
     assert main(["figures", "--results", str(tmp_path), "--experiment", "steps"]) == 0
