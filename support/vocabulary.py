@@ -9,6 +9,9 @@ CONTROL = "control"
 COUNTS = "counts"
 """The kind of which nothing is timed for comparison: one process counts the work of many points."""
 
+PAUSES = "pauses"
+"""The kind that compares programs in slices of time with the same ones without a pause."""
+
 PLAN = "plan.json"
 """The file of a results folder that tells how many blocks each experiment was given."""
 

@@ -5,9 +5,6 @@ import pandas as pd
 from analysis.statistics.intervals import FEWEST, centre
 from analysis.statistics.pairs import log_ratios
 
-KIND = "pauses"
-"""The kind of the experiments whose series each have these labels."""
-
 WITHOUT = "without a pause"
 STOPPED_BY = {"cgroup": "stopped by a control group", "subreaper": "stopped by signals"}
 """What the other ways are called, by label."""

@@ -13,7 +13,6 @@ import pandas as pd
 
 from analysis import claims
 from analysis.derived.accuracy import MEASURES
-from analysis.derived.pauses import KIND as PAUSES
 from analysis.derived.ways import KIND, bias_sentence
 from analysis.figures import (
     comparisons,
@@ -38,6 +37,7 @@ from analysis.figures.style import FORMATS, Data, Drawing, mark_partial, partial
 from analysis.records.studies import Study
 from analysis.support.parallel import in_parallel
 from analysis.support.values import Table
+from support.vocabulary import PAUSES
 
 
 @dataclass(frozen=True)

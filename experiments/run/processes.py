@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from experiments.plan.command import Command, placed
-from experiments.plan.point import Point, Tags
+from experiments.plan.point import PROCESS, Point, Tags
 from experiments.plan.program import Program, build_of
 from experiments.plan.scenes import SceneFile
 from experiments.results.store import Store
@@ -17,7 +17,9 @@ from experiments.run.host_lock import run_alone
 from experiments.run.progress import warn
 from experiments.run.written import Written, touch_of
 from experiments.support.process import Completed
-from support.files import read_json
+from support.files import read_json, write_json
+from support.record_schema import is_record
+from support.vocabulary import PAUSES
 
 MARGIN_SECONDS = 60.0
 """What measuring takes beside the processes, before it is given up."""
@@ -77,8 +79,10 @@ class Processes:
     def measure(self, asked: Sequence[Asked], seed: int) -> tuple[Completed, list[Left]]:
         """How it went, and what is left of each.
 
-        Where a file among the words changed, all are measured a second time: only then is it known whether a
-        program writes it. Raises InputError if somebody built a program anew meanwhile.
+        Where a file among the words changed, all are measured a second time: only then is it known whether
+        a program writes it. So they are where one turns out to mind being stopped and others were in slices:
+        on a busy machine a program takes another time in slices than as a whole. Raises InputError if
+        somebody built a program anew meanwhile.
         """
         asked = [replace(one, point=self._known(one.point)) for one in asked]
         done, left = self._run(asked, seed)
@@ -98,12 +102,23 @@ class Processes:
                 )
             asked = provisional
         self._written.learn_created([one.point.program for one in asked])
-        for one, there in zip(asked, left, strict=True):
-            is_open = self._turns(one) is None
-            said = self._behaviours.learn(one.point, read_json(there.record), found_out=is_open)
+        found = self._learn(asked, left)
+        if any(found) and any(map(_was_sliced, asked, left)):
+            done, left = self._run(asked, seed)
+            _say_why_whole(asked, left, found, self._store.temporary)
+        return done, left
+
+    def _learn(self, asked: Sequence[Asked], left: Sequence[Left]) -> list[str]:
+        """Take in what the records tell; returns of each why it is not to be stopped, if that is news."""
+        is_open = [self._turns(one, asked) is None for one in asked]
+        found = [
+            self._behaviours.learn(one.point, read_json(there.record), found_out=left_open)
+            for one, there, left_open in zip(asked, left, is_open, strict=True)
+        ]
+        for one, said in zip(asked, found, strict=True):
             if said and self._tells:
                 warn(f"{one.point.experiment}, {one.point.series}: measured without a pause: {said}")
-        return done, left
+        return found
 
     def write_trajectory(self, point: Point, scene: Path, output: Path) -> Completed:
         """Run the point's command for a trajectory, with all that it starts, once and untimed."""
@@ -134,7 +149,10 @@ class Processes:
             Left(one.point, folder / f"{number}.json", folder.absolute() / f"{number}.output")
             for number, one in enumerate(asked)
         ]
-        described = [self._described(one, there) for one, there in zip(asked, left, strict=True)]
+        described = [
+            self._described(one, there, self._turns(one, asked))
+            for one, there in zip(asked, left, strict=True)
+        ]
         limit = sum((_RUNS + one.point.warm_up) * _commands(one.point.command) for one in asked)
         return self._call(described, seed, self._time_limit * limit), left
 
@@ -151,18 +169,18 @@ class Processes:
         # The instrument itself is bound nowhere: what it starts would inherit that.
         return run_alone(command, (), seconds + MARGIN_SECONDS)
 
-    def _turns(self, one: Asked) -> bool | None:
-        """Whether it takes turns, as it is said or was found out."""
-        command = one.point.command
-        if not one.turns or one.point.apart:
-            return False
-        if command is not None and command.turns is not None:
-            return command.turns
-        if command is not None and command.pattern is not None:
-            return False  # it would count the pauses
-        return self._behaviours.of(one.point).turns
+    def _turns(self, one: Asked, beside: Sequence[Asked]) -> bool | None:
+        """Whether it takes turns with those beside it, as it is said or was found out. If one minds, none of
+        those does that are to be measured alike.
+        """
+        said = _said(one)
+        if said is not None:
+            return said
+        alike = [other for other in beside if _is_alike(other)] if _is_alike(one) else [one]
+        known = [self._behaviours.of(other.point).turns for other in alike]
+        return False if False in known else self._behaviours.of(one.point).turns
 
-    def _described(self, one: Asked, left: Left) -> dict[str, Any]:
+    def _described(self, one: Asked, left: Left, turns: bool | None) -> dict[str, Any]:
         point, command = one.point, one.point.command
         program, path = point.program, one.scene.path.absolute() if one.scene is not None else None
         is_benchmark = command is not None and command.benchmark is not None
@@ -183,7 +201,7 @@ class Processes:
             "expected_seconds": self._behaviours.of(point).expected_seconds,
             "build": build_of(program) if is_other_build else None,
             "output": str(left.output) if is_benchmark else None,
-            "turns": None if is_benchmark else self._turns(one),
+            "turns": None if is_benchmark else turns,
         }
         if command is not None:
             told |= self._surroundings(command, path, left.output)
@@ -203,6 +221,41 @@ class Processes:
         }
         where = {"folder": str(command.folder), "most_seconds": self._time_limit}
         return where | {key: value for key, value in around.items() if value}
+
+
+def _said(one: Asked) -> bool | None:
+    """Whether it takes turns, if that is not left to be found out."""
+    command = one.point.command
+    if not one.turns or one.point.apart:
+        return False
+    if command is not None and command.turns is not None:
+        return command.turns
+    if command is not None and command.pattern is not None:
+        return False  # it would count the pauses
+    return None
+
+
+def _is_alike(one: Asked) -> bool:
+    """Whether it is stopped only if all such are. A question about pauses compares both ways."""
+    return _said(one) is None and one.point.kind != PAUSES
+
+
+def _was_sliced(one: Asked, left: Left) -> bool:
+    """Whether it was, and is not to be if another minds."""
+    record = read_json(left.record)
+    return _is_alike(one) and isinstance(record, dict) and bool(record.get("turns"))
+
+
+def _say_why_whole(
+    asked: Sequence[Asked], left: Sequence[Left], found: Sequence[str], temporary: Path
+) -> None:
+    """Write into the records why nobody was stopped, `found` of those that mind."""
+    minds = next(one.point.series for one, said in zip(asked, found, strict=True) if said)
+    for one, there, said in zip(asked, left, found, strict=True):
+        record = read_json(there.record)
+        if _is_alike(one) and is_record(record) and record["kind"] == PROCESS:
+            record["process"]["undisturbed"] = said or f"{minds} must not be, and all are measured alike"
+            write_json(there.record, record, temporary)
 
 
 def _commands(command: Command | None) -> int:

@@ -6,7 +6,8 @@ FAKE_HANGS (the variant concerned), FAKE_SUSPENDED (the verb concerned; only as 
 FAKE_SUSPENSIONS has lines, if there is one), FAKE_LIMITS_FAIL,
 FAKE_PROMISES_FAIL. FAKE_LOG is a file that gets a line for every call, FAKE_SPANS one that gets a line for
 every call that computes: its verb, when it began and when it ended. FAKE_UNDISTURBED is the reason why
-processes do not take turns, where nobody said whether.
+processes do not take turns, where nobody said whether; with FAKE_MINDS only of those with it
+among their words.
 """
 
 import hashlib
@@ -224,7 +225,8 @@ def process_record(
 ) -> dict[str, Any]:
     sources, before, changed = files
     by_hand = hashlib.sha256("".join(before).encode()).hexdigest()
-    undisturbed = os.environ.get("FAKE_UNDISTURBED") if "turns" not in one else None
+    minds = "turns" not in one and os.environ.get("FAKE_MINDS", "") in ("", *one["command"])
+    undisturbed = os.environ.get("FAKE_UNDISTURBED") if minds else None
     return any_record("process", {"tags": tags}) | {
         "axes": one["axes"],
         "scene": None,

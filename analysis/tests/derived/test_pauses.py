@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from analysis.cli import main
-from analysis.derived.pauses import KIND, WITHOUT, ratios
+from analysis.derived.pauses import WITHOUT, ratios
 from analysis.records.reading import load
 from analysis.tests.figures.test_league import record
+from support.vocabulary import PAUSES
 
 BLOCKS = 6
 SECONDS = {
@@ -28,7 +29,7 @@ def results(tmp_path: Path) -> Path:
             for label, seconds in ways.items():
                 made = record(series, block, seconds * of_block * float(noise.normal(1, 0.001)))
                 made["tags"] |= {
-                    "experiment": "pauses", "figure": KIND, "label": label, "series_number": number + 1,
+                    "experiment": "pauses", "figure": PAUSES, "label": label, "series_number": number + 1,
                 }  # fmt: skip
                 if series == "spinning" and label != WITHOUT:
                     made["turns"] = {"contenders": 2, "seed": 1, "seconds": [seconds]}

@@ -9,7 +9,6 @@ import pytest
 from analysis import report
 from analysis.cli import main
 from analysis.derived.comparisons import differences, reference
-from analysis.derived.pauses import KIND as PAUSES
 from analysis.figures import KINDS, Drawn
 from analysis.figures.studies import draw_all
 from analysis.records.reading import load
@@ -17,6 +16,7 @@ from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_study import study
+from support.vocabulary import PAUSES
 
 LIKE = [
     ("scaling", "threads"),

@@ -130,3 +130,14 @@ def test_slices_are_as_long_as_asked(folder: Path) -> None:
         [session] = json.loads((folder / length).read_text(encoding="utf-8"))["sessions"]
         slices[length] = [len((one["turns"] or {"seconds": []})["seconds"]) for one in session["records"]]
     assert max(slices["5ms"]) > max(slices["10s"])
+
+
+def test_if_one_must_not_be_stopped_none_is(folder: Path) -> None:
+    words = ("-n", "works", "-n", "sleeps", "--time", "1ms", "--append", "kept.json")
+    done = run(folder, "compare", *words, "--", "./long", "--vs", "sleep", "0.2")
+    assert done.returncode == 0, done.stderr
+    [session] = json.loads((folder / "kept.json").read_text(encoding="utf-8"))["sessions"]
+    assert {one["tags"]["series"] for one in session["records"]} == {"works", "works again", "sleeps"}
+    assert [one["turns"] for one in session["records"]] == [None] * 3
+    assert "never stopped: sleeps must not be, and all are measured alike" in done.stdout
+    assert "never stopped: it computes for only" in done.stdout

@@ -103,6 +103,36 @@ def test_whether_it_may_take_turns_is_found_out_once(empty_workplace: Workplace)
     assert sorted(later) == [([], False), (["b"], True)], "a later session knows it as well"
 
 
+def test_if_one_minds_none_takes_turns_that_nobody_asked_for(empty_workplace: Workplace) -> None:
+    place = empty_workplace
+    place.behave(FAKE_UNDISTURBED="it is idle most of the time", FAKE_MINDS="minds")
+    text = "".join(series(name, f'command = ["true", "{name}"]') for name in ("a", "minds"))
+    place.question("asked", HEAD + text + BLOCKS)
+    assert run(place.settings) == 0
+    told = [(one["command"][1], one.get("turns")) for one in described(place)]
+    assert sorted(told[:2]) == [("a", None), ("minds", None)]
+    assert sorted(told[2:4]) == [("a", False), ("minds", False)], "measured anew, all alike"
+    assert sorted(told[4:]) == [("a", False), ("minds", False)]
+    first = [one for one in place.records("asked").values() if one["tags"]["block"] == 0]
+    reasons = {one["tags"]["series"]: one["process"]["undisturbed"] for one in first}
+    assert reasons == {
+        "a": "minds must not be, and all are measured alike",
+        "minds": "it is idle most of the time",
+    }
+
+
+def test_a_question_about_pauses_compares_both_ways(empty_workplace: Workplace) -> None:
+    place = empty_workplace
+    place.behave(FAKE_UNDISTURBED="it is idle most of the time", FAKE_MINDS="minds")
+    text = "".join(series(name, f'command = ["true", "{name}"]') for name in ("a", "minds"))
+    place.question(
+        "asked", 'figure = "pauses"\n' + HEAD.replace('figure = "comparison"\n', "") + text + BLOCKS
+    )
+    assert run(place.settings) == 0
+    told = [(one["command"][1], one.get("turns")) for one in described(place)]
+    assert sorted(told[2:]) == [("a", True), ("minds", False)]
+
+
 def test_who_was_only_left_alone_is_asked_again(empty_workplace: Workplace) -> None:
     empty_workplace.behave(FAKE_UNDISTURBED=LEFT_ALONE)
     two = series("a", 'command = ["true"]') + series("b", 'command = ["true", "b"]')
