@@ -60,7 +60,7 @@ class Others:
             return None
         return (
             f"the machine was busy: other programs took {busy:.1f} of its {processors} processors meanwhile. "
-            "Verdicts may be wrong more often then: repeat it on a quiet machine"
+            "Times are longer then, and verdicts rarer: repeat it on a quiet machine"
         )
 
 
