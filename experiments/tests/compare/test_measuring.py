@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from experiments.tests.compare.calls import TOOK, needs_the_program, run, script
+from experiments.tests.compare.calls import LOOP, TOOK, needs_the_program, run, script
 
 pytestmark = needs_the_program
 
@@ -133,8 +133,9 @@ def test_slices_are_as_long_as_asked(folder: Path) -> None:
 
 
 def test_if_one_must_not_be_stopped_none_is(folder: Path) -> None:
+    script(folder / "far_longer_than_a_slice", LOOP.format(times=200_000))
     words = ("-n", "works", "-n", "sleeps", "--time", "1ms", "--append", "kept.json")
-    done = run(folder, "compare", *words, "--", "./long", "--vs", "sleep", "0.2")
+    done = run(folder, "compare", *words, "--", "./far_longer_than_a_slice", "--vs", "sleep", "0.2")
     assert done.returncode == 0, done.stderr
     [session] = json.loads((folder / "kept.json").read_text(encoding="utf-8"))["sessions"]
     assert {one["tags"]["series"] for one in session["records"]} == {"works", "works again", "sleeps"}
