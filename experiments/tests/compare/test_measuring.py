@@ -140,5 +140,4 @@ def test_if_one_must_not_be_stopped_none_is(folder: Path) -> None:
     [session] = json.loads((folder / "kept.json").read_text(encoding="utf-8"))["sessions"]
     assert {one["tags"]["series"] for one in session["records"]} == {"works", "works again", "sleeps"}
     assert [one["turns"] for one in session["records"]] == [None] * 3
-    assert "never stopped: sleeps must not be, and all are measured alike" in done.stdout
-    assert "never stopped: it computes for only" in done.stdout
+    assert done.stdout.count("never stopped: ") == 2, "the reason depends on how busy the machine is"
