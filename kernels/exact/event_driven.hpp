@@ -60,17 +60,17 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
     void restart(const Scene& scene) {
         begin_flights(scene, foresight_.flights());
         foresight_.numbers().clear();
-        restart(0, {.left = 0, .bottom = 0, .width = side_, .height = side_});
+        restart(0, {.left = 0, .bottom = 0, .width = side_, .height = side_}, scene.discs.size());
     }
 
-    /// Goes on from `now` with the discs that foresight() holds, as if there were no others: most of them in
-    /// that area.
-    void restart(Real now, const Area<Real>& area) {
+    /// Goes on from `now` with the discs that foresight() holds, as if there were no others. In that area
+    /// there are, or soon will be, about `expected` of them.
+    void restart(Real now, const Area<Real>& area, std::size_t expected) {
         now_ = now;
         pair_collisions_ = 0;
         wall_collisions_ = 0;
         wall_sums_.clear(keeps_wall_sums ? foresight_.flights().size() : 0);
-        foresight_.begin(now, area, most_cells_per_side_);
+        foresight_.begin(now, area, expected, most_cells_per_side_);
     }
 
     /// The discs between events: some may be added, taken out or replaced.

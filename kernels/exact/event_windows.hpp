@@ -25,9 +25,9 @@ struct WindowSettings {
     TileCounts tiles = {};
     double halo = 12;               ///< how far from a tile discs are copied at first, in radii,
     double halo_paths = 4;          ///< and so many mean free paths more
-    double collisions_per_disc = 2; ///< of a window
+    double collisions_per_disc = 1; ///< of a window
     double widen = 1.3;             ///< the halo by that, when tiles disagree
-    double narrow = 0.995;          ///< and by that, down to a third, when they agree
+    double narrow = 0.998;          ///< and by that, down to a third, when they agree
     int most_repetitions = 6;       ///< of a window in tiles; then it is done in one
 };
 
@@ -39,7 +39,7 @@ struct WindowSettings {
 /// window is done again from its beginning, with half the time and a wider halo, and at last in a single
 /// tile. How long windows are is decided by counts, never by a clock.
 ///
-/// A window is short, a few collisions a disc, since what is wrong at the edge of the halo spreads inwards no
+/// A window is short, one collision a disc, since what is wrong at the edge of the halo spreads inwards no
 /// faster than collisions hand it on. A tile is small enough to stay in a processor's cache for all of a
 /// window, which on large scenes is worth more than what copies cost.
 ///

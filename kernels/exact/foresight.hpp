@@ -38,13 +38,14 @@ template <class Real> class Foresight {
     /// The numbers of the discs, for begin(): none where they are the places; below 0 where no disc is.
     std::vector<int>& numbers() { return numbers_; }
 
-    /// Begins with the flights that are there. Most of them are in that area, which gets so many cells a
-    /// side at most.
-    void begin(Real now, const Area<Real>& area, int most_cells_per_side) {
+    /// Begins with the flights that are there. The area, with so many discs expected in it, gets about a cell
+    /// a disc, and so many cells a side at most.
+    void begin(Real now, const Area<Real>& area, std::size_t expected, int most_cells_per_side) {
         const int count = static_cast<int>(flights_.size());
         free_.clear();
         new_.clear();
-        cells_.arrange(area, flights_.size(), walls_[0], most_cells_per_side);
+        cells_.arrange(area, expected, walls_[0], most_cells_per_side);
+        cells_.hold(flights_.size());
         nine_ = cells_.nine();
         queue_.clear(count);
         queue_.number(numbers_);

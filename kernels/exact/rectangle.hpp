@@ -12,6 +12,8 @@ template <class Real> struct Area {
     Real bottom = 0;
     Real width = 0;
     Real height = 0;
+
+    Real size() const { return width * height; }
 };
 
 /// A rectangle with sides along the axes; one of nothing until it is widened.

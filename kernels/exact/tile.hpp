@@ -50,7 +50,11 @@ template <class Real> class Tile {
 
     /// Begins with what it owns and copies of discs as far as `halo` away.
     void begin(Real now, Real halo) {
-        engine_.restart(now, grid_.area_around(number_, halo));
+        const Area<Real> area = grid_.area_around(number_, halo);
+        const auto owned = std::ranges::count_if(history_.kinds, [](Kind one) { return one != Kind::copy; });
+        const Real with_copies =
+            static_cast<Real>(owned) * area.size() / grid_.area_around(number_, 0).size();
+        engine_.restart(now, area, static_cast<std::size_t>(with_copies));
         find_near(now, halo);
     }
 
@@ -170,9 +174,9 @@ template <class Real> class Tile {
         }
     }
 
-    /// Finds what it owns near its border or beyond: more than a halo's width inside nothing is shared. Where
-    /// little happened it does not look into cells farther inside, whose discs are so deep, but for what
-    /// positions are rounded by.
+    /// Finds what it owns near its border or beyond: more than a halo's width inside nothing is shared. It
+    /// does not look into cells farther inside, whose discs are so deep, but for what positions are rounded
+    /// by.
     void find_near(Real now, Real halo) {
         near_.clear();
         const auto look_at = [&](int place) {
@@ -187,14 +191,8 @@ template <class Real> class Tile {
                 near_.push_back(place);
             }
         };
-        if (history_.much_happened() || grid_.count() == 1) {
-            for (int place = 0; place < static_cast<int>(history_.held.size()); ++place) {
-                look_at(place);
-            }
-        } else {
-            history_.own_are_deeper_than(halo + 3 * radius_);
-            discs().for_each_outside(history_.bounds.shrunk(halo + 4 * radius_), look_at);
-        }
+        history_.own_are_deeper_than(halo + 3 * radius_);
+        discs().for_each_outside(history_.bounds.shrunk(halo + 4 * radius_), look_at);
     }
 
     Foresight<Real>& discs() { return engine_.foresight(); }

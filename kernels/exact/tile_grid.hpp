@@ -53,12 +53,11 @@ template <class Real> class TileGrid {
                 edge(column + 1, width_, counts_.columns), edge(row + 1, height_, counts_.rows)};
     }
 
-    /// A tile and `margin` around it.
+    /// A tile and `margin` around it, as far as that is in the box.
     Area<Real> area_around(int tile, Real margin) const {
-        return {.left = static_cast<Real>(tile % counts_.columns) * width_ - margin,
-                .bottom = static_cast<Real>(tile / counts_.columns) * height_ - margin,
-                .width = width_ + 2 * margin,
-                .height = height_ + 2 * margin};
+        const auto [left, width] = around(tile % counts_.columns, counts_.columns, width_, margin);
+        const auto [bottom, height] = around(tile / counts_.columns, counts_.rows, height_, margin);
+        return {.left = left, .bottom = bottom, .width = width, .height = height};
     }
 
     /// `body(other)` for a tile and those around it.
@@ -74,6 +73,13 @@ template <class Real> class TileGrid {
     }
 
   private:
+    /// Where column or row k of `count` begins, and how wide it is, with a margin.
+    static std::array<Real, 2> around(int k, int count, Real side, Real margin) {
+        const Real begin = std::max(static_cast<Real>(k) * side - margin, Real(0));
+        const Real end = std::min(static_cast<Real>(k + 1) * side + margin, static_cast<Real>(count) * side);
+        return {begin, end - begin};
+    }
+
     static int along(Real position, Real side, int count) {
         const Real scaled = position / side;
         return scaled > 0 ? static_cast<int>(std::min(scaled, static_cast<Real>(count - 1))) : 0;

@@ -75,9 +75,10 @@ template <class Real> class TileHistory {
     /// the last window, else each when it changes, so that a window in which little happens takes little
     /// time.
     void begin() {
-        const bool much = much_happened();
+        // Did so many discs collide that to copy all of them in the order of memory takes little time beside?
+        const bool much_happened = 4 * told_ >= held.size();
         forget();
-        keeps_all_ = much;
+        keeps_all_ = much_happened;
         if (keeps_all_) {
             kept_ = *flights;
         }
@@ -85,9 +86,6 @@ template <class Real> class TileHistory {
         last_.resize(held.size(), Change<Real>::none);
         kept_at_.resize(held.size(), not_kept);
     }
-
-    /// Did so many discs collide that to look at all of them in the order of memory takes little time beside?
-    bool much_happened() const { return 4 * told_ >= held.size(); }
 
     /// Is told how a disc flies, before that changes.
     void will_change(int place, const Flight<Real>& flight) {

@@ -13,9 +13,9 @@ namespace carom {
 /// any other or one less. A tile simulates its copies, too, compares and remembers, and whatever it has must
 /// be put right between windows. The figures are of two cores (docs/notebook/2026-11-27-exact.md).
 inline double work_in_tiles(double discs, const TileCounts& tiles, int threads) {
-    constexpr double halo = 6;         // is so wide, in mean distances between discs
-    constexpr double comparing = 1.15; // takes so many times the work,
-    constexpr double window = 1'200;   // and what is between windows that of so many discs
+    constexpr double halo = 6;        // is so wide, in mean distances between discs
+    constexpr double comparing = 1.1; // takes so many times the work,
+    constexpr double window = 450;    // and what is between windows that of so many discs
     if (tiles.all() == 1) {
         return discs;
     }

@@ -176,7 +176,8 @@ TEST(EventWindows, SayThatCollisionsOfAnInstantDoNotEnd) {
 TEST(EventWindows, AreCutWhereThatPays) {
     EXPECT_EQ(tiles_for(0, 64), TileCounts{});
     EXPECT_EQ(tiles_for(2'000, 64), TileCounts{});
-    EXPECT_EQ(tiles_for(6'000, 2), TileCounts{});
+    EXPECT_EQ(tiles_for(2'000, 2), TileCounts{});
+    EXPECT_EQ(tiles_for(4'000, 2), (TileCounts{2, 1}));
     EXPECT_EQ(tiles_for(20'000, 2), (TileCounts{2, 1}));
     EXPECT_EQ(tiles_for(20'000, 16), (TileCounts{4, 4}));
     EXPECT_EQ(tiles_for(100'000, 1), TileCounts{});
