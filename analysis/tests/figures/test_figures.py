@@ -75,7 +75,15 @@ def test_a_pair_has_the_names_of_the_series_of_its_question(experiment: str) -> 
 
 
 @pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.name)
-@pytest.mark.parametrize("kept", ["one block", "one point", "half", "both ends"])
+@pytest.mark.parametrize(
+    "kept",
+    [
+        "one point",
+        "half",
+        pytest.param("one block", marks=pytest.mark.slow),
+        pytest.param("both ends", marks=pytest.mark.slow),
+    ],
+)
 def test_partial_data_are_drawn_or_left_out_but_never_fail(tmp_path: Path, entry: Entry, kept: str) -> None:
     records = study([entry.experiment], blocks=3, noise=Noise(), seed=3)
     if kept == "one block":

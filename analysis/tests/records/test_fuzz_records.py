@@ -84,7 +84,7 @@ def is_counted_or_named(content: bytes, folder: str) -> None:
 
 
 folders = st.sampled_from(["records", "failures"])
-quick = settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+quick = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
 @given(anything, folders)

@@ -3,6 +3,7 @@
 import errno
 import os
 import random
+from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
@@ -190,14 +191,20 @@ def assert_tables_same(one: Records, other: Records) -> None:
         assert in_full(getattr(one, name)) == in_full(getattr(other, name)), name
 
 
-def test_claims_and_the_report_are_the_same_with_it_and_without(results: Path) -> None:
-    def told() -> tuple[str, str]:
-        studies = split(read(results))
-        table = claims.evaluate(studies[0], studies, published.load(), claims.load(results))
-        reading._KNOWN.clear()
-        return in_full(table), report.render(results)
+def table_of_claims(results: Path) -> str:
+    studies = split(read(results))
+    table = claims.evaluate(studies[0], studies, published.load(), claims.load(results))
+    reading._KNOWN.clear()
+    return in_full(table)
 
+
+@pytest.mark.parametrize(
+    "told", [table_of_claims, pytest.param(report.render, marks=pytest.mark.slow)], ids=["claims", "report"]
+)
+def test_claims_and_the_report_are_the_same_with_it_and_without(
+    results: Path, told: Callable[[Path], str]
+) -> None:
     kept(results).unlink(missing_ok=True)
-    without = told()
+    without = told(results)
     assert kept(results).exists()
-    assert told() == without
+    assert told(results) == without
