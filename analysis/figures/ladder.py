@@ -75,6 +75,7 @@ def _panels(scenes: int, rows: int) -> tuple[Figure, list[tuple[Axes, Axes]]]:
 def _bars(axes: Axes, rows: list[Row], names: pd.Series, has_both_ends: bool) -> None:
     heights = {rung: -float(line) for line, rung in enumerate(names.index)}
     axes.set_xscale("log")
+    axes.use_sticky_edges = False  # A bar begins at a time, not at the axis.
     for row in rows:
         height = heights[row["series_number"]]
         colour = COLOURS.get(row["verdict"], FAINT) if pd.notna(row["before"]) else INK

@@ -24,6 +24,9 @@ from support.vocabulary import PAUSES
 MARGIN_SECONDS = 60.0
 """What measuring takes beside the processes, before it is given up."""
 
+CROWDED = "more are compared than memory may have to hold at once, and all are measured alike"
+"""Why a program is not stopped."""
+
 _RUNS = 8
 """Of each at most: one to look at it, two in slices, and where these disagree two more of either kind."""
 
@@ -31,7 +34,8 @@ _RUNS = 8
 @dataclass(frozen=True)
 class Asked:
     """A point to be measured, the file of its scene, what its record is to remember, how what it does was
-    checked, and whether it may take turns with others at all.
+    checked, whether it may take turns with others at all, and whether it does not because more are compared
+    than memory holds at once.
     """
 
     point: Point
@@ -39,6 +43,7 @@ class Asked:
     tags: Tags
     checked: str = ""
     turns: bool = True
+    crowded: bool = False
 
 
 @dataclass(frozen=True)
@@ -106,6 +111,9 @@ class Processes:
         if any(found) and any(map(_was_sliced, asked, left)):
             done, left = self._run(asked, seed)
             _say_why_whole(asked, left, found, self._store.temporary)
+        for one, there in zip(asked, left, strict=True):
+            if one.turns and one.crowded:
+                _write_why(there, CROWDED, self._store.temporary)
         return done, left
 
     def _learn(self, asked: Sequence[Asked], left: Sequence[Left]) -> list[str]:
@@ -226,7 +234,7 @@ class Processes:
 def _said(one: Asked) -> bool | None:
     """Whether it takes turns, if that is not left to be found out."""
     command = one.point.command
-    if not one.turns or one.point.apart:
+    if not one.turns or one.point.apart or one.crowded:
         return False
     if command is not None and command.turns is not None:
         return command.turns
@@ -252,10 +260,15 @@ def _say_why_whole(
     """Write into the records why nobody was stopped, `found` of those that mind."""
     minds = next(one.point.series for one, said in zip(asked, found, strict=True) if said)
     for one, there, said in zip(asked, left, found, strict=True):
-        record = read_json(there.record)
-        if _is_alike(one) and is_record(record) and record["kind"] == PROCESS:
-            record["process"]["undisturbed"] = said or f"{minds} must not be, and all are measured alike"
-            write_json(there.record, record, temporary)
+        if _is_alike(one):
+            _write_why(there, said or f"{minds} must not be, and all are measured alike", temporary)
+
+
+def _write_why(left: Left, why: str, temporary: Path) -> None:
+    record = read_json(left.record)
+    if is_record(record) and record["kind"] == PROCESS:
+        record["process"]["undisturbed"] = why
+        write_json(left.record, record, temporary)
 
 
 def _commands(command: Command | None) -> int:

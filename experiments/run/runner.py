@@ -15,6 +15,7 @@ from experiments.results.summary import summary_of, unusable
 from experiments.run.beside import BesideRecords
 from experiments.run.host_lock import run_alone
 from experiments.run.processes import Asked, Left, Processes
+from experiments.run.together import have_room, is_left_open
 from experiments.run.verify import Verifier, representative, scope_of
 from experiments.run.written import Written, built_anew
 from experiments.support.digest import digest
@@ -161,7 +162,8 @@ class Runner:
                 scene,
                 task.tags(self._store.session),
                 scope_of(representative(task.experiment, task.point)),
-                task.experiment.question.turns,
+                turns=task.experiment.question.turns,
+                crowded=is_left_open(task.point) and not have_room(task.experiment, task.point),
             )
             for task, scene in ready
         ]

@@ -3,7 +3,7 @@
 A machine that changes its speed from one second to the next disturbs those alike that take turns of some
 milliseconds, and not those that run one after the other. What turns would distort keeps a process of its own.
 Of whole processes those of most programs are sliced: all but one are stopped. Google Benchmarks are not, but
-each is many short processes, which alternate in random order.
+each is many short processes, which alternate in random order; nor are more programs than memory holds.
 """
 
 import os
@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from experiments.plan.plan import Experiment
 from experiments.plan.point import PROCESS, Point
 from experiments.plan.scenes import Scene
-from support.vocabulary import COUNTS
+from support.vocabulary import COUNTS, PAUSES
 
 Position = tuple[int, Point]
 
@@ -35,7 +35,23 @@ def together(experiment: Experiment, block: int, missing: Sequence[Position]) ->
     groups: dict[object, list[Position]] = {}
     for position, point in missing:
         groups.setdefault(_process(point), []).append((position, point))
-    return [part for group in groups.values() for part in _fitting(group)]
+    return [part for group in groups.values() for part in _fitting(experiment, group)]
+
+
+def is_left_open(point: Point) -> bool:
+    """Whether nobody said of a whole process if it is stopped now and then while others run."""
+    said = point.command is not None and (point.command.turns is not None or point.command.times_itself)
+    return point.verb == PROCESS and not point.apart and not said
+
+
+def have_room(experiment: Experiment, point: Point) -> bool:
+    """Whether all whole processes that the point is compared with find room in memory at once, as far as
+    they are left open. If not, none of them is stopped: what is compared is measured alike.
+    """
+    beside = [one for one in experiment.points if is_left_open(one) and _process(one) == _process(point)]
+    if len(beside) < 2 or experiment.question.kind == PAUSES:
+        return True
+    return sum(map(_bytes, beside)) <= _memory()
 
 
 def _counted(block: int, missing: Sequence[Position]) -> list[list[Position]]:
@@ -81,13 +97,16 @@ def _may_take_turns(experiment: Experiment, block: int) -> bool:
     return experiment.question.turns and once and len(alike) == len({point.scene_name for point in points})
 
 
-def _fitting(group: Sequence[Position]) -> list[list[Position]]:
-    """The group in as few parts as the machine's memory allows, since all of a part are in it at once."""
+def _fitting(experiment: Experiment, group: Sequence[Position]) -> list[list[Position]]:
+    """The group in as few parts as the machine's memory allows, since all of a part are in it at once, but for
+    whole processes none of which is stopped.
+    """
     most = _memory()
+    all_have_room = have_room(experiment, group[0][1])
     parts: list[list[Position]] = [[]]
     used = 0.0
     for one in group:
-        needed = _bytes(one[1])
+        needed = _bytes(one[1]) if all_have_room or not is_left_open(one[1]) else 0.0
         if parts[-1] and used + needed > most:
             parts.append([])
             used = 0.0

@@ -6,10 +6,12 @@ from collections.abc import Callable
 import pytest
 
 from experiments.plan.point import Point
+from experiments.run.processes import CROWDED
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import _bytes, together
 from experiments.tests.conftest import CHUNKS, ERRORS, FOUR_AND_NINE, PAIR, SCENE, Workplace
+from experiments.tests.foreign import BLOCKS, HEAD
 from support.errors import InputError
 
 THREADS = f"""
@@ -139,6 +141,22 @@ def test_no_more_than_memory_holds_take_turns(
     assert sizes(groups_of(empty_workplace, CHUNKS)) == [1, 2]
     monkeypatch.setattr(os, "sysconf", lambda _: 1)
     assert sizes(groups_of(empty_workplace, CHUNKS)) == [1, 1, 1]
+
+
+def programs(count: int, more: str = "") -> str:
+    """A question that compares so many programs."""
+    one = '[[series]]\nname = "{0}"\ncommand = ["true", "{0}"]\n{1}\n'
+    return HEAD + "".join(one.format(number, more) for number in range(count))
+
+
+def test_of_more_programs_than_memory_may_have_to_hold_none_is_stopped(empty_workplace: Workplace) -> None:
+    assert sizes(groups_of(empty_workplace, programs(8))) == [8]
+    assert sizes(groups_of(empty_workplace, programs(9))) == [9], "one after the other"
+    assert sizes(groups_of(empty_workplace, programs(9, "turns = true"))) == [1, 8], "as somebody said"
+    empty_workplace.question("asked", programs(9) + BLOCKS)
+    assert run(empty_workplace.settings) == 0
+    reasons = [one["process"]["undisturbed"] for one in empty_workplace.records("asked").values()]
+    assert reasons == [CROWDED] * 18
 
 
 def test_each_of_a_group_has_its_record(workplace: Workplace) -> None:
