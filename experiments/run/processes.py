@@ -24,7 +24,7 @@ from support.vocabulary import PAUSES
 MARGIN_SECONDS = 60.0
 """What measuring takes beside the processes, before it is given up."""
 
-CROWDED = "more are compared than memory may have to hold at once, and all are measured alike"
+CROWDED = "too many are compared to wait in memory side by side"
 """Why a program is not stopped."""
 
 _RUNS = 8

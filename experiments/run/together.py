@@ -98,8 +98,8 @@ def _may_take_turns(experiment: Experiment, block: int) -> bool:
 
 
 def _fitting(experiment: Experiment, group: Sequence[Position]) -> list[list[Position]]:
-    """The group in as few parts as the machine's memory allows, since all of a part are in it at once, but for
-    whole processes none of which is stopped.
+    """The group in as few parts as the machine's memory allows, since all of a part are in it at once. Of
+    whole processes none of which is stopped one is.
     """
     most = _memory()
     all_have_room = have_room(experiment, group[0][1])

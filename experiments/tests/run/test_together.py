@@ -145,7 +145,7 @@ def test_no_more_than_memory_holds_take_turns(
 
 def programs(count: int, more: str = "") -> str:
     """A question that compares so many programs."""
-    one = '[[series]]\nname = "{0}"\ncommand = ["true", "{0}"]\n{1}\n'
+    one = '[[series]]\nname = "p{0}"\ncommand = ["true", "{0}"]\n{1}\n'
     return HEAD + "".join(one.format(number, more) for number in range(count))
 
 
