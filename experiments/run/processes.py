@@ -15,11 +15,11 @@ from experiments.results.store import Store
 from experiments.run.behaviour import Behaviours
 from experiments.run.host_lock import run_alone
 from experiments.run.progress import warn
+from experiments.run.together import is_alike, is_left_open
 from experiments.run.written import Written, touch_of
 from experiments.support.process import Completed
 from support.files import read_json, write_json
 from support.record_schema import is_record
-from support.vocabulary import PAUSES
 
 MARGIN_SECONDS = 60.0
 """What measuring takes beside the processes, before it is given up."""
@@ -233,19 +233,15 @@ class Processes:
 
 def _said(one: Asked) -> bool | None:
     """Whether it takes turns, if that is not left to be found out."""
-    command = one.point.command
     if not one.turns or one.point.apart or one.crowded:
         return False
-    if command is not None and command.turns is not None:
-        return command.turns
-    if command is not None and command.pattern is not None:
-        return False  # it would count the pauses
-    return None
+    if is_left_open(one.point):
+        return None
+    return one.point.command is not None and bool(one.point.command.turns)
 
 
 def _is_alike(one: Asked) -> bool:
-    """Whether it is stopped only if all such are. A question about pauses compares both ways."""
-    return _said(one) is None and one.point.kind != PAUSES
+    return _said(one) is None and is_alike(one.point)
 
 
 def _was_sliced(one: Asked, left: Left) -> bool:

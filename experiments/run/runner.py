@@ -15,7 +15,7 @@ from experiments.results.summary import summary_of, unusable
 from experiments.run.beside import BesideRecords
 from experiments.run.host_lock import run_alone
 from experiments.run.processes import Asked, Left, Processes
-from experiments.run.together import have_room, is_left_open
+from experiments.run.together import have_room, is_alike
 from experiments.run.verify import Verifier, representative, scope_of
 from experiments.run.written import Written, built_anew
 from experiments.support.digest import digest
@@ -155,7 +155,9 @@ class Runner:
         return self._scenes.get(scene, lambda wanted, path: generate(self._generator, wanted, path))
 
     def _measure_processes(self, ready: Sequence[Ready]) -> list[ProcessResult]:
-        """Whole processes, side by side in slices of time."""
+        """Whole processes that are compared, side by side in slices of time."""
+        first = ready[0][0]
+        is_crowded = not have_room(first.experiment, first.point)
         asked = [
             Asked(
                 task.point,
@@ -163,11 +165,11 @@ class Runner:
                 task.tags(self._store.session),
                 scope_of(representative(task.experiment, task.point)),
                 turns=task.experiment.question.turns,
-                crowded=is_left_open(task.point) and not have_room(task.experiment, task.point),
+                crowded=is_crowded and is_alike(task.point),
             )
             for task, scene in ready
         ]
-        done, left = self._processes.measure(asked, seed_of(ready[0][0]))
+        done, left = self._processes.measure(asked, seed_of(first))
         return [
             self._keep_process(replace(task, point=there.point), scene, there, done)
             for (task, scene), there in zip(ready, left, strict=True)

@@ -39,19 +39,26 @@ def together(experiment: Experiment, block: int, missing: Sequence[Position]) ->
 
 
 def is_left_open(point: Point) -> bool:
-    """Whether nobody said of a whole process if it is stopped now and then while others run."""
+    """Whether nobody said of a whole process if it is stopped now and then while others run. Who times itself
+    never is: it would count the pauses.
+    """
     said = point.command is not None and (point.command.turns is not None or point.command.times_itself)
     return point.verb == PROCESS and not point.apart and not said
 
 
-def have_room(experiment: Experiment, point: Point) -> bool:
-    """Whether all whole processes that the point is compared with find room in memory at once, as far as
-    they are left open. If not, none of them is stopped: what is compared is measured alike.
+def is_alike(point: Point) -> bool:
+    """Whether a whole process is stopped only if all such are that it is compared with. A question about
+    pauses compares both ways.
     """
-    beside = [one for one in experiment.points if is_left_open(one) and _process(one) == _process(point)]
-    if len(beside) < 2 or experiment.question.kind == PAUSES:
-        return True
-    return sum(map(_bytes, beside)) <= _memory()
+    return is_left_open(point) and point.kind != PAUSES
+
+
+def have_room(experiment: Experiment, point: Point) -> bool:
+    """Whether all whole processes that are compared with the point, and measured alike, have room in memory
+    at once. If not, none of them is stopped.
+    """
+    beside = [one for one in experiment.points if is_alike(one) and _process(one) == _process(point)]
+    return len(beside) < 2 or sum(map(_bytes, beside)) <= _memory()
 
 
 def _counted(block: int, missing: Sequence[Position]) -> list[list[Position]]:
@@ -106,7 +113,7 @@ def _fitting(experiment: Experiment, group: Sequence[Position]) -> list[list[Pos
     parts: list[list[Position]] = [[]]
     used = 0.0
     for one in group:
-        needed = _bytes(one[1]) if all_have_room or not is_left_open(one[1]) else 0.0
+        needed = _bytes(one[1]) if all_have_room or not is_alike(one[1]) else 0.0
         if parts[-1] and used + needed > most:
             parts.append([])
             used = 0.0
