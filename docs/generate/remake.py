@@ -29,19 +29,19 @@ def make(
         not _git(root, "status", "--porcelain", "--", *MEASURED)
     ),
 ) -> int:
-    """Make them one after another; returns 0, or 2 where one failed. Raises InputError where sources have
-    changes that no commit tells of, since a figure could not say of what it is.
+    """Make them one after another; returns 0, or 2 where one failed or is not whole. Raises InputError where
+    sources have changes that no commit tells of, since a figure could not say of what it is.
     """
     if figures and not are_committed(root):
         raise InputError(f"{root}: has changes that are not committed, expected a commit to name")
     failed = [one.name for one in figures if not _is_made(one, root, table)]
     if failed:
-        print(f"not made: {', '.join(failed)}", file=sys.stderr)
+        print(f"not made, or not as a whole: {', '.join(failed)}", file=sys.stderr)
     return 2 if failed else 0
 
 
 def _is_made(figure: Figure, root: Path, table: Path) -> bool:
-    """Make one; a study in which a point failed ends as one that is wrong, but has drawn its figure."""
+    """Make one. A study in which a point failed has drawn its figure, which is not whole."""
     takes = (
         "how long it takes is not known" if figure.minutes is None else f"about {figure.minutes:g} minutes"
     )
@@ -56,7 +56,9 @@ def _is_made(figure: Figure, root: Path, table: Path) -> bool:
     for file, path in made.items():
         shutil.copyfile(path, root / file)
     record(table, figure, origin(root, figure.origin), sources.digest(root, figure.sources))
-    return True
+    if code:
+        print(f"{figure.name}: made without points that failed, as said above", file=sys.stderr)
+    return code == 0
 
 
 def record(table: Path, figure: Figure, of: Origin, digest: str) -> None:

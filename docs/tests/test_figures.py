@@ -190,6 +190,22 @@ def test_a_figure_is_copied_and_its_entry_written_anew(root: Path) -> None:
     assert load(table)["y"] == y
 
 
+def test_a_figure_without_a_point_that_failed_is_copied_and_said(
+    root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = root / "figures.toml"
+    table.write_text(
+        '[x]\nmeasures = "q"\ncommand = "mkdir -p r && echo new > r/x.svg && exit 2"\norigin = "rows.csv"\n'
+        'sources = ["a.hpp"]\ncommit = "0000000"\nmeasured = 2020-01-01\nmachine = "old"\ndigest = "0"\n'
+        '[x.files]\n"f/x.svg" = "r/x.svg"\n'
+    )
+    (root / "rows.csv").write_text("machine,commit,date\nA new one,abc1234,2026-11-26\n")
+    (root / "f").mkdir()
+    assert remake.make([load(table)["x"]], root, table, are_committed=lambda _: True) == 2
+    assert (root / "f" / "x.svg").read_text() == "new\n"
+    assert "x: made without points that failed" in capsys.readouterr().err
+
+
 def test_a_command_that_leaves_nothing_changes_nothing(root: Path) -> None:
     table = root / "figures.toml"
     table.write_text("")

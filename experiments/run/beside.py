@@ -23,7 +23,8 @@ class Beside:
     """A verb of the program with these `words`, and the `folder` below `records/` where its records go.
 
     Program, machine and what `decides` says make a record's name, and the number of the block where there is
-    one `each_block`. Without the record no point is measured, unless it is `optional`.
+    one `each_block`. Without the record no point is measured, unless it is `optional`. The verb may take the
+    time of so many `processes`, where it does the work of as many.
     """
 
     verb: str
@@ -34,6 +35,7 @@ class Beside:
     tags: Callable[[Point, Tags], Tags] = lambda _, tags: tags
     each_block: bool = False
     optional: bool = False
+    processes: int = 1
 
 
 BESIDE = {
@@ -59,6 +61,7 @@ BESIDE = {
         "promises",
         words=lambda point, scene: (str(scene.path), "--threads", str(point.threads)),
         decides=lambda point, scene: (point.threads, point.openmp, scene.sha256, point.scene_name),
+        processes=12,  # a choice and its rivals for each of twelve bounds
     ),
     "speed_against_error": Beside(
         "outside",
@@ -100,7 +103,7 @@ class BesideRecords:
         scratch.unlink(missing_ok=True)
         words = (wanted.verb, *wanted.words(point, scene), "--record", str(scratch))
         command = [str(point.program.path), *words, *tag_arguments(wanted.tags(point, tags))]
-        done = run_alone(command, point.openmp, self._time_limit)
+        done = run_alone(command, point.openmp, self._time_limit * wanted.processes)
         if done.exit_code == 0 and is_record(read_json(scratch)):
             move(scratch, path)
             return None

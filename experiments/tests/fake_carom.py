@@ -1,13 +1,12 @@
 """Stands in for the carom program: same command line, same exit codes, same records, no discs.
 
-The environment says what goes wrong: FAKE_SECONDS (each measurement takes that long),
-FAKE_CHECK_SECONDS (each check), FAKE_CHECK_FAILS, FAKE_BENCH_CRASHES, FAKE_RESULT_WRONG, FAKE_NO_RECORD,
-FAKE_HANGS (the variant concerned), FAKE_SUSPENDED (the verb concerned; only as often as the file
-FAKE_SUSPENSIONS has lines, if there is one), FAKE_LIMITS_FAIL,
-FAKE_PROMISES_FAIL. FAKE_LOG is a file that gets a line for every call, FAKE_SPANS one that gets a line for
-every call that computes: its verb, when it began and when it ended. FAKE_UNDISTURBED is the reason why
-processes do not take turns, where nobody said whether; with FAKE_MINDS only of those with it
-among their words.
+The environment says what goes wrong: FAKE_SECONDS (each measurement takes that long), FAKE_CHECK_SECONDS
+(each check), FAKE_PROMISES_SECONDS (promises of errors), FAKE_CHECK_FAILS, FAKE_BENCH_CRASHES,
+FAKE_RESULT_WRONG, FAKE_NO_RECORD, FAKE_HANGS (the variant concerned), FAKE_SUSPENDED (the verb concerned;
+only as often as the file FAKE_SUSPENSIONS has lines, if there is one), FAKE_LIMITS_FAIL, FAKE_PROMISES_FAIL.
+FAKE_LOG is a file that gets a line for every call, FAKE_SPANS one that gets a line for every call that
+computes: its verb, when it began and when it ended. FAKE_UNDISTURBED is the reason why processes do not take
+turns, where nobody said whether; with FAKE_MINDS only of those with it among their words.
 """
 
 import hashlib
@@ -94,7 +93,8 @@ def measure_beside(verb: str, options: Options, positional: list[str]) -> int:
     if verb == "promises" and "FAKE_PROMISES_FAIL" in os.environ:
         print("no exact run to measure an error by", file=sys.stderr)
         return 1
-    time.sleep(float(os.environ.get("FAKE_SECONDS", "0")))
+    seconds = "FAKE_PROMISES_SECONDS" if verb == "promises" else "FAKE_SECONDS"
+    time.sleep(float(os.environ.get(seconds, "0")))
     make = {"limits": make_limits, "outside": make_outside, "promises": make_promises}[verb]
     write(options["record"], json.dumps(make(positional, options)))
     return 0

@@ -6,7 +6,7 @@ import pytest
 
 from experiments.run.beside import BESIDE
 from experiments.run.session import run
-from experiments.tests.conftest import PAIR, Workplace
+from experiments.tests.conftest import PAIR, ROOT, Workplace
 
 FOLDER = BESIDE["promises"].folder
 PROMISES = PAIR.replace('figure = "comparison"\nclaim = "four_boxes"', 'figure = "promises"\nthreads = 1')
@@ -30,6 +30,18 @@ def test_they_are_seen_once_on_each_scene(place: Workplace) -> None:
     (record,) = place.records(FOLDER).values()
     assert record["kind"] == "promises"
     assert record["tags"]["experiment"] == "word"
+
+
+def test_they_may_take_longer_than_a_process(place: Workplace) -> None:
+    """They run the scene many times."""
+    site = (ROOT / "experiments" / "sites" / "local.toml").read_text(encoding="utf-8")
+    impatient = place.root / "impatient.toml"
+    impatient.write_text(
+        site.replace("time_limit_seconds = 600", "time_limit_seconds = 0.5"), encoding="utf-8"
+    )
+    place.behave(FAKE_PROMISES_SECONDS="1")
+    assert run(replace(place.settings, site=str(impatient))) == 0
+    assert len(place.records(FOLDER)) == 1
 
 
 def test_another_program_has_promises_of_its_own(place: Workplace) -> None:
