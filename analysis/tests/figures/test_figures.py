@@ -1,6 +1,8 @@
 import json
 import re
 import tomllib
+from collections.abc import Callable
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -74,6 +76,31 @@ def test_a_pair_has_the_names_of_the_series_of_its_question(experiment: str) -> 
     assert set(PAIRED[experiment]) <= series
 
 
+@pytest.fixture(scope="module")
+def data_of_part(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str], Data]:
+    """Data of a part of an experiment's records, read once for all of its figures."""
+
+    @cache
+    def read(experiment: str, kept: str) -> Data:
+        folder = tmp_path_factory.mktemp(experiment)
+        write(folder, part(study([experiment], blocks=3, noise=Noise(), seed=3), kept))
+        studies = split(load(folder))
+        return Data(studies[0], studies, published.load(), folder)
+
+    return read
+
+
+def part(records: list[dict[str, Any]], kept: str) -> list[dict[str, Any]]:
+    if kept == "one block":
+        return [record for record in records if record["tags"]["block"] == 0]
+    if kept == "one point":
+        return [record for record in records if record["tags"]["point"] == records[0]["tags"]["point"]]
+    if kept == "both ends":
+        x = [float(record["tags"].get("x", 0)) for record in records]
+        return [record for record, one in zip(records, x, strict=True) if one in (min(x), max(x))]
+    return records[::2]
+
+
 @pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.name)
 @pytest.mark.parametrize(
     "kept",
@@ -84,21 +111,12 @@ def test_a_pair_has_the_names_of_the_series_of_its_question(experiment: str) -> 
         pytest.param("both ends", marks=pytest.mark.slow),
     ],
 )
-def test_partial_data_are_drawn_or_left_out_but_never_fail(tmp_path: Path, entry: Entry, kept: str) -> None:
-    records = study([entry.experiment], blocks=3, noise=Noise(), seed=3)
-    if kept == "one block":
-        records = [record for record in records if record["tags"]["block"] == 0]
-    elif kept == "one point":
-        records = [record for record in records if record["tags"]["point"] == records[0]["tags"]["point"]]
-    elif kept == "both ends":
-        x = [float(record["tags"].get("x", 0)) for record in records]
-        records = [record for record, one in zip(records, x, strict=True) if one in (min(x), max(x))]
-    else:
-        records = records[::2]
-    write(tmp_path, records)
-    studies = split(load(tmp_path))
+def test_partial_data_are_drawn_or_left_out_but_never_fail(
+    data_of_part: Callable[[str, str], Data], entry: Entry, kept: str
+) -> None:
+    data = data_of_part(entry.experiment, kept)
     with styled(entry.name):
-        drawing = entry.draw(Data(studies[0], studies, published.load(), tmp_path))
+        drawing = entry.draw(data)
         if drawing is not None:
             drawing.figure.draw_without_rendering()
 
