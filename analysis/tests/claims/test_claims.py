@@ -1,4 +1,6 @@
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pandas as pd
@@ -45,11 +47,24 @@ def test_one_machine_cannot_decide_about_machines(data: Data) -> None:
     assert "only one is present" in row["why"]
 
 
+@pytest.fixture(scope="module")
+def verdicts_of_one(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], pd.DataFrame]:
+    """The verdicts where one experiment alone was measured."""
+
+    @cache
+    def verdicts(experiment: str) -> pd.DataFrame:
+        folder = tmp_path_factory.mktemp(experiment)
+        write(folder, study([experiment], blocks=2, noise=QUIET))
+        return verdicts_of(folder)
+
+    return verdicts
+
+
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
-def test_without_its_records_a_claim_is_open_and_says_so(tmp_path: Path, experiment: str) -> None:
-    other = "compiler" if experiment != "compiler" else "steps"
-    write(tmp_path, study([other], blocks=2, noise=QUIET))
-    table = verdicts_of(tmp_path)
+def test_without_its_records_a_claim_is_open_and_says_so(
+    verdicts_of_one: Callable[[str], pd.DataFrame], experiment: str
+) -> None:
+    table = verdicts_of_one("compiler" if experiment != "compiler" else "steps")
     bearing = table[[experiment in names for names in table["experiments"]]]
     assert (bearing["verdict"] == OPEN).all()
     assert bearing["missing"].all()

@@ -76,7 +76,9 @@ def test_every_kind_is_drawn_without_a_published_series(tmp_path: Path, kind: st
 
 
 @pytest.mark.parametrize(("kind", "known"), LIKE)
-@pytest.mark.parametrize("kept", [slice(0, 1), slice(None, None, 3)])
+@pytest.mark.parametrize(
+    "kept", [pytest.param(slice(0, 1), marks=pytest.mark.slow), slice(None, None, 3)], ids=["one", "a third"]
+)
 def test_partial_data_never_fail(tmp_path: Path, kind: str, known: str, kept: slice) -> None:
     write(tmp_path, unknown(known, kind)[kept])
     draw_all(tmp_path, formats=("svg",))
