@@ -14,7 +14,6 @@ import matplotlib as mpl
 from matplotlib import font_manager
 from matplotlib.backend_bases import FigureCanvasBase, GraphicsContextBase, RendererBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.path import Path as Outline
@@ -76,6 +75,8 @@ class Recording:
         if suffix == "svg":
             FigureCanvasSVG(self._replay).print_svg(path, metadata={"Date": None})
         elif suffix == "pdf":
+            from matplotlib.backends.backend_pdf import FigureCanvasPdf  # the most of what figures load
+
             FigureCanvasPdf(self._replay).print_pdf(path, metadata={"CreationDate": None})
         else:
             self._replay.dpi = DOTS_PER_INCH

@@ -2,8 +2,8 @@
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
 
+from analysis.statistics import quantiles
 from analysis.support.values import Interval
 
 FEWEST = 3
@@ -22,9 +22,8 @@ def order(step: ArrayLike, error: ArrayLike, ceiling: float) -> Interval:
     if fitted.sum() < FEWEST or len(np.unique(dt[fitted])) < FEWEST:
         return Interval(np.nan, -np.inf, np.inf)
     x, y = np.log(dt[fitted]), np.log(value[fitted])
-    line = stats.linregress(x, y)
+    slope, intercept = np.polyfit(x, y, 1)
     freedom = len(x) - 2
-    # Not line.stderr, which is NaN for equal errors.
-    scatter = np.sum((y - line.intercept - line.slope * x) ** 2) / freedom
-    half = float(stats.t.ppf(0.975, freedom) * np.sqrt(scatter / np.sum((x - x.mean()) ** 2)))
-    return Interval(float(line.slope), float(line.slope) - half, float(line.slope) + half)
+    scatter = np.sum((y - intercept - slope * x) ** 2) / freedom
+    half = float(quantiles.student(0.975, freedom) * np.sqrt(scatter / np.sum((x - x.mean()) ** 2)))
+    return Interval(float(slope), float(slope) - half, float(slope) + half)

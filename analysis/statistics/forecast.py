@@ -2,8 +2,7 @@
 
 import math
 
-from scipy import stats
-
+from analysis.statistics import quantiles
 from analysis.statistics.dependence import widening_of_independent
 from analysis.statistics.looks import ERROR, LOOKS, looks_up_to, next_look, share
 
@@ -23,11 +22,11 @@ def blocks_to_decide(p: float, blocks: int, family: int = 1) -> float:
     alone = p * share(blocks)
     if not 0 < alone < 1:
         return math.inf if alone else next_look(blocks)
-    per_block = stats.t.isf(alone / 2, blocks - 1) * _error(blocks)
+    per_block = -quantiles.student(alone / 2, blocks - 1) * _error(blocks)
     for look in looks_up_to(MOST_BLOCKS):
-        if look > blocks and per_block >= stats.t.isf(ERROR * share(look) / family / 2, look - 1) * _error(
-            look
-        ):
+        if look > blocks and per_block >= -quantiles.student(
+            ERROR * share(look) / family / 2, look - 1
+        ) * _error(look):
             return look
     return math.inf
 

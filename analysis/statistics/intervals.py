@@ -21,9 +21,8 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
 
-from analysis.statistics import ranks
+from analysis.statistics import quantiles, ranks
 from analysis.statistics.dependence import widening
 from analysis.statistics.looks import ERROR, LOOKS, seen, share
 from analysis.support.values import Floats, Interval
@@ -59,7 +58,7 @@ class Centre:
         """Return the two-sided interval."""
         if np.isnan(self.error):
             return Interval(self.estimate, -np.inf, np.inf)
-        half = float(stats.t.ppf((1 + level) / 2, self.freedom)) * self.error if self.error else 0.0
+        half = float(quantiles.student((1 + level) / 2, self.freedom)) * self.error if self.error else 0.0
         low, high = self.estimate - half, self.estimate + half
         if self.averages is None:
             return Interval(self.estimate, low, high)
@@ -76,7 +75,7 @@ class Centre:
             return 1.0
         if self.error == 0:
             return 0.0 if beyond > 0 else 1.0
-        p = float(stats.t.sf(beyond / self.error, self.freedom))
+        p = quantiles.student_beyond(beyond / self.error, self.freedom)
         if self.averages is None:
             return p
         side = self.averages > bound if alternative == "greater" else self.averages < bound

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
-from scipy import stats
 
+from analysis.statistics import quantiles
 from analysis.support.values import Floats
 
 FEWEST_TIMES = 8
@@ -62,10 +62,10 @@ def shifting(times: ArrayLike) -> bool:
     count = len(values)
     if count < FEWEST_TIMES or np.quantile(values, 0.9) < FACTOR * np.quantile(values, 0.1):
         return False
-    ranks = stats.rankdata(values)
+    ranks = pd.Series(values).rank().to_numpy()
     ratio = (np.diff(ranks) ** 2).mean() / ranks.var()
     deviation = np.sqrt(4 * (count - 2) / (count**2 - 1))
-    return bool(ratio < 2 + stats.norm.ppf(0.01) * deviation)
+    return bool(ratio < 2 + quantiles.normal(0.01) * deviation)
 
 
 def in_order(processes: pd.DataFrame) -> Floats:

@@ -4,8 +4,8 @@ from collections.abc import Collection
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
+from analysis.statistics import quantiles
 from analysis.statistics.dependence import widening_of_independent
 from analysis.statistics.forecast import MOST_BLOCKS
 from analysis.statistics.looks import ERROR, looks_up_to
@@ -65,7 +65,7 @@ def typical_deviation(logs: Floats) -> float:
     first, second = np.triu_indices(logs.shape[1], k=1)
     ratios = logs[:, first] - logs[:, second]
     one, other = np.triu_indices(len(ratios), k=1)
-    return float(np.median(np.abs(ratios[one] - ratios[other])) / stats.norm.ppf(0.75) / 2)
+    return float(np.median(np.abs(ratios[one] - ratios[other])) / quantiles.normal(0.75) / 2)
 
 
 def count_bursts(logs: Floats, noise: float) -> int:
@@ -100,16 +100,16 @@ def equivalence_rate(noise: float, blocks: int, margin: float = MARGIN) -> float
     and of the autocorrelation that they seem to have.
     """
     true_error = noise * np.sqrt(2 / blocks)
-    quantiles = stats.chi2.ppf((np.arange(200) + 0.5) / 200, blocks - 1)
-    chances = stats.norm.ppf((np.arange(20) + 0.5) / 20)
+    deviations = quantiles.chi_squared((np.arange(200) + 0.5) / 200, blocks - 1)
+    chances = quantiles.normal((np.arange(20) + 0.5) / 20)
     widenings = np.array([widening_of_independent(blocks, chance) for chance in chances])
     half_width = (
-        stats.t.ppf(1 - ERROR * share_of_error(blocks) / 2, blocks - 1)
+        quantiles.student(1 - ERROR * share_of_error(blocks) / 2, blocks - 1)
         * true_error
-        * np.outer(widenings, np.sqrt(quantiles / (blocks - 1)))
+        * np.outer(widenings, np.sqrt(deviations / (blocks - 1)))
     )
     room = np.maximum(np.log1p(margin) - half_width, 0)
-    return float((2 * stats.norm.cdf(room / max(true_error, 1e-12)) - 1).mean())
+    return float((2 * quantiles.normal_below(room / max(true_error, 1e-12)) - 1).mean())
 
 
 def warning(noise: pd.DataFrame, settled: Collection[str] = ()) -> str | None:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from analysis.statistics.breaks import break_point
 from analysis.statistics.intervals import FEWEST, centre, measure
@@ -134,7 +133,7 @@ def _block_exponents(processes: pd.DataFrame) -> Floats:
     if (processes["x"] <= 0).any() or every < 2:
         return np.empty(0)
     slopes = [
-        float(stats.linregress(np.log(block["x"]), np.log(block["steps_seconds"])).slope)
+        float(np.polyfit(np.log(block["x"]), np.log(block["steps_seconds"]), 1)[0])
         for _, block in processes.groupby(PAIR)
         if block["x"].nunique() == every
     ]

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
 
 from analysis.statistics.looks import ERROR, share
 from analysis.statistics.verdicts import MARGIN, decide, denials, verdict_row
@@ -23,6 +22,8 @@ def judge_unpaired(reference: ArrayLike, candidate: ArrayLike, margin: float = M
     estimate = float(second.mean() - first.mean()) if fewest else np.nan
     if fewest < 2:
         return verdict_row(Interval(estimate, -np.inf, np.inf), fewest, 1.0, "inconclusive")
+    from scipy import stats  # takes half a second to load, and is seldom needed
+
     bound = np.log1p(margin)
 
     def p_value(shift: float, alternative: str) -> float:
