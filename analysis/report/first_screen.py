@@ -153,4 +153,4 @@ def control_in_short(study: Study) -> str:
         return f"✗ failed: {change(row)}"
     if not row["low"] <= 1 <= row["high"]:
         return f"✗ off: {change(row)}, within the margin"
-    return f"✓ no difference, as it must be: {change(row)}"
+    return f"✓ no difference found: {change(row)}"

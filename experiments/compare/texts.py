@@ -130,8 +130,8 @@ def _control(found: Found) -> str:
             "`carom doctor` may say what"
         )
     if asked.cases:
-        return f"control: {asked.reference} against itself: no difference in any case, as it must be"
-    return f"control: {asked.reference} against itself {change(control)}: no difference, as it must be"
+        return f"control: {asked.reference} against itself: no difference found in any case"
+    return f"control: {asked.reference} against itself {change(control)}: no difference found"
 
 
 def _how_long(found: Found) -> str:
