@@ -10,7 +10,6 @@ import numpy as np
 import pandas as pd
 
 from analysis.records.reading import load
-from analysis.records.tables import LATER_COLUMNS
 from analysis.statistics.pairs import runs_of
 from support.errors import InputError
 from support.files import replacing
@@ -49,7 +48,7 @@ COLUMNS = [
     Column("particles", "", "number of discs"),
     Column("side", "length", "side of the box"),
     Column("radius", "length", "radius of a disc"),
-    Column("steps", "", "steps of the run"),
+    Column("steps", "", "units of time that are simulated"),
     Column("area_fraction", "", "share of the box that the discs cover"),
     Column("variant", "", "the compiled combination of policies"),
     Column("neighbourhood", "", "policy: boxes that are searched for overlaps"),
@@ -58,11 +57,18 @@ COLUMNS = [
     Column("direction", "", "policy: direction of a disc's list of overlaps"),
     Column("find_schedule", "", "policy: OpenMP schedule of the search"),
     Column("resolve_schedule", "", "policy: OpenMP schedule of the resolve"),
-    *(Column(name, "", f"policy: {name.replace('_', ' ')}") for name in LATER_COLUMNS),
+    Column("storage", "", "policy: discs in memory by their numbers (`numbered`) or by box (`sorted`)"),
+    Column("prefetch", "", "policy: whether memory is asked for ahead, `on` or `off`"),
+    Column("box_side", "", "policy: side of the boxes, 4r + 1 (`wide`) or about 2r (`snug`)"),
+    Column("overlaps_kept", "", "policy: a pair in two `lists` or once in `contacts`; `overlaps` in records"),
+    Column("search", "", "policy: candidate by candidate (`exact`), or four at once before (`filtered`)"),
+    Column("worklist", "", "policy: a sweep looks at `all`, or at what has changed (`active`)"),
+    Column("impact", "", "policy: collisions at the `step_end`, `at_contact`, or `event_driven`"),
+    Column("precision", "", "policy: `double` or `float`"),
     Column("find_chunk", "", "chunk of the search's schedule"),
     Column("resolve_chunk", "", "chunk of the resolve's schedule"),
     Column("threads", "", "OpenMP threads"),
-    Column("substeps", "", "parts of a step"),
+    Column("substeps", "", "steps in a unit of time"),
     Column("tolerance", "", "rule by which two discs count as colliding"),
     Column("overlaps", "", "overlapping pairs, summed over the steps"),
     Column("pair_resolves", "", "resolves of pairs, summed over the steps"),

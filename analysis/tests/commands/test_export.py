@@ -12,6 +12,7 @@ import pytest
 from analysis.cli import main
 from analysis.commands.export import COLUMNS, measurements
 from analysis.records.reading import load
+from analysis.records.tables import LATER_COLUMNS
 from analysis.statistics.pairs import timed_runs
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET
@@ -45,6 +46,10 @@ def test_a_row_is_a_timed_repetition(results: Path, capsys: pytest.CaptureFixtur
 def test_the_page_tells_each_column() -> None:
     rows = re.findall(r"^\| `(\w+)` \| (.*?) \| (.*) \|$", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
     assert [tuple(row) for row in rows] == [(one.name, one.unit, one.said) for one in COLUMNS]
+
+
+def test_every_policy_has_a_column() -> None:
+    assert set(LATER_COLUMNS) <= {one.name for one in COLUMNS}
 
 
 def test_the_example_of_the_page_runs(results: Path) -> None:
