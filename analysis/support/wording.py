@@ -18,7 +18,8 @@ def number(value: float, digits: int = 3) -> str:
         return "∞" if value > 0 else "−∞" if value < 0 else "unknown"
     if value == 0:
         return "0"
-    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    rounded = float(f"{abs(value):.{digits - 1}e}")  # 0.9999 becomes 1.00, not 1.000
+    decimals = max(0, digits - 1 - math.floor(math.log10(rounded)))
     text = f"{abs(value):,.{decimals}f}".replace(",", NO_BREAK)
     return f"−{text}" if value < 0 else text
 
