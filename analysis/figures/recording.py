@@ -75,7 +75,7 @@ class Recording:
         if suffix == "svg":
             FigureCanvasSVG(self._replay).print_svg(path, metadata={"Date": None})
         elif suffix == "pdf":
-            from matplotlib.backends.backend_pdf import FigureCanvasPdf  # the most of what figures load
+            from matplotlib.backends.backend_pdf import FigureCanvasPdf  # takes a sixth of a second to load
 
             FigureCanvasPdf(self._replay).print_pdf(path, metadata={"CreationDate": None})
         else:

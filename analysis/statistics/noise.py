@@ -100,13 +100,13 @@ def equivalence_rate(noise: float, blocks: int, margin: float = MARGIN) -> float
     and of the autocorrelation that they seem to have.
     """
     true_error = noise * np.sqrt(2 / blocks)
-    deviations = quantiles.chi_squared((np.arange(200) + 0.5) / 200, blocks - 1)
+    squares = quantiles.chi_squared((np.arange(200) + 0.5) / 200, blocks - 1)
     chances = quantiles.normal((np.arange(20) + 0.5) / 20)
     widenings = np.array([widening_of_independent(blocks, chance) for chance in chances])
     half_width = (
         quantiles.student(1 - ERROR * share_of_error(blocks) / 2, blocks - 1)
         * true_error
-        * np.outer(widenings, np.sqrt(deviations / (blocks - 1)))
+        * np.outer(widenings, np.sqrt(squares / (blocks - 1)))
     )
     room = np.maximum(np.log1p(margin) - half_width, 0)
     return float((2 * quantiles.normal_below(room / max(true_error, 1e-12)) - 1).mean())

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 
-def student(chance: ArrayLike, freedom: ArrayLike) -> Any:  # noqa: ANN401 - a number of numbers, else an array
+def student(chance: ArrayLike, freedom: ArrayLike) -> Any:  # noqa: ANN401 - a number, of arrays an array
     """Return what Student's t with so many degrees of freedom stays below with that chance."""
     return special.stdtrit(freedom, chance)
 
