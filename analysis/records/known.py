@@ -6,7 +6,7 @@ Kept in memory and beside the files (`support.known_files`): a report of a growi
 import contextlib
 import hashlib
 import io
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
@@ -17,11 +17,12 @@ import pandas as pd
 from analysis.records import promises, tables
 from analysis.records.checking import checked
 from analysis.records.columns import Integers, Rows
+from analysis.statistics.pairs import rounds_of, runs_of
 from analysis.support.values import Floats
 from support.files import of_json, to_json
 from support.known_files import FOLDER, Stamp, files_below, is_worth_keeping, keep, kept, lasting
 
-VERSION = 2
+VERSION = 3
 _CONTEXTS = "contexts"
 _OF_RECORD = {name: getattr(tables, name) for name in tables.OF_PARTS}
 _ALONE = {name: getattr(tables, name) for name in tables.ALONE} | {"promises": promises.promises}
@@ -53,6 +54,8 @@ class Known:
         self._rows = {name: Rows(columns) for name, columns in _COLUMNS.items()}
         self._runs: dict[str, Floats] = {}
         """The seconds of each timed run, by the file's name."""
+        self._rounds: dict[str, Floats] = {}
+        """The seconds of each turn, by the file's name."""
 
     def bring_up_to_date(self, results: Path) -> None:
         """Read what is new or changed, forget what is gone, and keep what is known if that is worth it."""
@@ -96,7 +99,9 @@ class Known:
 
     def _times(self, files: list[str]) -> dict[str, Any]:
         runs = pd.Series([self._runs[name] for name in files], dtype=object)
-        return {"steps_seconds": runs.map(np.median).astype(float), "steps_seconds_of_runs": runs}
+        rounds = pd.Series([self._rounds[name] for name in files], dtype=object)
+        medians = runs.map(np.median).astype(float)
+        return {"steps_seconds": medians, runs_of("steps_seconds"): runs, rounds_of("steps_seconds"): rounds}
 
     def _told(self) -> Iterator[tuple[str, str | None]]:
         """Each file with the reason why it does not count."""
@@ -127,6 +132,7 @@ class Known:
                 return
         self._rows[_CONTEXTS].extend([tables.context(name, record)])
         self._runs[name] = tables.seconds_of_runs(record)
+        self._rounds[name] = tables.seconds_of_rounds(record)
         for table, parts_of in _OF_RECORD.items():
             self._rows[table].extend({**part, "file": name} for part in parts_of(record))
 
@@ -136,14 +142,15 @@ class Known:
         for name in names:
             self._files.pop(name)
             self._runs.pop(name, None)
+            self._rounds.pop(name, None)
         for rows in self._rows.values():
             rows.keep(np.array([file not in names for file in rows.column("file")], dtype=bool))
 
     def _keep(self, results: Path) -> None:
         """Write arrays, and as one of them all that JSON can hold."""
         arrays: dict[str, Any] = {
-            "lengths": np.array([len(one) for one in self._runs.values()], dtype=np.intp),
-            "runs": np.concatenate(list(self._runs.values()) or [np.empty(0)]),
+            **_packed("runs", self._runs),
+            **_packed("rounds", self._rounds),
         }
         values: dict[str, Any] = {}
         for table, rows in self._rows.items():
@@ -173,14 +180,24 @@ class Known:
         found._files = {
             name: _File(tuple(one[0]) if one[0] else None, *one[1:]) for name, one in told["files"].items()
         }
-        ends = np.cumsum(arrays["lengths"])[:-1]
-        parts = np.split(arrays["runs"], ends)
-        found._runs = dict(zip(told["runs"], parts, strict=False))
+        found._runs = _unpacked("runs", told["runs"], arrays)
+        found._rounds = _unpacked("rounds", told["runs"], arrays)
         for table, columns in _COLUMNS.items():
             values = told["values"][table]
             packed = {name: {"values": values[name], "rows": arrays[f"{table} {name}"]} for name in columns}
             found._rows[table] = Rows.unpacked(columns, packed)
         return found
+
+
+def _packed(name: str, values: Mapping[str, Floats]) -> dict[str, Any]:
+    """The values as one array, and how many each file has."""
+    lengths = np.array([len(one) for one in values.values()], dtype=np.intp)
+    return {name: np.concatenate(list(values.values()) or [np.empty(0)]), f"{name} lengths": lengths}
+
+
+def _unpacked(name: str, files: list[str], arrays: Mapping[str, Any]) -> dict[str, Floats]:
+    ends = np.cumsum(arrays[f"{name} lengths"])[:-1]
+    return dict(zip(files, np.split(arrays[name], ends), strict=False))
 
 
 def _in_order(places: list[int]) -> Integers:

@@ -206,6 +206,12 @@ def seconds_of_runs(record: Record) -> Floats:
     return np.array([one["steps_seconds"] for one in record["repetitions"]] if is_timed else [], dtype=float)
 
 
+def seconds_of_rounds(record: Record) -> Floats:
+    """Return the seconds of each turn of a process, run by run; none where it took none."""
+    turns = record.get("turns") or {}
+    return np.array(turns["seconds"] if "rounds" in turns else [], dtype=float)
+
+
 def _lost_by_turns(record: Record) -> float:
     """Return the share of a process's time, NaN where it is not known."""
     turns = record.get("turns") or {}

@@ -9,13 +9,22 @@ from analysis.support.values import Floats
 PAIR = ["node", "block", "session"]
 """What two records of a pair have in common: nothing else was measured together."""
 
+_BEND = 1.5
+_OF_NORMAL = 1.4826
+"""Standard deviations of a normal distribution in its median absolute deviation."""
+_CLOSE, _MOST_STEPS = 1e-6, 50
+
 
 def scaled(times: pd.DataFrame, value: str, factor: pd.Series) -> pd.DataFrame:
     """Return the times with `value` beside `steps_seconds`: that times a factor for each process, of the
     process and of each of its runs.
     """
-    of_runs = times[runs_of("steps_seconds")] * factor
-    return times.assign(**{value: times["steps_seconds"] * factor, runs_of(value): of_runs})
+    parts = {
+        name(value): times[name("steps_seconds")] * factor
+        for name in (runs_of, rounds_of)
+        if name("steps_seconds") in times
+    }
+    return times.assign(**{value: times["steps_seconds"] * factor, **parts})
 
 
 def timed_runs(times: pd.DataFrame) -> int:
@@ -33,7 +42,8 @@ def join_replicates(times: pd.DataFrame) -> pd.DataFrame:
         return times
     logs = np.log(times["steps_seconds"]).groupby([times[key] for key in keys]).transform("mean")
     joined = times.assign(steps_seconds=np.exp(logs)).drop_duplicates(keys)
-    return joined.drop(columns=runs_of("steps_seconds"), errors="ignore")
+    parts = [runs_of("steps_seconds"), rounds_of("steps_seconds")]
+    return joined.drop(columns=parts, errors="ignore")
 
 
 def log_ratios(
@@ -47,9 +57,10 @@ def log_ratios(
     `log_ratio` = ln(candidate / reference), and `bias`, by how much turns make it too great (NaN where not
     known). Each group of candidates that the columns `by` tell apart is compared on its own.
 
-    Takes a row a process on either side. Where the two took turns through several whole runs, each run of the
-    one stands beside the same run of the other, and the median over the runs is the block's: a burst of noise
-    spoils one run. Of the replicates that a block has of one configuration it takes the mean logarithm, since
+    Takes a row a process on either side. Where the two took turns, each turn of the one stands beside that of
+    the other in the same round, and Huber's location of the rounds' log ratios is the block's: a burst of
+    noise spoils a round or two. Where they took turns through several whole runs alone, it is the median over
+    the runs. Of the replicates that a block has of one configuration it takes the mean logarithm, since
     the median of several lies below a single time wherever noise is skewed. Drift from block to block cancels
     in the ratio, which is why blocks and not samples are the unit of every interval. A process without a
     partner of its own session has no ratio: the machine may have been another since.
@@ -67,7 +78,8 @@ def narrow(times: pd.DataFrame, *keys: str, value: str = "steps_seconds") -> pd.
     """Return the columns `keys` and those that ratios and summaries of `value` need: the fewer a table has,
     the faster are its parts.
     """
-    needed = [*keys, *PAIR, "file", "recorded_at", "lost_by_turns", value, runs_of(value)]
+    needed = [*keys, *PAIR, "file", "recorded_at", "lost_by_turns", value]
+    needed += [runs_of(value), rounds_of(value)]
     return times[[column for column in dict.fromkeys(needed) if column in times]]
 
 
@@ -97,11 +109,13 @@ def without_partner(runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def _per_block(processes: pd.DataFrame, keys: list[str], value: str) -> pd.DataFrame:
-    """Return what each block has beside its `keys`: `logs` of its runs, the time `at` which it was recorded,
-    and the share of its time `lost` by turns.
+    """Return what each block has beside its `keys`: `logs` of its rounds, or of its runs, the time `at` which
+    it was recorded, and the share of its time `lost` by turns.
     """
     runs = processes.get(runs_of(value), processes[value])
-    logs = [np.log(np.atleast_1d(np.asarray(one, dtype=float))) for one in runs]
+    rounds = processes.get(rounds_of(value), runs)
+    parts = [one if len(np.atleast_1d(one)) else run for one, run in zip(rounds, runs, strict=True)]
+    logs = [np.log(np.atleast_1d(np.asarray(one, dtype=float))) for one in parts]
     at = processes.get("recorded_at", processes["block"])
     lost = processes.get("lost_by_turns", np.nan)
     table = processes[keys].assign(logs=logs, at=at, lost=lost)
@@ -112,7 +126,7 @@ def _per_block(processes: pd.DataFrame, keys: list[str], value: str) -> pd.DataF
 
 
 def _of_replicates(logs: pd.Series) -> Floats:
-    """Return the mean of the replicates' logs, by run if they have as many runs, else of their medians."""
+    """Return the mean of the replicates' logs, by round if they have as many, else of their medians."""
     if len({len(one) for one in logs}) > 1:
         logs = logs.map(lambda one: np.array([np.median(one)]))
     return np.mean(np.stack(list(logs)), axis=0)
@@ -120,8 +134,29 @@ def _of_replicates(logs: pd.Series) -> Floats:
 
 def _block_ratio(reference: Floats, candidate: Floats) -> float:
     if len(reference) == len(candidate):
-        return float(np.median(candidate - reference))
+        return location(candidate - reference)
     return float(np.log(np.median(np.exp(candidate)) / np.median(np.exp(reference))))
+
+
+def location(values: Floats) -> float:
+    """Return Huber's location of the values: their mean, but that one further from it than 1.5 robust
+    standard deviations counts no more than one at that distance (Ann. Math. Stat. 35, 1964).
+    """
+    found = float(np.median(values))
+    reach = _BEND * _OF_NORMAL * float(np.median(np.abs(values - found)))
+    for _ in range(_MOST_STEPS if reach > 0 else 0):
+        step = float(np.clip(values - found, -reach, reach).mean())
+        found += step
+        if abs(step) < _CLOSE * reach:
+            break
+    return found
+
+
+def rounds_of(value: str) -> str:
+    """Return the name of the column that holds the value of each turn of a process in its order, empty where
+    it took none.
+    """
+    return f"{value}_of_rounds"
 
 
 def runs_of(value: str) -> str:

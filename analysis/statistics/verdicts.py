@@ -60,17 +60,26 @@ def judge_one(
     The log ratios are in the order of time; those up to the last planned look count. `once`: how many values
     there are was settled before the first of them, and each has a seed of its own: they are looked at once,
     the whole of the error is this look's, and none depends on the one before. `biases`: by how much each log
-    ratio is too great because of how it was measured, NaN where not known; where half of them are, the
-    verdict has to stand with and without the middle one, and the interval reaches over both.
+    ratio is too great because of how it was measured, NaN where not known. Where half of them are known, and
+    their middle is more than two of its standard errors from 0, the verdict has to stand with and without it,
+    and the interval reaches over both.
     """
     values = np.asarray(log_ratios, dtype=float)
     values = values if once else seen(values)
     known = np.empty(0) if biases is None else np.asarray(biases, dtype=float)[: len(values)]
     known = known[~np.isnan(known)]
     row = _judged(values, margin, error, once)
-    if not 0 < len(values) <= 2 * known.size:
+    if not 0 < len(values) <= 2 * known.size or not _is_sure(known):
         return row
     return _both(row, _judged(values - np.median(known), margin, error, once))
+
+
+def _is_sure(biases: Floats) -> bool:
+    """Whether their middle is none by chance; the error of a median is that of a mean times a fourth more."""
+    if len(biases) < 2:
+        return False
+    error = np.sqrt(np.pi / 2) * biases.std(ddof=1) / np.sqrt(len(biases))
+    return bool(abs(np.median(biases)) > 2 * error)
 
 
 def _judged(values: Floats, margin: float, error: float, once: bool) -> dict[str, Any]:

@@ -18,13 +18,15 @@ MOST_SECONDS = 300.0
 @dataclass(frozen=True)
 class Waiting:
     """A question in which something is open: how many blocks it lacks to its next look, what a block takes,
-    and what settling the first thing in it costs, blocks that it had beyond its least included.
+    and what settling the first thing in it costs, blocks that it had beyond its least included; whether that
+    look is its first.
     """
 
     name: str
     lacking: int
     block_seconds: float
     seconds_to_settle: float
+    is_first: bool = False
 
     @property
     def seconds_to_look(self) -> float:
@@ -36,14 +38,15 @@ def next_blocks(waiting: Sequence[Waiting], seconds_left: float, least_seconds: 
     """The questions to be brought to their next looks before anything is looked at again, with the blocks
     that each of them lacks; none if there is time for none.
 
-    What is settled at the least expense comes first, then the next ones, as far as they fit in a share of the
-    time left. A look is worth while from `least_seconds` on.
+    First looks come first, the cheapest before the others, as far as there is time. Then what is settled at
+    the least expense, as far as it fits in a share of the time left. A look is worth while from
+    `least_seconds` on.
     """
     most = min(seconds_left, max(least_seconds, min(SHARE * seconds_left, MOST_SECONDS)))
     chosen: dict[str, int] = {}
     used = 0.0
-    for one in sorted(waiting, key=lambda one: one.seconds_to_settle):
-        fits = used + one.seconds_to_look <= (most if chosen else seconds_left)
+    for one in sorted(waiting, key=lambda one: (not one.is_first, one.seconds_to_settle)):
+        fits = used + one.seconds_to_look <= (most if chosen and not one.is_first else seconds_left)
         if fits:
             chosen[one.name] = one.lacking
             used += one.seconds_to_look

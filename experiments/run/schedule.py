@@ -1,6 +1,5 @@
 """How many blocks each experiment has, what is still to be run, and who gets the next ones."""
 
-import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from experiments.plan.plan import Experiment
@@ -18,6 +17,13 @@ from experiments.run.verdicts import Open, Verdicts
 from experiments.run.verify import representative
 from experiments.run.whole_blocks import WholeBlocks
 from support.vocabulary import CONTROL
+
+FIRST_LOOK = 6
+"""Blocks of the first planned look (analysis/statistics/looks.py)."""
+
+
+DECIDING = ("comparison", "schedule", CONTROL)
+"""Kinds of questions that have verdicts, also where no claim is about them."""
 
 
 class Schedule:
@@ -87,18 +93,19 @@ class Schedule:
         """
         for one in self.experiments:
             found = verdicts.open.get(one.name)
-            if found is None or self._given_up[one.name]:
+            if found is None or self._given_up[one.name] or one.name == CONTROL:
                 continue
             lacking = found.next - self.given[one.name]
             if lacking <= 0 and self.is_complete(one):
                 continue
             block = sum(self._seconds_each(one).values())
             spent = found.needed - one.question.blocks.minimum
-            yield Waiting(one.name, max(1, lacking), block, block * spent)
+            is_first = found.blocks < FIRST_LOOK
+            yield Waiting(one.name, max(1, lacking), block, block * spent, is_first)
 
-    def runs(self, experiment: Experiment, group: Sequence[Point]) -> int:
+    def runs(self, group: Sequence[Point]) -> int:
         """How many timed runs a process of these points makes, by what is known of their times so far."""
-        return process_runs(group, self._found[experiment.name].runs, self._costs)
+        return process_runs(group, self._costs)
 
     def _seconds_each(self, experiment: Experiment) -> dict[str, float]:
         """What a process of each point takes, with the runs that it would make now."""
@@ -107,10 +114,7 @@ class Schedule:
             groups = together(experiment, 1, list(enumerate(experiment.points)))
             shared = [[point for _, point in group] for group in groups if len(group) > 1]
             self._runs[experiment.name] = {
-                point.id: runs
-                for points in shared
-                for runs in [self.runs(experiment, points)]
-                for point in points
+                point.id: runs for points in shared for runs in [self.runs(points)] for point in points
             }
         runs_of = self._runs[experiment.name]
         return {point.id: self._costs.point(point, runs_of.get(point.id)) for point in experiment.points}
@@ -187,11 +191,27 @@ class Schedule:
             self._statuses[experiment.name] = Status(len(keys), len(done), sum(done), left)
         return self._statuses[experiment.name]
 
-    def control_due(self, control: Experiment) -> int:
-        """How many of the control's blocks should be done by now: spread evenly over the study's time."""
-        status = self.status()
-        done = status.seconds_done / max(status.seconds_done + status.seconds_left, 1e-9)
-        return math.ceil(self.given[control.name] * done)
+    def has_begun(self, experiment: Experiment) -> bool:
+        """Whether anything of it was measured."""
+        return bool(self._found[experiment.name].seconds)
+
+    def one_more(self, experiment: Experiment) -> None:
+        """Give an experiment a block more."""
+        self._give(experiment.name, self.given[experiment.name] + 1)
+
+    def seconds_each(self, experiment: Experiment) -> float:
+        """About what a block of it takes."""
+        return sum(self._seconds_each(experiment).values())
+
+    def seconds_of(self, experiment: Experiment, blocks: int) -> float:
+        """About what it takes until it has so many blocks, scenes and checks included."""
+        each = self.seconds_each(experiment)
+        done = len(self._found[experiment.name].seconds) / max(1, len(experiment.points))
+        return self._once_seconds()[experiment.name] + max(0.0, blocks - done) * each
+
+    def least_seconds(self, experiment: Experiment) -> float:
+        """About what an experiment takes until it has its least number of blocks."""
+        return self._once_seconds()[experiment.name] + self._status_of(experiment).seconds_left
 
     def _load(self, experiment: Experiment, once: float, *, enough: bool) -> Load:
         seconds, found = self._seconds_each(experiment), self._found[experiment.name].seconds
@@ -216,6 +236,11 @@ class Schedule:
                     seconds[one.name] += cost
                 counted.add(key)
         return seconds
+
+
+def may_decide(experiment: Experiment) -> bool:
+    """Whether a claim, or a verdict on a difference, may come of it."""
+    return experiment.question.claim is not None or experiment.question.kind in DECIDING
 
 
 def _once_each(experiment: Experiment, costs: Costs) -> list[tuple[str, object, float]]:

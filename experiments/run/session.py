@@ -12,7 +12,7 @@ from experiments.plan.site import what_limits
 from experiments.run.next_blocks import in_turns, next_blocks
 from experiments.run.progress import ProgressDisplay, warn
 from experiments.run.runner import ProcessResult, Runner, Task
-from experiments.run.schedule import Schedule, control_apart
+from experiments.run.schedule import FIRST_LOOK, Schedule, control_apart, may_decide
 from experiments.run.study import POINTS_FAILED, REPORT_FAILED, Settings, Study, keep_claims, summary
 from experiments.run.together import together
 from experiments.run.verdicts import Verdicts, ask
@@ -23,6 +23,12 @@ REPORT_LIMIT = 600.0
 
 DECIDING_SHARE = 0.25
 """The part of a scale's time that what is open gets for certain."""
+
+REST_SHARE = 0.1
+"""The part of the time that is kept for what decides nothing."""
+
+CONTROL_SHARE = 0.05
+"""The part of the time that the control has."""
 
 MEASURED_A_LOOK = 4.0
 """The least time measured between two looks, in those that the look took."""
@@ -71,6 +77,7 @@ class Session:
         self._incomplete = [one for one in self._others if not schedule.is_complete(one)]
         self._has_more = bool(self._incomplete) or not study.is_finished
         self._until = self._end()
+        self._control_seconds = 0.0
 
     def _end(self) -> float:
         """When measuring stops. What is finished gets all of a budget that is given for it."""
@@ -91,26 +98,24 @@ class Session:
             self._until = max(self._until, time.monotonic() + for_certain)
 
     def run(self) -> int:
-        """Run what is missing. First blocks come first: they tell what each block costs here. Before all
-        builds are there nothing is decided: what needs the others is to have its part of the time.
+        """Run what is missing. What may decide something comes first, and of it first blocks, which tell what
+        each block costs here. Before all builds are there nothing is decided: what needs the others is to
+        have its part of the time.
         """
         for experiment in self._study.experiments:
             if self._schedule.is_complete(experiment):
                 self._schedule.begin(experiment)  # it may have fewer points than when it was completed
-        for experiment in self._incomplete:
-            self._run_control(everything=False)
-            for block in self._schedule.blocks(experiment, most=1):
-                self._block(experiment, block)
-            if experiment.question.blocks.wanted == 1:
-                self._measure([experiment])
-        self._measure([one for one in self._incomplete if one.question.blocks.wanted > 1])
         settings = self._study.settings
+        looks = settings.figures and settings.blocks is None and not settings.builds
+        self._keep_time_to_decide()
+        deciding = [one for one in self._incomplete if may_decide(one)] if looks else self._incomplete
+        begun = self._first_blocks(deciding, FIRST_LOOK if looks else 0)
+        self._measure([one for one in begun if one.question.blocks.wanted > 1])
         if settings.builds:
             self._study.begin(time.monotonic() - self._began)
             return self._failed()
         if self._has_more or settings.until_decided or settings.budget_seconds is not None:
-            looks = settings.figures and settings.blocks is None
-            verdicts = self._settle() if looks else Verdicts()
+            verdicts = self._decide() if looks else Verdicts()
             if not settings.until_decided:
                 # What is still open has no time for its next look: more blocks of it come last of all.
                 self._share_out({*verdicts.settled, *verdicts.open})
@@ -120,11 +125,47 @@ class Session:
         failed = self._failed()
         return self._report_all() or failed
 
+    def _first_blocks(self, experiments: Sequence[Experiment], wanted: int) -> list[Experiment]:
+        """Measure the first block of each, the cheapest first, and all of those that want no more. Returns
+        the experiments that were begun: those for which there is time for so many blocks as are wanted.
+        """
+        begun = []
+        for experiment in sorted(experiments, key=self._schedule.least_seconds) if wanted else experiments:
+            if wanted and self._schedule.seconds_of(experiment, wanted) > self._time_left():
+                continue
+            begun.append(experiment)
+            self._run_control(everything=False)
+            for block in self._schedule.blocks(experiment, most=1):
+                self._block(experiment, block)
+            if experiment.question.blocks.wanted == 1:
+                self._measure([experiment])
+        return begun
+
+    def _time_left(self) -> float:
+        """Seconds until measuring stops."""
+        return self._until - time.monotonic()
+
+    def _decide(self) -> Verdicts:
+        """Settle what can be settled in most of the time; then measure what decides nothing as far as it
+        fits, the cheapest first; then settle more in what is left. Returns what the last look found.
+        """
+        self._keep_time_to_decide()
+        rest = [one for one in self._incomplete if not may_decide(one)]
+        whole = self._until
+        if rest:
+            self._until -= REST_SHARE * max(0.0, whole - time.monotonic())
+        verdicts = self._settle()
+        self._until = whole
+        for experiment in sorted(rest, key=self._schedule.least_seconds):
+            if self._schedule.least_seconds(experiment) <= self._time_left():
+                self._first_blocks([experiment], 0)
+                self._measure([experiment])
+        return self._settle() if rest and verdicts != Verdicts() else verdicts
+
     def _settle(self) -> Verdicts:
         """Measure what settles something soonest, and look again, as long as there is time; what is settled
         gets no more. Returns what the last look found.
         """
-        self._keep_time_to_decide()
         while True:
             self._display.now("looking at what is decided", self._schedule.status)
             began = time.monotonic()
@@ -143,7 +184,7 @@ class Session:
     def _measure_next(self, verdicts: Verdicts, least_seconds: float) -> bool:
         """Bring what is settled at the least expense to its next look. Returns whether there was any."""
         waiting = list(self._schedule.waiting(verdicts))
-        blocks = next_blocks(waiting, self._until - time.monotonic(), least_seconds)
+        blocks = next_blocks(waiting, self._time_left(), least_seconds)
         chosen = [one for one in self._study.experiments if one.name in blocks]
         for experiment in chosen:
             self._schedule.give(experiment, verdicts.open[experiment.name])
@@ -152,10 +193,11 @@ class Session:
 
     def _share_out(self, enough: Collection[str]) -> None:
         """Give the rest of the time to whatever has not enough, up to the blocks that it wants."""
-        self._schedule.share_out_time(self._until - time.monotonic(), enough)
+        self._schedule.share_out_time(self._time_left(), enough)
         for experiment in self._others:
-            if not self._schedule.is_complete(experiment):
-                self._schedule.share_out_time(self._until - time.monotonic(), enough)
+            fits = self._schedule.least_seconds(experiment) <= self._time_left()
+            if not self._schedule.is_complete(experiment) and fits:
+                self._schedule.share_out_time(self._time_left(), enough)
                 self._measure([experiment])
 
     def _measure(self, experiments: Sequence[Experiment]) -> None:
@@ -175,14 +217,28 @@ class Session:
             self._schedule.begin(one)
 
     def _run_control(self, *, everything: bool) -> None:
-        """The same thing under two labels, measured all along the study, must come out equal."""
-        control = self._control
-        if control is None or self._schedule.is_complete(control):
+        """The same thing under two labels, measured all along the study, must come out equal: it has its
+        share of the time by the clock, or in the end the least of its blocks.
+        """
+        control, schedule = self._control, self._schedule
+        if control is None or not (everything or self._is_control_due(control)):
             return
-        self._schedule.begin(control)
-        due = None if everything else self._schedule.control_due(control)
-        for block in self._schedule.blocks(control, due):
+        if schedule.is_complete(control):
+            if everything or self._study.settings.blocks is not None or not self._has_more:
+                return
+            schedule.one_more(control)
+        schedule.begin(control)
+        began = time.monotonic()
+        for block in schedule.blocks(control):
             self._block(control, block)
+            if not everything:
+                break
+        self._control_seconds += time.monotonic() - began
+
+    def _is_control_due(self, control: Experiment) -> bool:
+        taken = self._control_seconds + self._schedule.seconds_each(control)
+        is_due = taken <= CONTROL_SHARE * (time.monotonic() - self._began)
+        return is_due or not self._schedule.has_begun(control)
 
     def _block(self, experiment: Experiment, block: int) -> None:
         laid_out, blocks = self._schedule.blocks_of(experiment), self._schedule.promised(experiment)
@@ -190,7 +246,7 @@ class Session:
         what = f"{experiment.name}, block {laid_out.ordinal(block)} of {blocks}"
         for group in together(experiment, block, missing):
             self._display.now(what, self._schedule.status)
-            runs = self._schedule.runs(experiment, [point for _, point in group])
+            runs = self._schedule.runs([point for _, point in group])
             tasks = [Task(experiment, point, block, at, blocks, size, runs) for at, point in group]
             began = time.monotonic()
             ended = self._runner.run(tasks)

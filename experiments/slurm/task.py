@@ -8,7 +8,6 @@ from pathlib import Path
 from experiments.plan.plan import Experiment
 from experiments.plan.scenes import SceneFolder
 from experiments.plan.site import this_machine
-from experiments.results.store import Key
 from experiments.run.costs import Costs
 from experiments.run.progress import ProgressDisplay
 from experiments.run.repeats import process_runs
@@ -61,7 +60,6 @@ class _Worker:
         self._failed: set[tuple[str, str]] = set()
         # What this task has seen itself: others may measure elsewhere.
         self._costs = Costs({}, {})
-        self._runs: dict[Key, Sequence[float]] = {}
 
     def run(self, own: Sequence[Unit]) -> int:
         experiments = {one.name: one for one in self._study.experiments}
@@ -80,7 +78,7 @@ class _Worker:
         hopeful = [one for one in missing if (experiment.name, one[1].id) not in self._failed]
         blocks, size = experiment.question.blocks.minimum, len(experiment.points)
         for group in together(experiment, block, hopeful):
-            runs = process_runs([point for _, point in group], self._runs, self._costs)
+            runs = process_runs([point for _, point in group], self._costs)
             tasks = [Task(experiment, point, block, at, blocks, size, runs) for at, point in group]
             self._measure([one for one in tasks if not self._study.store.has(one.point, block)])
         return len(hopeful) == size
@@ -93,7 +91,6 @@ class _Worker:
         ended = self._runner.run(tasks)
         self._costs.learn_group([one.point for one in tasks], ended, time.monotonic() - began)
         for task, result in zip(tasks, ended, strict=True):
-            self._runs[task.point.id, task.block] = result.runs
             self._tell(task, result)
 
     def _refuse(self, task: Task) -> bool:

@@ -31,7 +31,7 @@ namespace {
 
 struct TurnsOptions {
     std::string file;
-    double turn_seconds = 0.02;
+    double turn_seconds = 0.002;
     int runs = 1;
     std::uint64_t seed = 1;
     bool counts = false;

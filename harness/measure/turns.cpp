@@ -13,7 +13,7 @@ int count_rounds(std::span<const double> expected_seconds, int fewest_steps, dou
     const auto middle = sorted.begin() + std::ssize(sorted) / 2;
     std::nth_element(sorted.begin(), middle, sorted.end());
     const double rounds = std::round(*middle / turn_seconds);
-    return static_cast<int>(std::clamp(rounds, 1.0, std::max(1.0, static_cast<double>(fewest_steps))));
+    return static_cast<int>(std::clamp(rounds, 1.0, std::max(1.0, std::floor(fewest_steps / 2.0))));
 }
 
 std::vector<std::vector<TurnTime>> take_turns(std::span<Contender* const> contenders, const TurnsPlan& plan) {

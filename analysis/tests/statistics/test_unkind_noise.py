@@ -41,9 +41,25 @@ def missed_now(studies: Floats, truth: float = 0.0) -> float:
 
 @pytest.mark.parametrize("correlation", [0.0, 0.2, 0.4, 0.6])
 def test_blocks_that_depend_on_each_other(correlation: float) -> None:
+    """The promise is for up to 0.3; beyond, it errs more often, as the page of the method says."""
     values = dependent(np.random.default_rng(1), correlation, STUDIES, LAST)
-    assert missed_now(values) <= ERROR + CHANCE
+    assert missed_now(values) <= {0.4: 0.075, 0.6: 0.1}.get(correlation, ERROR)
     assert missed(former, values) > {0.0: 0.0, 0.2: 0.06, 0.4: 0.17, 0.6: 0.36}[correlation]
+
+
+@pytest.mark.parametrize("noise", ["dependent", "two speeds", "lognormal", "exponential"])
+def test_an_interval_is_as_wide_as_its_promise_at_the_corners_of_its_class(noise: str) -> None:
+    """Neither wrong more often than in 5 % of studies, nor so wide that time is thrown away."""
+    generator, truth = np.random.default_rng(21), 0.0
+    if noise == "dependent":
+        values = dependent(generator, 0.3, 1500, LAST)
+    elif noise == "two speeds":
+        values = two_speeds(generator, 2.5, 1500, LAST)
+    else:
+        draw = getattr(generator, noise)
+        values, long = draw(size=(1500, LAST)), draw(size=400_000)
+        truth = float(np.median((long + np.roll(long, 1)) / 2))
+    assert 0.02 <= missed_now(values, truth) <= ERROR
 
 
 def test_a_machine_that_stays_in_one_of_two_speeds_for_a_moment() -> None:
@@ -53,7 +69,7 @@ def test_a_machine_that_stays_in_one_of_two_speeds_for_a_moment() -> None:
     brief, long = (two_speeds(np.random.default_rng(2), dwell, STUDIES, LAST) for dwell in (2.5, 5))
     assert missed_now(brief) <= ERROR + CHANCE
     assert missed(former, brief) > 0.08
-    assert missed_now(long) < 0.18
+    assert missed_now(long) < 0.22
     assert missed(former, long) > 0.38
 
 
@@ -178,5 +194,5 @@ def test_the_autocorrelation_is_found_and_a_burst_does_not_hide_it() -> None:
 def test_independent_blocks_are_widened_less_the_more_there_are() -> None:
     factors = [widening_of_independent(look) for look in LOOKS]
     assert factors == sorted(factors, reverse=True)
-    assert 1.2 < factors[-1] < 1.35
+    assert 1.05 < factors[-1] < 1.2
     assert widening(np.ones(10), 1.0, 0.0) == 1

@@ -42,9 +42,13 @@ def test_ten_kills_lose_at_most_one_process_each(empty_workplace: Workplace) -> 
     after = workplace.records()
     assert before.items() <= after.items()
     rows = workplace.rows().values()
-    assert [(row.done, row.missing) for row in rows] == [(3 * BLOCKS, 0), (2 * BLOCKS, 0), (2 * BLOCKS, 0)]
+    least = [3 * BLOCKS, 2 * BLOCKS, 2 * BLOCKS]
+    assert all(row.done >= done and not row.missing for row, done in zip(rows, least, strict=True))
     most_together = 3
-    assert len(after) <= 7 * BLOCKS + (most_together - 1) * KILLS, "each kill cuts through one block at most"
+    of_control = 2 * BLOCKS
+    assert len(after) <= 7 * BLOCKS + of_control + (most_together - 1) * KILLS, (
+        "each kill cuts through one block at most"
+    )
     assert workplace.measured() <= len(after) + most_together * KILLS, "each kill cost one process at most"
     assert not (workplace.results / ".running").exists()
     assert not workplace.failures()

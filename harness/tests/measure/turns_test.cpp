@@ -97,7 +97,8 @@ TEST(Turns, AllStartAgainTogetherAndTheOrderIsAnotherOne) {
 
 TEST(Turns, AreAsLongAsAskedButNoShorterThanAStep) {
     EXPECT_EQ(count_rounds(std::vector{1.0, 2.0, 100.0}, 1000, 0.05), 40);
-    EXPECT_EQ(count_rounds(std::vector{1.0, 2.0, 100.0}, 30, 0.05), 30);
+    EXPECT_EQ(count_rounds(std::vector{1.0, 2.0, 100.0}, 31, 0.05), 15) << "two steps at least";
+    EXPECT_EQ(count_rounds(std::vector{1.0}, 1, 0.05), 1);
     EXPECT_EQ(count_rounds(std::vector{0.01}, 30, 0.05), 1);
     EXPECT_EQ(count_rounds(std::vector{0.0}, 0, 0.05), 1);
 }
