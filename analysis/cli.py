@@ -58,11 +58,6 @@ def _parser() -> argparse.ArgumentParser:
     )
     told = "tell how often verdicts are wrong here, from what `carom study calibrate` measured"
     verb(_calibration, told, "results/calibration")
-    told = "Compare results B with A. Exit code 3: something is slower; 4: something is undecided."
-    compare = verb(_compare, "compare two results folders", description=told)
-    compare.add_argument("first", type=Path, metavar="A")
-    compare.add_argument("second", type=Path, metavar="B")
-    compare.add_argument("--experiment", metavar="NAME", help="only this experiment")
     _add_movie(verb(_movie, "draw a run as an animation, or one step of it as a picture"))
     return parser
 
@@ -208,31 +203,6 @@ def _calibration(options: argparse.Namespace) -> int:
     text, files = write(options.results)
     print(text, *files, sep="\n")
     return 0
-
-
-def _compare(options: argparse.Namespace) -> int:
-    from analysis.commands import comparison
-    from analysis.support.wording import change
-
-    table = comparison.compare(options.first, options.second, options.experiment)
-    shown = table.assign(
-        x=table["x"].map("{:g}".format),
-        change=[change(row) for row in table.to_dict("records")],
-        processes=table["blocks"],
-    )
-    columns = [*comparison.SHOWN, "change", "processes", "verdict"]
-    print(shown[columns].to_string(index=False))
-    counts = table["verdict"].value_counts()
-    said = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
-    print(f"\n{options.second} against {options.first}: {said} (margin 2 %, Holm-corrected per experiment).")
-    print("The folders were not interleaved: a change of the machine between them shows as a change of time.")
-    code = comparison.exit_code(table)
-    if code == comparison.SLOWER:
-        print(f"Slower (exit code {code} of carom study compare).")
-    elif code == comparison.UNDECIDED:
-        why = "more blocks or a quieter machine would tell"
-        print(f"Undecided: {why} (exit code {code} of carom study compare).")
-    return code
 
 
 def _movie(options: argparse.Namespace) -> int:

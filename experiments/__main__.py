@@ -97,10 +97,6 @@ def _submit(hand: Callable[..., int], options: argparse.Namespace) -> int:
     return hand(_settings(options), dry_run=options.dry_run)
 
 
-def _compare(options: argparse.Namespace) -> int:
-    return subprocess.call(analysis("compare", str(options.first), str(options.second)))
-
-
 def _calibrate(options: argparse.Namespace) -> int:
     """Measure, then tell."""
     return calibrate(options) or subprocess.call(analysis("calibration", "--results", str(options.results)))
@@ -141,8 +137,6 @@ def _parser() -> argparse.ArgumentParser:
     told = "measure contenders whose true ratios are known, and tell how often verdicts are wrong here"
     add("calibrate", _calibrate, told, add_calibrate_options)
     add("collect", _collect, "merge other results folders into this one", _add_collect_options)
-    told = "compare results folder B with A; exit code 3: something is slower; 4: something is undecided"
-    add("compare", _compare, told, _add_compare_options)
     return parser
 
 
@@ -176,11 +170,6 @@ def _add_submit_options(parser: argparse.ArgumentParser) -> None:
 def _add_collect_options(parser: argparse.ArgumentParser) -> None:
     _add_options(parser)
     parser.add_argument("folders", type=Path, nargs="*", help="results folders (default: those of --site)")
-
-
-def _add_compare_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("first", type=Path, metavar="A")
-    parser.add_argument("second", type=Path, metavar="B")
 
 
 def _add_new_options(parser: argparse.ArgumentParser) -> None:

@@ -6,8 +6,9 @@ import io
 import math
 import os
 import sys
-from collections.abc import Callable
-from typing import NoReturn
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import NoReturn, TextIO
 
 from support.errors import InputError, Interrupted, cannot
 
@@ -30,10 +31,28 @@ def number_above_zero(text: str, unit: str) -> float:
 
 
 def print_anything() -> None:
-    """Tell what a locale has no letters for in another way."""
+    """Tell what a locale has no letters for in another way; what a closed stream has no place for, nobody."""
+    if sys.stderr is None:
+        sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - for good
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+
+
+def print_lines(lines: Iterable[str], stream: TextIO | None) -> None:
+    """Print them. Raises InputError for a closed stream, and OSError that says that it was not a file."""
+    if stream is None:
+        raise InputError("standard output: is closed, expected a place for the result")
+    try:
+        print(*lines, sep="\n", file=stream, flush=True)
+    except OSError as error:
+        _forget(stream)
+        raise OSError(error.errno, error.strerror, "standard output") from error
+
+
+def _forget(stream: TextIO) -> None:
+    """Let what is still to be written go nowhere: Python would complain once more at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def exit_code_of(verb: Callable[[], int], kept: str = "") -> int:
@@ -42,14 +61,14 @@ def exit_code_of(verb: Callable[[], int], kept: str = "") -> int:
     """
     try:
         code = verb()
-        sys.stdout.flush()  # here, so that what cannot be written is told below
+        if sys.stdout is not None:
+            sys.stdout.flush()  # here, so that what cannot be written is told below
         return code
     except InputError as error:
         print(f"carom: {error}", file=sys.stderr)
         return 1
     except BrokenPipeError:
-        # Whoever read the output, say `head`, has seen enough; Python would complain once more at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _forget(sys.stdout)  # whoever read the output, say `head`, has seen enough
         return 1
     except OSError as error:
         # The disk is full, or a folder cannot be written: nothing that is finished suffers from it.

@@ -1,11 +1,14 @@
 """Files that are whole or not there, and a folder that has one user at a time."""
 
 import contextlib
+import errno
 import fcntl
 import hashlib
 import json
 import math
 import os
+import re
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,6 +16,8 @@ from typing import Any
 import orjson
 
 from support.errors import InputError, require_text
+
+_STREAMS = {"-": 1, "/dev/stdin": 0, "/dev/stdout": 1, "/dev/stderr": 2}
 
 
 def require_room_for_folder(what: str, folder: Path) -> None:
@@ -23,6 +28,60 @@ def require_room_for_folder(what: str, folder: Path) -> None:
     there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
     if not there.is_dir():
         raise InputError(f"{what}: found {there}, which is no folder, expected one or a place for one")
+
+
+def require_place(what: str, path: Path) -> None:
+    """Raises InputError where no file can be written: a folder is there, or the folder may not be changed.
+    Streams have a place (`write_out`).
+    """
+    if descriptor_of(path) is not None or (path.exists() and not path.is_dir() and not path.is_file()):
+        return
+    if path.is_dir():
+        raise InputError(f"{what}: found {path}, which is a folder, expected a place for a file")
+    folder = path.resolve().parent
+    require_room_for_folder(what, folder)
+    there = next(one for one in (folder, *folder.parents) if one.exists())
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(f"{what}: found {path}, expected a file in a folder that you may write into")
+
+
+def descriptor_of(path: Path) -> int | None:
+    """The open file that a name such as `-` or /dev/stdout stands for; None for any other name."""
+    found = re.fullmatch(r"/(?:dev/fd|proc/self/fd)/(\d+)", os.fspath(path))
+    return int(found[1]) if found else _STREAMS.get(os.fspath(path))
+
+
+def write_out(path: Path, text: str) -> None:
+    """Write a text: a file whole or not at all, anything else, such as a pipe, as the stream that it is.
+    Raises OSError that names it.
+    """
+    number = descriptor_of(path)
+    is_stream = number is not None or (path.exists() and not path.is_file())
+    if not is_stream:
+        with replacing(path) as part:
+            part.write_text(text, encoding="utf-8")
+        return
+    try:
+        opened = os.dup(number) if number is not None else _opened(path)
+        with os.fdopen(opened, "w", encoding="utf-8") as stream:
+            stream.write(text)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror or str(error), os.fspath(path)) from error
+
+
+def _opened(path: Path) -> int:
+    """Something that is no regular file, for writing. Who is to read from a pipe has some seconds to come."""
+    until = time.monotonic() + 10
+    while True:
+        try:
+            opened = os.open(path, os.O_WRONLY | os.O_NONBLOCK)
+        except OSError as error:
+            if error.errno != errno.ENXIO or time.monotonic() > until:
+                raise
+            time.sleep(0.05)
+        else:
+            os.set_blocking(opened, True)
+            return opened
 
 
 def read_json(path: Path) -> Any:  # noqa: ANN401 - JSON is any value
@@ -110,8 +169,12 @@ def replacing(target: Path) -> Iterator[Path]:
     """Give a path to write to, which becomes the target once all of it is on the disk.
 
     Meanwhile it is `.NAME.part.SUFFIX` beside the target; if writing fails it is gone, and an earlier target
-    as it was. Makes the folder. Raises OSError that names the target.
+    as it was. Makes the folder; follows links. Raises OSError that names the target, also for one that is no
+    regular file.
     """
+    target = target.resolve() if target.is_symlink() else target
+    if target.exists() and not target.is_file():
+        raise OSError(errno.EINVAL, "is no regular file", os.fspath(target))
     target.parent.mkdir(parents=True, exist_ok=True)
     with _becoming(target, target.with_name(f".{target.stem}.part{target.suffix}")) as part:
         yield part

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from docs.generate import command_line, questions, records
+from docs.generate import command_line, first_day, questions, records
 from support.files import replacing
 from support.home import ROOT
 
@@ -12,6 +12,7 @@ PROGRAM = ROOT / "build" / "gcc" / "carom"
 
 PAGES: Mapping[str, Callable[[], str]] = {
     "command_line.md": lambda: command_line.render(PROGRAM),
+    "faults.md": first_day.render,
     "questions.md": questions.render,
     "records.md": records.render,
 }

@@ -1,7 +1,8 @@
 """What the analysis program says of the commands so far."""
 
 import json
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -59,6 +60,15 @@ class Answer:
     """What the values of lists change, by themselves and together."""
     next: int = 0
     looked_at: int = 0
+
+    def without(self, left_out: Collection[str]) -> "Answer":
+        """What it says of all others than these commands, or numbers of cases."""
+
+        def kept(rows: tuple[Difference, ...]) -> tuple[Difference, ...]:
+            return tuple(one for one in rows if not {one.name, str(one.case)} & {*left_out})
+
+        places = tuple(one for one in self.places if one.name not in left_out)
+        return replace(self, commands=kept(self.commands), controls=kept(self.controls), places=places)
 
     @property
     def is_settled(self) -> bool:

@@ -1,42 +1,113 @@
-"""Google Benchmarks: whether programs are some, and the cases that they have in common."""
+"""Google Benchmarks: whether commands run some, and the cases that they have in common."""
 
 import mmap
+import os
+import shlex
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING
 
+from experiments.compare.commands import Compared
 from experiments.plan.benchmark_cases import cases
 from experiments.plan.executable import UnfitError, found, require_executable
-from experiments.run.progress import warn
+from experiments.run.progress import about, warn
 from support.errors import InputError
 
-
-class Named(Protocol):
-    """A command, as far as it matters here."""
-
-    @property
-    def name(self) -> str:
-        """What it is called."""
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """Its words, the program first."""
-
-    @property
-    def folder(self) -> Path:
-        """Where it is run."""
-
+if TYPE_CHECKING:
+    from experiments.compare.options import Asked
 
 _PROGRAM = b"\x7fELF"
 _MARKS = (b"benchmark_list_tests", b"libbenchmark.so")
 """What stands in a program that has the library in it, or that loads it."""
 
 
-def are_benchmarks(commands: Sequence[Named]) -> bool:
-    """Whether all commands are programs alone, without arguments, that have Google Benchmark in them. None of
-    them is run to find out.
+_WRAPPERS = frozenset(
+    (
+        "env",
+        "taskset",
+        "numactl",
+        "nice",
+        "ionice",
+        "chrt",
+        "stdbuf",
+        "setarch",
+        "nohup",
+        "prlimit",
+        "sudo",
+        "timeout",
+    )
+)
+"""Programs that become the one among their words."""
+_BEHIND_INPUT = 4
+"""The place of a command's first word behind a shell that opens its input (commands.py)."""
+_ELSEWHERE = ("--benchmark_list_tests", "--help", "--version")
+"""Words with which a Google Benchmark measures nothing."""
+_TIME, _FILTER = "--benchmark_min_time", "--benchmark_filter="
+
+_BLOCKS, _SHORTEST, _LONGEST = 14, 0.01, 0.1
+"""So many blocks are to find room, if a case has so many seconds each time, at least and at most."""
+
+
+@dataclass(frozen=True)
+class Call:
+    """A Google Benchmark among the words of a command, at a place; what is before it starts it."""
+
+    words: tuple[str, ...]
+    at: int
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """What stands behind it."""
+        return self.words[self.at + 1 :]
+
+    @property
+    def filter(self) -> str | None:
+        """The one that its own arguments have."""
+        given = [one.removeprefix(_FILTER) for one in self.arguments if one.startswith(_FILTER)]
+        return given[-1] if given else None
+
+
+def call_of(command: Compared) -> Call | None:
+    """The Google Benchmark that a command runs with arguments of its own, alone or behind a program that
+    becomes it, as `taskset` does. None of them is run to find out.
     """
-    return all(len(one.words) == 1 and _has_library(found(one.words[0], one.folder)) for one in commands)
+    words = command.words
+    at = _BEHIND_INPUT if words[:2] == ("sh", "-c") and len(words) > _BEHIND_INPUT else 0
+    if os.path.basename(words[at]) in _WRAPPERS:  # noqa: PTH119 - a word
+        at = next((k for k, word in enumerate(words) if _is_benchmark(word, command.folder)), 0)
+    call = Call(words, at)
+    is_run = _is_benchmark(words[at], command.folder) and not set(call.arguments).intersection(_ELSEWHERE)
+    return call if is_run and not any(one.startswith(_ELSEWHERE[0]) for one in call.arguments) else None
+
+
+def names_benchmark(command: Compared) -> str | None:
+    """A word of the command, or of the line for a shell or the script in it, that is a Google Benchmark."""
+    texts = [*command.words]
+    program = found(command.words[0], command.folder)
+    if _begins_with(program, b"#!"):
+        texts.append(program.read_text(encoding="utf-8", errors="replace"))
+    for text in texts:
+        try:
+            words = shlex.split(text, comments=True)
+        except ValueError:
+            words = text.split()
+        for word in words:
+            if "/" in word and _is_benchmark(word, command.folder):
+                return word
+    return None
+
+
+def _is_benchmark(word: str, folder: Path) -> bool:
+    return _has_library(found(word, folder))
+
+
+def _begins_with(file: Path, mark: bytes) -> bool:
+    try:
+        with file.open("rb") as content:
+            return content.read(len(mark)) == mark
+    except OSError:
+        return False
 
 
 def _has_library(program: Path) -> bool:
@@ -47,7 +118,7 @@ def _has_library(program: Path) -> bool:
         return False  # it is not there, or is empty
 
 
-def common_cases(commands: Sequence[Named], pattern: str) -> tuple[str, ...]:
+def common_cases(commands: Sequence[Compared], pattern: str | None) -> tuple[str, ...]:
     """The names of the cases that match and that all have, in their order; what only some have is said.
 
     Raises InputError for a program that lists none, and where there is none in common.
@@ -63,14 +134,47 @@ def common_cases(commands: Sequence[Named], pattern: str) -> tuple[str, ...]:
     return tuple(common)
 
 
-def _listed(command: Named, pattern: str) -> list[str]:
-    if len(command.words) > 1:
-        raise InputError(
-            f"{command.name}: found words behind {command.words[0]}, expected a program alone: --gb"
-        )
-    program = found(command.words[0], command.folder)
+def _listed(command: Compared, pattern: str | None) -> list[str]:
+    call, first = call_of(command), command.words[0]
     try:
-        require_executable(command.words[0], command.folder)
+        require_executable(first, command.folder)
     except UnfitError as unfit:
-        raise InputError(f'{command.name}: found "{command.words[0]}", which {unfit}') from unfit
-    return cases(program, pattern, f"--gb: {command.name}")
+        raise InputError(f'{command.name}: found "{first}", which {unfit}') from unfit
+    own = call.filter if call is not None else None
+    words = (os.fspath(found(first, command.folder)), *command.words[1:])
+    around = (command.folder, {**os.environ, **dict(command.environment)})
+    try:
+        return cases(words, pattern or own or ".", command.name, *around)
+    except InputError as error:
+        raise InputError(
+            str(error).replace(f"{command.name}.filter: ", f"{command.name}: --filter: ")
+        ) from error
+
+
+def quick(asked: "Asked", number: int) -> tuple[Compared, ...]:
+    """The commands of so many cases, each of which has as long a time as leaves room for many blocks, where
+    its own words do not say how long; says where they leave room for none.
+    """
+    calls = number * (len(asked.commands) + 1)
+    own = f"{_TIME}={min(_LONGEST, max(_SHORTEST, asked.seconds / (_BLOCKS * calls))):.3g}"
+    quicker = tuple(
+        one if any(word.startswith(_TIME) for word in one.words) else replace(one, words=(*one.words, own))
+        for one in asked.commands
+    )
+    longest = max(_seconds(one) for one in quicker)
+    if (takes := calls * (_LONGER * longest + _START)) > asked.seconds:
+        warn(f"carom: one block of {number} cases takes {about(takes)}: --time and {_TIME} say how long")
+    return quicker
+
+
+def _seconds(command: Compared) -> float:
+    """What a case is to take, by the words of its command; 0 where they say another thing."""
+    given = [word.partition("=")[2].removesuffix("s") for word in command.words if word.startswith(_TIME)]
+    try:
+        return float(given[-1])
+    except (ValueError, IndexError):
+        return 0.0
+
+
+_LONGER, _START = 1.5, 0.03
+"""How much longer a case takes, since it seeks a number of iterations first; seconds to start its program."""

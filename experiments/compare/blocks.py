@@ -6,15 +6,18 @@ import os
 import random
 import statistics
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from experiments.compare.others import Others
+from experiments.compare.question import in_options
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.results.store import Store
 from experiments.results.summary import summary_of, unusable
+from experiments.run.host_lock import WAITS
 from experiments.run.runner import Runner, Task
 from experiments.run.together import together
 from support.files import read_json, write_json
@@ -41,6 +44,23 @@ class Runs:
     """Why it failed, if it did."""
     undisturbed: str = ""
     """Why it was not stopped while others ran."""
+    all: list[float] = field(default_factory=list)
+    """The seconds of every run."""
+    codes: Counter[int] = field(default_factory=Counter)
+    """How many runs ended with each exit code."""
+    output: str = ""
+    """The end of what it printed."""
+    error: str = ""
+    """The last line that it wrote into its standard error."""
+    left_behind: list[float] = field(default_factory=list)
+    """Of each block the share of its time that went on after the command had ended."""
+    tries: int = 0
+    """How many runs ended well, those included that no longer count."""
+
+    @property
+    def is_unlike(self) -> bool:
+        """Whether its runs ended with more than one exit code, so that their times are of unlike kinds."""
+        return len(self.codes) > 1
 
     def median(self, name: str) -> float:
         """The middle of one of the lists."""
@@ -59,16 +79,16 @@ def key_of(point: Point) -> Key:
 class Blocks:
     """Runs one block after the other; `runs` holds what came of each command, or of each case of it."""
 
-    def __init__(self, experiment: Experiment, store: Store, runner: Runner) -> None:
+    def __init__(self, experiment: Experiment, store: Store, runner: Runner, *, has_cases: bool) -> None:
+        self.has_cases = has_cases
         self._store = store
         self._runner = runner
         self.began = time.monotonic()
         self.others = Others()
-        self._plan(experiment, 1)
+        self._plan(experiment)
 
-    def _plan(self, experiment: Experiment, in_a_row: int) -> None:
+    def _plan(self, experiment: Experiment) -> None:
         self.experiment = experiment
-        self.in_a_row = in_a_row
         self.done = 0
         self.before = 0
         """Blocks that an earlier call measured."""
@@ -76,13 +96,30 @@ class Blocks:
 
     def begin(self) -> None:
         """Let the time count from here."""
-        self.began = time.monotonic()
+        self.began = time.monotonic() - WAITS.seconds
 
-    def repeat(self, experiment: Experiment, in_a_row: int) -> None:
-        """Begin again with the experiment in which so many runs count as one, as if nothing had been run."""
+    def again(self, experiment: Experiment) -> None:
+        """Begin again with another experiment, as if nothing had been run but what failed."""
         for point in self.experiment.points:
             self._store.record_path(point, 0).unlink(missing_ok=True)
-        self._plan(experiment, in_a_row)
+        before = self.runs
+        self._plan(experiment)
+        for key, one in before.items():
+            if one.reason:
+                self.runs[key] = one
+            elif key in self.runs:
+                self.runs[key].tries = one.tries
+
+    def leave_out(self, names: Collection[str]) -> None:
+        """Go on without commands that failed, or the numbers of cases where one did; what was measured of
+        them stays.
+        """
+        points = tuple(
+            point
+            for point in self.experiment.points
+            if not {point.series, str(int(point.x)) if self.has_cases else ""} & {*names}
+        )
+        self.experiment = replace(self.experiment, points=points)
 
     def take_up(self, records: Sequence[Mapping[str, Any]]) -> str:
         """Count what an earlier call measured; returns why it cannot be counted, and then counts nothing."""
@@ -120,8 +157,8 @@ class Blocks:
 
     @property
     def seconds(self) -> float:
-        """Since the first block began."""
-        return time.monotonic() - self.began
+        """Since the first block began, but for waiting for other measurements."""
+        return time.monotonic() - self.began - WAITS.seconds
 
     @property
     def seconds_each(self) -> float:
@@ -134,8 +171,8 @@ class Blocks:
         return {key: one.reason for key, one in self.runs.items() if one.reason}
 
     def run(self, *, vary_layout: bool) -> bool:
-        """Run a block; returns whether all of it succeeded."""
-        block, size = self.done, len(self.experiment.points)
+        """Run a block; returns whether nothing of it failed that had not failed before."""
+        block, size, failed = self.done, len(self.experiment.points), len(self.failed)
         if vary_layout:
             padding = random.Random(f"{self.experiment.order_seed} {block}").randrange(MOST_PADDING)
             os.environ[PADDING] = "x" * padding
@@ -146,26 +183,41 @@ class Blocks:
                 outcomes = self._runner.run(tasks)
             for task, outcome in zip(tasks, outcomes, strict=True):
                 if outcome.seconds is None:
-                    self.runs[key_of(task.point)].reason = outcome.reason
+                    self.runs[key_of(task.point)].reason = in_options(outcome.reason)
                 else:
                     self._take_in(task.point, block)
-        self.done += not self.failed
-        return not self.failed
+        is_whole = len(self.failed) == failed
+        self.done += is_whole
+        return is_whole
 
     def _take_in(self, point: Point, block: int) -> None:
         record = read_json(self._store.record_path(point, block))
         runs, process = self.runs[key_of(point)], record["process"]
-        seconds = statistics.median(one["steps_seconds"] for one in record["repetitions"])
-        runs.seconds.append(seconds / self.in_a_row)
+        taken = [one["steps_seconds"] for one in record["repetitions"]]
+        runs.seconds.append(statistics.median(taken))
+        runs.all += taken
+        runs.codes.update(process.get("exit_codes") or [process["exit_code"]])
+        runs.tries += len(taken)
+        runs.output, runs.error = (process.get(key) or "" for key in ("output_end", "error_end"))
+        runs.left_behind.append(process.get("seconds_left_behind", 0.0) / max(process["wall_seconds"], 1e-9))
         busy = process["user_seconds"] + process["system_seconds"]
         runs.cores.append(busy / max(process["wall_seconds"], 1e-9))
         if process["peak_memory_bytes"] is not None:
             runs.bytes.append(process["peak_memory_bytes"])
         for name, amount in process.get("counted", {}).items():
             if amount is not None:
-                runs.counts.setdefault(name, []).append(amount / self.in_a_row)
+                runs.counts.setdefault(name, []).append(amount)
         runs.memory = process["peak_memory_reason"]
         runs.undisturbed = process["undisturbed"] or runs.undisturbed
+        if runs.is_unlike:
+            runs.reason = (
+                f"found runs that ended unlike ({codes_said(runs.codes)}): their times are not of one kind"
+            )
+
+
+def codes_said(codes: Mapping[int, int]) -> str:
+    """How many runs ended with each exit code."""
+    return ", ".join(f"{number} with exit code {code}" for code, number in sorted(codes.items()))
 
 
 def keep_addresses() -> None:

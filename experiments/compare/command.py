@@ -2,15 +2,15 @@
 
 import contextlib
 import os
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from experiments.compare import exports
 from experiments.compare.answer import Answer, draw
-from experiments.compare.blocks import Blocks, keep_addresses, shell_seconds
+from experiments.compare.blocks import Blocks, codes_said, keep_addresses, shell_seconds
 from experiments.compare.course import Course, Line
 from experiments.compare.earlier import Earlier
+from experiments.compare.first_run import unlike_runs
 from experiments.compare.found import Found
 from experiments.compare.options import Asked, parse
 from experiments.compare.sweeps import contrasts
@@ -24,12 +24,17 @@ from experiments.results.store import Store, new_session
 from experiments.run.progress import warn
 from experiments.run.runner import Runner
 from experiments.support import process
+from experiments.support.descendants import children, end_all_but
 from experiments.support.places import BUILDS, analysis
 from experiments.support.process import Coprocess
+from experiments.support.vanishing import vanishing_folder
 from support.errors import InputError
-from support.vocabulary import ASKED
+from support.vocabulary import AGAIN, ASKED
 
 COMMAND_FAILED, WITHDRAWN = 2, 5
+
+_FEW = 3
+"""Runs after which a failure looks as if the runs before it had left something."""
 
 Say = Callable[[Answer], str]
 
@@ -38,20 +43,19 @@ def compare(arguments: Sequence[str]) -> int:
     """Run the verb; returns the exit code: 0 measured, 2 a command failed, 5 the reference differs from
     itself. Raises InputError before anything is measured.
     """
-    asked = parse(arguments)
-    exports.require_places(asked.exports)
-    return measured(asked)[0]
+    return measured(parse(arguments))[0]
 
 
 def measured(asked: Asked, say: Say = lambda _: "") -> tuple[int, Answer]:
     """Measure and tell the result, with the line that `say` makes of it at the head of exported pages;
     returns the exit code and what the last look found.
     """
+    exports.require_places(asked.exports, asked.earlier)
     earlier = Earlier(asked.earlier)
     if asked.fixed_layout:
         keep_addresses()
-    with tempfile.TemporaryDirectory(prefix="carom-compare-") as folder, _set_up(asked):
-        return _measured(asked, earlier, Path(folder), say)
+    with vanishing_folder("carom-compare-") as folder, _set_up(asked):
+        return _measured(asked, earlier, folder, say)
 
 
 def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[int, Answer]:
@@ -67,23 +71,33 @@ def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[i
         runner = Runner(store, scenes, generator, asked.most_seconds, asked.slice_seconds, tells=False)
         course = Course(asked, around, store, runner)
         with Line(asked.quiet) as line:
-            line.show("making ready")
+            line.show(lambda: "making ready")
             stopped = course.run(judge, earlier, line)
         found = course.found(_remarks(course))
         said = result(found)
-        print(*said, sep="\n")
-        earlier.keep(course.blocks)
-        exports.write(found, said, say(found.answer), lambda: draw(judge))
-    return _exit_code(course.blocks, found, stopped), found.answer
+        try:
+            # First what is kept: the terminal may be gone.
+            earlier.keep(course.blocks, course.how)
+            exports.write(found, said, say(found.answer), lambda: draw(judge))
+        finally:
+            exports.tell(said, asked.exports)
+    code = _exit_code(course.blocks, found, stopped)
+    if course.broken is not None:
+        raise course.broken
+    return code, found.answer
 
 
 def _exit_code(blocks: Blocks, found: Found, stopped: int | None) -> int:
     """What the end comes to; says what failed."""
     cases = found.asked.cases
     for (name, case), reason in blocks.failed.items():
-        runs = len(blocks.runs[name, case].seconds)
+        if (name.removesuffix(AGAIN), case) in blocks.failed and name.endswith(AGAIN):
+            continue
+        same = [blocks.runs.get((one, case)) for one in (name, name.removesuffix(AGAIN) + AGAIN)]
+        runs = sum(one.tries for one in same if one is not None)
+        again = "; it worked before: `--prepare` can put things back" if 0 < runs <= _FEW else ""
         whose = f"{name}, {cases[case]}" if cases else name
-        warn(f"carom: {whose}: failed after {runs} run{'' if runs == 1 else 's'}: {reason}")
+        warn(f"carom: {whose}: failed after {runs} run{'' if runs == 1 else 's'}: {reason}{again}")
     if stopped is not None:
         return 128 + stopped
     return COMMAND_FAILED if blocks.failed else WITHDRAWN if found.answer.is_withdrawn else 0
@@ -100,11 +114,20 @@ def _remarks(course: Course) -> tuple[str, ...]:
     """What is to be known of how it was measured."""
     asked, busy = course.asked, course.blocks.others.remark()
     remarks = [] if busy is None else [busy]
-    if asked.in_a_row > 1:
-        remarks.append(
-            f"each time is of {asked.in_a_row} runs in a row, which a shell starts one after the other, "
-            "divided by their number: single runs are short"
-        )
+    if asked.rounds:
+        often = zip(asked.commands, asked.rounds, strict=True)
+        told = ", ".join(f"{one.name} {number}" for one, number in often)
+        remarks.append(f"runs of each in a block, in random order and none of them stopped: {told}")
+    for one in asked.commands:
+        for case in range(len(asked.cases) or 1):
+            runs = course.blocks.runs[one.name, case]
+            if runs.all and not asked.has_printed_times and not asked.cases:
+                of_both = [course.first.get((name, case), 0.0) for name in (one.name, one.name + AGAIN)]
+                remarks += unlike_runs(one.name, max(of_both), runs)
+    codes = {one.name: course.blocks.runs[one.name, 0].codes for one in asked.commands}
+    if len({tuple(one) for one in codes.values() if one}) > 1:
+        told = "; ".join(f"{name}: {codes_said(one)}" for name, one in codes.items() if one)
+        remarks.append(f"not all end alike: {told}")
     if any(one.has_shell for one in asked.commands):
         took = duration(shell_seconds())
         remarks.append(
@@ -115,16 +138,20 @@ def _remarks(course: Course) -> tuple[str, ...]:
 
 @contextlib.contextmanager
 def _set_up(asked: Asked) -> Iterator[None]:
-    """Run what comes once before everything, and what comes after it whatever happens."""
+    """Run what comes once before everything, and what comes after it whatever happens. What the first has
+    started, such as a server, goes on until then.
+    """
+    known = children()
     try:
         _once("--setup", asked.setup)
         yield
     finally:
         _once("--cleanup", asked.cleanup)
+        end_all_but(known)
 
 
-def _once(option: str, line: str | None) -> None:
-    if line is not None:
-        done = process.run(("sh", "-c", line), dict(os.environ))
+def _once(option: str, lines: Sequence[str]) -> None:
+    for line in lines:
+        done = process.run(("sh", "-c", line), dict(os.environ), ends_all=False)
         if done.exit_code != 0:
             raise InputError(f"{option}: {line}: {done.reason}")

@@ -1,13 +1,15 @@
 """The commands that are compared: from lines or words to words, names and surroundings."""
 
 import argparse
+import os
 import re
 import shlex
-from collections.abc import Sequence
+import shutil
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from experiments.compare.sweeps import Levels, combinations, filled
+from experiments.compare.sweeps import LINE, Levels, combinations, fill, joined, named_in, require_filled
 from support.errors import InputError, quoted
 from support.vocabulary import AGAIN
 
@@ -17,8 +19,29 @@ WORDS, NEXT = "--", "--vs"
 MOST_COMMANDS = 100
 """More are no comparison."""
 
-_OF_A_SHELL = re.compile(r"[^\w ./:,@%^+=-]|(?:^|\s)\w+=")
-"""What a shell may act upon: anything but plain words; a word with = in front is a variable to be set."""
+_WORD = r"""(?:[\w./:,@%^+=-]|'[^']*'|"[^"$`\\!]*")+"""
+_SIMPLE = re.compile(rf"[ \t]*{_WORD}(?:[ \t]+{_WORD})*[ \t]*")
+"""A line in which a shell has nothing to do: plain words, and quotes around what is taken as it is."""
+_OF_THE_SHELL = frozenset(
+    (
+        ":",
+        ".",
+        "cd",
+        "eval",
+        "exec",
+        "exit",
+        "export",
+        "read",
+        "set",
+        "trap",
+        "ulimit",
+        "umask",
+        "wait",
+        "command",
+    )
+)
+"""Commands that are no programs."""
+_ASSIGNMENT = re.compile(r"([A-Za-z_]\w*)=(.*)", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -33,6 +56,8 @@ class Compared:
     environment: tuple[tuple[str, str], ...] = ()
     folder: Path = field(default_factory=Path.cwd)
     """Where it is run."""
+    time_from: str | None = None
+    """The pattern of the time that it prints."""
     levels: Levels = ()
     """The value of each list that its line has."""
 
@@ -45,7 +70,20 @@ class Compared:
 def split_off(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
     """The arguments before `--`, and those behind it, which belong to commands."""
     at = list(arguments).index(WORDS) if WORDS in arguments else len(arguments)
-    return list(arguments[:at]), list(arguments[at + 1 :])
+    return joined(arguments[:at]), list(arguments[at + 1 :])
+
+
+@dataclass(frozen=True)
+class _Written:
+    """What is written for one command, and the values of the lists that it has."""
+
+    line: str
+    words: tuple[str, ...]
+    """Those behind `--`, where there is no line."""
+    levels: Levels
+    values: Mapping[str, str]
+    at: int
+    """The number of the line."""
 
 
 def commands_of(options: argparse.Namespace, words_behind: Sequence[str]) -> tuple[Compared, ...]:
@@ -53,28 +91,83 @@ def commands_of(options: argparse.Namespace, words_behind: Sequence[str]) -> tup
     split = _split(words_behind)
     if options.lines and split:
         raise InputError(f"found commands as lines and as words behind {WORDS}, expected only one of the two")
-    swept = combinations(options.list, options.range, MOST_COMMANDS)
-    levels: list[Levels] = [()] * len(split)
-    if split:
-        texts = [(shlex.join(words), tuple(words)) for words in split]
-    else:
-        lines = filled(options.lines, swept)
-        texts, levels = [(line, words_of(line)) for line, _ in lines], [one for _, one in lines]
-    if not 1 < len(texts) <= MOST_COMMANDS:
+    written = _written(options, split)
+    if not 1 < len(written) <= MOST_COMMANDS:
         told = f"expected two or more to compare, {MOST_COMMANDS} at most"
-        raise InputError(f"found {_commands_said(len(texts))}, {told}")
-    names = options.name or names_of([words for _, words in texts], [line for line, _ in texts])
-    if len(names) != len(texts):
-        raise InputError(f"found {len(names)} names for {_commands_said(len(texts))}, expected one for each")
-    _require_names(names)
-    before, after = (_beside(options, key, len(texts)) for key in ("prepare", "conclude"))
-    own = _environments(options.env, names)
+        raise InputError(f"found {_commands_said(len(written))}, {told}")
+    read = [(dict[str, str](), one.words) if one.words else words_of(one.line) for one in written]
+    names = _names(options, written, [words for _, words in read])
+    prepare, conclude = (
+        [_words_beside(_given(options, key, written, at)) for at in range(len(written))]
+        for key in ("prepare", "conclude")
+    )
     return tuple(
         Compared(
-            name, _with_input(words, options.input), line, before[at], after[at], own[name], levels=levels[at]
+            name,
+            _with_input(words, options.input, one.values),
+            one.line,
+            prepare[at],
+            conclude[at],
+            environment=_environment(options.env, one.values, name, names, of_line),
+            levels=one.levels,
+            time_from=options.time_from and fill(options.time_from, one.values),
         )
-        for at, (name, (line, words)) in enumerate(zip(names, texts, strict=True))
+        for at, (one, name, (of_line, words)) in enumerate(zip(written, names, read, strict=True))
     )
+
+
+def _written(options: argparse.Namespace, split: Sequence[Sequence[str]]) -> list[_Written]:
+    """Each line with each combination of values that changes anything of it. Raises InputError for a value
+    that nothing uses, and for a placeholder that has none.
+    """
+    lines = [shlex.join(words) for words in split] or options.lines
+    combined = combinations([*options.list, *options.range], MOST_COMMANDS)
+    of_all = [*options.env, str(options.input or ""), options.time_from or ""]
+    beside = [getattr(options, key) for key in ("name", "prepare", "conclude")]
+    found: dict[object, _Written] = {}
+    for at, line in enumerate(lines):
+        own = [one[at] if len(one) == len(lines) else " ".join(one) for one in beside]
+        for values in combined:
+            used = named_in([line, *own, *of_all])
+            levels = tuple((name, value) for name, value in values.items() if name in used)
+            of_line = ((LINE, line),) if len(lines) > 1 and values else ()
+            words = tuple(fill(word, values) for word in split[at]) if split else ()
+            text = shlex.join(words) if words else fill(line, values)
+            key = (text, *(fill(one, values) for one in (*own, *of_all))) if values else at
+            found.setdefault(key, _Written(text, words, (*of_line, *levels), dict(levels), at))
+    for name in combined[0]:
+        if not any(name in one.values for one in found.values()):
+            raise InputError(f"found values for {name}, expected {{{name}}} in a command")
+    for one in found.values():
+        if not split:
+            require_filled(one.line, one.line)
+    return list(found.values())
+
+
+def _names(
+    options: argparse.Namespace, written: Sequence[_Written], words: Sequence[tuple[str, ...]]
+) -> list[str]:
+    """What the commands are called. Raises InputError for names that are not as many, or not told apart."""
+    if not options.name:
+        names = names_of(words, [_called(one, written) for one in written])
+        _require_names(names, "found")
+        return names
+    number = len(options.name)
+    if number == len({one.at for one in written}):
+        names = [fill(options.name[one.at], one.values) for one in written]
+    elif number == len(written):
+        names = list(options.name)
+    else:
+        raise InputError(f"found {number} names for {_commands_said(len(written))}, expected one for each")
+    _require_names(names, "-n: found")
+    return names
+
+
+def _called(one: _Written, all_of_them: Sequence[_Written]) -> str:
+    """Its line, with the values of lists that others of the same line differ in."""
+    if not one.values or sum(other.line == one.line for other in all_of_them) == 1:
+        return one.line
+    return f"{one.line} ({', '.join(f'{name} {value}' for name, value in one.values.items())})"
 
 
 def _split(words: Sequence[str]) -> list[list[str]]:
@@ -92,11 +185,31 @@ def _split(words: Sequence[str]) -> list[list[str]]:
     return parts
 
 
-def words_of(line: str) -> tuple[str, ...]:
-    """The words of a line that has plain words only; else those of a shell that reads it."""
+def words_of(line: str) -> tuple[dict[str, str], tuple[str, ...]]:
+    """The words of a line in which a shell has nothing to do, with the variables that it sets in front; else
+    those of a shell that reads it. Raises InputError for an empty one.
+    """
     if not line.strip():
         raise InputError("found an empty line, expected a command")
-    return ("sh", "-c", line) if _OF_A_SHELL.search(line) else tuple(line.split())
+    if not _SIMPLE.fullmatch(line):
+        return {}, ("sh", "-c", line)
+    words, variables = shlex.split(line), dict[str, str]()
+    while words and (found := _ASSIGNMENT.fullmatch(words[0])):
+        variables[found[1]] = found[2]
+        del words[0]
+    # What stands in quotes may be a word of a shell, such as `eval`.
+    is_program = bool(words) and (
+        shutil.which(words[0]) is not None or (words == line.split() and words[0] not in _OF_THE_SHELL)
+    )
+    return (variables, tuple(words)) if is_program else ({}, ("sh", "-c", line))
+
+
+def _words_beside(line: str) -> tuple[str, ...]:
+    """The words of a line that is run before or after; none of an empty one."""
+    if not line:
+        return ()
+    variables, words = words_of(line)
+    return ("sh", "-c", line) if variables else words
 
 
 def names_of(commands: Sequence[Sequence[str]], lines: Sequence[str]) -> list[str]:
@@ -113,7 +226,7 @@ def names_of(commands: Sequence[Sequence[str]], lines: Sequence[str]) -> list[st
 def _short(word: str) -> str:
     """The last two parts of a path."""
     return (
-        "/".join(Path(word).parts[-2:])
+        os.fspath(Path(*Path(word).parts[-2:]))
         if "/" in word and not word.startswith("./")
         else word.removeprefix("./")
     )
@@ -127,15 +240,15 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _require_names(names: Sequence[str]) -> None:
+def _require_names(names: Sequence[str], found: str) -> None:
     for name in names:
         if not name.strip() or not name.isprintable():
-            raise InputError(f"-n: found {quoted(name)}, expected a name on one line")
+            raise InputError(f"{found} {quoted(name)}, expected a name on one line: -n gives it")
         if _is_number(name):
-            raise InputError(f"-n: found {quoted(name)}, expected a name that is no number")
+            raise InputError(f"{found} {quoted(name)}, expected a name that is no number: -n gives it")
         if name.removesuffix(AGAIN) != name and name.removesuffix(AGAIN) in names:
             told = f"which the control is called; expected a name without{AGAIN}"
-            raise InputError(f"-n: found {quoted(name)}, {told}")
+            raise InputError(f"{found} {quoted(name)}, {told}")
         if list(names).count(name) > 1:
             raise InputError(f"found {quoted(name)} twice, expected a name for each command: -n gives them")
 
@@ -147,37 +260,48 @@ def reference_of(asked: str | None, names: Sequence[str]) -> str:
     return asked or names[0]
 
 
-def _beside(options: argparse.Namespace, key: str, commands: int) -> list[tuple[str, ...]]:
-    """The words that are run before or after each command's runs."""
-    lines = getattr(options, key)
-    if len(lines) not in (0, 1, commands):
-        raise InputError(
-            f"--{key}: found {len(lines)} for {_commands_said(commands)}, expected one, or one for each"
-        )
-    words = [words_of(line) for line in lines] or [()]
-    return words * commands if len(words) == 1 else words
+def _given(options: argparse.Namespace, key: str, written: Sequence[_Written], at: int) -> str:
+    """The line that is run before or after a command's runs; empty where there is none. Raises InputError for
+    lines that are not as many as commands.
+    """
+    lines, one = getattr(options, key), written[at]
+    number = len({other.at for other in written})
+    if len(lines) not in (0, 1, number, len(written)):
+        told = f"found {len(lines)} for {_commands_said(len(written))}, expected one, or one for each"
+        raise InputError(f"--{key}: {told}")
+    if not lines:
+        return ""
+    line = fill(lines[0 if len(lines) == 1 else one.at if len(lines) == number else at], one.values)
+    require_filled(f"--{key}", line)
+    return line
 
 
-def _environments(settings: Sequence[str], names: Sequence[str]) -> dict[str, tuple[tuple[str, str], ...]]:
-    """The variables of each command."""
-    own: dict[str, dict[str, str]] = {name: {} for name in names}
-    for setting in settings:
+def _environment(
+    settings: Sequence[str],
+    values: Mapping[str, str],
+    own: str,
+    names: Sequence[str],
+    of_line: dict[str, str],
+) -> tuple[tuple[str, str], ...]:
+    """The variables of one command, those in front of its line last."""
+    found: dict[str, str] = {}
+    for setting in (fill(one, values) for one in settings):
         name, colon, rest = setting.partition(":")
-        whose = [name] if colon and name in own else list(names)
-        variable, equals, value = (rest if colon and name in own else setting).partition("=")
-        if not equals or not re.fullmatch(r"[A-Za-z_]\w*", variable):
-            raise InputError(
-                f"--env: found {quoted(setting)}, expected VARIABLE=VALUE or NAME:VARIABLE=VALUE"
-            )
-        for one in whose:
-            own[one][variable] = value
-    return {name: tuple(sorted(variables.items())) for name, variables in own.items()}
+        is_of_one = bool(colon) and name in names
+        variable = _ASSIGNMENT.fullmatch(rest if is_of_one else setting)
+        if variable is None:
+            told = "expected VARIABLE=VALUE or NAME:VARIABLE=VALUE"
+            raise InputError(f"--env: found {quoted(setting)}, {told}")
+        if not is_of_one or name == own:
+            found[variable[1]] = variable[2]
+    return tuple(sorted({**found, **of_line}.items()))
 
 
-def _with_input(words: tuple[str, ...], file: Path | None) -> tuple[str, ...]:
+def _with_input(words: tuple[str, ...], asked: Path | None, values: Mapping[str, str]) -> tuple[str, ...]:
     """The words, behind a shell that opens the file and becomes the command."""
-    if file is None:
+    if asked is None:
         return words
+    file = Path(fill(str(asked), values))
     if not file.is_file():
         raise InputError(f"--input: found {file}, expected a file that is there")
     return ("sh", "-c", f'exec "$@" < {shlex.quote(str(file.absolute()))}', "sh", *words)

@@ -1,23 +1,26 @@
 """The course of one call: blocks and looks, until all is settled, the time is over, or somebody stops it."""
 
 import os
+import signal
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 
 from experiments.compare.answer import Answer, ask
-from experiments.compare.blocks import Blocks
-from experiments.compare.earlier import Earlier
+from experiments.compare.blocks import Blocks, Key
+from experiments.compare.earlier import Earlier, How
+from experiments.compare.first_run import NotMeantError, note_idle, require_meant, rounds_of, unstoppable
 from experiments.compare.found import Found, Look
 from experiments.compare.options import Asked
 from experiments.compare.question import experiment_of
-from experiments.compare.short import runs_in_a_row
 from experiments.compare.texts import blocks_said, change
 from experiments.plan.plan import Surroundings
 from experiments.results.store import Store
 from experiments.run.progress import about, warn
 from experiments.run.runner import Runner
 from experiments.support.process import Coprocess
-from support.errors import Interrupted
+from support.errors import InputError, Interrupted
+from support.vocabulary import AGAIN
 
 
 class Course:
@@ -27,13 +30,21 @@ class Course:
         """Plans it. Raises InputError for a command that is not there or cannot be run."""
         self.asked = asked
         self._around = around
-        self.blocks = Blocks(experiment_of(asked, around), store, runner)
+        self.blocks = Blocks(experiment_of(asked, around), store, runner, has_cases=bool(asked.cases))
         self._answer = Answer()
+        self._is_known = False
+        self.broken: InputError | OSError | None = None
+        """What ended it early, with something measured."""
+        self.left_out: list[str] = []
+        """The names of commands that failed, or the numbers of cases where one did."""
+        self.first: dict[Key, float] = {}
+        """The seconds of each one's first run."""
         self._looks: list[Look] = []
         self._seconds = 0.0
 
     def run(self, judge: Coprocess, earlier: Earlier, line: "Line") -> int | None:
         """Measure; returns the signal that stopped it before its end, if one did."""
+        self._earlier = earlier
         self._go_on(earlier)
         # The first look takes seconds, in which the analysis loads what it needs.
         self._answer = ask(judge, self.asked.many)
@@ -44,8 +55,19 @@ class Course:
                 self._measure(judge, line)
         except Interrupted as interrupted:
             stopped = interrupted.signal_number
+        except NotMeantError:
+            raise
+        except (InputError, OSError) as error:
+            if not self.blocks.done:
+                raise
+            self.broken = error
         self._seconds = self.blocks.seconds
         return stopped
+
+    @property
+    def how(self) -> How:
+        """How it is measured, for a later call that goes on."""
+        return How(self.asked.rounds, self.asked.turns, tuple(self.left_out))
 
     def found(self, remarks: tuple[str, ...]) -> Found:
         """What has come of it."""
@@ -64,38 +86,86 @@ class Course:
 
     def _go_on(self, earlier: Earlier) -> None:
         """Count what an earlier call measured, if it was the same."""
-        if earlier.in_a_row > 1:
-            self._repeat(earlier.in_a_row)
-        if told := earlier.go_on(self.blocks):
+        if earlier.how is None:
+            return
+        before, self.left_out = self.asked, [*earlier.how.left_out]
+        self._begin_again(replace(self.asked, rounds=earlier.how.rounds, turns=earlier.how.turns))
+        told = earlier.go_on(self.blocks)
+        if told:
             warn(
                 f"carom: --append: a new session begins, since what was measured earlier cannot go on: {told}"
             )
-            if earlier.in_a_row > 1:
-                self._repeat(1)
+            self.left_out = []
+            self._begin_again(before)
+        self._is_known = not told and self.blocks.done > 0
 
-    def _repeat(self, times: int) -> None:
-        """Begin again, with so many runs of each command counted as one."""
-        self.asked = replace(self.asked, in_a_row=times)
-        self.blocks.repeat(experiment_of(self.asked, self._around), times)
+    def _begin_again(self, asked: Asked) -> None:
+        """Begin again, as it turned out to be better measured."""
+        self.asked = asked
+        self.blocks.again(experiment_of(asked, self._around))
+        self.blocks.leave_out(self.left_out)
 
     def _measure(self, judge: Coprocess, line: "Line") -> None:
-        blocks, asked = self.blocks, self.asked
-        while blocks.run(vary_layout=not asked.fixed_layout):
-            if blocks.done == 1 and blocks.in_a_row == 1:
-                times = runs_in_a_row(asked, [runs.median("seconds") for runs in blocks.runs.values()])
-                if times > 1:
-                    self._repeat(times)
-                    continue
+        blocks = self.blocks
+        if not self._is_known:
+            self._first_block(line)
+        while self._has_time():
+            line.show(self._so_far)
+            self._block()
             if blocks.done == self._answer.next:
                 self._look(judge)
                 if self._is_enough():
                     return
-            line.show(self._so_far())
-            if blocks.seconds + blocks.seconds_each > asked.seconds:
-                return
+
+    def _first_block(self, line: "Line") -> None:
+        """One run of each by itself, which tells how they are to be measured; it counts where that is so."""
+        asked, blocks = self.asked, self.blocks
+        line.show(lambda: f"one run of each, {blocks.seconds:.0f} s")
+        for name in unstoppable(asked):
+            warn(f"carom: {name}: runs as another user, so that it can be neither stopped nor ended here")
+            asked = self.asked = replace(asked, turns=False)
+        is_open = asked.turns is None and not asked.cases and not asked.has_printed_times
+        if is_open:
+            self._begin_again(replace(asked, turns=False))
+        self._block()
+        require_meant(asked, blocks.runs)
+        self.first = {key: one.seconds[0] for key, one in blocks.runs.items() if one.seconds}
+        if not blocks.done:
+            return
+        rounds, each = rounds_of(asked, blocks.runs), blocks.seconds_each
+        if blocks.seconds + (1 if rounds else 2) * each > asked.seconds + each:
+            return
+        if rounds:
+            self._begin_again(replace(asked, turns=False, rounds=rounds))
+        elif is_open and not note_idle(asked, blocks.runs, blocks.others.idle_processors):
+            self._begin_again(asked)
+
+    def _block(self) -> None:
+        """A block, and what is to be said and left out of what failed in it. Raises InputError where nothing
+        is left to be compared.
+        """
+        blocks, asked = self.blocks, self.asked
+        if blocks.run(vary_layout=not asked.fixed_layout):
+            return
+        for name, case in blocks.failed:
+            out = str(case) if asked.cases else name
+            self.left_out += [out] if out not in self.left_out else []
+        blocks.leave_out(self.left_out)
+        blocks.done += self._can_go_on()
+
+    def _can_go_on(self) -> bool:
+        """Whether there is something left to be compared, and the reference to be held against itself."""
+        names = {point.series for point in self.blocks.experiment.points}
+        return len(names) > 2 and {self.asked.reference, self.asked.reference + AGAIN} <= names
+
+    def _has_time(self) -> bool:
+        blocks = self.blocks
+        is_time = not blocks.done or blocks.seconds + blocks.seconds_each <= self.asked.seconds
+        return is_time and self._can_go_on()
 
     def _look(self, judge: Coprocess) -> None:
-        self._answer = answer = ask(judge, self.asked.many)
+        self._answer = answer = ask(judge, self.asked.many).without(self.left_out)
+        self._earlier.keep(self.blocks, self.how)
         blocks, needed = self.blocks, answer.needed
         more = None if needed is None else (needed - blocks.done) * blocks.seconds_each
         foretold = None if more is None else blocks.seconds + more
@@ -120,20 +190,36 @@ class Course:
 
 
 class Line:
-    """One line on a terminal that tells how far it is, drawn between blocks only; a context manager."""
+    """One line on a terminal that tells how far it is, drawn anew each second; a context manager."""
 
     def __init__(self, quiet: bool) -> None:
-        self._is_shown = sys.stderr.isatty() and not quiet
+        can_draw = os.environ.get("TERM", "dumb") not in ("dumb", "")
+        self._is_shown = can_draw and not quiet and sys.stderr is not None and sys.stderr.isatty()
+        self._told: Callable[[], str] = str
 
     def __enter__(self) -> "Line":
+        if self._is_shown:
+            # A thread would take time from what is measured whenever it likes.
+            signal.signal(signal.SIGALRM, lambda *_: self._draw())
+            signal.setitimer(signal.ITIMER_REAL, 1, 1)
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.show("")
-
-    def show(self, text: str) -> None:
-        """Put the text in the place of the one before."""
         if self._is_shown:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            self.show(str)
+
+    def show(self, told: Callable[[], str]) -> None:
+        """Put what it tells in the place of the line before, from now on."""
+        self._told = told
+        self._draw()
+
+    def _draw(self) -> None:
+        if not self._is_shown:
+            return
+        try:
             width = os.get_terminal_size(sys.stderr.fileno()).columns
-            sys.stderr.write(f"\r\x1b[K{text[: max(1, width - 1)]}")
+            sys.stderr.write(f"\r\x1b[K{self._told()[: max(1, width - 1)]}")
             sys.stderr.flush()
+        except OSError:
+            self._is_shown = False  # the terminal is closed

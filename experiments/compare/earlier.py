@@ -1,7 +1,7 @@
 """A file with what earlier calls measured: the records of each session, the last of which may go on."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,14 +10,25 @@ from support.errors import InputError
 from support.files import read_json, replacing, require_room_for_folder
 from support.record_schema import is_record
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
+
+
+@dataclass(frozen=True)
+class How:
+    """How commands are measured that are no longer as they were asked for: what each first run told, and the
+    names of those that failed.
+    """
+
+    rounds: tuple[int, ...]
+    turns: bool | None
+    left_out: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Session:
-    """What was measured of the same commands and programs, runs `in_a_row` counted as one."""
+    """What was measured of the same commands and programs, and how."""
 
-    in_a_row: int
+    how: How
     records: list[Any]
 
 
@@ -33,9 +44,9 @@ class Earlier:
         self._goes_on = False
 
     @property
-    def in_a_row(self) -> int:
-        """Of the last session; 1 if there is none."""
-        return self._sessions[-1].in_a_row if self._sessions else 1
+    def how(self) -> How | None:
+        """That of the last session."""
+        return self._sessions[-1].how if self._sessions else None
 
     def go_on(self, blocks: Blocks) -> str:
         """Count the last session's blocks; returns why they cannot be counted, if so."""
@@ -45,21 +56,25 @@ class Earlier:
         self._goes_on = not wrong
         return wrong
 
-    def keep(self, blocks: Blocks) -> None:
+    def keep(self, blocks: Blocks, how: How) -> None:
         """Write all sessions, that of these blocks in the place of the one that it goes on with."""
         if self._path is None:
             return
-        now = Session(blocks.in_a_row, blocks.records)
+        now = Session(how, blocks.records)
         sessions = [*(self._sessions[:-1] if self._goes_on else self._sessions), now]
         content = {
             "schema_version": SCHEMA_VERSION,
-            "sessions": [{"in_a_row": one.in_a_row, "records": one.records} for one in sessions],
+            "sessions": [{"how": asdict(one.how), "records": one.records} for one in sessions],
         }
         with replacing(self._path) as part:
             part.write_text(json.dumps(content, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
 def _read(path: Path) -> list[Session]:
+    if not path.is_file():
+        raise InputError(
+            f"--append: found {path}, which is no file, expected one of an earlier call, or none"
+        )
     match read_json(path):
         case {"schema_version": version, "sessions": [*sessions]} if version == SCHEMA_VERSION:
             return [_session(path, one) for one in sessions]
@@ -68,6 +83,9 @@ def _read(path: Path) -> list[Session]:
 
 def _session(path: Path, session: object) -> Session:
     match session:
-        case {"in_a_row": int(in_a_row), "records": [*records]} if all(map(is_record, records)):
-            return Session(in_a_row, records)
+        case {
+            "how": {"rounds": [*rounds], "turns": bool() | None as turns, "left_out": [*left_out]},
+            "records": [*records],
+        } if all(map(is_record, records)):
+            return Session(How(tuple(rounds), turns, tuple(left_out)), records)
     raise InputError(f"--append: {path}: is damaged, expected what an earlier call has written")

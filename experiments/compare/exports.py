@@ -11,35 +11,55 @@ from pathlib import Path
 
 from experiments.compare.found import Found
 from experiments.compare.pages import markdown, page, title
+from support.command_line import print_lines
 from support.errors import InputError
-from support.files import replacing, require_room_for_folder
+from support.files import descriptor_of, require_place, write_out
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
-def require_places(exports: Mapping[str, Path]) -> None:
-    """Raises InputError, before anything is measured, for a file that cannot be written."""
-    for kind, path in exports.items():
-        require_room_for_folder(f"--export-{kind}", path.absolute().parent)
-        if path.is_dir():
-            raise InputError(f"--export-{kind}: found {path}, which is a folder, expected a place for a file")
+def require_places(exports: Mapping[str, Path], earlier: Path | None) -> None:
+    """Raises InputError, before anything is measured, for a file that cannot be written, and for two of one
+    name.
+    """
+    places = {f"--export-{kind}": path for kind, path in exports.items()}
+    for option, path in places.items():
+        require_place(option, path)
+    seen: dict[object, str] = {}
+    for option, path in {**places, **({"--append": earlier} if earlier else {})}.items():
+        place = descriptor_of(path) or path.resolve()
+        if place in seen:
+            raise InputError(f"{option}: found {path}, which {seen[place]} names too, expected another file")
+        seen[place] = option
 
 
 def write(found: Found, said: list[str], first: str, draw: Callable[[], Path]) -> None:
     """Write what was asked for, each file whole or not at all: `said` are the lines of the result, `first` is
-    the verdict in a line if it is another than the usual one, `draw` makes the picture.
+    the verdict in a line if it is another than the usual one, `draw` makes the picture. Raises the first
+    OSError once all others are written.
     """
     first = first or title(found)
     again = shlex.join(["carom", *sys.argv[1:]])
+    errors = []
     for kind, path in found.asked.exports.items():
-        text = {
-            "json": lambda: _json(found),
-            "csv": lambda: _csv(found),
-            "markdown": lambda: markdown(found, said, first, again),
-            "html": lambda: page(found, said, first, again, draw() if found.answer.commands else None),
-        }[kind]()
-        with replacing(path) as part:
-            part.write_text(text, encoding="utf-8")
+        try:
+            text = {
+                "json": lambda: _json(found),
+                "csv": lambda: _csv(found),
+                "markdown": lambda: markdown(found, said, first, again),
+                "html": lambda: page(found, said, first, again, draw() if found.answer.commands else None),
+            }[kind]()
+            write_out(path, text)
+        except OSError as error:
+            errors.append(error)
+    if errors:
+        raise errors[0]
+
+
+def tell(said: list[str], exports: Mapping[str, Path]) -> None:
+    """Print the lines of the result; beside standard output where an export is written there."""
+    is_taken = any(descriptor_of(path) == 1 for path in exports.values())
+    print_lines(said, sys.stderr if is_taken else sys.stdout)
 
 
 def _json(found: Found) -> str:
@@ -54,7 +74,7 @@ def _json(found: Found) -> str:
         "error": asked.error,
         "withdrawn": answer.is_withdrawn,
         "cases": asked.cases,
-        "in_a_row": asked.in_a_row,
+        "rounds": asked.rounds,
         "seconds": found.seconds,
         "blocks": found.blocks,
         "blocks_before": found.before,
@@ -63,10 +83,11 @@ def _json(found: Found) -> str:
         "controls": [asdict(one) for one in answer.controls],
         "places": [asdict(one) for one in answer.places],
         "effects": [asdict(one) for one in answer.effects],
+        "remarks": found.remarks,
         "looks": [asdict(one) for one in found.looks],
         "runs": [
             {"command": name, "case": case, "seconds": one.seconds, "cores": one.cores, "bytes": one.bytes}
-            | {"counts": one.counts}
+            | {"counts": one.counts, "exit_codes": one.codes, "failed": one.reason or None}
             for (name, case), one in found.runs.items()
         ],
     }

@@ -1,7 +1,7 @@
 """The verb `gate`: is this commit not slower than that one? The answer is an exit code."""
 
 import argparse
-import tempfile
+import shlex
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
@@ -11,9 +11,11 @@ from experiments.compare import exports, values
 from experiments.compare.answer import Answer
 from experiments.compare.command import WITHDRAWN, measured
 from experiments.compare.commands import WORDS, Compared, split_off
-from experiments.compare.options import add_measuring, asked_of, cases_of
-from experiments.compare.worktrees import build, repository
+from experiments.compare.options import add_measuring, asked_of, with_cases
+from experiments.compare.same_program import require_two_files, require_two_programs
+from experiments.compare.worktrees import Commit, Repository, Tree, build, repository
 from experiments.run.progress import warn
+from experiments.support.vanishing import vanishing_folder
 from support.command_line import Parser
 from support.errors import InputError
 
@@ -36,34 +38,52 @@ def gate(arguments: Sequence[str]) -> int:
     def end(answer: Answer) -> End:
         return verdict(answer, options.margin, accepted, options.fail_on)
 
-    with tempfile.TemporaryDirectory(prefix="carom-gate-") as folder, ExitStack() as trees:
-        commands = _built(options, run, Path(folder), trees)
+    with ExitStack() as stack:
+        commands = _built(options, run, stack)
         asked = asked_of(options, commands, commands[0].name)
-        exports.require_places(asked.exports)
-        asked = replace(asked, one_sided=True, many=options.many, cases=cases_of(options, commands))
+        asked = replace(with_cases(asked, options), one_sided=True, many=options.many)
         warn(f"carom: {promise(asked.error, options.many)}")
         code, answer = measured(asked, lambda answer: end(answer).said)
     if code:
         return code
-    print(end(answer).said)
+    exports.tell([end(answer).said], asked.exports)
     return end(answer).code
 
 
-def _built(
-    options: argparse.Namespace, run: Sequence[str], folder: Path, trees: ExitStack
-) -> tuple[Compared, ...]:
-    """The command in each of the two commits, checked out and built."""
-    where = repository()
-    commits = {name: where.commit(getattr(options, name), f"--{name}") for name in ("base", "head")}
+def _commits(options: argparse.Namespace, where: Repository) -> dict[str, Commit]:
+    """What is compared with, and what is judged; says what may be unexpected of them. Raises InputError."""
+    base, head = where.commit(options.base, "--base"), where.commit(options.head, "--head")
+    if base.sha == head.sha:
+        warn(f"carom: {base.name} and {head.name} are the same commit, {head.short}: it is measured twice")
+    elif not options.base_exactly:
+        base = where.merge_base(base, head)
     if where.is_changed:
         warn("carom: what is not committed is not measured")
-    commands = []
+    return {"base": base, "head": head}
+
+
+def _built(options: argparse.Namespace, run: Sequence[str], stack: ExitStack) -> tuple[Compared, ...]:
+    """The command in each of the two commits, checked out and built. Raises InputError where both would run
+    the same program.
+    """
+    where = repository()
+    commits = _commits(options, where)
+    prune = f"git -C {shlex.quote(str(where.top))} worktree prune"
+    folder = stack.enter_context(vanishing_folder("carom-gate-", prune))
+    since, trees = folder.stat().st_ctime_ns, dict[str, Tree]()
     for name, commit in commits.items():
-        tree = trees.enter_context(where.checked_out(commit, folder / name))
+        trees[name] = stack.enter_context(where.checked_out(commit, folder / name))
         if options.build is not None:
-            build(options.build, tree, commit)
-        commands.append(Compared(f"{name} {commit.short}", tuple(run), " ".join(run), folder=tree))
-    return tuple(commands)
+            build(options.build, trees[name])
+    if commits["base"].sha != commits["head"].sha:
+        require_two_files(run, trees["base"], trees["head"], since)
+        if not options.same_bytes:
+            require_two_programs(run, trees["base"], trees["head"])
+    words, line, pattern = tuple(run), " ".join(run), options.time_from
+    return tuple(
+        Compared(f"{name} {tree.commit.short}", words, line, folder=tree.folder, time_from=pattern)
+        for name, tree in trees.items()
+    )
 
 
 @dataclass(frozen=True)
@@ -115,9 +135,14 @@ def _parser() -> argparse.ArgumentParser:
         "itself. 0 and 3 are established; after 5 nothing is certain.",
     )
     add = parser.add_argument
-    add("--base", required=True, metavar="COMMIT", help="what it is compared with, such as origin/main")
+    told = "the branch that it is to go into, such as origin/main: compared with where --head left it"
+    add("--base", required=True, metavar="COMMIT", help=told)
+    told = "compare with that commit itself, and not with the one at which --head left it"
+    add("--base-exactly", action="store_true", help=told)
     add("--head", default="HEAD", metavar="COMMIT", help="what is judged (default: %(default)s)")
     add("--build", metavar="LINE", help="a line for a shell that builds a commit, in its folder")
+    told = "compare also where both builds give the same bytes although the sources differ"
+    add("--same-bytes", action="store_true", help=told)
     told = "what is a failure: slower alone, or undecided as well (default: %(default)s)"
     add("--fail-on", choices=("slower", "undecided"), default="undecided", help=told)
     told = "so many calls share the error, such as those of a year (default: %(default)s)"

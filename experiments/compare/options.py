@@ -6,8 +6,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from experiments.compare import values
-from experiments.compare.benchmarks import are_benchmarks, common_cases
+from experiments.compare.benchmarks import call_of, common_cases, quick
 from experiments.compare.commands import Compared, commands_of, reference_of, split_off
+from experiments.compare.sweeps import LIST, RANGE, fill, named_in, require_filled
+from experiments.plan.series import SECONDS_OF_UNIT, require_one_group
 from experiments.run.progress import warn
 from support.command_line import Parser
 from support.errors import InputError
@@ -32,13 +34,13 @@ class Asked:
     """For one run of a command; what takes longer is stopped, and has failed."""
     warm_up: int = 0
     exit_codes: tuple[int, ...] = (0,)
-    time_from: str | None = None
-    time_unit: str = "s"
+    unit: str | None = None
+    """Of printed times that have none."""
     turns: bool | None = None
     slice_seconds: float | None = None
     """How long one runs before the next does; the program's own rule without it."""
-    in_a_row: int = 1
-    """Runs of each command that count as one."""
+    rounds: tuple[int, ...] = ()
+    """How often each command runs in a block, by itself, where one of them is short; else once, in turns."""
     threads: int | None = None
     fixed_layout: bool = False
     cases: tuple[str, ...] = ()
@@ -47,13 +49,20 @@ class Asked:
     """Whether all that is asked is that nothing is slower by more than the margin."""
     many: int = 1
     """Of so many calls together a slower one may be called slower wrongly in no more than the error."""
-    setup: str | None = None
-    cleanup: str | None = None
+    is_whole: bool = False
+    """Whether somebody says that whole programs are meant, whatever is in them."""
+    setup: tuple[str, ...] = ()
+    cleanup: tuple[str, ...] = ()
     exports: dict[str, Path] = field(default_factory=dict)
     """The files to write, by format."""
     earlier: Path | None = None
     """A file of what earlier calls measured, which is gone on with."""
     quiet: bool = False
+
+    @property
+    def has_printed_times(self) -> bool:
+        """Whether the time of a command is one that it prints."""
+        return any(one.time_from for one in self.commands)
 
 
 def parse(arguments: Sequence[str]) -> Asked:
@@ -61,19 +70,27 @@ def parse(arguments: Sequence[str]) -> Asked:
     own, words = split_off(arguments)
     options = _parser().parse_args(own)
     commands = commands_of(options, words)
+    for option in ("append", *(f"export_{kind}" for kind in EXPORTS)):
+        if (options.list or options.range) and named_in([str(getattr(options, option) or "")]):
+            found = f"--{option.replace('_', '-')}: found {getattr(options, option)}"
+            raise InputError(f"{found}, expected one file for all commands")
     asked = asked_of(options, commands, reference_of(options.reference, [one.name for one in commands]))
-    return replace(asked, cases=cases_of(options, commands), earlier=options.append)
+    return replace(with_cases(asked, options), earlier=options.append)
 
 
-def cases_of(options: argparse.Namespace, commands: Sequence[Compared]) -> tuple[str, ...]:
-    """The cases to compare, if the commands are Google Benchmarks, and nobody says that they are none.
+def with_cases(asked: Asked, options: argparse.Namespace) -> Asked:
+    """With the cases to compare, if the commands are Google Benchmarks and nobody says that they are none.
     Raises InputError.
     """
     is_asked = options.gb is True or options.filter is not None
-    if options.gb is None and not is_asked and not options.time_from and are_benchmarks(commands):
+    if options.gb is False or (options.time_from and not is_asked):
+        return replace(asked, is_whole=True)
+    if not is_asked and any(call_of(one) is None for one in asked.commands):
+        return asked
+    if not is_asked:
         warn("carom: these are Google Benchmarks: their cases are compared (`--no-gb`: whole programs)")
-        is_asked = True
-    return common_cases(commands, options.filter or ".") if is_asked else ()
+    cases = common_cases(asked.commands, options.filter)
+    return replace(asked, commands=quick(asked, len(cases)), cases=cases)
 
 
 def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], reference: str) -> Asked:
@@ -84,6 +101,12 @@ def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], refere
     if options.time_from and turns:
         told = "of commands that time themselves, which would count their pauses"
         raise InputError(f"--turns: found turns, {told}; expected off or auto")
+    if options.unit and not options.time_from:
+        raise InputError("--unit: found without a time that is printed, expected --time-from beside it")
+    for one in commands:
+        if one.time_from is not None:
+            require_one_group("--time-from", one.time_from)
+    setup, cleanup = (_once(line, commands, what) for what, line in _before_and_after(options))
     return Asked(
         commands=commands,
         reference=reference,
@@ -93,17 +116,30 @@ def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], refere
         most_seconds=options.timeout or max(LEAST_TIMEOUT, 5 * options.time),
         warm_up=options.warmup,
         exit_codes=tuple(sorted({0, *options.ignore_exit})),
-        time_from=options.time_from,
-        time_unit=values.unit_of(options.time_from) if options.time_from else "s",
+        unit=options.unit,
         turns=turns,
         slice_seconds=slice_seconds,
         threads=options.threads,
         fixed_layout=options.fixed_layout,
-        setup=options.setup,
-        cleanup=options.cleanup,
+        setup=setup,
+        cleanup=cleanup,
         exports={kind: path for kind in EXPORTS if (path := getattr(options, f"export_{kind}")) is not None},
         quiet=options.quiet,
     )
+
+
+def _before_and_after(options: argparse.Namespace) -> list[tuple[str, str | None]]:
+    return [("--setup", options.setup), ("--cleanup", options.cleanup)]
+
+
+def _once(line: str | None, commands: Sequence[Compared], what: str) -> tuple[str, ...]:
+    """The lines that a line is with the values of all commands."""
+    if line is None:
+        return ()
+    lines = tuple(dict.fromkeys(fill(line, dict(one.levels)) for one in commands))
+    for one in lines:
+        require_filled(what, one)
+    return lines
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -137,10 +173,12 @@ def _parser() -> argparse.ArgumentParser:
     add("--input", type=Path, metavar="FILE", help="standard input of each run (default: nothing)")
     told = "a variable for all commands, or for the one that is called NAME"
     add("--env", action="append", default=[], metavar="[NAME:]VARIABLE=VALUE", help=told)
-    told = "values for {NAME} in the lines: a command for each, or for each combination"
-    add("-L", "--list", action="append", nargs=2, default=[], metavar=("NAME", "A,B"), help=told)
-    told = "the same for whole numbers from A to B"
-    add("-P", "--range", action="append", nargs=3, default=[], metavar=("NAME", "A", "B"), help=told)
+    told = (
+        "values for {NAME} wherever it stands: a command for each, or for each combination; `\\,` is a comma"
+    )
+    add(*LIST, action="append", default=[], metavar="NAME A,B", help=told)
+    told = "the same for numbers from FIRST to LAST, a STEP apart (default: 1)"
+    add(*RANGE, action="append", default=[], metavar="NAME FIRST LAST [STEP]", help=told)
     told = "go on with what earlier calls measured, and keep all in this file"
     add("--append", type=Path, metavar="FILE", help=told)
     add_measuring(parser)
@@ -169,8 +207,10 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
         metavar="1,2",
         help="exit codes that are fine beside 0",
     )
-    told = "a regular expression with one group: the time that a command prints, in the unit behind it"
-    add("--time-from", type=values.pattern, metavar="REGEX", help=told)
+    told = "a regular expression with one group: the time that a command prints, in the unit that it prints"
+    add("--time-from", metavar="REGEX", help=told)
+    told = "of printed times that have no unit: ns, us, ms, s, min or h"
+    add("--unit", choices=tuple(SECONDS_OF_UNIT), metavar="UNIT", help=told)
     told = "the commands are Google Benchmarks, whose cases are paired by name (default: it is found out)"
     add("--gb", action=argparse.BooleanOptionalAction, help=told)
     add("--filter", metavar="REGEX", help="the cases whose names match (default: all)")

@@ -44,6 +44,11 @@ class Others:
             self.ticks += all_ticks - ticks
             self.idle += all_idle - idle
 
+    @property
+    def idle_processors(self) -> float:
+        """How many had nothing to do on average, as far as the system tells."""
+        return _processors() * self.idle / self.ticks if self.ticks > 0 else 0.0
+
     def busy(self) -> float | None:
         """How many processors others kept busy on average, the host of a virtual machine among them; None
         where the system does not tell. What a command has a daemon do, as `docker run` does, is of others.
@@ -56,7 +61,7 @@ class Others:
     def remark(self) -> str | None:
         """A line that says so, if others were in the way of the commands."""
         busy, processors = self.busy(), _processors()
-        if busy is None or busy < _LEAST * processors or processors * self.idle / self.ticks > _ROOM:
+        if busy is None or busy < _LEAST * processors or self.idle_processors > _ROOM:
             return None
         return (
             f"the machine was busy: other programs took {busy:.1f} of its {processors} processors meanwhile. "

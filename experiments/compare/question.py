@@ -6,7 +6,6 @@ from dataclasses import replace
 
 from experiments.compare.commands import Compared
 from experiments.compare.options import Asked
-from experiments.compare.short import in_a_row
 from experiments.plan.plan import Experiment, Surroundings, plan
 from experiments.plan.point import Point
 from experiments.plan.question import NamedScene, Question
@@ -16,6 +15,14 @@ from support.errors import InputError
 from support.vocabulary import AGAIN
 
 NAME = "compare"
+_OPTIONS = {
+    ": prepare: ": ": --prepare: ",
+    ": conclude: ": ": --conclude: ",
+    "time.stdout: ": "--time-from: ",
+    "time: ": "--time-from: ",
+    "turns = false": "`--turns off`",
+}
+"""What a question's file calls what an option says."""
 _OPENMP = ("OMP_", "GOMP_", "KMP_")
 
 
@@ -63,26 +70,34 @@ def _point(
         [point] = plan(_question([command], asked, case[1]), around).points
     except InputError as error:
         # What is wrong with a series of a file here is wrong with a command.
-        raise InputError(
-            str(error).replace(f"{command.folder / NAME}: series[1].", f"{command.name}: ")
-        ) from error
+        wrong = str(error).replace(f"{command.folder / NAME}: series[1].", f"{command.name}: ")
+        raise InputError(in_options(wrong.replace(": command: ", ": "))) from error
     environment = _environment(asked, point.openmp, command.environment)
     return replace(point, series_number=number, openmp=environment, x=case[0], x_name="case")
 
 
 def _series(command: Compared, asked: Asked, case: str | None) -> Series:
     [named] = _plain((case or "",))
+    rounds = dict(zip((one.name for one in asked.commands), asked.rounds, strict=False))
     return Series(
         name=command.name,
         label=command.name,
-        command=_plain(in_a_row(command.words, asked.in_a_row, asked.exit_codes)),
+        command=_plain(command.words),
         prepare=_plain(command.prepare),
         conclude=_plain(command.conclude),
         exit_codes=() if asked.exit_codes == (0,) else asked.exit_codes,
         turns=asked.turns,
-        time=PrintedTime(asked.time_from, asked.time_unit) if asked.time_from else None,
+        rounds=1 if case else rounds.get(command.name.removesuffix(AGAIN)),
+        time=PrintedTime(command.time_from, asked.unit) if command.time_from else None,
         benchmark=Benchmark(command.words[0], named) if case else None,
     )
+
+
+def in_options(reason: str) -> str:
+    """A reason in the words of the command line where it has those of a question's file."""
+    for key, option in _OPTIONS.items():
+        reason = reason.replace(key, option)
+    return reason
 
 
 def _plain(words: tuple[str, ...]) -> tuple[str, ...]:

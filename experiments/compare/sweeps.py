@@ -1,16 +1,25 @@
 """Values for the placeholders of lines: a command for each combination, and what each value changes."""
 
 import itertools
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation
 
-from support.errors import InputError
+from support.errors import InputError, quoted
 
 Levels = tuple[tuple[str, str], ...]
 """The names of lists, each with one of its values."""
 
 LINE = "command"
 """The name of the list that several lines are."""
+
+LIST, RANGE = ("-L", "--list"), ("-P", "--range")
+
+_PLACEHOLDER = re.compile(r"(?<!\$)\{([A-Za-z_][\w.-]*)\}")
+"""`${NAME}` is a variable of the shell."""
+_QUOTED = re.compile(r"'[^']*'|\"(?:\\.|[^\"\\])*\"|\\.", re.DOTALL)
+_OF_GIT = re.compile(r"@\{[^}]*\}")
 
 
 @dataclass(frozen=True)
@@ -24,48 +33,91 @@ class Contrast:
     is_interaction: bool = False
 
 
-def combinations(
-    lists: Sequence[Sequence[str]], ranges: Sequence[Sequence[str]], most: int
-) -> list[dict[str, str]]:
-    """The values of each combination of `-L NAME A,B` and `-P NAME FIRST LAST`, somewhat more than `most` at
-    the most. Raises InputError.
+def joined(arguments: Sequence[str]) -> list[str]:
+    """The arguments, each list and range as one, whatever its values begin with. Raises InputError for one
+    with too few words.
+    """
+    found, rest = [], list(arguments)
+    while rest:
+        word = rest.pop(0)
+        least = 2 if word in LIST else 3 if word in RANGE else 0
+        if len(rest) < least:
+            expected = "NAME A,B" if word in LIST else "NAME FIRST LAST [STEP]"
+            raise InputError(f"{word}: found {len(rest)} words behind it, expected {expected}")
+        taken = least + (word in RANGE and len(rest) > least and _number(rest[least]) is not None)
+        own, rest = rest[:taken], rest[taken:]
+        found.append(
+            f"--{'list' if word in LIST else 'range'}={chr(0).join((word, *own))}" if least else word
+        )
+    return found
+
+
+def combinations(asked: Sequence[str], most: int) -> list[dict[str, str]]:
+    """The values of each combination of lists and ranges, as `joined` gives them. Raises InputError, also for
+    more than `most`.
     """
     values: dict[str, list[str]] = {}
-    for name, text in lists:
-        values[name] = text.split(",")
-    for name, first, last in ranges:
-        try:
-            numbers = range(int(first), int(last) + 1)
-        except ValueError as error:
-            raise InputError(
-                f"-P: found {name} {first} {last}, expected a name and two whole numbers"
-            ) from error
-        values[name] = [str(one) for one in numbers[: most + 1]]
-        if not values[name]:
-            raise InputError(f"-P: found {name} from {first} to {last}, expected numbers that rise")
-    found = itertools.islice(itertools.product(*values.values()), most + 1)
-    return [dict(zip(values, one, strict=True)) for one in found]
+    for one in asked:
+        option, name, *words = one.split(chr(0))
+        if not _PLACEHOLDER.fullmatch(f"{{{name}}}"):
+            raise InputError(f"{option}: found {quoted(name)}, expected a name that begins with a letter")
+        if name in values:
+            raise InputError(f"{option}: found {name} twice, expected one list or range of each name")
+        values[name] = _listed(words[0]) if option in LIST else _range(f"{option} {name}", words, most)
+    number = 1
+    for name, of_list in values.items():
+        number *= len(of_list)
+        if number > most:
+            raise InputError(f"{name}: makes {number} commands, expected {most} at most")
+    return [dict(zip(values, one, strict=True)) for one in itertools.product(*values.values())]
 
 
-def filled(lines: Sequence[str], values: Sequence[Mapping[str, str]]) -> list[tuple[str, Levels]]:
-    """Each line with each combination of values that makes another one, and the levels that it stands for.
-    Raises InputError for a value that no line uses.
+def _listed(text: str) -> list[str]:
+    """What stands between commas; `\\,` is a comma."""
+    return [one.replace("\\,", ",") for one in re.split(r"(?<!\\),", text)]
+
+
+def _range(what: str, words: Sequence[str], most: int) -> list[str]:
+    """The numbers from the first to the last, a step of 1 or so much apart."""
+    told = f"{what}: found {' '.join(words)}"
+    numbers = [_number(one) for one in words]
+    first, last, step = (*numbers, Decimal(1))[:3]
+    if first is None or last is None or not step:
+        raise InputError(f"{told}, expected numbers: FIRST LAST, and a STEP that is not 0")
+    count = int((last - first) / step) + 1 if (last - first) / step >= 0 else 0
+    if count < 1:
+        raise InputError(f"{told}, expected numbers that rise, or a step below 0")
+    if count > most:
+        raise InputError(f"{told}, which makes {count} commands; expected {most} at most")
+    width = len(words[0]) if words[0].startswith("0") and words[0].isdigit() else 0
+    return [f"{first + at * step:f}".zfill(width) for at in range(count)]
+
+
+def _number(text: str) -> Decimal | None:
+    try:
+        number = Decimal(text)
+    except InvalidOperation:
+        return None
+    return number if number.is_finite() else None
+
+
+def fill(text: str, values: Mapping[str, str]) -> str:
+    """The text with the values in the places of their names."""
+    return _PLACEHOLDER.sub(lambda found: values.get(found[1], found[0]), text)
+
+
+def named_in(texts: Iterable[str]) -> set[str]:
+    """The names whose values these texts wait for."""
+    return {name for text in texts for name in _PLACEHOLDER.findall(text)}
+
+
+def require_filled(what: str, line: str) -> None:
+    """Raises InputError for a placeholder of a line that is left. What stands between quotes is the business
+    of awk and its like, and `@{...}` that of git.
     """
-    for name in values[0]:
-        if not any(f"{{{name}}}" in line for line in lines):
-            raise InputError(f"found values for {name}, expected {{{name}}} in a command")
-    if not values[0]:
-        return [(line, ()) for line in lines]
-    found: dict[str, Levels] = {}
-    for line in lines:
-        for one in values:
-            text = line
-            for name, value in one.items():
-                text = text.replace(f"{{{name}}}", value)
-            of_line = ((LINE, line),) if len(lines) > 1 else ()
-            used = tuple((name, value) for name, value in one.items() if f"{{{name}}}" in line)
-            found.setdefault(text, (*of_line, *used))
-    return list(found.items())
+    if left := named_in([_OF_GIT.sub("", _QUOTED.sub("", line))]):
+        name = min(left)
+        raise InputError(f"{what}: found {{{name}}}, expected a list or range of that name: -L {name} A,B")
 
 
 def contrasts(levels: Mapping[str, Levels]) -> list[Contrast]:

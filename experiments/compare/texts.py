@@ -58,6 +58,11 @@ def result(found: Found) -> list[str]:
     lines = table([row(one, found) for one in in_order(found)])
     lines += [f"  {_control(found)}"] if answer.controls else []
     lines.append(f"  {_how_long(found)}")
+    if asked.cases and not answer.commands:
+        first = {case: found.runs[asked.reference, case] for case in range(len(asked.cases))}
+        lines += table(
+            [[asked.cases[at], duration(one.median("seconds"))] for at, one in first.items() if one.seconds]
+        )
     if not asked.cases:
         measured = [one.name for one in asked.commands if found.runs[one.name, 0].seconds]
         lines += table([[name, *_resources(found.runs[name, 0])] for name in measured])

@@ -1,32 +1,14 @@
-"""Values of options: shares, times, numbers, patterns. Each raises what the parser makes a line of."""
+"""Values of options: shares, times, numbers. Each raises what the parser makes a line of."""
 
 import argparse
 import re
 from collections.abc import Callable
-
-from experiments.plan.series import require_one_group
-from support.errors import InputError
 
 _SECONDS_OF = {"ms": 1e-3, "s": 1.0, "m": 60.0, "min": 60.0, "h": 3600.0}
 _MOST_DIGITS = 6
 
 SHORTEST_SLICE, LONGEST_SLICE = 1e-3, 10.0
 """Seconds that a command may run before the next one does."""
-
-
-def unit_of(pattern: str) -> str:
-    """The unit that stands behind the group of a pattern; seconds where none does."""
-    behind = re.search(r"\)\s*(?:\\s\S?)?\s*(ns|us|ms|s)\b", pattern)
-    return behind[1] if behind else "s"
-
-
-def pattern(text: str) -> str:
-    """A regular expression with one group."""
-    try:
-        require_one_group("it", text)
-    except InputError as error:
-        raise argparse.ArgumentTypeError(str(error).removeprefix("it: ")) from error
-    return text
 
 
 def _typed(convert: Callable[[str], float], expected: str, text: str) -> float:

@@ -1,9 +1,8 @@
 """Which cases a Google Benchmark has: it lists them, and whatever else it prints is none of them."""
 
-import os
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from experiments.plan.pattern import PatternError, groups_of
@@ -15,22 +14,32 @@ _OF_NO_CASE = "^$"
 """A filter that matches no case: each has a name."""
 
 
-def cases(program: Path, pattern: str, key: str) -> list[str]:
-    """The names of the cases that a filter matches, in their order.
+def cases(
+    words: Sequence[str],
+    pattern: str,
+    key: str,
+    folder: Path | None = None,
+    environment: Mapping[str, str] | None = None,
+) -> list[str]:
+    """The names of the cases that a filter matches, in their order, of the program that the words run.
 
     A loader or a log may print lines of its own before the list. They are printed for a filter that matches
     nothing as well; and for one that matches a single name only a name is a line more. Raises InputError,
     which begins with `key`, where there is no case, or where it cannot be told which lines are names.
     """
-    listed = _lines(program, pattern, key)
-    noise = _lines(program, _OF_NO_CASE, key) if listed else []
+
+    def lines(of_filter: str) -> Sequence[str]:
+        return _lines(words, of_filter, key, folder, environment)
+
+    listed = lines(pattern)
+    noise = lines(_OF_NO_CASE) if listed else []
     names = list(listed)
     if noise and Counter(noise) == Counter(listed):
         # It prints the same whatever the filter: what is left are the names without any doubt.
         names = [line for line in listed if _matches(pattern, line) and not re.search(r"\s", line)]
     elif noise:
         candidates = [line for line in dict.fromkeys(listed) if line not in noise]
-        names = [line for line in candidates if _is_case(program, line, len(noise), key)]
+        names = [line for line in candidates if _is_case(lines, line, len(noise))]
     if not names:
         beside = f"; it prints {quoted(noise[0])} whatever the filter" if noise else ""
         raise InputError(f"{key}.filter: found {quoted(pattern)}, which no case matches{beside}")
@@ -52,9 +61,9 @@ def escaped(name: str) -> str:
     return re.sub(r"([\\.+*?()|\[{^$])", r"\\\1", name)
 
 
-def _is_case(program: Path, name: str, noise: int, key: str) -> bool:
+def _is_case(lines_of: Callable[[str], Sequence[str]], name: str, noise: int) -> bool:
     """Whether a filter for that name alone adds that line, and no other, to what is printed anyway."""
-    lines = _lines(program, f"^{escaped(name)}$", key)
+    lines = lines_of(f"^{escaped(name)}$")
     return name in lines and len(lines) - noise == lines.count(name)
 
 
@@ -67,10 +76,16 @@ def _matches(pattern: str, line: str) -> bool:
     return re.search(pattern, line) is not None
 
 
-def _lines(program: Path, pattern: str, key: str) -> Sequence[str]:
+def _lines(
+    command: Sequence[str],
+    pattern: str,
+    key: str,
+    folder: Path | None,
+    environment: Mapping[str, str] | None,
+) -> Sequence[str]:
     """What it prints for a filter, without blank lines."""
-    words = [os.fspath(program), "--benchmark_list_tests=true", f"--benchmark_filter={pattern}"]
-    done = process.run(words, time_limit=_LIST_SECONDS)
+    words = [*command, "--benchmark_list_tests=true", f"--benchmark_filter={pattern}"]
+    done = process.run(words, environment, _LIST_SECONDS, folder)
     if done.exit_code != 0:
         raise InputError(f"{key}: {done.reason}")
     if done.dropped:

@@ -35,7 +35,7 @@ class Command:
     instrument: str
     trajectory: tuple[str, ...] = ()
     pattern: str | None = None
-    unit_seconds: float = 1.0
+    unit_seconds: float | None = 1.0
     benchmark: str | None = None
     prepare: tuple[str, ...] = ()
     conclude: tuple[str, ...] = ()
@@ -43,6 +43,7 @@ class Command:
     exit_codes: tuple[int, ...] = ()
     turns: bool | None = None
     kept_by: str | None = None
+    rounds: int | None = None
     refused: str = ""
     """Why it is not run at all."""
     checker: Program | None = None
@@ -71,7 +72,7 @@ class Command:
 
 
 _NO_CONTENT = frozenset(("refused", "checker", "another"))
-_LATER = ("prepare", "conclude", "fresh_folder", "exit_codes", "turns", "kept_by")
+_LATER = ("prepare", "conclude", "fresh_folder", "exit_codes", "turns", "kept_by", "rounds")
 
 
 @dataclass(frozen=True)
@@ -109,12 +110,19 @@ def command_of(
         words = (*words, _literal(filter_of(name)))
     command = Command(
         words, place.folder, place.instrument, trajectory, series.time.stdout if series.time else None,
-        SECONDS_OF_UNIT[series.time.unit] if series.time else 1.0, name, prepare, conclude,
-        series.fresh_folder, series.exit_codes, series.turns, series.kept_by,
+        _unit_seconds(series), name, prepare, conclude,
+        series.fresh_folder, series.exit_codes, series.turns, series.kept_by, series.rounds,
     )  # fmt: skip
     if trajectory and command.writes_trajectory:
         raise InputError(f"{key}.trajectory: found beside {{out}} in command, expected only one of the two")
     return _resolved(command, series, key, place)
+
+
+def _unit_seconds(series: Series) -> float | None:
+    """Of a printed number without a unit; None where it must have one."""
+    if series.time is None:
+        return 1.0
+    return None if series.time.unit is None else SECONDS_OF_UNIT[series.time.unit]
 
 
 def _resolved(command: Command, series: Series, key: str, place: Place) -> tuple[Command, Program]:

@@ -170,7 +170,8 @@ class Point(Measurement):
         words = placed(self.command.words, scene, output)
         if self.command.benchmark is None:
             return words
-        return (*words, SHORT_BENCHMARK, f"--benchmark_out={output}", "--benchmark_out_format=json")
+        short = () if any(one.startswith("--benchmark_min_time") for one in words) else (SHORT_BENCHMARK,)
+        return (*words, *short, f"--benchmark_out={output}", "--benchmark_out_format=json")
 
     def _words(self, verb: str, scene: Path) -> list[str]:
         words = [str(self.program.path), verb, str(scene)]

@@ -12,7 +12,7 @@ from experiments.plan.benchmark_cases import cases
 from experiments.plan.pattern import PatternError, groups_of
 from support.errors import InputError, quoted
 
-SECONDS_OF_UNIT = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
+SECONDS_OF_UNIT = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
 
 WORDS = ("command", "trajectory", "prepare", "conclude")
 """The keys of a series whose words have placeholders."""
@@ -23,7 +23,8 @@ class PrintedTime:
     """Where a program's standard output says how long it took: a regular expression with one group."""
 
     stdout: str
-    unit: str = "s"
+    unit: str | None = "s"
+    """Of a number that has none behind it; without one that is an error."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,8 @@ class Series:
     """Those that are fine; without any it is 0."""
     turns: bool | None = None
     """Whether it is stopped while others run; without a word it is found out."""
+    rounds: int | None = None
+    """How often it runs in a block, each time by itself; without a number once, or in turns."""
     time: PrintedTime | None = None
     benchmark: Benchmark | None = None
     label: str | None = None
@@ -247,7 +250,7 @@ def _of_benchmark(path: Path, key: str, series: Series, benchmark: Benchmark) ->
     if benchmark.filter is None:
         yield series
         return
-    for name in cases(path.parent / benchmark.program, benchmark.filter, f"{key}.benchmark"):
+    for name in cases([os.fspath(path.parent / benchmark.program)], benchmark.filter, f"{key}.benchmark"):
         # What is listed has no placeholders.
         own = replace(benchmark, name=_without_placeholders(name))
         yield replace(series, name=series.name or _shown(name), benchmark=own)

@@ -4,10 +4,13 @@ import contextlib
 import fcntl
 import os
 import tempfile
+import time
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from experiments.plan.site import clean_environment
+from experiments.run.progress import warn
 from experiments.support import process
 from experiments.support.process import Completed
 from support.errors import InputError
@@ -43,7 +46,33 @@ def host_lock() -> Iterator[None]:
             f"{path}: cannot be opened: {error.strerror}; TMPDIR chooses another folder"
         ) from error
     try:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+        WAITS.until_free(lock)
+        os.truncate(lock, 0)
+        os.pwrite(lock, f"{os.getpid()}".encode(), 0)
         yield
     finally:
         os.close(lock)
+
+
+@dataclass
+class Waits:
+    """How long this process waited for other measurements, in seconds; it is said once."""
+
+    seconds: float = 0.0
+    is_said: bool = False
+
+    def until_free(self, lock: int) -> None:
+        """Wait for the lock, and say so the first time."""
+        with contextlib.suppress(BlockingIOError):
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return
+        if not self.is_said:
+            holder = os.pread(lock, 20, 0).decode("ascii", "replace") or "not known"
+            warn(f"carom: waits for another measurement (process {holder})")
+            self.is_said = True
+        began = time.monotonic()
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        self.seconds += time.monotonic() - began
+
+
+WAITS = Waits()

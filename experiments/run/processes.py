@@ -213,7 +213,9 @@ class Processes:
         }
         if command is not None:
             told |= self._surroundings(command, path, left.output)
-            told |= {name: getattr(command, name) for name in ("unit_seconds", "pattern", "benchmark")}
+            told |= {
+                name: getattr(command, name) for name in ("unit_seconds", "pattern", "benchmark", "rounds")
+            }
         return {key: value for key, value in told.items() if value is not None}
 
     def _surroundings(

@@ -45,9 +45,12 @@ class Completed:
         """In one line, why it failed."""
         if self.exit_code == TIMED_OUT:
             return self.error
-        said = next((line.strip() for line in reversed(self.error.splitlines()) if line.strip()), "")
+        lines = [line.strip() for line in self.error.splitlines() if line.strip()]
+        if len(lines) > 1 and lines[-1].startswith("Try '"):
+            lines.pop()  # GNU's programs tell the reason before it
+        said = lines[-1] if lines else ""
         said = said[-_LONGEST_REASON:]
-        if self.exit_code < 0:
+        if self.exit_code < 0 and not said.startswith("killed by "):
             said = f"killed by {_name_of_signal(-self.exit_code)}" + (f": {said}" if said else "")
         return said or f"exit code {self.exit_code} without a word"
 
@@ -57,9 +60,12 @@ def run(
     environment: Mapping[str, str] | None = None,
     time_limit: float | None = None,
     folder: Path | None = None,
+    *,
+    ends_all: bool = True,
 ) -> Completed:
     """Run a command to its end, in a folder or where this process is, without a shell. Whatever ends this
-    call early kills the child first; what it started ends with it, also what left its group.
+    call early kills the child first; what it started ends with it, also what left its group, unless it is not
+    to end `ends_all`.
 
     The time limit, in seconds, counts while this process runs: one that is stopped sees nothing of its child.
     It wakes up twice a second, so that nothing here takes the CPU from the process that is timed.
@@ -70,15 +76,20 @@ def run(
     except (OSError, ValueError) as error:
         said = error.strerror if isinstance(error, OSError) else error
         return Completed(tuple(command), NOT_FOUND, "", f"{command[0]}: cannot be run: {said}")
-    output, errors = Kept(), Kept()
+    output, errors, in_time = Kept(), Kept(), False
     with child:
         pipes = {_descriptor(child.stdout): output, _descriptor(child.stderr): errors}
         try:
             in_time = _follow(child, pipes, time_limit)
             exit_code = _exit_code(child) if in_time else TIMED_OUT
+        except BaseException:
+            ends_all = True
+            raise
         finally:
-            _kill(child)
-            end_all_but(known)
+            if ends_all or not in_time:
+                _kill(child)
+                end_all_but(known)
+            child.wait()
     dropped = output.dropped + errors.dropped
     if not in_time:
         return Completed(tuple(command), TIMED_OUT, "", _took_longer(time_limit), dropped)

@@ -24,7 +24,7 @@ def test_a_run_tells_how_much_and_how_long(workplace: Workplace) -> None:
     lines = output.splitlines()
     told = r"3 experiments, 7 points, 16 processes; 16 of them to be run: about \d+ s, then more .*"
     assert re.fullmatch(told, lines[0])
-    assert re.fullmatch(r"chunks, block 1 of 2: 3 of 16 processes done, about \d+ s left", lines[1])
+    assert re.fullmatch(r"control, block 1 of 3: 2 of 16 processes done, about \d+ s left", lines[1])
     assert lines[-1] == "the study is complete: results/records"
     assert "\x1b" not in output, "no terminal, no escape sequences"
 
@@ -73,14 +73,6 @@ def test_a_new_question_tells_a_command_that_a_shell_understands(
     assert main(["new", "mine", "--questions", str(folder)]) == 0
     assert f"`carom study run --questions '{folder}' --results '{folder}/results'`" in capsys.readouterr().out
     assert f"--questions '{folder}' --results '{folder}'/results\n" in (folder / "mine.toml").read_text()
-
-
-def test_folders_are_compared_by_the_analysis_whose_exit_code_counts(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["compare", str(tmp_path / "absent"), str(tmp_path)]) == 1
-    told = f"carom: {tmp_path}/absent: no such folder (records are made by `make experiments`)\n"
-    assert capfd.readouterr().err == told
 
 
 MISTAKES = {

@@ -1,6 +1,7 @@
 #include "harness/command_line/described_process.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <unistd.h>
@@ -63,6 +64,12 @@ template <class Value> void take(const Json& process, const char* key, Value& va
     }
 }
 
+template <class Value> void take(const Json& process, const char* key, std::optional<Value>& value) {
+    if (process.contains(key)) {
+        require(process, key, value.emplace());
+    }
+}
+
 /// Of one that times itself in short processes: so often at most in one measurement.
 constexpr int most_rounds_of_a_benchmark = 20;
 
@@ -90,14 +97,13 @@ ProgramContender contender(const Json& json, bool is_benchmark) {
     take(json, "fresh_folder", one.fresh_folder);
     take(json, "warm_ups", one.warm_ups);
     take(json, "expected_seconds", one.expected_seconds);
-    if (json.contains("turns")) {
-        require(json, "turns", one.turns.emplace());
-    }
+    take(json, "turns", one.turns);
     take(json, "kept_by", keeper);
     one.kept_by = kept_by(keeper);
     one.command.environment = environment_with(environment);
     one.times_itself = is_benchmark || !one.command.pattern.empty();
-    one.most_rounds = is_benchmark ? most_rounds_of_a_benchmark : 1;
+    take(json, "rounds", one.rounds);
+    one.most_rounds = is_benchmark && !one.rounds ? most_rounds_of_a_benchmark : 1;
     return one;
 }
 
@@ -133,6 +139,7 @@ void require_usable(const DescribedProcess& one) {
     require_at_least("expected_seconds", contender.expected_seconds, 0);
     require_at_least("warm_ups", contender.warm_ups, 0);
     require_at_least("threads", one.threads, 1);
+    require_at_least("rounds", contender.rounds.value_or(1), 1);
     if (one.exit_codes.empty()) {
         throw InputError("exit_codes: found none, expected those that are fine");
     }

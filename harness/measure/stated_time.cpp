@@ -2,19 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <regex>
-#include <sstream>
 #include <string_view>
-#include <vector>
 
-#include "harness/support/errors.hpp"
 #include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
-
-/// The library's matcher calls itself for each character: a longer line could take it off the stack.
-constexpr std::size_t longest_line = 4096;
 
 /// What `real_time` of several threads is, of a version of the library.
 enum class RealTime { divided_by_threads, whole, not_known };
@@ -54,85 +47,7 @@ RealTime real_time_of(const std::optional<std::string>& version) {
     return *numbers >= first_whole ? RealTime::whole : RealTime::not_known;
 }
 
-std::regex regex_of(const std::string& pattern) {
-    std::regex regex;
-    try {
-        regex.assign(pattern);
-    } catch (const std::regex_error&) {
-        throw InputError("time: found '" + pattern + "', expected a regular expression");
-    }
-    if (regex.mark_count() != 1) {
-        throw InputError("time: found '" + pattern + "', expected a regular expression with one group");
-    }
-    return regex;
-}
-
-bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
-
-/// Does a number go on after `rest` has begun: a digit, or a point, a comma or an exponent with one behind
-/// it?
-bool goes_on(std::string_view rest) {
-    if (rest.empty() || is_digit(rest.front())) {
-        return !rest.empty();
-    }
-    const bool has_more =
-        rest.size() > 1 && std::string_view(".,eE").find(rest.front()) != std::string_view::npos;
-    const bool is_exponent = has_more && (rest.front() == 'e' || rest.front() == 'E');
-    const std::size_t at = is_exponent && rest.size() > 2 && (rest[1] == '-' || rest[1] == '+') ? 2 : 1;
-    return has_more && is_digit(rest[at]);
-}
-
-/// Has a number begun before `before` ends: with a digit, or with one before a point or a comma?
-bool has_begun(std::string_view before) {
-    if (before.empty()) {
-        return false;
-    }
-    const bool after_point = before.size() > 1 && (before.back() == '.' || before.back() == ',');
-    return is_digit(after_point ? before[before.size() - 2] : before.back());
-}
-
-/// What the group took, which must not be a part of a longer number, unless the pattern says what stands
-/// beside it.
-std::string number_in(const std::string& line, const std::smatch& match) {
-    const std::string_view whole(line);
-    const auto begin = static_cast<std::size_t>(match.position(1));
-    const std::size_t end = begin + static_cast<std::size_t>(match.length(1));
-    const bool cut_before = match.position(0) == match.position(1) && has_begun(whole.substr(0, begin));
-    const bool cut_after = match[0].second == match[1].second && goes_on(whole.substr(end));
-    const bool is_number = parse_number<double>(match[1].str()).has_value();
-    if (is_number && (cut_before || cut_after)) {
-        throw InputError("time: found " + in_quotes(match[1].str()) + " within a longer number in " +
-                         in_quotes(line) + ", expected a pattern that takes all of it");
-    }
-    return match[1];
-}
-
 } // namespace
-
-void require_pattern(const std::string& pattern) { regex_of(pattern); }
-
-StatedTime time_in_output(const std::string& output, const std::string& pattern, double unit_seconds) {
-    const std::regex regex = regex_of(pattern);
-    std::vector<std::string> found;
-    std::istringstream lines(output);
-    for (std::string line; std::getline(lines, line);) {
-        std::smatch match;
-        if (line.size() <= longest_line && std::regex_search(line, match, regex)) {
-            found.push_back(number_in(line, match));
-        }
-    }
-    if (found.size() != 1) {
-        throw InputError("time: '" + pattern + "' matches " + std::to_string(found.size()) +
-                         " lines of standard output, expected one");
-    }
-    const auto number = parse_number<double>(found.front());
-    if (!number || !(*number > 0)) {
-        throw InputError("time: found '" + found.front() + "', expected a positive number");
-    }
-    StatedTime time;
-    time.seconds = *number * unit_seconds;
-    return time;
-}
 
 std::optional<std::string> unlike_times(const StatedTime& one, const StatedTime& other) {
     const RealTime meaning = real_time_of(one.library_version);

@@ -19,10 +19,14 @@ struct StatedTime {
 /// Throws InputError if it is no regular expression (ECMAScript) with one group.
 void require_pattern(const std::string& pattern);
 
-/// The number in the one group of a regular expression (ECMAScript), in the one line of a program's output
-/// that it matches, times `unit_seconds`. Throws InputError if it matches no line or several, has not one
-/// group, or what stands there is no positive number.
-StatedTime time_in_output(const std::string& output, const std::string& pattern, double unit_seconds);
+/// The time in the one group of a regular expression (ECMAScript), at the one place of a program's output
+/// that it matches: a number, and in the group or directly behind it a unit from ns to hours; or hours,
+/// minutes and seconds in a row, as in 1m2.5s. The number may have a decimal comma, or groups of three digits
+/// by commas or points. Without a unit it is in units of `unit_seconds`. Throws InputError if the expression
+/// matches at no place or several, has not one group, takes a part of a longer number or time, or what stands
+/// there is ambiguous, no positive number, or without any unit.
+StatedTime time_in_output(const std::string& output, const std::string& pattern,
+                          std::optional<double> unit_seconds = std::nullopt);
 
 /// What Google Benchmark's JSON says of the case of that name: time and CPU time of an iteration, the mean
 /// over its repetitions, and its counters. Where the report has only aggregates, their mean is taken. Throws

@@ -1,6 +1,8 @@
 #include "harness/processes/descendants.hpp"
 
 #include <array>
+#include <cerrno>
+#include <csignal>
 #include <map>
 #include <sstream>
 #include <string_view>
@@ -116,12 +118,25 @@ std::vector<pid_t> descendants_of(pid_t root) {
     return found;
 }
 
+std::vector<pid_t> send_signal(std::vector<pid_t> processes, int signal) {
+    std::erase_if(processes, [signal](pid_t one) { return kill(one, signal) == 0 || errno != EPERM; });
+    return processes;
+}
+
 bool stands_still(pid_t process) { return is_gone_or("TtZX", process); }
 
 std::string name_of(pid_t process) {
     const std::string text = text_of(folder_of(process) + "/comm");
     const std::string name = text.substr(0, text.find('\n'));
     return name.empty() ? number_text(process) : name;
+}
+
+std::string names_of(const std::vector<pid_t>& processes) {
+    std::string names;
+    for (const pid_t one : processes) {
+        names += (names.empty() ? "" : ", ") + name_of(one);
+    }
+    return names;
 }
 
 } // namespace carom

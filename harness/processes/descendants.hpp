@@ -11,10 +11,16 @@ namespace carom {
 /// ended and are only to be waited for. What lost its parent counts if the process is its subreaper.
 std::vector<pid_t> descendants_of(pid_t root);
 
+/// Sends a signal to each. Returns those that it may not reach, since they run as another user.
+std::vector<pid_t> send_signal(std::vector<pid_t> processes, int signal);
+
 /// Whether a process stands still by a signal, or has ended.
 bool stands_still(pid_t process);
 
 /// The name of what a process runs, or its number.
 std::string name_of(pid_t process);
+
+/// Those of all of them, in a row.
+std::string names_of(const std::vector<pid_t>& processes);
 
 } // namespace carom

@@ -75,11 +75,13 @@ class Keeping {
         tell("r");
         if (program_ > 0 && told() == 'g') {
             begin();
-            while (!has_ended_) {
+            while (!has_ended_ && left_.empty()) {
                 wait();
             }
         }
-        end_all();
+        if (left_.empty()) {
+            end_all();
+        }
         read_from(pipes_.output, output_);
         read_from(pipes_.error, error_);
         tell(json_text(report(), -1));
@@ -161,6 +163,7 @@ class Keeping {
             if (ended == program_) {
                 status_ = status;
                 program_has_ended_ = true;
+                program_ended_at_ = process_seconds();
             }
         }
     }
@@ -173,18 +176,19 @@ class Keeping {
         counted_["involuntary_context_switches"] += static_cast<double>(usage.ru_nivcsw);
     }
 
-    /// Again and again, since some may be starting others. What cannot be ended, as it waits for a broken
-    /// disk, is left after ten seconds.
+    /// Again and again, since some may be starting others. What cannot be ended is left: after ten seconds if
+    /// it waits for a broken disk, at once if all that is there runs as another user.
     void end_all() {
         const double until = process_seconds() + 10;
         if (program_has_ended_ && !has_ended_) {
-            for (const pid_t one : descendants_of(getpid())) {
-                went_on_ += (went_on_.empty() ? "" : ", ") + name_of(one);
-            }
+            went_on_ = names_of(descendants_of(getpid()));
         }
         while (!has_ended_ && program_ > 0 && process_seconds() < until) {
-            for (const pid_t one : descendants_of(getpid())) {
-                kill(one, SIGKILL);
+            const std::vector<pid_t> all = descendants_of(getpid());
+            const std::vector<pid_t> of_others = send_signal(all, SIGKILL);
+            left_ = names_of(all) + (of_others == all ? " runs as another user" : " waits for the system");
+            if (group_ == nullptr && !all.empty() && of_others == all) {
+                return;
             }
             if (group_ != nullptr) {
                 group_->kill();
@@ -219,7 +223,7 @@ class Keeping {
         const int error = program_ > 0 ? beginning_->error : error_of_fork_;
         return {{"error", error},
                 {"known", program_has_ended_},
-                {"all_ended", has_ended_},
+                {"left", has_ended_ || program_ <= 0 ? "" : left_},
                 {"exit_code", WIFEXITED(status_) ? WEXITSTATUS(status_) : 0},
                 {"signal", WIFSIGNALED(status_) ? WTERMSIG(status_) : 0},
                 {"went_on", went_on_},
@@ -230,6 +234,7 @@ class Keeping {
                 {"counted", counted_},
                 {"began_at", program_ > 0 ? beginning_->at : 0.0},
                 {"ended_at", ended_at_},
+                {"seconds_left_behind", program_has_ended_ ? ended_at_ - program_ended_at_ : 0.0},
                 {"output", printed_json(output_)},
                 {"error_output", printed_json(error_)}};
     }
@@ -247,12 +252,14 @@ class Keeping {
     int status_ = 0;
     bool program_has_ended_ = false;
     bool has_ended_ = false; ///< it and all that it started
+    double program_ended_at_ = 0;
     double ended_at_ = 0;
     double user_seconds_ = 0;
     double system_seconds_ = 0;
     long most_kilobytes_ = 0;
     std::unique_ptr<EventCounts> events_;
     std::map<std::string, double> counted_;
+    std::string left_;    ///< what could not be ended so far, and why
     std::string went_on_; ///< the names of what did so after the program's own end
 };
 

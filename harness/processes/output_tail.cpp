@@ -1,19 +1,12 @@
 #include "harness/processes/output_tail.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <string_view>
 
 namespace carom {
 namespace {
 
 constexpr std::size_t kept_bytes = 65536;
-
-/// More than one is one too many: they are kept to say how many there were.
-constexpr std::size_t most_matches = 100;
-
-/// The library's matcher calls itself for each character: a longer line could take it off the stack.
-constexpr std::size_t longest_line_matched = 4096;
 
 } // namespace
 
@@ -63,9 +56,9 @@ void OutputTail::take_line_part(std::string_view part) {
 }
 
 void OutputTail::end_line() {
-    const bool wanted = pattern_ && !line_is_too_long_ && printed_.matched.size() < most_matches;
-    if (wanted && std::regex_search(line_, *pattern_)) {
-        printed_.matched.push_back(line_);
+    if (pattern_ && !line_is_too_long_ && std::regex_search(line_, *pattern_)) {
+        printed_.matched.resize(std::min(printed_.matched.size() + 1, most_lines_matched));
+        printed_.matched.back() = line_;
     }
     line_.clear();
     line_is_too_long_ = false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <regex>
 #include <span>
@@ -8,6 +9,13 @@
 #include "harness/processes/process_end.hpp"
 
 namespace carom {
+
+/// More than one is one too many: they are kept to say how many there were, with the last in the place of
+/// those that are beyond.
+inline constexpr std::size_t most_lines_matched = 100;
+
+/// The library's matcher calls itself for each character: a longer line could take it off the stack.
+inline constexpr std::size_t longest_line_matched = 4096;
 
 /// What a program prints, as it comes: its end is kept and the rest only counted, so that however much it is
 /// takes no more memory. Lines that a pattern matches are kept as well, of up to 4096 bytes each.

@@ -128,12 +128,13 @@ void Process::take_report(double slice_began) {
     if (!report["known"].get<bool>()) {
         end_.unknown = "the system does not tell";
     }
-    if (!report["all_ended"].get<bool>()) {
-        end_.unknown = "it could not be ended";
+    if (const std::string left = report["left"]; !left.empty()) {
+        end_.unknown = "it could not be ended: " + left;
     }
     end_.exit_code = report["exit_code"];
     end_.signal = report["signal"];
     end_.went_on = report["went_on"];
+    end_.seconds_left_behind = report["seconds_left_behind"];
     end_.user_seconds = report["user_seconds"];
     end_.system_seconds = report["system_seconds"];
     end_.counted = report["counted"];

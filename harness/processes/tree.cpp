@@ -19,7 +19,8 @@ class SignalledTree : public Tree {
     void set_keeper(pid_t keeper) override { keeper_ = keeper; }
 
     /// What is between vfork and exec cannot stop before its child has gone on, so that nothing is waited for
-    /// without a limit. Whoever is found later may have been started before its parent stood still.
+    /// without a limit, and not at all where one runs as another user. Whoever is found later may have been
+    /// started before its parent stood still.
     bool stop(double most_seconds) override {
         const double begin = process_seconds();
         while (true) {
@@ -28,9 +29,9 @@ class SignalledTree : public Tree {
             if (still && all == stopped_) {
                 return true;
             }
-            send(all, SIGSTOP);
+            const bool all_reached = send_signal(all, SIGSTOP).empty();
             stopped_ = all;
-            if (process_seconds() - begin > most_seconds) {
+            if (!all_reached || process_seconds() - begin > most_seconds) {
                 go_on();
                 return false;
             }
@@ -39,21 +40,15 @@ class SignalledTree : public Tree {
     }
 
     void go_on() override {
-        send(descendants_of(keeper_), SIGCONT);
+        send_signal(descendants_of(keeper_), SIGCONT);
         stopped_.clear();
     }
 
-    void kill() const override { send(descendants_of(keeper_), SIGKILL); }
+    void kill() const override { send_signal(descendants_of(keeper_), SIGKILL); }
 
     std::string name() const override { return "subreaper"; }
 
   private:
-    static void send(const std::vector<pid_t>& processes, int signal) {
-        for (const pid_t process : processes) {
-            ::kill(process, signal);
-        }
-    }
-
     pid_t keeper_ = 0;
     std::vector<pid_t> stopped_; ///< told to stop, and still there when it was last looked
 };

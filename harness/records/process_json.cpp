@@ -1,5 +1,6 @@
 #include "harness/records/process_json.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <numeric>
@@ -9,6 +10,7 @@
 #include "harness/machine/provenance.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/json.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -95,9 +97,14 @@ Json counted_json(const std::vector<ProcessEnd>& runs) {
     return counted;
 }
 
-/// Of the last run; what adds up is that of all runs.
+/// Of the last run; what adds up is that of all runs, and memory that of the largest.
 Json ends_json(const Measured& measured) {
     const ProcessEnd& last = measured.runs.back();
+    const ProcessEnd& largest = std::ranges::max(measured.runs, {}, &ProcessEnd::peak_memory_bytes);
+    Json exit_codes = Json::array();
+    for (const ProcessEnd& run : measured.runs) {
+        exit_codes.push_back(run.exit_code);
+    }
     const auto sum = [&measured](auto value) {
         double all = 0;
         for (const ProcessEnd& run : measured.runs) {
@@ -106,13 +113,17 @@ Json ends_json(const Measured& measured) {
         return all;
     };
     return {{"exit_code", last.exit_code},
+            {"exit_codes", exit_codes},
             {"wall_seconds", sum(&ProcessEnd::wall_seconds)},
             {"user_seconds", sum(&ProcessEnd::user_seconds)},
             {"system_seconds", sum(&ProcessEnd::system_seconds)},
             {"runs", measured.runs.size()},
-            {"peak_memory_bytes", or_null(last.peak_memory_bytes)},
-            {"peak_memory_reason", last.memory_of},
+            {"peak_memory_bytes", or_null(largest.peak_memory_bytes)},
+            {"peak_memory_reason", largest.memory_of},
             {"output_bytes", last.output.bytes + last.error.bytes},
+            {"output_end", last.output.end},
+            {"error_end", last_line(last.error.end)},
+            {"seconds_left_behind", sum(&ProcessEnd::seconds_left_behind)},
             {"tree", last.kept_by},
             {"ran_on", last.ran_on},
             {"counted", counted_json(measured.runs)},

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,9 +29,9 @@ struct DescribedProcess {
     nlohmann::ordered_json axes = nlohmann::ordered_json::object();  ///< what was chosen, by name
     nlohmann::ordered_json build = nlohmann::ordered_json::object(); ///< of its record's provenance, what is
                                                                      ///< not as this program's
-    double unit_seconds = 1; ///< of the time that it prints, if its command has a pattern
-    std::string benchmark;   ///< the case of a Google Benchmark; empty if it is none
-    std::string output;      ///< the file that the benchmark writes
+    std::optional<double> unit_seconds; ///< of a time that it prints without a unit
+    std::string benchmark;              ///< the case of a Google Benchmark; empty if it is none
+    std::string output;                 ///< the file that the benchmark writes
 };
 
 /// What was found of it.

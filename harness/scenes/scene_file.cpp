@@ -14,6 +14,10 @@
 namespace carom {
 namespace {
 
+constexpr const char* of_older_format = "the number of discs N, an integer (this is the older format, whose "
+                                        "first line is `print` or `perf`: `tail "
+                                        "-n +2 FILE > NEW` converts it)";
+
 /// Reads a text line by line and field by field, and knows where it is.
 class LineReader {
   public:
@@ -40,7 +44,9 @@ class LineReader {
         const std::string_view text = take_word(line_);
         const auto value = parse_number<Number>(text);
         if (!value) {
-            fail(text.empty() ? "the end of the line" : in_quotes(text), expected);
+            const bool is_older = line_number_ == 1 && (text == "print" || text == "perf");
+            fail(text.empty() ? "the end of the line" : in_quotes(text),
+                 is_older ? of_older_format : expected);
         }
         return *value;
     }

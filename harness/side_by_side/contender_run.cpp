@@ -14,8 +14,13 @@
 namespace carom {
 namespace {
 
+/// Some programs end at once where nobody can type, or read what they draw.
+constexpr const char* without_a_word =
+    " without a word; it had no terminal: its standard input is empty, its outputs are pipes";
+
 std::string new_folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "carom-run-XXXXXX").string();
+    std::string name =
+        (std::filesystem::temp_directory_path() / "carom-run-XXXXXX").lexically_normal().string();
     if (mkdtemp(name.data()) == nullptr) {
         throw InputError(name + ": cannot be made: " + std::strerror(errno));
     }
@@ -40,7 +45,8 @@ std::string why_failed(const ProcessCommand& command, const ProcessEnd& end, con
         return end.suspended;
     }
     if (end.out_of_time) {
-        const std::string limit = format("took longer than %g s and was stopped", command.most_seconds);
+        const std::string limit = format("took longer than %g s", command.most_seconds) +
+                                  (end.unknown.empty() ? " and was stopped" : "; " + end.unknown);
         return end.went_on.empty()
                    ? limit
                    : limit + "; it had ended, and what it had started went on: " + end.went_on;
@@ -52,7 +58,7 @@ std::string why_failed(const ProcessCommand& command, const ProcessEnd& end, con
         return "killed by " + name_of_signal(end.signal) + after;
     }
     if (std::ranges::find(fine, end.exit_code) == fine.end()) {
-        return format("exit code %d%s", end.exit_code, said.empty() ? " without a word" : after.c_str());
+        return format("exit code %d%s", end.exit_code, said.empty() ? without_a_word : after.c_str());
     }
     return "";
 }

@@ -22,6 +22,7 @@ struct ProgramContender {
     std::optional<bool> turns;   ///< whether it is sliced; found out if nobody says so
     bool times_itself = false;   ///< it would count as its own time what it stands still
     int most_rounds = 1;         ///< of one that times itself within short processes: how often it runs
+    std::optional<int> rounds;   ///< how often it runs, each time without a pause, whatever it is
     double expected_seconds = 0; ///< how long it takes undisturbed, or 0 where nobody knows
 
     /// Why a run failed; empty if it did not.

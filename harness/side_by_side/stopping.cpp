@@ -63,16 +63,17 @@ std::string how_they_disagree(const std::vector<ProcessEnd>& undisturbed,
     const auto shortest = [](const std::vector<ProcessEnd>& ends) {
         return time(std::ranges::min(ends, {}, time));
     };
-    return format("it takes another time where it is stopped now and then: %.3g s without a pause, %.3g s in "
-                  "slices",
-                  shortest(undisturbed), shortest(in_slices));
+    return format(
+        "it takes another time where it is stopped now and then and the others stand still while it "
+        "runs: %.3g s without a pause, %.3g s in slices",
+        shortest(undisturbed), shortest(in_slices));
 }
 
 std::string hint_of_slices(const ProcessEnd& end) {
     if (end.seconds.size() < 2 || end.out_of_time) {
         return "";
     }
-    return " (it was stopped now and then; if it minds that, turns = false gives it a stretch of its own)";
+    return " (it was stopped now and then while others ran)";
 }
 
 } // namespace carom

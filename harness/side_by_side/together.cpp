@@ -1,18 +1,18 @@
 #include "harness/side_by_side/together.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <deque>
 #include <functional>
+#include <map>
 #include <numeric>
 #include <random>
-#include <thread>
 #include <utility>
 
 #include "harness/side_by_side/contender_run.hpp"
 #include "harness/side_by_side/slices.hpp"
 #include "harness/side_by_side/stopping.hpp"
+#include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
@@ -21,12 +21,17 @@ using Indices = std::vector<std::size_t>;
 
 constexpr double seconds_of_rounds = 1;
 
+/// Bytes of what a run has printed: enough to know what kind of program did it.
+constexpr std::size_t end_kept = 4096;
+
+constexpr const char* left_alone = "nothing was left that it could take turns with";
+
 /// What is known of all contenders while they are measured.
 class Contest {
   public:
     Contest(const std::vector<ProgramContender>& contenders, const Together& how)
         : contenders_(contenders), how_(how), random_(how.seed), measured_(contenders.size()),
-          undisturbed_(contenders.size()) {}
+          undisturbed_(contenders.size()), in_slices_(contenders.size()) {}
 
     std::vector<Measured> measure() {
         each_in_random_order([this](std::size_t k) { warm_up(k); });
@@ -39,10 +44,16 @@ class Contest {
     }
 
   private:
+    struct SlicedRun {
+        ProcessEnd end;
+        std::string failure;
+        double seconds_alone = 0;
+    };
+
     bool is_open(std::size_t k) const { return measured_[k].runs.empty() && measured_[k].failure.empty(); }
 
     bool may_be_sliced(std::size_t k) const {
-        return !contenders_[k].times_itself && contenders_[k].turns.value_or(true);
+        return !contenders_[k].times_itself && !contenders_[k].rounds && contenders_[k].turns.value_or(true);
     }
 
     bool is_to_be_found_out(std::size_t k) const { return may_be_sliced(k) && !contenders_[k].turns; }
@@ -74,6 +85,10 @@ class Contest {
         measured_[k].failure = contenders_[k].take(end);
         if (measured_[k].failure.empty()) {
             measured_[k].runs.push_back(end);
+            // Of many runs these would fill the memory.
+            std::string& printed = measured_[k].runs.back().output.end;
+            printed.erase(0, printed.size() - std::min(printed.size(), end_kept));
+            measured_[k].runs.back().error.end = last_line(measured_[k].runs.back().error.end);
         }
     }
 
@@ -111,28 +126,34 @@ class Contest {
         return found;
     }
 
+    /// Whether it has several runs or one, those of each are spread evenly over the whole, at random within
+    /// an even share.
     void first_round() {
         const Indices sliced = sliceable().size() > 1 ? sliceable() : Indices();
-        std::vector<std::function<void()>> stretches;
+        std::multimap<double, std::function<void()>> stretches;
+        std::uniform_real_distribution<double> share;
         if (!sliced.empty()) {
-            stretches.emplace_back([this, &sliced] { take_turns(sliced); });
+            stretches.emplace(share(random_), [this, &sliced] { take_turns(sliced); });
         }
         for (std::size_t k = 0; k < contenders_.size(); ++k) {
-            if (is_open(k) && std::ranges::find(sliced, k) == sliced.end()) {
-                stretches.emplace_back([this, k] { stretch(k); });
+            if (!is_open(k) || std::ranges::find(sliced, k) != sliced.end()) {
+                continue;
+            }
+            const int rounds = contenders_[k].rounds.value_or(1);
+            for (int round = 0; round < rounds; ++round) {
+                stretches.emplace((round + share(random_)) / rounds, [this, k] { stretch(k); });
             }
         }
-        std::ranges::shuffle(stretches, random_);
-        for (const auto& one : stretches) {
-            one();
+        for (const auto& [when, run_it] : stretches) {
+            run_it();
         }
     }
 
     /// Of one that is left over from those that were to take turns, the undisturbed run is there already.
     void stretch(std::size_t k) {
         if (!undisturbed_[k].empty()) {
-            keep_undisturbed(k, undisturbed_[k].front(), "nothing was left that it could take turns with");
-        } else if (const auto end = run(k)) {
+            keep_undisturbed(k, undisturbed_[k].front(), left_alone);
+        } else if (const auto end = measured_[k].failure.empty() ? run(k) : std::nullopt) {
             keep(k, *end);
         }
     }
@@ -141,28 +162,6 @@ class Contest {
         return undisturbed_[k].empty() ? contenders_[k].expected_seconds
                                        : undisturbed_[k].back().wall_seconds();
     }
-
-    /// All of them in slices, once more where it turns out that their lengths were not known.
-    void take_turns(const Indices& sliced) {
-        std::vector<double> lengths;
-        std::ranges::transform(sliced, std::back_inserter(lengths), [this](auto k) { return expected(k); });
-        std::vector<SlicedRun> runs = run_in_slices(sliced, lengths);
-        const bool were_known = std::ranges::all_of(lengths, [](double length) { return length > 0; });
-        const bool ended = std::ranges::all_of(runs, [](const auto& one) { return one.failure.empty(); });
-        if (!were_known && ended && ended_apart(runs)) {
-            std::ranges::transform(runs, lengths.begin(), [](auto& one) { return one.end.wall_seconds(); });
-            runs = run_in_slices(sliced, lengths);
-        }
-        for (std::size_t at = 0; at < sliced.size(); ++at) {
-            judge(sliced[at], runs[at]);
-        }
-    }
-
-    struct SlicedRun {
-        ProcessEnd end;
-        std::string failure;
-        double seconds_alone = 0;
-    };
 
     static bool ended_apart(const std::vector<SlicedRun>& runs) {
         return std::ranges::any_of(
@@ -192,65 +191,98 @@ class Contest {
         return ended;
     }
 
-    /// Whether a run in slices may stand.
-    void judge(std::size_t k, const SlicedRun& run_in_turns) {
-        if (undisturbed_[k].empty() || !run_in_turns.failure.empty()) {
-            judge_failure(k, run_in_turns);
-            return;
+    /// In slices, once more where it turns out that their lengths were not known.
+    std::vector<SlicedRun> run_in_known_slices(const Indices& sliced) {
+        std::vector<double> lengths;
+        std::ranges::transform(sliced, std::back_inserter(lengths), [this](auto k) { return expected(k); });
+        std::vector<SlicedRun> runs = run_in_slices(sliced, lengths);
+        const bool were_known = std::ranges::all_of(lengths, [](double length) { return length > 0; });
+        const bool ended = std::ranges::all_of(runs, [](const auto& one) { return one.failure.empty(); });
+        if (!were_known && ended && ended_apart(runs)) {
+            std::ranges::transform(runs, lengths.begin(), [](auto& one) { return one.end.wall_seconds(); });
+            runs = run_in_slices(sliced, lengths);
         }
-        std::vector<ProcessEnd> in_slices{run_in_turns.end};
-        while (may_disagree(undisturbed_[k], in_slices) && in_slices.size() < runs_to_be_sure) {
-            const auto alone = run(k);
-            const auto paused = alone ? run_with_pauses(k, mean_slice(run_in_turns.end)) : std::nullopt;
-            if (!paused) {
+        return runs;
+    }
+
+    /// All of them in slices, and all again while one takes another time than undisturbed: that may be noise,
+    /// or it waits for one of the others, which stands still then.
+    void take_turns(Indices group) {
+        std::size_t attempts = 0;
+        do {
+            const std::vector<SlicedRun> runs = run_in_known_slices(group);
+            for (std::size_t at = 0; at < group.size(); ++at) {
+                in_slices_[group[at]].push_back(runs[at]);
+                judge_failure(group[at], runs[at]);
+            }
+            if (++attempts < runs_to_be_sure) {
+                std::ranges::for_each(group, [&](auto k) { look_again(k, attempts - 1); });
+            }
+            std::erase_if(group, [this](auto k) { return !is_open(k); });
+        } while (attempts < runs_to_be_sure && group.size() > 1 && !all_agree(group, attempts - 1));
+        judge(group, attempts);
+    }
+
+    void look_again(std::size_t k, std::size_t attempt) {
+        if (const auto end = is_open(k) && disagrees(k, attempt) ? run(k) : std::nullopt) {
+            undisturbed_[k].push_back(*end);
+        }
+    }
+
+    bool disagrees(std::size_t k, std::size_t attempt) const {
+        return !undisturbed_[k].empty() && may_disagree(undisturbed_[k], {in_slices_[k][attempt].end});
+    }
+
+    bool all_agree(const Indices& group, std::size_t attempt) const {
+        return std::ranges::none_of(group, [&](auto k) { return disagrees(k, attempt); });
+    }
+
+    /// Which runs in slices may stand: those of an attempt in which all agree. Where there is none, nobody's
+    /// that disagreed in any: which of two that wait for one another has to is chance.
+    void judge(Indices group, std::size_t attempts) {
+        std::size_t attempt = 0;
+        while (attempt + 1 < attempts && !all_agree(group, attempt)) {
+            ++attempt;
+        }
+        if (!all_agree(group, attempt)) {
+            std::erase_if(group, [this](auto k) { return is_to_be_undisturbed(k); });
+            if (group.size() == 1 && !undisturbed_[group.front()].empty()) {
+                stretch(group.front());
                 return;
             }
-            undisturbed_[k].push_back(*alone);
-            in_slices.push_back(*paused);
         }
-        if (may_disagree(undisturbed_[k], in_slices)) {
-            keep_undisturbed(k, undisturbed_[k].back(), how_they_disagree(undisturbed_[k], in_slices));
-        } else {
-            keep_sliced(k, run_in_turns);
+        for (const std::size_t k : group) {
+            measured_[k].sliced = true;
+            measured_[k].seconds_alone = in_slices_[k][attempt].seconds_alone;
+            keep(k, in_slices_[k][attempt].end);
         }
     }
 
+    /// Keeps its undisturbed run if it disagreed in any attempt.
+    bool is_to_be_undisturbed(std::size_t k) {
+        std::vector<ProcessEnd> apart;
+        for (std::size_t attempt = 0; attempt < in_slices_[k].size(); ++attempt) {
+            if (disagrees(k, attempt)) {
+                apart.push_back(in_slices_[k][attempt].end);
+            }
+        }
+        if (!apart.empty()) {
+            keep_undisturbed(k, undisturbed_[k].back(), how_they_disagree(undisturbed_[k], apart));
+        }
+        return !apart.empty();
+    }
+
+    /// Of one that failed in slices, what became of it.
     void judge_failure(std::size_t k, const SlicedRun& run_in_turns) {
         if (run_in_turns.failure.empty()) {
-            keep_sliced(k, run_in_turns);
-        } else if (undisturbed_[k].empty()) {
+            return;
+        }
+        if (undisturbed_[k].empty()) {
             measured_[k].failure = run_in_turns.failure + hint_of_slices(run_in_turns.end);
         } else {
-            keep_undisturbed(k, undisturbed_[k].front(),
+            keep_undisturbed(k, undisturbed_[k].back(),
                              "it fails where it is stopped now and then (" + run_in_turns.failure + ")");
         }
-    }
-
-    void keep_sliced(std::size_t k, const SlicedRun& run_in_turns) {
-        measured_[k].sliced = true;
-        measured_[k].seconds_alone = run_in_turns.seconds_alone;
-        keep(k, run_in_turns.end);
-    }
-
-    static double mean_slice(const ProcessEnd& end) {
-        return end.wall_seconds() / static_cast<double>(end.seconds.size());
-    }
-
-    /// In slices as long as those that it had, with pauses as if others took turns with it.
-    std::optional<ProcessEnd> run_with_pauses(std::size_t k, double slice_seconds) {
-        ContenderRun one(contenders_[k]);
-        while (one.can_run() && !one.process().has_ended()) {
-            one.process().advance(slice_seconds);
-            std::this_thread::sleep_for(
-                std::chrono::duration<double>(one.process().has_ended() ? 0 : how_.slice_seconds));
-        }
-        const std::string failure = one.conclude();
-        if (!failure.empty()) {
-            keep_undisturbed(k, undisturbed_[k].back(),
-                             "it fails where it is stopped now and then (" + failure + ")");
-            return std::nullopt;
-        }
-        return one.process().end();
     }
 
     void further_rounds() {
@@ -265,10 +297,8 @@ class Contest {
         const double wanted = longest > 0 ? std::ceil(seconds_of_rounds / longest) : 1;
         for (int round = 1; round < std::min(static_cast<double>(rounds), wanted); ++round) {
             each_in_random_order([this, round](std::size_t k) {
-                if (round < contenders_[k].most_rounds && measured_[k].failure.empty()) {
-                    if (const auto end = run(k)) {
-                        keep(k, *end);
-                    }
+                if (round < contenders_[k].most_rounds) {
+                    stretch(k);
                 }
             });
         }
@@ -279,7 +309,8 @@ class Contest {
     std::mt19937_64 random_;
     std::vector<Measured> measured_;
     std::vector<std::vector<ProcessEnd>>
-        undisturbed_; ///< of those that are looked at, the runs without a pause
+        undisturbed_;                               ///< of those that are looked at, the runs without a pause
+    std::vector<std::vector<SlicedRun>> in_slices_; ///< of those that take turns, one for each attempt
 };
 
 } // namespace

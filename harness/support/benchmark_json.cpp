@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <map>
+#include <regex>
 #include <set>
 #include <string_view>
 
@@ -71,6 +72,16 @@ std::string line_from(std::string_view text) {
     return in_quotes(text.substr(0, std::min(text.find_first_of("\r\n"), text.size())));
 }
 
+/// Whether the parser stopped at a number as locales write it: with a comma, or with something between
+/// groups of digits, U+2019, U+00A0 and U+202F among them (U+FFFD is what other bytes have become).
+bool is_of_a_locale(std::string_view before, std::string_view after) {
+    static const std::regex of_a_locale(
+        ": *-?[0-9.]+(?:[,']|\xE2\x80\x99|\xC2\xA0|\xE2\x80\xAF|\xEF\xBF\xBD|\\.[0-9]+\\.)[0-9]");
+    constexpr std::size_t around = 40;
+    const std::string text(before.substr(before.size() - std::min(before.size(), around)));
+    return std::regex_search(text + std::string(after.substr(0, around)), of_a_locale);
+}
+
 /// What stands where the parser stopped, of which it names the number of bytes up to there.
 std::string found_at(const std::string& json, std::size_t bytes) {
     constexpr std::size_t shown = 40;
@@ -87,8 +98,11 @@ std::string found_at(const std::string& json, std::size_t bytes) {
         return "JSON that breaks off after " + in_quotes(text.substr(end - std::min(end, shown)), shown);
     }
     const std::string_view before = text.substr(0, std::max<std::size_t>(bytes, 1) - 1);
-    return "no JSON in line " + number_text(1 + std::ranges::count(before, '\n')) + ": " +
-           line_from(text.substr(before.size()));
+    const std::string_view after = text.substr(before.size());
+    return "no JSON in line " + number_text(1 + std::ranges::count(before, '\n')) + ": " + line_from(after) +
+           (is_of_a_locale(before, after)
+                ? " (numbers in the form of a locale; with LC_ALL=C in its environment they are plain)"
+                : "");
 }
 
 /// Parses it, the first of several fields of one name being the one that counts.

@@ -94,11 +94,20 @@ inline std::string wrapped(std::string line, std::size_t indent) {
     return text + line + '\n';
 }
 
-/// The last line of a text that is not blank.
+/// The last line that is not empty, and that does not only name a help (as those of GNU's programs do) behind
+/// another one.
 inline std::string last_line(std::string_view text) {
-    const std::size_t end = text.find_last_not_of(" \t\r\n");
-    const std::size_t begin = text.rfind('\n', end) + 1;
-    return end == std::string_view::npos ? "" : std::string(text.substr(begin, text.find('\n', end) - begin));
+    const auto line_before = [&text](std::size_t until) {
+        const std::size_t end = text.substr(0, until).find_last_not_of(" \t\r\n");
+        const std::size_t begin = end == std::string_view::npos ? 0 : text.rfind('\n', end) + 1;
+        return end == std::string_view::npos ? std::string_view() : text.substr(begin, end + 1 - begin);
+    };
+    const std::string_view last = line_before(text.size());
+    if (last.starts_with("Try '")) {
+        const std::string_view other = line_before(static_cast<std::size_t>(last.data() - text.data()));
+        return std::string(other.empty() ? last : other);
+    }
+    return std::string(last);
 }
 
 /// "1 disc", "2 discs".

@@ -5,7 +5,7 @@ import pytest
 
 from analysis import claims
 from analysis.cli import main
-from analysis.tests.synthetic import Machine, write
+from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_study import study
 
@@ -15,68 +15,6 @@ COMPARED = ["neighbourhood", "steps"]
 def folder(path: Path, speed: float = 1.0, noise: Noise = QUIET, seed: int = 1, blocks: int = 10) -> str:
     write(path, study(COMPARED, blocks=blocks, noise=noise, speed=speed, seed=seed))
     return str(path)
-
-
-@pytest.mark.parametrize(
-    ("speed", "noise", "code", "said"),
-    [
-        (1.0, QUIET, 0, "12 equivalent"),
-        (1.1, QUIET, 0, "12 faster"),
-        (0.9, QUIET, 3, "12 slower"),
-        (1.0, Noise(process=0.05), 4, "12 inconclusive"),
-    ],
-)
-def test_compare_tells_by_its_exit_code(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], speed: float, noise: Noise, code: int, said: str
-) -> None:
-    first, second = folder(tmp_path / "a", noise=noise), folder(tmp_path / "b", speed, noise, seed=2)
-    assert main(["compare", first, second]) == code
-    output = capsys.readouterr().out
-    assert said in output
-    assert "neighbourhood" in output
-
-
-def test_one_slower_point_among_faster_ones_is_code_3(tmp_path: Path) -> None:
-    first, second = folder(tmp_path / "a"), folder(tmp_path / "b", 1.1)
-    for path in (tmp_path / "b" / "records" / "neighbourhood").glob("*.json"):
-        if '"nine"' in (text := path.read_text()):
-            path.write_text(text.replace('"steps_seconds": 1.', '"steps_seconds": 2.'))
-    assert main(["compare", first, second]) == 3
-    assert main(["compare", first, second, "--experiment", "steps"]) == 0
-
-
-def test_a_point_that_only_one_folder_measured_is_undecided(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    first, second = folder(tmp_path / "a"), folder(tmp_path / "b", seed=2)
-    for path in (tmp_path / "b" / "records" / "neighbourhood").glob("*.json"):
-        if '"series": "nine"' in path.read_text():
-            path.unlink()
-    assert main(["compare", first, second]) == 4
-    assert "11 equivalent, 1 inconclusive" in capsys.readouterr().out
-    assert main(["compare", second, first, "--experiment", "steps"]) == 0
-
-
-def test_a_single_block_is_undecided(tmp_path: Path) -> None:
-    assert main(["compare", folder(tmp_path / "a", blocks=1), folder(tmp_path / "b", blocks=1)]) == 4
-
-
-def test_compare_refuses_what_cannot_be_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    first = folder(tmp_path / "a")
-    write(tmp_path / "other", study(["radius"], blocks=2))
-    (tmp_path / "empty").mkdir()
-    write(tmp_path / "mixed", study(["steps"], blocks=2))
-    write(tmp_path / "mixed", study(["steps"], blocks=2, machine=Machine(host="bench-2")))
-    for second, said in (
-        ("other", "no point in common"),
-        ("empty", "no records"),
-        ("mixed", "found 2 studies"),
-        ("absent", "no such folder"),
-    ):
-        assert main(["compare", first, str(tmp_path / second)]) == 1
-        lines = capsys.readouterr().err.splitlines()
-        assert len(lines) == 1
-        assert said in lines[0]
 
 
 def test_a_damaged_record_is_told_once_while_figures_are_drawn(
@@ -173,7 +111,7 @@ def test_bad_input_is_one_line_and_code_1(
     assert said in lines[0]
 
 
-@pytest.mark.parametrize("arguments", [[], ["draw"], ["compare", "one"], ["figures", "--speed"]])
+@pytest.mark.parametrize("arguments", [[], ["draw"], ["figures", "--speed"]])
 def test_wrong_usage_is_one_line_and_code_1(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stopped:
         main(arguments)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from experiments.compare.benchmarks import are_benchmarks
+from experiments.compare.benchmarks import call_of, names_benchmark
 from experiments.compare.commands import Compared
 from experiments.tests.compare.calls import (
     needs_the_program,
@@ -69,11 +69,17 @@ def test_benchmarks_are_known_by_what_stands_in_them(tmp_path: Path) -> None:
     ):
         (tmp_path / name).write_bytes(content)
 
-    def are(*words: str) -> bool:
-        return are_benchmarks([Compared(word, tuple(word.split()), word, folder=tmp_path) for word in words])
+    def arguments(*words: str) -> tuple[str, ...] | None:
+        call = call_of(Compared("x", words, "", folder=tmp_path))
+        return None if call is None else call.arguments
 
-    assert are("./benchmark", "./loads_it")
-    assert not are("./benchmark", "./program")
-    assert not are("./script", "./benchmark")
-    assert not are("./benchmark --verbose", "./benchmark")
-    assert not are("./empty", "./missing")
+    assert arguments("./benchmark") == arguments("./loads_it") == ()
+    assert arguments("./benchmark", "--benchmark_min_time=0.2") == ("--benchmark_min_time=0.2",)
+    assert arguments("taskset", "-c", "0", "./benchmark", "-x") == ("-x",)
+    assert arguments("env", "A=1", "./loads_it") == ()
+    for words in (["./program"], ["./script"], ["./empty"], ["./missing"], ["strip", "./benchmark"]):
+        assert arguments(*words) is None
+    assert arguments("./benchmark", "--benchmark_list_tests") is None
+    for words in (["./script"], ["strip", "./benchmark"], ["sh", "-c", "cd . && ./benchmark | cat"]):
+        assert names_benchmark(Compared("x", tuple(words), "", folder=tmp_path)) == "./benchmark"
+    assert names_benchmark(Compared("x", ("./program",), "", folder=tmp_path)) is None

@@ -72,7 +72,7 @@ def test_exit_codes_that_are_fine_are_no_failures(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["./short", "./not_there"], 'carom: not_there: command: found "./not_there", which is not there'),
+        (["./short", "./not_there"], 'carom: not_there: found "./not_there", which is not there'),
         (["./short"], "found 1 command, expected two or more"),
         (["./short", "./long", "--export-json", "tmp"], "--export-json: found tmp, which is a folder"),
         (["./short", "./long", "--turns", "0.1ms"], "--turns: found 0.1ms, expected auto, on, off or"),

@@ -14,7 +14,7 @@ from experiments.compare.gate import SLOWER, UNDECIDED, verdict
 from experiments.tests.compare.calls import BENCHMARK, CAROM, needs_the_program
 from experiments.tests.conftest import ROOT, is_running
 
-PRINTS = "#!/bin/sh\necho took $((100 + {more})) ms\n"
+PRINTS = "#!/bin/sh\n# {tag}\necho took $((100 + {more})) ms\n"
 """A program whose time is what it says, so that the verdict does not depend on the machine."""
 
 
@@ -41,7 +41,7 @@ def repository(tmp_path: Path) -> Path:
         ("faster", -5, "true"),
         ("broken", 0, "echo cannot find -lm >&2; false"),
     ):
-        (top / "sub" / "program.in").write_text(PRINTS.format(more=more), encoding="utf-8")
+        (top / "sub" / "program.in").write_text(PRINTS.format(more=more, tag=tag), encoding="utf-8")
         (top / "sub" / "build.sh").write_text(
             f"{build}\ncp program.in program; chmod +x program\n", encoding="utf-8"
         )

@@ -93,15 +93,16 @@ def test_short_commands_are_repeated(folder: Path) -> None:
     script(folder / "quick", "echo x >> runs")
     script(folder / "quicker", "exit 0")
     files = ("--export-json", "a.json")
-    done = run(folder, "compare", "./quick", "./quicker", "--time", "1ms", "--turns", "off", *files)
-    assert done.returncode == 0, done.stderr
+    done = run(folder, "compare", "./quick", "./quicker", "--time", "4s", "--turns", "off", *files)
+    assert done.returncode in (0, 5), done.stderr
     told = json.loads((folder / "a.json").read_text(encoding="utf-8"))
-    times = told["in_a_row"]
-    assert times > 1
-    assert f"each time is of {times} runs in a row" in done.stdout
-    # Itself and under its second name: once in the block that shows how short it is, then in a row.
+    often = told["rounds"][0]
+    assert often > 1
+    assert f"none of them stopped: quick {often}, quicker " in done.stdout
+    # Itself and under its second name: once in the block that shows how short it is.
     runs = (folder / "runs").read_text(encoding="utf-8").count("x")
-    assert runs == 2 + 2 * times * told["blocks"]
+    assert runs == 2 + 2 * often * told["blocks"]
+    assert told["runs"][0]["exit_codes"] == {"0": often * told["blocks"]}
 
 
 def test_a_short_command_that_fails_is_named_with_its_code(folder: Path) -> None:
@@ -114,12 +115,12 @@ def test_a_short_command_that_fails_is_named_with_its_code(folder: Path) -> None
     assert "exit code 4: worn" in done.stderr
 
 
-def test_what_is_prepared_is_never_repeated(folder: Path) -> None:
+def test_what_is_short_is_prepared_before_each_run(folder: Path) -> None:
     script(folder / "needs", "rm prepared")
-    words = ("--prepare", "touch prepared", "--turns", "off", "--time", "1ms", "--export-json", "a.json")
+    words = ("--prepare", "touch prepared", "--turns", "off", "--time", "4s", "--export-json", "a.json")
     done = run(folder, "compare", "-n", "a", "-n", "b", "./needs", "./needs", *words)
-    assert done.returncode == 0, done.stderr
-    assert json.loads((folder / "a.json").read_text(encoding="utf-8"))["in_a_row"] == 1
+    assert done.returncode in (0, 5), done.stderr
+    assert json.loads((folder / "a.json").read_text(encoding="utf-8"))["rounds"][0] > 1
 
 
 def test_slices_are_as_long_as_asked(folder: Path) -> None:
@@ -134,10 +135,10 @@ def test_slices_are_as_long_as_asked(folder: Path) -> None:
 
 def test_if_one_must_not_be_stopped_none_is(folder: Path) -> None:
     script(folder / "far_longer_than_a_slice", LOOP.format(times=200_000))
-    words = ("-n", "works", "-n", "sleeps", "--time", "1ms", "--append", "kept.json")
+    words = ("-n", "works", "-n", "sleeps", "--time", "9s", "--append", "kept.json")
     done = run(folder, "compare", *words, "--", "./far_longer_than_a_slice", "--vs", "sleep", "0.2")
-    assert done.returncode == 0, done.stderr
+    assert done.returncode in (0, 5), done.stderr
     [session] = json.loads((folder / "kept.json").read_text(encoding="utf-8"))["sessions"]
     assert {one["tags"]["series"] for one in session["records"]} == {"works", "works again", "sleeps"}
-    assert [one["turns"] for one in session["records"]] == [None] * 3
-    assert done.stdout.count("never stopped: ") == 2, "the reason depends on how busy the machine is"
+    assert {str(one["turns"]) for one in session["records"]} == {"None"}
+    assert "never stopped: " in done.stdout, "of whom and why depends on how busy the machine is"

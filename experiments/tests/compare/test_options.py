@@ -6,7 +6,6 @@ import pytest
 
 from experiments.compare.commands import words_of
 from experiments.compare.options import parse
-from experiments.compare.values import unit_of
 from support.errors import InputError
 
 
@@ -14,19 +13,34 @@ def names(*arguments: str) -> list[str]:
     return [one.name for one in parse(arguments).commands]
 
 
-def test_plain_words_have_no_shell() -> None:
-    assert words_of("./sim  scene.in 4") == ("./sim", "scene.in", "4")
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("./sim  scene.in 4", ("./sim", "scene.in", "4")),
+        ("sort --parallel=2 a.txt", ("sort", "--parallel=2", "a.txt")),
+        ("dd if=a of=b", ("dd", "if=a", "of=b")),
+        ("awk '{print $1}' a", ("awk", "{print $1}", "a")),
+        ('grep "a b" c', ("grep", "a b", "c")),
+    ],
+)
+def test_words_in_which_a_shell_has_nothing_to_do_have_none(line: str, words: tuple[str, ...]) -> None:
+    assert words_of(line) == ({}, words)
+
+
+def test_variables_in_front_of_words_need_no_shell() -> None:
+    assert (
+        words_of("A=1 B='x y' ./sim 4") == ({"A": "1", "B": "x y"}, ("./sim", "4"))
+        or not Path("sim").exists()
+    )
+    assert words_of("A=1 sort 4") == ({"A": "1"}, ("sort", "4"))
 
 
 @pytest.mark.parametrize(
-    "line", ["a | b", "a > b", "echo $HOME", "ls *.in", "A=1 ./sim", "'a b'", "a; b", "a\nb"]
+    "line",
+    ["a | b", "a > b", "echo $HOME", "ls *.in", "A=1", "'a b'", "a; b", "a\nb", 'echo "$HOME"', "eval 'a'"],
 )
 def test_whatever_a_shell_acts_upon_has_one(line: str) -> None:
-    assert words_of(line) == ("sh", "-c", line)
-
-
-def test_an_option_with_a_value_is_a_plain_word() -> None:
-    assert words_of("sort --parallel=2 a.txt") == ("sort", "--parallel=2", "a.txt")
+    assert words_of(line) == ({}, ("sh", "-c", line))
 
 
 def test_commands_are_called_by_what_differs() -> None:
@@ -87,12 +101,67 @@ def test_input_is_opened_by_a_shell_that_becomes_the_command(tmp_path: Path) -> 
     assert words[3:] == ("sh", "a", "x")
 
 
+def filled(*arguments: str) -> list[tuple[object, ...]]:
+    """Of each command its line, what is run before it, its variables and its name."""
+    return [(one.line, one.prepare, one.environment, one.name) for one in parse(arguments).commands]
+
+
 @pytest.mark.parametrize(
-    ("pattern", "unit"),
-    [("took ([0-9.]+) ms", "ms"), ("took ([0-9.]+)s", "s"), (r"([0-9.]+)\s*us", "us"), ("([0-9]+)", "s")],
+    ("arguments", "commands"),
+    [
+        (
+            ["-L", "v", "a,b", "--prepare", "touch p_{v}", "ls p_{v}"],
+            [("ls p_a", ("touch", "p_a"), (), "p_a"), ("ls p_b", ("touch", "p_b"), (), "p_b")],
+        ),
+        (
+            ["-L", "v", "x,y", "--prepare", "git switch {v}", "make"],
+            [
+                ("make", ("git", "switch", "x"), (), "make (v x)"),
+                ("make", ("git", "switch", "y"), (), "make (v y)"),
+            ],
+        ),
+        (
+            ["-L", "v", "1,2", "-n", "run {v}", "--env", "A={v}", "true"],
+            [("true", (), (("A", "1"),), "run 1"), ("true", (), (("A", "2"),), "run 2")],
+        ),
+        (
+            ["-L", "f", "--sort=none,-l", "ls {f}"],
+            [("ls --sort=none", (), (), "--sort=none"), ("ls -l", (), (), "-l")],
+        ),
+        (
+            ["-L", "v", r"a\,b,c", "echo {v}"],
+            [("echo a,b", (), (), "a,b"), ("echo c", (), (), "c")],
+        ),
+        (
+            ["-L", "v", "a,b", "awk '{print $1}' {v}"],
+            [("awk '{print $1}' a", (), (), "a"), ("awk '{print $1}' b", (), (), "b")],
+        ),
+        (["-L", "v", "a,b", "--", "ls", "{v}"], [("ls a", (), (), "a"), ("ls b", (), (), "b")]),
+    ],
+)  # fmt: skip
+def test_a_list_is_filled_in_wherever_it_stands(
+    arguments: list[str], commands: list[tuple[object, ...]]
+) -> None:
+    assert filled(*arguments) == commands
+
+
+@pytest.mark.parametrize(
+    ("words", "values"),
+    [
+        (["1", "10", "4"], ["1", "5", "9"]),
+        (["0.1", "0.5", "0.2"], ["0.1", "0.3", "0.5"]),
+        (["-2", "-1"], ["-2", "-1"]),
+        (["3", "1", "-1"], ["3", "2", "1"]),
+    ],
 )
-def test_the_unit_stands_behind_the_group(pattern: str, unit: str) -> None:
-    assert unit_of(pattern) == unit
+def test_ranges_have_steps(words: list[str], values: list[str]) -> None:
+    lines = [one.line for one in parse(["-P", "i", *words, "echo {i}"]).commands]
+    assert lines == [f"echo {value}" for value in values]
+
+
+def test_what_comes_once_has_the_values_of_all() -> None:
+    asked = parse(["-L", "v", "a,b", "--setup", "make {v}", "--cleanup", "true", "./{v}"])
+    assert (asked.setup, asked.cleanup) == (("make a", "make b"), ("true",))
 
 
 @pytest.mark.parametrize(
@@ -109,7 +178,15 @@ def test_the_unit_stands_behind_the_group(pattern: str, unit: str) -> None:
         (["--", "a", "--vs"], "found --vs with no word of a command"),
         (["-L", "x", "1,2", "a", "b"], "found values for x, expected {x} in a command"),
         (["-P", "x", "2", "1", "a {x}"], "expected numbers that rise"),
-        (["-P", "x", "a", "b", "a {x}"], "expected a name and two whole numbers"),
+        (["-P", "x", "a", "b", "a {x}"], "-P x: found a b, expected numbers"),
+        (["-P", "x", "1"], "-P: found 2 words behind it, expected NAME FIRST LAST [STEP]"),
+        (["-L", "x", "1,2", "-L", "x", "1", "a {x}"], "-L: found x twice"),
+        (["-L", "v", "1,2", "a {v} {w}"], "found {w}, expected a list or range of that name: -L w A,B"),
+        (["a {t}", "b"], "a {t}: found {t}, expected a list or range of that name"),
+        (["--prepare", "touch {t}", "a", "b"], "--prepare: found {t}, expected a list"),
+        (["--unit", "ms", "a", "b"], "--unit: found without a time that is printed"),
+        (["--time-from", "took", "a", "b"], '--time-from: found "took" with 0 groups, expected one'),
+        (["1", "2"], 'found "1", expected a name that is no number: -n gives it'),
         (["--env", "1=2", "a", "b"], "expected VARIABLE=VALUE"),
         (["--prepare", "x", "--prepare", "y", "a", "b", "c"], "--prepare: found 2 for 3 commands"),
         (["-n", "a", "-n", "a again", "x", "y"], 'found "a again", which the control is called'),
@@ -120,7 +197,7 @@ def test_the_unit_stands_behind_the_group(pattern: str, unit: str) -> None:
         (["--turns", "5ms", "--time-from", "took (.*)", "a", "b"], "--turns: found turns, of commands that"),
         (
             ["-P", "n", "1", "99999999999", "a {n}"],
-            "found 101 commands, expected two or more to compare, 100",
+            "-P n: found 1 99999999999, which makes 99999999999 commands; expected 100 at most",
         ),
         (["--input", "/not/there", "a", "b"], "--input: found /not/there, expected a file"),
     ],
@@ -137,7 +214,7 @@ def test_what_is_wrong_is_said_in_a_line(arguments: list[str], told: str) -> Non
     [
         ["--margin", "60%"], ["--margin", "x"], ["--time", "0s"], ["--time", "1d"], ["--warmup", "-1"],
         ["--threads", "0"],
-        ["--ignore-exit", "300"], ["--time-from", "took"], ["--time-from", "(a)(b)"], ["--turns", "maybe"],
+        ["--ignore-exit", "300"], ["--turns", "maybe"], ["--unit", "weeks"],
     ],
 )  # fmt: skip
 def test_a_wrong_value_is_said_in_a_line(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,30 +4,23 @@ import itertools
 
 import pytest
 
-from experiments.compare.sweeps import Levels, combinations, contrasts, filled
-from support.errors import InputError
+from experiments.compare.options import parse
+from experiments.compare.sweeps import Levels, contrasts
+
+
+def commands(*arguments: str) -> list[tuple[str, Levels]]:
+    return [(one.line, one.levels) for one in parse(arguments).commands]
 
 
 def test_each_combination_is_a_command_with_its_levels() -> None:
-    values = combinations([["opt", "O2,O3"]], [["n", "1", "2"]], 100)
-    assert filled(["./{opt} {n}"], values) == [
+    assert commands("-L", "opt", "O2,O3", "-P", "n", "1", "2", "./{opt} {n}") == [
         (f"./{opt} {n}", (("opt", opt), ("n", n))) for opt in ("O2", "O3") for n in ("1", "2")
     ]
 
 
 def test_a_line_that_lacks_a_list_is_there_once() -> None:
-    values = combinations([["n", "1,2"]], [], 100)
-    lines = [line for line, _ in filled(["./old", "./new {n}"], values)]
+    lines = [line for line, _ in commands("-L", "n", "1,2", "./old", "./new {n}")]
     assert lines == ["./old", "./new 1", "./new 2"]
-
-
-def test_a_list_that_no_line_has_is_refused() -> None:
-    with pytest.raises(InputError, match=r"expected \{n\} in a command"):
-        filled(["./old"], combinations([["n", "1,2"]], [], 100))
-
-
-def test_equal_lines_without_lists_stay_two() -> None:
-    assert len(filled(["./a", "./a"], combinations([], [], 100))) == 2
 
 
 def named(*lists: tuple[str, str]) -> dict[str, Levels]:

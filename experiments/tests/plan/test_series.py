@@ -168,7 +168,7 @@ WRONG = {
     'name = "a"\ncommand = ["sort"]\nfind_chunk = 3': "find_chunk: found for a command, expected for",
     'name = "a"\ncommand = ["sort"]\ntime = {stdout = "a"}': 'time.stdout: found "a" with 0 groups',
     'name = "a"\ncommand = ["sort"]\ntime = {stdout = "("}': "expected a regular expression",
-    'name = "a"\ncommand = ["sort"]\ntime = {stdout = "(a)", unit = "h"}': "expected one of ns, us, ms, s",
+    'name = "a"\ncommand = ["sort"]\ntime = {stdout = "(a)", unit = "d"}': "one of ns, us, ms, s, min, h",
     'command = ["sort"]': "series[1].name: missing",
     'commands = "none/*"\ncommand = ["{program}"]': 'commands: found "none/*", which no file matches',
     'name = "a"\nbenchmark = {program = "sort"}': "benchmark: expected either name or filter",

@@ -112,9 +112,18 @@ TEST_F(ProcessesCommand, LeavesAFailureInThePlaceOfARecord) {
 
 TEST_F(ProcessesCommand, TakesTheTimeThatAProgramSays) {
     Json printed = described("echo it took 250 ms", "printed");
-    printed.update({{"pattern", "took ([0-9]+) ms"}, {"unit_seconds", 1e-3}});
-    ASSERT_EQ(processes(Json::array({printed})).exit_code, 0);
+    printed["pattern"] = "took ([0-9]+)";
+    Json plain = described("echo it took 250", "plain");
+    plain.update({{"pattern", "took ([0-9]+)"}, {"unit_seconds", 1e-3}});
+    ASSERT_EQ(processes({printed, plain}).exit_code, 0);
     EXPECT_DOUBLE_EQ(record("printed")["repetitions"][0]["steps_seconds"], 0.25);
+    EXPECT_DOUBLE_EQ(record("plain")["repetitions"][0]["steps_seconds"], 0.25);
+    plain.erase("unit_seconds");
+    EXPECT_TRUE(refused(processes(Json::array({plain})), 1, {"found '250' without a unit", "--unit"}));
+    Json latin = described("printf 'it took 250 \\265s'", "latin");
+    latin["pattern"] = "took ([0-9]+)";
+    ASSERT_EQ(processes(Json::array({latin})).exit_code, 0);
+    EXPECT_DOUBLE_EQ(record("latin")["repetitions"][0]["steps_seconds"], 250e-6);
     EXPECT_EQ(record("printed")["process"]["time_from"], "the program");
     EXPECT_TRUE(record("printed")["turns"].is_null());
     const std::string json =
@@ -160,6 +169,9 @@ TEST_F(ProcessesCommand, RefusesAProcessThatCannotBeBeforeAnyRuns) {
     EXPECT_TRUE(
         refused(with("command", {"ls", std::string("a\0b", 3)}), 1, {"command: found 'a?b' with a zero"}));
     EXPECT_TRUE(refused(with("warm_ups", -1), 1, {"warm_ups: found -1, expected a number of at least 0"}));
+    EXPECT_TRUE(refused(with("rounds", 0), 1, {"rounds: found 0, expected a number of at least 1"}));
+    EXPECT_TRUE(refused(with("rounds", "x"), 1, {"rounds: found", "expected a whole number"}));
+    EXPECT_TRUE(refused(with("unit_seconds", "ms"), 1, {"unit_seconds: found", "expected a number"}));
     EXPECT_TRUE(refused(with("threads", 0), 1, {"threads: found 0, expected a number of at least 1"}));
     EXPECT_TRUE(refused(with("kept_by", "me"), 1, {"kept_by: found 'me', expected cgroup or subreaper"}));
     EXPECT_TRUE(refused(with("exit_codes", {"1"}), 1, {"exit_codes: found", "a list of whole numbers"}));
@@ -205,6 +217,29 @@ TEST_F(ProcessesCommand, AllowsTheExitCodesThatAreFine) {
     EXPECT_EQ(processes(Json::array({found})).exit_code, 0);
     EXPECT_EQ(record("found")["process"]["exit_code"], 1);
     EXPECT_EQ(record("found")["process"]["output_bytes"], 2);
+}
+
+TEST_F(ProcessesCommand, RunsShortOnesInRounds) {
+    const std::string count =
+        "echo x >> " + (directory / "runs") + "; n=$(wc -l < " + (directory / "runs") + ")";
+    Json often = described(count + "; exit $((n % 2))", "often");
+    often.update({{"rounds", 3}, {"exit_codes", {0, 1}}});
+    ASSERT_EQ(processes({often, described("exit 0", "once")}).exit_code, 0);
+    const Json record_of_often = record("often");
+    EXPECT_EQ(record_of_often["process"]["exit_codes"], (Json{1, 0, 1}));
+    EXPECT_EQ(record_of_often["process"]["exit_code"], 1);
+    EXPECT_EQ(record_of_often["process"]["runs"], 3);
+    EXPECT_EQ(record_of_often["repetitions"].size(), 3);
+    EXPECT_EQ(record_of_often["turns"]["seconds"].size(), 3);
+    EXPECT_EQ(record("once")["process"]["exit_codes"], (Json{0}));
+}
+
+TEST_F(ProcessesCommand, TellsTheMostMemoryOfAllRuns) {
+    const std::string large = "head -c 200000000 /dev/zero | tail -n 1 > /dev/null";
+    Json one = described("mkdir " + (directory / "once") + " 2> /dev/null && " + large + "; exit 0", "one");
+    one["rounds"] = 2;
+    ASSERT_EQ(processes(Json::array({one})).exit_code, 0);
+    EXPECT_GT(record("one")["process"]["peak_memory_bytes"], 150'000'000);
 }
 
 TEST_F(ProcessesCommand, BenchmarksRunRoundAfterRoundAndNothingIsTakenTwice) {

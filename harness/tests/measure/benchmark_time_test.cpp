@@ -203,6 +203,31 @@ TEST(TimeOfBenchmark, SaysWhatStandsInThePlaceOfAReport) {
               "benchmark: found a number that is too large" + expected);
 }
 
+TEST(TimeOfBenchmark, NamesTheLocaleWhoseNumbersAreNoJson) {
+    const auto names = [](const std::string& number) {
+        const std::string said =
+            why_refused("{\"context\": {\"num_cpus\": 4,\n\"mhz_per_cpu\": " + number + ",\n\"x\": 1}}");
+        return said.find("no JSON in line 2: '") != std::string::npos &&
+               said.find(
+                   "' (numbers in the form of a locale; with LC_ALL=C in its environment they are plain), "
+                   "expected ") != std::string::npos;
+    };
+    for (const char* number : {"2,5", "2,000", "1,2345678901234567e+02", "1.234,5", "1.234.567", "1'234",
+                               "1\xE2\x80\x99"
+                               "234",
+                               "1\xC2\xA0"
+                               "234",
+                               "1\xE2\x80\xAF"
+                               "234",
+                               "1\xA0"
+                               "234"}) {
+        EXPECT_TRUE(names(number)) << number;
+    }
+    for (const char* number : {"2 5", "x", "2.5e", "[1,2"}) {
+        EXPECT_FALSE(names(number)) << number;
+    }
+}
+
 TEST(TimeOfBenchmark, SaysWhereAReportBreaksOff) {
     const std::string json = run_with(R"("real_time": 5.25, "rate": NaN, "label": "half")");
     ASSERT_EQ(why_refused(json), "");

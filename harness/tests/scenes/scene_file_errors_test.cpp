@@ -37,6 +37,14 @@ const std::vector<BadFile> bad_files{
      "\xef\xbb\xbf"
      "0\n10\n1\n5\n",
      "bad.in:1: found '???0', expected the number of discs N"},
+    {"OlderFormat", "print\n1\n10\n1\n5\n0 5 5 0 0\n",
+     "bad.in:1: found 'print', expected the number of discs N, an integer (this is the older format, whose "
+     "first "
+     "line is `print` or `perf`: `tail -n +2 FILE > NEW` converts it)"},
+    {"OlderFormatWithCarriageReturns", "perf\r\n1\r\n10\r\n1\r\n5\r\n0 5 5 0 0\r\n",
+     "bad.in:1: found 'perf', expected the number of discs N, an integer (this is the older format"},
+    {"OlderWordElsewhere", "1\nprint\n1\n5\n0 5 5 0 0\n",
+     "bad.in:2: found 'print', expected the side of the box L, a number"},
     {"CountNotANumber", "two\n10\n1\n5\n",
      "bad.in:1: found 'two', expected the number of discs N, an integer"},
     {"CountNotAnInteger", "2.5\n10\n1\n5\n",

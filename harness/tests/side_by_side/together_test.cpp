@@ -30,6 +30,9 @@ ProgramContender scripted(const std::string& script) { return contender({"/bin/s
 ProgramContender python(const std::string& script) { return contender({"python3", "-c", script}); }
 
 const std::string work = "i=0; while [ $i -lt 150000 ]; do i=$((i+1)); done";
+const std::string work_more = "; while [ $i -lt 400000 ]; do i=$((i+1)); done";
+
+const std::string no_terminal = "it had no terminal: its standard input is empty, its outputs are pipes";
 
 std::string lines_of(const std::string& path) { return tests::content_of(path); }
 
@@ -90,14 +93,40 @@ TEST(Together, WhatLooksAtTheClockIsMeasuredWithoutAPause) {
     EXPECT_NE(measured[0].undisturbed, "");
 }
 
+TEST(Together, WhatWaitForOneAnotherAreMeasuredWithoutAPause) {
+    const tests::TemporaryDirectory directory;
+    const std::string lock = directory / "lock";
+    const ProgramContender one = scripted("until mkdir " + lock + " 2> /dev/null; do :; done; " + work +
+                                          work_more + "; rmdir " + lock);
+    const auto measured = measure_together({one, one}, {.slice_seconds = 0.02});
+    for (const Measured& each : measured) {
+        EXPECT_EQ(each.failure, "");
+        EXPECT_FALSE(each.sliced);
+        EXPECT_NE(each.undisturbed, "");
+        ASSERT_EQ(each.runs.size(), 1);
+        EXPECT_EQ(each.runs.front().seconds.size(), 1);
+    }
+    const auto tells = [](const Measured& each) {
+        return each.undisturbed.find("and the others stand still while it runs") != std::string::npos;
+    };
+    EXPECT_TRUE(std::ranges::any_of(measured, tells)) << measured[0].undisturbed;
+}
+
+TEST(Together, WhatFindsALockLeftEndsAtItsLimit) {
+    const tests::TemporaryDirectory directory;
+    ProgramContender one = scripted("until mkdir " + (directory / "") + " 2> /dev/null; do :; done");
+    one.command.most_seconds = 0.3;
+    for (const Measured& each : measure_together({one, one}, {})) {
+        EXPECT_TRUE(each.failure.ends_with("and was stopped")) << each.failure;
+    }
+}
+
 TEST(Together, AFailureInSlicesSaysThatItMayMind) {
     ProgramContender minds = scripted(work + "; exit 3");
     minds.turns = true;
     const auto measured = measure_together({minds, minds}, {.slice_seconds = 0.002});
-    EXPECT_EQ(
-        measured[0].failure,
-        "exit code 3 without a word (it was stopped now and then; if it minds that, turns = false gives "
-        "it a stretch of its own)");
+    EXPECT_EQ(measured[0].failure, "exit code 3 without a word; " + no_terminal +
+                                       " (it was stopped now and then while others ran)");
 }
 
 TEST(Together, NothingIsStoppedThatIsNotToBe) {
@@ -127,7 +156,7 @@ TEST(Together, EachRunIsPreparedAndConcluded) {
     EXPECT_EQ(measure_together({one}, {})[0].failure, "prepare: cannot be run: No such file or directory");
     one.prepare.clear();
     one.conclude = {"false"};
-    EXPECT_EQ(measure_together({one}, {})[0].failure, "conclude: exit code 1 without a word");
+    EXPECT_EQ(measure_together({one}, {})[0].failure, "conclude: exit code 1 without a word; " + no_terminal);
 }
 
 TEST(Together, EachRunHasAFolderOfItsOwnIfItAsksForOne) {
@@ -171,6 +200,53 @@ TEST(Together, ShortProcessesThatTimeThemselvesGoRoundAfterRound) {
         const std::string pair = rounds.substr(2 * round, 2);
         EXPECT_TRUE(pair == "ab" || pair == "ba") << rounds;
     }
+}
+
+TEST(Together, ShortOnesRunAsOftenAsTheySayAroundTheOthers) {
+    const tests::TemporaryDirectory directory;
+    const auto short_one = [&directory](const std::string& name, int rounds) {
+        ProgramContender one =
+            scripted("(sleep 0.002; printf " + name + " >> " + (directory / "log") + ") &");
+        one.prepare = {"sh", "-c", "printf '(' >> " + (directory / "log")};
+        one.conclude = {"sh", "-c", "printf ')' >> " + (directory / "log")};
+        one.rounds = rounds;
+        return one;
+    };
+    std::vector<ProgramContender> all{short_one("a", 8), short_one("b", 4), short_one("c", 1)};
+    all[0].warm_ups = 1;
+    const auto measured = measure_together(all, {.seed = 7});
+    EXPECT_EQ(measured[0].runs.size(), 8);
+    EXPECT_EQ(measured[1].runs.size(), 4);
+    EXPECT_EQ(measured[2].runs.size(), 1);
+    EXPECT_FALSE(measured[0].sliced);
+    std::string log = lines_of(directory / "log");
+    EXPECT_EQ(log.size(), 3 * 14) << log;
+    EXPECT_EQ(log.substr(0, 3), "(a)") << "first the run that does not count";
+    for (std::size_t at = 0; at < log.size(); at += 3) {
+        EXPECT_TRUE(log[at] == '(' && log[at + 2] == ')') << "each is waited for: " << log;
+    }
+    std::erase_if(log, [](char letter) { return letter == '(' || letter == ')' || letter == 'c'; });
+    for (std::size_t begin = 1; begin < log.size(); begin += 3) {
+        EXPECT_EQ(std::ranges::count(log.substr(begin, 3), 'b'), 1) << "one in each quarter: " << log;
+    }
+}
+
+TEST(Together, ThoseInRoundsSurroundWhatTakesTurns) {
+    const tests::TemporaryDirectory directory;
+    ProgramContender sliced = scripted(work + "; echo sliced >> " + (directory / "log"));
+    sliced.turns = true;
+    ProgramContender often = scripted("echo often >> " + (directory / "log"));
+    often.rounds = 3;
+    often.turns = true;
+    const auto measured = measure_together({sliced, often, sliced}, {.slice_seconds = 0.01});
+    EXPECT_TRUE(measured[0].sliced && measured[2].sliced);
+    EXPECT_FALSE(measured[1].sliced);
+    EXPECT_EQ(measured[1].runs.size(), 3);
+    ProgramContender fails =
+        scripted("echo x >> " + (directory / "runs") + "; [ $(wc -l < " + (directory / "runs") + ") -lt 3 ]");
+    fails.rounds = 9;
+    EXPECT_NE(measure_together({fails, often}, {})[0].failure, "");
+    EXPECT_EQ(lines_of(directory / "runs"), "x\nx\nx\n") << "after a failure no more";
 }
 
 ProcessEnd taking(double wall, double cpu) {

@@ -1,0 +1,120 @@
+"""What the first run of each command tells: how often a short one is run, and what nobody meant to time."""
+
+import math
+import os
+import re
+import stat
+import statistics
+from collections.abc import Mapping
+
+from experiments.compare.benchmarks import call_of, names_benchmark
+from experiments.compare.blocks import Key, Runs
+from experiments.compare.options import Asked
+from experiments.compare.texts import duration
+from experiments.plan.executable import found, is_file
+from experiments.run.progress import warn
+from support.errors import InputError
+
+SHORT = 0.05
+"""Seconds: what takes less runs several times in a block."""
+
+LONG_ENOUGH = 0.1
+"""Seconds that the runs of a short command take together in a block."""
+
+MOST = 15
+"""Runs of a command in a block."""
+
+NOT_FOUND = re.compile(r"^(?:\S*sh|env|xargs): .*(?:not found|No such file)")
+"""What a shell says of a word that is no program, whose exit code may be lost behind it."""
+
+_BUSY = 0.5
+"""Processors: what keeps fewer busy waits for most of its time."""
+
+_TABLE = ("Benchmark", "Time", "CPU", "Iterations")
+"""The head of what a Google Benchmark prints."""
+
+
+class NotMeantError(InputError):
+    """What would be timed is surely not what was meant."""
+
+
+def unstoppable(asked: Asked) -> list[str]:
+    """The names of commands whose program gets another user's rights when it starts (set-user-ID), so that
+    this user may not send it a signal.
+    """
+    if os.geteuid() == 0:
+        return []
+    files = [(one.name, found(one.words[0], one.folder)) for one in asked.commands]
+    owners = [(name, file.stat()) for name, file in files if is_file(file)]
+    return [name for name, one in owners if one.st_mode & stat.S_ISUID and one.st_uid != os.geteuid()]
+
+
+def rounds_of(asked: Asked, runs: Mapping[Key, Runs]) -> tuple[int, ...]:
+    """How often each command runs in a block, by the time that one run took; nothing where none is short."""
+    if asked.cases or asked.has_printed_times:
+        return ()
+    known = [runs[one.name, 0] for one in asked.commands]
+    seconds = [one.median("seconds") if one.seconds else math.inf for one in known]
+    if min(seconds) >= SHORT:
+        return ()
+    return tuple(min(MOST, max(1, math.ceil(LONG_ENOUGH / max(one, 1e-6)))) for one in seconds)
+
+
+def note_idle(asked: Asked, runs: Mapping[Key, Runs], idle_processors: float) -> bool:
+    """Whether one of them waits for most of its time, though not for a processor, so that none is to be
+    stopped; notes why.
+    """
+    for one in asked.commands:
+        of_one = runs[one.name, 0]
+        cores = of_one.median("cores") if of_one.cores else 1.0
+        if cores < _BUSY and of_one.median("seconds") > SHORT and idle_processors > _BUSY:
+            told = f"it computes for only {100 * cores:.0f} % of its time"
+            of_one.undisturbed = f"{told}, and what it waits for would go on while it stands still"
+    return any(one.undisturbed for one in runs.values())
+
+
+def require_meant(asked: Asked, runs: Mapping[Key, Runs]) -> None:
+    """Raises InputError for a Google Benchmark that would be timed as a whole although nobody said so; says
+    so of what may be one.
+    """
+    if asked.is_whole or asked.cases:
+        return
+    for one in asked.commands:
+        if call_of(one) is not None:
+            other = next(each.line for each in asked.commands if call_of(each) is None)
+            told = f"{one.name}: is a Google Benchmark, and {other} is none"
+            raise NotMeantError(f"{told}; expected cases of all, or --no-gb to time whole programs")
+        told = f"{one.name}: runs a Google Benchmark, which repeats its cases until their time is full"
+        if _has_table(runs[one.name, 0].output):
+            expected = "expected that program with its arguments alone, or --no-gb to time it as a whole"
+            raise NotMeantError(f"{told}; {expected}")
+        if program := names_benchmark(one):
+            warn(f"carom: {one.name}: is timed as a whole, with the Google Benchmark {program} in it")
+
+
+def _has_table(output: str) -> bool:
+    return any(tuple(line.split()[:4]) == _TABLE for line in output.splitlines())
+
+
+def unlike_runs(name: str, first: float, runs: Runs) -> list[str]:
+    """Lines on runs that took so much longer or shorter than the others that they did something else."""
+    usual, told = runs.median("all"), []
+    if first - usual > _LEAST and first > usual * 3:
+        took = f"the first run of {name} took {duration(first)}, the others {duration(usual)}"
+        told.append(
+            f"{took}: it found something to do, or in memory, that they did not. `--prepare` can put things "
+            "back before each run"
+        )
+    if runs.left_behind and (share := statistics.median(runs.left_behind)) > 0.1:
+        told.append(f"{100 * share:.0f} % of the time of {name} is of what it has left in the background")
+    if NOT_FOUND.search(runs.error):
+        told.append(f"{name} writes to standard error: {runs.error}")
+    few = [one for one in runs.all if one < usual / 5 and usual - one > _LEAST]
+    if few:
+        took = f"{len(few)} of {len(runs.all)} runs of {name} took {duration(max(few))} at most"
+        told.append(f"{took}, the others {duration(usual)}: they may have done nothing")
+    return told
+
+
+_LEAST = 0.02
+"""Seconds by which runs differ at least, to be told."""

@@ -1,0 +1,76 @@
+"""Whether each of two commits runs what was built of it: builds that share a place make both run one file."""
+
+import filecmp
+import re
+import shlex
+import shutil
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from experiments.compare.worktrees import Tree, git
+from experiments.plan.executable import is_file
+from experiments.run.progress import warn
+from support.errors import InputError
+
+_NO_SOURCE = re.compile(
+    r"(.*/)?((docs?|tests?|testing|examples?|\.[^/]*)/.*|\.[^/]*|(README|LICENSE|CHANGELOG)[^/]*"
+    r"|(?!CMakeLists)[^/]*(?i:\.(md|rst|txt|adoc|ya?ml)))",
+    re.DOTALL,
+)
+"""The names of files that go into no program: pages, tests, examples, settings of tools."""
+
+
+def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int) -> None:
+    """Raises InputError for a file that both commits run or read, and that their builds wrote: one that has
+    changed since a time of the file system, in nanoseconds, as all that is in the trees has.
+    """
+    of_base = set(_named(words, base.folder))
+    for word, path in _named(words, head.folder):
+        if (word, path) in of_base and path.stat().st_ctime_ns > since:
+            found = word if word == str(path) else f"{word}, which is {path}"
+            told = "written by the builds: both commits would use what was built last"
+            raise InputError(f"found {found}, {told}; expected a path inside the checkout, such as ./prog")
+
+
+def require_two_programs(words: Sequence[str], base: Tree, head: Tree) -> None:
+    """Raises InputError where all that is built and named is the same, byte for byte, although the commits
+    differ in sources; says so where they do not.
+    """
+    of_base, of_head = (dict(_built(words, tree)) for tree in (base, head))
+    both = [word for word in of_base if word in of_head]
+    if not both or not all(filecmp.cmp(of_base[word], of_head[word], shallow=False) for word in both):
+        return
+    commits = (base.commit.sha, head.commit.sha)
+    names = git(head.top, "diff-tree", "-r", "-z", "--name-only", *commits).output.split("\0")[:-1]
+    sources = [name for name in names if not _NO_SOURCE.fullmatch(name)]
+    if sources:
+        told = f"{both[0]} with the same bytes in both commits, which differ in {sources[0]}"
+        asked = "do the builds share something, such as a fixed build folder or an installed file?"
+        raise InputError(f"found {told}; {asked} --same-bytes compares them all the same")
+    warn(f"carom: base and head build the same bytes of {both[0]}: no source differs")
+
+
+def _built(words: Sequence[str], tree: Tree) -> Iterator[tuple[str, Path]]:
+    """The files of a tree that words name and git does not know: a script that it knows reads other files."""
+    for word, path in _named(words, tree.folder):
+        known = ("--literal-pathspecs", "ls-files", "--error-unmatch", path.name)
+        if path.is_relative_to(tree.top.resolve()) and git(path.parent, *known).exit_code != 0:
+            yield word, path
+
+
+def _named(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:
+    """The files that words name in a folder or on PATH, without links; devices are none."""
+    parts = [part for word in words for part in (word, *_split(word))]
+    for word in (*parts, *(part.partition("=")[2] for part in parts)):
+        on_path = shutil.which(word) if "/" not in word else None
+        for path in (folder / word, Path(on_path or folder)):
+            if is_file(path) and not word.startswith(("/dev/", "/proc/")):
+                yield word, path.resolve()
+
+
+def _split(line: str) -> list[str]:
+    """The words of a line for a shell; none of what is no such line."""
+    try:
+        return shlex.split(re.sub("[;|&<>()]", " ", line))
+    except ValueError:
+        return []

@@ -1,0 +1,269 @@
+"""What users do with `carom compare` on their first day, and what is right: the next case is one more row."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+LOOP = "i=0; while [ $i -lt {times} ]; do i=$((i+1)); done\n"
+
+
+@dataclass(frozen=True)
+class Case:
+    """Files in an empty folder (scripts, but for those with a suffix), the words behind `carom compare`, and
+    what then happens: `told` and not `untold` in what is printed, the exit code, the files that are there.
+    """
+
+    kind: str
+    input: str
+    right: str
+    words: tuple[str, ...]
+    told: tuple[str, ...] = ()
+    untold: tuple[str, ...] = ()
+    code: int | None = 0
+    """None where it depends on the noise of the machine: 0, or 5 where the control differs by chance."""
+    files: Mapping[str, str] = field(default_factory=dict)
+    environment: Mapping[str, str] = field(default_factory=dict)
+    left: tuple[str, ...] = ()
+    not_left: tuple[str, ...] = ()
+    setup: str = ""
+    """A line for a shell before it."""
+    through: str = ""
+    """A line for a shell that runs `"$@"`, the call."""
+    time: str = "2s"
+
+    @property
+    def name(self) -> str:
+        return f"{self.kind}: {self.input}"
+
+
+TIMED, PRINTED, WRITTEN, LISTS, ENDS, TIME = (
+    "what is timed", "printed times", "files", "lists", "ends", "time",
+)  # fmt: skip
+
+_TOOK = ("--time-from", r"took (\S+ ?[^\d\s]*)")
+_NUMBER = ("--time-from", "took ([0-9.,e'+-]+)")
+
+_TABLE = "echo 'Benchmark     Time     CPU   Iterations'\n"
+_WORKS = {"short": LOOP.format(times=4000), "long": LOOP.format(times=12000)}
+_FAST = "exit 0\n"
+
+
+def _prints(first: str, second: str) -> dict[str, str]:
+    return {"a": f"echo took '{first}'\n", "b": f"echo took '{second}'\n"}
+
+
+def _refused(input_: str, printed: str, told: str, pattern: tuple[str, ...] = _NUMBER) -> Case:
+    return Case(
+        PRINTED, input_, "one line that says what stands there", (*pattern, "./a", "./b"), (told,),
+        code=2, files=_prints(printed, printed),
+    )  # fmt: skip
+
+
+def _read(input_: str, first: str, second: str, change: str, *words: str) -> Case:
+    return Case(
+        PRINTED, input_, "both are read in their units", (*words, *_NUMBER, "./a", "./b"),
+        (f"b against a   {change} % [",), code=0, files=_prints(first, second), time="60s",
+    )  # fmt: skip
+
+
+CASES = (
+    _read("µs beside ms", "500 µs", "1 ms", "+100.0"),
+    _read("us beside µs", "500 us", "1000 µs", "+100.0"),
+    _read("ns beside us", "1000 ns", "2 us", "+100.0"),
+    _read("s beside min", "60 s", "2 min", "+100.0"),
+    _read("an exponent", "1.5e-3 s", "3 ms", "+100.0"),
+    _read("numbers in groups", "1,000.0 ms", "2 s", "+100.0"),
+    _read("a decimal comma", "0,5 s", "1 s", "+100.0"),
+    _read("no unit, and --unit", "1", "2", "+100.0", "--unit", "min"),
+    _read("--unit, and a unit that stands there", "1 ms", "2 ms", "+100.0", "--unit", "s"),
+    _refused("no unit", "1.1", "--unit"),
+    _refused("a zero", "0 ms", "expected a positive number"),
+    _refused("a negative number", "-3 ms", "expected a positive number"),
+    _refused("no number", "nan ms", "time-from", _TOOK),
+    _refused("an infinite number", "inf ms", "time-from", _TOOK),
+    _refused("a comma that may be either", "1,234 ms", "1,234"),
+    _refused("a part of a number", "1.5e3 ms", "1.5", ("--time-from", "took ([0-9.]+)")),
+    _refused("two matches in one line", "1 ms took 2 ms", "2"),
+    Case(
+        TIMED, "a script that prints the table of a Google Benchmark",
+        "refused: it repeats its cases until their time is full; --no-gb times it all the same",
+        ("./a", "./b"), ("a: runs a Google Benchmark", "--no-gb"), code=1,
+        files={"a": _TABLE, "b": _TABLE},
+    ),
+    Case(
+        TIMED, "the same with --no-gb", "timed as a whole", ("--no-gb", "./a", "./b"), ("  a  ", "  b  "),
+        ("runs a Google Benchmark",), code=None, files={"a": _TABLE, "b": _TABLE},
+    ),
+    Case(
+        TIMED, "a first run that takes far longer", "a line that says so and names --prepare",
+        ("-n", "a", "-n", "b", "./a", "./b"),
+        ("the first run of a took", "--prepare"), code=None,
+        files={
+            "a": f"[ -e built_a ] || {{ sleep 0.5; touch built_a; }}; {LOOP.format(times=4000)}",
+            "b": LOOP.format(times=4000),
+        },
+    ),
+    Case(
+        TIMED, "runs of one command with unlike exit codes", "not compared; how many ended with which",
+        ("--ignore-exit", "4", "./a", "./b"), ("a: failed", "with exit code 0", "with exit code 4"),
+        code=2, time="10s",
+        files={"a": 'echo x >> n; [ $(($(wc -l < n) % 2)) = 0 ] || exit 4; sleep 0.1', "b": "sleep 0.1"},
+    ),
+    Case(
+        TIMED, "two commands that end with unlike codes", "a line that says so",
+        ("--ignore-exit", "1", "./a", "./b"), ("not all end alike: a:", "with exit code 1"), code=None,
+        files={"a": LOOP.format(times=9000), "b": LOOP.format(times=9000) + "exit 1"},
+    ),
+    Case(
+        TIMED, "work left in the background", "waited for in each run",
+        ("./a", "./b"), ("a   ", "10"), code=None, files={"a": "sleep 0.1 &\nexit 0", "b": "sleep 0.1"},
+        through='"$@" > out; cat out; grep -Eq "^  a +1[0-9][0-9] ms" out',
+    ),
+    Case(
+        TIMED, "work left in the background for far longer than the command", "a line that says so",
+        ("./a", "./b"), ("% of the time of a is of what it has left in the background",), code=None,
+        files={"a": "sleep 0.2 &\nexit 0", "b": "sleep 0.1"},
+    ),
+    Case(
+        TIMED, "a line whose first program is not there", "what the shell says",
+        ("nosuchprogram; true", "true"),
+        ("writes to standard error: ", "nosuchprogram: not found"), code=None,
+    ),
+    Case(
+        TIMED, "a command that works once", "the advice to put things back", ("mkdir x", "true"),
+        ("mkdir x: failed after ", "File exists", "--prepare"), code=2,
+    ),
+    Case(
+        TIMED, "a setup that starts a server", "it goes on until the end, and not longer",
+        ("--setup", "sleep 97 & echo $! > pid", "sh -c 'kill -0 $(cat pid)'", "true"),
+        ("  true  ",), code=None,
+        through='"$@"; code=$?; kill -0 $(cat pid) 2>/dev/null || exit $code; exit 9',
+    ),
+    Case(
+        TIMED, "a program that needs a terminal", "the hint that it has none", ("./a", "./b"),
+        ("a: failed after 0 runs: exit code 1 without a word", "terminal"), code=2,
+        files={"a": "test -t 1", "b": _FAST},
+    ),
+    Case(
+        TIMED, "a program killed by a signal", "the signal, once", ("./a", "./b"), ("killed by SIGABRT",),
+        ("SIGABRT: killed",), code=2, files={"a": "kill -ABRT $$", "b": _FAST},
+    ),
+    Case(
+        TIMED, "programs that wait for one lock by spinning", "none of them is stopped, and why",
+        ("./a", "./b"), ("never stopped",), ("control: a against itself +1",), code=None, time="8s",
+        files={
+            "a": "until mkdir lock 2>/dev/null; do :; done; " + LOOP.format(times=60000) + "rmdir lock",
+            "b": "until mkdir lock 2>/dev/null; do :; done; " + LOOP.format(times=90000) + "rmdir lock",
+        },
+    ),
+    Case(
+        TIME, "a short command beside a long one", "each as often as it needs, within --time",
+        ("true", "./b"), ("true 15", "b 1"), code=None, files={"b": "sleep 0.6"}, time="5s",
+    ),
+    Case(
+        TIME, "no time for an interval", "one run of each, and what would be needed",
+        ("./short", "./long"), ("1 block: an interval needs 6 blocks",), files=_WORKS, time="1ms",
+    ),
+    Case(
+        LISTS, "a list in --prepare and in the command", "filled in in both",
+        ("-L", "v", "one,two", "--prepare", "touch p_{v}", "ls p_{v}"), ("  p_one  ", "  p_two  "), ("{v}",),
+        code=None, left=("p_one", "p_two"), not_left=("p_{v}",),
+    ),
+    Case(
+        LISTS, "a list that only --prepare has", "a command for each value",
+        ("-L", "v", "x,y", "--prepare", "touch {v}", "true"), ("  true (v y)  ", "  true (v x)  "), code=None,
+        left=("x", "y"),
+    ),
+    Case(
+        LISTS, "a list in --setup and --cleanup", "both run once for each value",
+        ("-L", "v", "x,y", "--setup", "touch {v}", "--cleanup", "touch {v}_gone", "ls {v}"),
+        ("  x  ", "  y  "), code=None, left=("x_gone", "y_gone"),
+    ),
+    Case(
+        LISTS, "a name with a placeholder", "filled in", ("-L", "v", "1,2", "-n", "run {v}", "echo {v}"),
+        ("  run 1  ", "  run 2  "), code=None,
+    ),
+    Case(
+        LISTS, "values that begin with a dash", "values", ("-L", "f", "--sort=none,-l", "ls {f}"),
+        ("  -l  ", "  --sort=none  "), code=None,
+    ),
+    Case(
+        LISTS, "braces of awk and of the shell", "left alone",
+        ("-L", "v", "a,b", "awk '{print $1}' {v}", "--prepare", "touch ${TMPDIR}/{v}", "--time", "1s"),
+        ("  a  ", "  b  "), code=None, files={"a.txt": "", "b.txt": ""}, setup="touch a b",
+    ),
+    Case(
+        LISTS, "a placeholder without a list", "one line names it", ("--prepare", "touch {t}", "true", "ls"),
+        ("--prepare: found {t}, expected a list",), code=1, not_left=("{t}",),
+    ),
+    Case(
+        LISTS, "steps and decimals", "ranges", ("-P", "i", "0.1", "0.5", "0.2", "echo {i}"),
+        ("  echo 0.1  ", "  echo 0.3  ", "  echo 0.5  "), code=None,
+    ),
+    Case(
+        LISTS, "a thousand values", "the option that makes them is named",
+        ("-P", "i", "1", "1000", "echo {i}"), ("-P i: found 1 1000, which makes 1000 commands",), code=1,
+    ),
+    Case(
+        LISTS, "one of several that fails", "the others go on, it is listed",
+        ("-L", "t", "0.1,0.12,oops,0.15", "sleep {t}"),
+        ("sleep oops: failed after 0 runs", "  sleep 0.12  ", "  sleep 0.15  "), code=2, time="6s",
+    ),
+    Case(
+        WRITTEN, "an export to a device", "written to it; what it refuses is told, and it stays a device",
+        ("--export-json", "full", "true", "ls"), ("full: No space left on device",), code=1,
+        setup="ln -s /dev/full full",
+        through='"$@"; code=$?; test -c /dev/full && test -h full && exit $code',
+    ),
+    Case(
+        WRITTEN, "an export to a pipe", "its reader gets it", ("--export-csv", "pipe", "true", "ls"),
+        ("command,case,block",), code=None, setup="mkfifo pipe",
+        through='cat pipe > got & "$@"; code=$?; wait; cat got; test -p pipe && exit $code',
+    ),
+    Case(
+        WRITTEN, "an export to a link", "its target is replaced", ("--export-csv", "link", "true", "ls"),
+        code=None, setup="echo old > file; ln -s file link",
+        through='"$@"; code=$?; test -h link && grep -q command file && exit $code',
+    ),
+    Case(
+        WRITTEN, "an export to -", "standard output has it, and the result stands beside",
+        ("--export-json", "-", "true", "ls"), ('"schema_version"', "  true  "), code=None,
+        through='"$@" > out; code=$?; grep -q schema_version out && ! grep -q against out && cat out;'
+        "exit $code",
+    ),
+    Case(
+        WRITTEN, "an export to /dev/stdout", "the same", ("--export-csv", "/dev/stdout", "true", "ls"),
+        ("command,case,block",), code=None,
+    ),
+    Case(
+        WRITTEN, "two exports to one name", "refused",
+        ("--export-json", "x", "--export-csv", "./x", "true", "ls"),
+        ("--export-csv: found x, which --export-json names too",), code=1, not_left=("x",),
+    ),
+    Case(
+        WRITTEN, "an export and --append to one name", "refused",
+        ("--export-json", "x", "--append", "x", "true", "ls"), ("which --export-json names too",), code=1,
+        not_left=("x",),
+    ),
+    Case(
+        WRITTEN, "--append to a device", "refused", ("--append", "/dev/null", "true", "ls"),
+        ("--append: found /dev/null, which is no file",), code=1,
+    ),
+    Case(
+        ENDS, "standard output is closed", "said, and what was asked for is written",
+        ("--export-csv", "x", "true", "ls"), ("standard output: is closed",), code=1, left=("x",),
+        through='"$@" >&-',
+    ),
+    Case(
+        ENDS, "standard error is closed", "the result all the same", ("true", "ls"), ("  true  ", "  ls  "),
+        code=None, through='"$@" 2>&-',
+    ),
+    Case(
+        ENDS, "standard output has no room", "said, and what was asked for is written",
+        ("--export-csv", "x", "true", "ls"), ("standard output: No space left",), code=1, left=("x",),
+        through='"$@" >/dev/full',
+    ),
+    Case(
+        ENDS, "a reader that goes", "what was asked for is written", ("--export-csv", "x", "true", "ls"),
+        left=("x",), through='"$@" | head -n 1 > first', code=0,
+    ),
+)  # fmt: skip

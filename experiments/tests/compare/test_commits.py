@@ -1,0 +1,365 @@
+"""`carom gate`: which commits are compared, with what in them, and that each runs a program of its own."""
+
+import os
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+from experiments.tests.compare.calls import CAROM, left_behind, needs_the_program
+
+START = """
+prints() { printf '#!/bin/sh\\necho took %s ms\\n' "$1" >prog.in; }
+commit() { git add . && git commit -q --allow-empty -m "$1"; }
+git init -q 'a repository' && cd 'a repository'
+prints 100 && commit one
+"""
+"""A repository whose program says how long it took, in a folder with a space in its name."""
+
+FASTER = f"""{START}
+git checkout -q -b branch && echo hello >README && commit readme
+git checkout -q main && prints 50 && commit faster && git checkout -q branch
+"""
+"""The base became faster after the branch had left it, and the branch adds a README alone."""
+
+SLOWER = f"""{START}
+git checkout -q -b branch && prints 150 && commit slower
+"""
+
+SUBMODULES = f"""
+for one in nested lib; do
+    git init -q $one && echo 50 >$one/value && echo $one >$one/name
+    git -C $one add . && git -C $one commit -q -m one
+done
+git -C lib submodule --quiet add ../nested 'in it' && git -C lib commit -q -m two
+{START}
+git submodule --quiet add HERE/lib lib && git submodule --quiet update --init --recursive
+commit lib && git checkout -q -b branch
+echo 100 >'lib/in it/value' && git -C 'lib/in it' commit -q -a -m slower
+git -C lib commit -q -a -m slower && commit slower
+"""
+"""A submodule with another in it, whose newest commits are nowhere but in the user's own folders."""
+
+CLONED = f"""{SUBMODULES}
+git clone -q . ../clone && cd ../clone && git checkout -q --detach origin/main && echo x >x && commit x
+"""
+"""A clone without submodules, of commits whose submodules are still where they come from."""
+
+COPY = "cp prog.in prog && chmod +x prog"
+FROM_LIB = """
+took=$(($(cat lib/value) + $(cat 'lib/in it/value')))
+printf '#!/bin/sh\\necho took %s ms\\n' $took >prog && chmod +x prog
+"""
+INSTALL = "mkdir -p HERE/fixed && cp prog.in HERE/fixed/prog && chmod +x HERE/fixed/prog"
+"""Into a place that both builds share."""
+
+CURRENT = f"{COPY} && ln -sfn $PWD HERE/current"
+ONCE = f"[ -e HERE/once ] || cp prog.in HERE/once; cp HERE/once prog.in && {COPY}"
+"""As with a build folder that both builds share: the second one finds nothing to do."""
+
+TOOK = ("--time-from", "took ([0-9]+) ms", "--time", "1s", "-q")
+ALLOWED = {"GIT_ALLOW_PROTOCOL": "file"}
+ONE_LEFT = (
+    "where HEAD left main; 1 commit of main since then is not in HEAD (--base-exactly compares with main"
+)
+UNSHALLOW = "`git fetch --unshallow origin '+refs/heads/*:refs/remotes/origin/*'` (fetch-depth: 0 of actions/"
+PASSED = "gate: passed: not slower by more than the margin"
+FAILED = "gate: failed: slower"
+SHARED = (
+    "written by the builds: both commits would use what was built last; expected a path inside the checkout"
+)
+SAME = "found ./prog with the same bytes in both commits, which differ in "
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is done, and what is right: the exit code, and texts in what is said. HERE is the folder with all.
+
+    The last folder of `done` is the user's own.
+    """
+
+    done: str
+    code: int
+    told: tuple[str, ...]
+    options: tuple[str, ...] = ()
+    build: str = COPY
+    run: tuple[str, ...] = ("./prog",)
+    not_told: str = "--base-exactly"
+    env: dict[str, str] = field(default_factory=dict)
+
+
+COMMITS = {
+    "the base went on": Case(FASTER, 0, (ONE_LEFT, PASSED), not_told="2 commits"),
+    "the base went on twice": Case(
+        f"{FASTER} git checkout -q main && commit x && git checkout -q branch",
+        0,
+        ("; 2 commits of main since then are not in HEAD (",),
+        not_told="1 commit ",
+    ),
+    "the base itself": Case(FASTER, 3, (FAILED,), ("--base-exactly",)),
+    "the base did not go on": Case(SLOWER, 3, (FAILED,)),
+    "the base has the head": Case(
+        f"{FASTER} git checkout -q --detach main~1",
+        1,
+        ("HEAD has nothing that main lacks; --base-exactly compares them all the same",),
+        not_told="since then",
+    ),
+    "the base has the head, exactly": Case(
+        f"{FASTER} git checkout -q --detach main~1", 3, (FAILED,), ("--base-exactly",)
+    ),
+    "one commit": Case(START, 0, ("main and HEAD are the same commit, ", ": it is measured twice", PASSED)),
+    "nothing in common": Case(
+        f"{SLOWER} git checkout -q --orphan other && commit other",
+        1,
+        ("HEAD has no commit in common with main; --base-exactly compares them all the same",),
+        not_told="shallow",
+    ),
+    "nothing in common, exactly": Case(
+        f"{SLOWER} git checkout -q --orphan other && commit other", 3, (FAILED,), ("--base-exactly",)
+    ),
+    "nothing in common as far as the clone goes": Case(
+        f'{SLOWER} git clone -q --depth 1 --no-single-branch "file://$PWD" ../clone && cd ../clone',
+        1,
+        ("HEAD has no commit in common with origin/main; the clone is shallow: ", UNSHALLOW),
+        ("--base", "origin/main"),
+        not_told="since then",
+    ),
+    "changes that are not committed": Case(
+        f"{SLOWER} touch more", 3, ("carom: what is not committed is not measured",)
+    ),
+    "a folder that is new": Case(
+        f"{START} git checkout -q -b branch && mkdir sub && touch sub/x && commit sub && cd sub",
+        1,
+        ("): has no folder sub, from which it was asked for",),
+    ),
+    "no program": Case(
+        SLOWER,
+        1,
+        ("carom: head ", ': found "./prog", which is not there; expected a program'),
+        build=f"! grep -q 100 prog.in || {{ {COPY}; }}",
+    ),
+    "in a hook": Case(
+        f"{SLOWER} git checkout -q main",
+        3,
+        (FAILED,),
+        ("--head", "branch"),
+        env={"GIT_DIR": ".git", "GIT_INDEX_FILE": "HERE/a repository/.git/index", "GIT_PREFIX": ""},
+    ),
+}
+
+WHAT_GIT_SAYS = {
+    "not cloned": Case(
+        f'{SLOWER} git clone -q --depth 1 "file://$PWD" ../clone && cd ../clone',
+        1,
+        ("--base: found main, expected a commit of HERE/clone; the clone is shallow: ", UNSHALLOW),
+    ),
+    "no such commit": Case(
+        START, 1, ("--base: found x, expected a commit of ",), ("--base", "x"), not_told="shallow"
+    ),
+    "no commit": Case("git init -q empty && cd empty", 1, ("/empty: has no commits, expected two",)),
+    "another owner": Case(
+        START,
+        1,
+        (": detected dubious ownership in repository at ", "git config --global --add safe.directory "),
+        env={"GIT_TEST_ASSUME_DIFFERENT_OWNER": "1"},
+    ),
+    "no repository": Case(
+        "mkdir none && cd none",
+        1,
+        ("/none: expected a git repository to compare two commits of: not a git repository",),
+    ),
+    "a bare repository": Case(
+        f"{START} git clone -q --bare . ../bare && cd ../bare", 1, ("/bare: is a bare repository, expected",)
+    ),
+    "no git": Case(START, 1, ("git: cannot be run: ", "expected git on PATH"), env={"PATH": "/nowhere"}),
+}
+
+OF_SUBMODULES = {
+    "the user's own": Case(
+        f"{SUBMODULES} mkdir ../gone && mv ../lib ../nested ../gone", 3, ("+50.0 %", FAILED), build=FROM_LIB
+    ),
+    "the user's own in a linked worktree": Case(
+        f"{SUBMODULES} git worktree add -q --detach ../linked && cd ../linked",
+        3,
+        ("+50.0 %", FAILED),
+        build=FROM_LIB,
+    ),
+    "none is checked out now": Case(
+        f"{SUBMODULES} git branch slower && git rm -q lib && commit none",
+        3,
+        ("+50.0 %", FAILED),
+        ("--head", "slower"),
+        build=FROM_LIB,
+    ),
+    "from elsewhere": Case(
+        f"{CLONED}", 0, (PASSED,), ("--base", "origin/main", "--same-bytes"), build=FROM_LIB, env=ALLOWED
+    ),
+    "the inner one from elsewhere": Case(
+        f"{CLONED} git submodule --quiet update --init",
+        0,
+        (PASSED,),
+        ("--base", "origin/main", "--same-bytes"),
+        build=FROM_LIB,
+        env=ALLOWED,
+    ),
+    "from nowhere": Case(
+        CLONED,
+        1,
+        (": the submodule lib cannot be checked out: transport 'file' not allowed", "update none` leaves"),
+        ("--base", "origin/main"),
+        build=FROM_LIB,
+    ),
+    "not wanted": Case(
+        f"{CLONED} git config submodule.lib.update none",
+        0,
+        (PASSED,),
+        ("--base", "origin/main", "--same-bytes"),
+    ),
+    "shallow": Case(
+        f"{CLONED} git submodule --quiet init && git config submodule.lib.url file://HERE/lib\n"
+        "git submodule --quiet update --depth 1",
+        0,
+        (PASSED,),
+        ("--base", "origin/main", "--same-bytes"),
+        build=f"git -C lib log && git -C lib describe --always && {COPY}",
+        env=ALLOWED,
+    ),
+    "a repository by mistake": Case(
+        f"{SLOWER} git clone -q . stray && git add stray 2>&1 && commit x && rm -rf stray && mkdir stray",
+        3,
+        (FAILED,),
+    ),
+}
+
+PROGRAMS = {
+    "installed": Case(
+        SLOWER, 1, (f"found HERE/fixed/prog, {SHARED}",), build=INSTALL, run=("HERE/fixed/prog",)
+    ),
+    "installed, one commit": Case(START, 0, (PASSED,), build=INSTALL, run=("HERE/fixed/prog",)),
+    "installed on PATH": Case(
+        SLOWER,
+        1,
+        (f"found prog, which is HERE/fixed/prog, {SHARED}",),
+        build=INSTALL,
+        run=("env", "prog"),
+        env={"PATH": f"HERE/fixed:{os.environ['PATH']}"},
+    ),
+    "installed, for a shell": Case(
+        SLOWER,
+        1,
+        (f"found HERE/fixed/prog, {SHARED}",),
+        build=INSTALL,
+        run=("sh", "-c", "cd /; X='1' HERE/fixed/prog; true"),
+    ),
+    "installed, for a loader": Case(
+        SLOWER,
+        1,
+        (f"found HERE/fixed/prog, {SHARED}",),
+        build=f"{INSTALL} && {COPY}",
+        run=("env", "LD_PRELOAD=HERE/fixed/prog", "./prog"),
+    ),
+    "a link out of the tree": Case(
+        SLOWER,
+        1,
+        (f"found ./prog, which is HERE/fixed/prog, {SHARED}",),
+        build=f"{INSTALL} && ln -s HERE/fixed/prog prog",
+    ),
+    "a link into the last tree": Case(
+        SLOWER, 1, (f"/head/prog, {SHARED}",), build=CURRENT, run=("HERE/current/prog",)
+    ),
+    "installed before": Case(
+        f"{SLOWER} mkdir ../fixed && cp prog.in ../fixed/prog && chmod +x ../fixed/prog && sleep 0.1",
+        0,
+        (PASSED,),
+        run=("HERE/fixed/prog",),
+        build="true",
+    ),
+    "a tool": Case(SLOWER, 3, (FAILED,), build=f"{COPY} && ln -s /bin/sh tool", run=("./tool", "prog")),
+    "the same bytes": Case(SLOWER, 1, (f"{SAME}prog.in; do the builds share something",), build=ONCE),
+    "the same bytes, accepted": Case(SLOWER, 0, (PASSED,), ("--same-bytes",), build=ONCE),
+    "how it is built differs": Case(
+        f"{START} git checkout -q -b branch && touch CMakeLists.txt && commit x",
+        1,
+        (f"{SAME}CMakeLists.txt; ",),
+    ),
+    "no source differs": Case(
+        f"{START} git checkout -q -b branch && mkdir -p a/doc && touch a/doc/x.c a/b.TXT .x && commit x",
+        0,
+        ("carom: base and head build the same bytes of ./prog: no source differs", PASSED),
+    ),
+    "a script that reads another file": Case(
+        f"{START} echo '. ./prog.in' >prog && chmod +x prog && commit x && git checkout -q -B main\n"
+        "git checkout -q -b branch && prints 150 && commit slower",
+        3,
+        (FAILED,),
+        build="true",
+        run=("sh", "prog"),
+    ),
+}
+
+
+@needs_the_program
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(case, id=name)
+        for table in (COMMITS, WHAT_GIT_SAYS, OF_SUBMODULES, PROGRAMS)
+        for name, case in table.items()
+    ],
+)
+def test_what_is_done_is_answered(tmp_path: Path, case: Case) -> None:
+    (tmp_path / "tmp").mkdir()
+    (tmp_path / "git").write_text(
+        "[user]\nname = a\nemail = a@b\n[init]\ndefaultBranch = main\n", encoding="utf-8"
+    )
+    env = {**os.environ, "GIT_CONFIG_GLOBAL": str(tmp_path / "git"), "GIT_CONFIG_NOSYSTEM": "1"}
+    setting = {**env, "GIT_CONFIG_PARAMETERS": "'protocol.file.allow=always'"}
+    done = f"set -e; {case.done.replace('HERE', str(tmp_path))}\npwd"
+    made = subprocess.run(
+        ["sh", "-c", done], cwd=tmp_path, env=setting, capture_output=True, text=True, check=True
+    )
+    folder = Path(made.stdout.splitlines()[-1])
+    before = state(tmp_path, env)
+    words = ["gate", "--base", "main", *case.options, "--build", case.build, *TOOK, "--", *case.run]
+    said = subprocess.run(
+        [CAROM, *(word.replace("HERE", str(tmp_path)) for word in words)],
+        cwd=folder,
+        env={
+            **env,
+            "TMPDIR": str(tmp_path / "tmp"),
+            **{name: value.replace("HERE", str(tmp_path)) for name, value in case.env.items()},
+        },
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    everything = said.stdout + said.stderr
+    assert said.returncode == case.code, everything
+    for text in case.told:
+        assert text.replace("HERE", str(tmp_path)) in everything
+    assert case.not_told not in everything
+    if said.returncode == 1:
+        assert len([one for one in said.stderr.splitlines() if "is called slower in at most" not in one]) == 1
+    assert left_behind(tmp_path) == []
+    assert state(tmp_path, env) == before
+
+
+def state(folder: Path, env: dict[str, str]) -> list[str]:
+    """What git says of every repository of the user, with its configuration, and all that its folder has."""
+    told = []
+    for git in sorted(folder.glob("*/.git")):
+        for words in (
+            ["status", "--porcelain"],
+            ["submodule", "status", "--recursive"],
+            ["worktree", "list"],
+        ):
+            done = subprocess.run(
+                ["git", *words], cwd=git.parent, env=env, capture_output=True, text=True, check=False
+            )
+            told.append(done.stdout + done.stderr)
+        if git.is_dir():
+            told += [str(one) for one in sorted(git.rglob("*"))]
+            told.append((git / "config").read_text(encoding="utf-8"))
+    return told
