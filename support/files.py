@@ -8,6 +8,7 @@ import json
 import math
 import os
 import re
+import stat
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -38,7 +39,12 @@ def require_place(what: str, path: Path) -> None:
         return
     if path.is_dir():
         raise InputError(f"{what}: found {path}, which is a folder, expected a place for a file")
-    folder = path.resolve().parent
+    try:
+        folder = path.resolve().parent
+    except RuntimeError as error:
+        raise InputError(f"{what}: found {path}, which is a link to itself, expected a file") from error
+    if path.exists() and not os.access(path, os.W_OK):
+        raise InputError(f"{what}: found {path}, expected a file that you may write")
     require_room_for_folder(what, folder)
     there = next(one for one in (folder, *folder.parents) if one.exists())
     if not os.access(there, os.W_OK | os.X_OK):
@@ -53,7 +59,7 @@ def descriptor_of(path: Path) -> int | None:
 
 def write_out(path: Path, text: str) -> None:
     """Write a text: a file whole or not at all, anything else, such as a pipe, as the stream that it is.
-    Raises OSError that names it.
+    Raises OSError that names it, or InputError.
     """
     number = descriptor_of(path)
     is_stream = number is not None or (path.exists() and not path.is_file())
@@ -66,7 +72,7 @@ def write_out(path: Path, text: str) -> None:
         with os.fdopen(opened, "w", encoding="utf-8") as stream:
             stream.write(text)
     except OSError as error:
-        raise OSError(error.errno, error.strerror or str(error), os.fspath(path)) from error
+        raise InputError(f"{path}: {error.strerror or error}, expected somebody who reads it") from error
 
 
 def _opened(path: Path) -> int:
@@ -175,9 +181,16 @@ def replacing(target: Path) -> Iterator[Path]:
     target = target.resolve() if target.is_symlink() else target
     if target.exists() and not target.is_file():
         raise OSError(errno.EINVAL, "is no regular file", os.fspath(target))
+    if target.exists() and not os.access(target, os.W_OK):
+        raise OSError(errno.EACCES, os.strerror(errno.EACCES), os.fspath(target))
     target.parent.mkdir(parents=True, exist_ok=True)
     with _becoming(target, target.with_name(f".{target.stem}.part{target.suffix}")) as part:
         yield part
+        if target.exists():
+            before = target.stat()
+            part.chmod(stat.S_IMODE(before.st_mode))
+            with contextlib.suppress(PermissionError):
+                os.chown(part, before.st_uid, before.st_gid)
 
 
 @contextlib.contextmanager

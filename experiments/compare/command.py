@@ -50,7 +50,7 @@ def measured(asked: Asked, say: Say = lambda _: "") -> tuple[int, Answer]:
     """Measure and tell the result, with the line that `say` makes of it at the head of exported pages;
     returns the exit code and what the last look found.
     """
-    exports.require_places(asked.exports, asked.earlier)
+    exports.require_places(asked.exports, asked.earlier, asked.commands)
     earlier = Earlier(asked.earlier)
     if asked.fixed_layout:
         keep_addresses()

@@ -19,7 +19,7 @@ WORDS, NEXT = "--", "--vs"
 MOST_COMMANDS = 100
 """More are no comparison."""
 
-_WORD = r"""(?:[\w./:,@%^+=-]|'[^']*'|"[^"$`\\!]*")+"""
+_WORD = r"""(?:\$(?=[ \t]|$)|[\w./:,@%^+=-]|'[^']*'|"[^"$`\\!]*")+"""
 _SIMPLE = re.compile(rf"[ \t]*{_WORD}(?:[ \t]+{_WORD})*[ \t]*")
 """A line in which a shell has nothing to do: plain words, and quotes around what is taken as it is."""
 _OF_THE_SHELL = frozenset(

@@ -9,7 +9,14 @@ from dataclasses import replace
 from experiments.compare.answer import Answer, ask
 from experiments.compare.blocks import Blocks, Key
 from experiments.compare.earlier import Earlier, How
-from experiments.compare.first_run import NotMeantError, note_idle, require_meant, rounds_of, unstoppable
+from experiments.compare.first_run import (
+    NotMeantError,
+    note_idle,
+    require_alike,
+    require_meant,
+    rounds_of,
+    unstoppable,
+)
 from experiments.compare.found import Found, Look
 from experiments.compare.options import Asked
 from experiments.compare.question import experiment_of
@@ -55,6 +62,8 @@ class Course:
                 self._measure(judge, line)
         except Interrupted as interrupted:
             stopped = interrupted.signal_number
+            if self.blocks.done == self._answer.next:
+                self._look(judge)
         except NotMeantError:
             raise
         except (InputError, OSError) as error:
@@ -120,6 +129,7 @@ class Course:
     def _first_block(self, line: "Line") -> None:
         """One run of each by itself, which tells how they are to be measured; it counts where that is so."""
         asked, blocks = self.asked, self.blocks
+        require_alike(asked)
         line.show(lambda: f"one run of each, {blocks.seconds:.0f} s")
         for name in unstoppable(asked):
             warn(f"carom: {name}: runs as another user, so that it can be neither stopped nor ended here")

@@ -7,7 +7,7 @@ from typing import Any
 
 from experiments.compare.blocks import Blocks
 from support.errors import InputError
-from support.files import read_json, replacing, require_room_for_folder
+from support.files import descriptor_of, read_json, replacing, require_place
 from support.record_schema import is_record
 
 SCHEMA_VERSION = 2
@@ -38,10 +38,17 @@ class Earlier:
     def __init__(self, path: Path | None) -> None:
         """Reads it. Raises InputError for what is no such file, and where there is no place for one."""
         if path is not None:
-            require_room_for_folder("--append", path.absolute().parent)
+            require_place("--append", path)
+            if descriptor_of(path) is not None:
+                raise InputError(
+                    f"--append: found {path}, which is no file, expected one, or a place for one"
+                )
         self._path = path
         self._sessions = _read(path) if path is not None and path.exists() else []
-        self._goes_on = False
+        self._kept = self._sessions
+        """What is in the file, as far as is known."""
+        self._is_last = False
+        """Whether the last session of the file is this call's, or one that it goes on with."""
 
     @property
     def how(self) -> How | None:
@@ -53,7 +60,7 @@ class Earlier:
         if not self._sessions:
             return ""
         wrong = blocks.take_up(self._sessions[-1].records)
-        self._goes_on = not wrong
+        self._is_last = not wrong
         return wrong
 
     def keep(self, blocks: Blocks, how: How) -> None:
@@ -61,10 +68,14 @@ class Earlier:
         if self._path is None:
             return
         now = Session(how, blocks.records)
-        sessions = [*(self._sessions[:-1] if self._goes_on else self._sessions), now]
+        there = _read(self._path) if self._path.exists() else []
+        if there != self._kept:  # another call has written meanwhile: what it measured stays
+            self._kept, self._is_last = there, False
+        self._kept = [*(self._kept[:-1] if self._is_last else self._kept), now]
+        self._is_last = True
         content = {
             "schema_version": SCHEMA_VERSION,
-            "sessions": [{"how": asdict(one.how), "records": one.records} for one in sessions],
+            "sessions": [{"how": asdict(one.how), "records": one.records} for one in self._kept],
         }
         with replacing(self._path) as part:
             part.write_text(json.dumps(content, ensure_ascii=False) + "\n", encoding="utf-8")

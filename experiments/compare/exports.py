@@ -5,12 +5,14 @@ import io
 import json
 import shlex
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
+from experiments.compare.commands import Compared
 from experiments.compare.found import Found
 from experiments.compare.pages import markdown, page, title
+from experiments.plan.executable import found as file_of
 from support.command_line import print_lines
 from support.errors import InputError
 from support.files import descriptor_of, require_place, write_out
@@ -18,9 +20,11 @@ from support.files import descriptor_of, require_place, write_out
 SCHEMA_VERSION = 2
 
 
-def require_places(exports: Mapping[str, Path], earlier: Path | None) -> None:
-    """Raises InputError, before anything is measured, for a file that cannot be written, and for two of one
-    name.
+def require_places(
+    exports: Mapping[str, Path], earlier: Path | None, commands: Sequence[Compared] = ()
+) -> None:
+    """Raises InputError, before anything is measured, for a file that cannot be written, for two of one name,
+    and for one that a command has among its words.
     """
     places = {f"--export-{kind}": path for kind, path in exports.items()}
     for option, path in places.items():
@@ -31,16 +35,22 @@ def require_places(exports: Mapping[str, Path], earlier: Path | None) -> None:
         if place in seen:
             raise InputError(f"{option}: found {path}, which {seen[place]} names too, expected another file")
         seen[place] = option
+    for one in commands:
+        words = [part for word in one.words for part in (word, *word.split())]
+        for word in words:
+            file = file_of(word.strip("'\""), one.folder).resolve()
+            if file in seen:
+                raise InputError(f"{seen[file]}: found {word}, which {one.name} uses, expected another file")
 
 
 def write(found: Found, said: list[str], first: str, draw: Callable[[], Path]) -> None:
     """Write what was asked for, each file whole or not at all: `said` are the lines of the result, `first` is
     the verdict in a line if it is another than the usual one, `draw` makes the picture. Raises the first
-    OSError once all others are written.
+    OSError or InputError once all others are written.
     """
     first = first or title(found)
     again = shlex.join(["carom", *sys.argv[1:]])
-    errors = []
+    errors: list[OSError | InputError] = []
     for kind, path in found.asked.exports.items():
         try:
             text = {
@@ -50,7 +60,7 @@ def write(found: Found, said: list[str], first: str, draw: Callable[[], Path]) -
                 "html": lambda: page(found, said, first, again, draw() if found.answer.commands else None),
             }[kind]()
             write_out(path, text)
-        except OSError as error:
+        except (OSError, InputError) as error:
             errors.append(error)
     if errors:
         raise errors[0]

@@ -73,9 +73,9 @@ def note_idle(asked: Asked, runs: Mapping[Key, Runs], idle_processors: float) ->
     return any(one.undisturbed for one in runs.values())
 
 
-def require_meant(asked: Asked, runs: Mapping[Key, Runs]) -> None:
-    """Raises InputError for a Google Benchmark that would be timed as a whole although nobody said so; says
-    so of what may be one.
+def require_alike(asked: Asked) -> None:
+    """Raises InputError for a Google Benchmark beside a command that is none; says so of a command that has
+    one in its line or script. None of them is run to find out.
     """
     if asked.is_whole or asked.cases:
         return
@@ -83,13 +83,18 @@ def require_meant(asked: Asked, runs: Mapping[Key, Runs]) -> None:
         if call_of(one) is not None:
             other = next(each.line for each in asked.commands if call_of(each) is None)
             told = f"{one.name}: is a Google Benchmark, and {other} is none"
-            raise NotMeantError(f"{told}; expected cases of all, or --no-gb to time whole programs")
-        told = f"{one.name}: runs a Google Benchmark, which repeats its cases until their time is full"
-        if _has_table(runs[one.name, 0].output):
-            expected = "expected that program with its arguments alone, or --no-gb to time it as a whole"
-            raise NotMeantError(f"{told}; {expected}")
+            raise InputError(f"{told}; expected cases of all, or --no-gb to time whole programs")
         if program := names_benchmark(one):
             warn(f"carom: {one.name}: is timed as a whole, with the Google Benchmark {program} in it")
+
+
+def require_meant(asked: Asked, runs: Mapping[Key, Runs]) -> None:
+    """Raises InputError for a Google Benchmark that would be timed as a whole although nobody said so."""
+    for one in asked.commands:
+        if not (asked.is_whole or asked.cases) and _has_table(runs[one.name, 0].output):
+            told = f"{one.name}: runs a Google Benchmark, which repeats its cases until their time is full"
+            expected = "expected that program with its arguments alone, or --no-gb to time it as a whole"
+            raise NotMeantError(f"{told}; {expected}")
 
 
 def _has_table(output: str) -> bool:

@@ -70,10 +70,6 @@ def parse(arguments: Sequence[str]) -> Asked:
     own, words = split_off(arguments)
     options = _parser().parse_args(own)
     commands = commands_of(options, words)
-    for option in ("append", *(f"export_{kind}" for kind in EXPORTS)):
-        if (options.list or options.range) and named_in([str(getattr(options, option) or "")]):
-            found = f"--{option.replace('_', '-')}: found {getattr(options, option)}"
-            raise InputError(f"{found}, expected one file for all commands")
     asked = asked_of(options, commands, reference_of(options.reference, [one.name for one in commands]))
     return replace(with_cases(asked, options), earlier=options.append)
 
@@ -123,9 +119,23 @@ def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], refere
         fixed_layout=options.fixed_layout,
         setup=setup,
         cleanup=cleanup,
-        exports={kind: path for kind in EXPORTS if (path := getattr(options, f"export_{kind}")) is not None},
+        exports={kind: places[0] for kind in EXPORTS if (places := _places(options, kind))},
         quiet=options.quiet,
     )
+
+
+def _places(options: argparse.Namespace, kind: str) -> list[Path]:
+    """The file that is to hold the result as that kind, if one is. Raises InputError for a second one."""
+    files: list[Path] = getattr(options, f"export_{kind}")
+    if len(files) > 1:
+        raise InputError(f"--export-{kind}: found {files[0]} and {files[1]}, expected one file")
+    if (
+        files
+        and named_in([str(files[0])])
+        and (getattr(options, "list", []) or getattr(options, "range", []))
+    ):
+        raise InputError(f"--export-{kind}: found {files[0]}, expected one file for all commands")
+    return files
 
 
 def _before_and_after(options: argparse.Namespace) -> list[tuple[str, str | None]]:
@@ -225,5 +235,13 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
     add("--fixed-layout", action="store_true", help=told)
     for kind in EXPORTS:
         also = ("--html",) if kind == "html" else ()
-        add(f"--export-{kind}", *also, type=Path, metavar="FILE", help=f"also write the result as {kind}")
+        add(
+            f"--export-{kind}",
+            *also,
+            type=Path,
+            action="append",
+            default=[],
+            metavar="FILE",
+            help=f"also write the result as {kind}",
+        )
     add("-q", "--quiet", action="store_true", help="print the result alone")

@@ -21,9 +21,16 @@ _NO_SOURCE = re.compile(
 
 
 def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int) -> None:
-    """Raises InputError for a file that both commits run or read, and that their builds wrote: one that has
-    changed since a time of the file system, in nanoseconds, as all that is in the trees has.
+    """Raises InputError for a file that both commits run or read: one of the user's own checkout, or one that
+    their builds wrote, which has changed since a time of the file system, in nanoseconds, as all that is in
+    the trees has.
     """
+    own, trees = base.repository.resolve(), base.top.resolve().parent
+    for word in _parts(words):
+        path = Path(word).resolve() if word.startswith("/") else trees
+        if path.exists() and path.is_relative_to(own) and not path.is_relative_to(trees):
+            told = "of your own checkout: both commits would use it"
+            raise InputError(f"found {word}, {told}; expected a path inside the checkout, such as ./prog")
     of_base = set(_named(words, base.folder))
     for word, path in _named(words, head.folder):
         if (word, path) in of_base and path.stat().st_ctime_ns > since:
@@ -60,12 +67,17 @@ def _built(words: Sequence[str], tree: Tree) -> Iterator[tuple[str, Path]]:
 
 def _named(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:
     """The files that words name in a folder or on PATH, without links; devices are none."""
-    parts = [part for word in words for part in (word, *_split(word))]
-    for word in (*parts, *(part.partition("=")[2] for part in parts)):
+    for word in _parts(words):
         on_path = shutil.which(word) if "/" not in word else None
         for path in (folder / word, Path(on_path or folder)):
             if is_file(path) and not word.startswith(("/dev/", "/proc/")):
                 yield word, path.resolve()
+
+
+def _parts(words: Sequence[str]) -> list[str]:
+    """The words, those of lines for a shell among them, and what stands behind a sign of equality."""
+    parts = [part for word in words for part in (word, *_split(word))]
+    return [*parts, *(part.partition("=")[2] for part in parts)]
 
 
 def _split(line: str) -> list[str]:

@@ -147,7 +147,9 @@ def _how_long(found: Found) -> str:
         return f"settled after {found.seconds:.0f} s, {blocks}"
     said = f"measured for {found.seconds:.0f} s, {blocks}"
     if not found.blocks or not answer.commands:
-        return f"{said}: an interval needs {answer.next} blocks"
+        more = max(1, answer.next) * found.seconds_each
+        option = f", which `--time {math.ceil(1.2 * more)}s` gives" if found.blocks else ""
+        return f"{said}: an interval needs {answer.next} blocks{option}"
     if answer.needed is None:
         return f"{said}: no number of blocks in sight would settle it; the difference may lie on the margin"
     seconds = (answer.needed - answer.looked_at) * found.seconds_each

@@ -43,6 +43,8 @@ class Tree:
     commit: Commit
     top: Path
     folder: Path
+    repository: Path
+    """The user's own checkout."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,7 @@ class Repository:
             self._fill(top, self.top, commit)
             if not (top / self.below).is_dir():
                 raise InputError(f"{commit}: has no folder {self.below}, from which it was asked for")
-            yield Tree(commit, top, top / self.below)
+            yield Tree(commit, top, top / self.below, self.top)
         finally:
             git(self.top, "worktree", "remove", "--force", "--force", str(top))
             git(self.top, "worktree", "prune")

@@ -33,7 +33,11 @@ def found(word: str, folder: Path) -> Path:
 def require_executable(word: str, folder: Path) -> None:
     """Raises UnfitError for a first word that names nothing that can be run, as far as can be seen."""
     path = found(word, folder)
-    if not path.exists():
+    try:
+        is_there = path.exists()
+    except OSError as error:
+        raise UnfitError(f"cannot be looked at: {error.strerror}") from error
+    if not is_there:
         raise UnfitError("is a link to nothing" if path.is_symlink() else "is not there")
     if path.is_dir():
         raise UnfitError("is a folder; expected a program")

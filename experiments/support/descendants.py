@@ -15,6 +15,16 @@ _LONGEST_SECONDS = 5.0
 """How long the end of what was killed is waited for: the kernel may keep one that reads from a dead disk."""
 
 
+_KEEPER, _PATIENCE = "carom-keeper", 2.0
+"""What looks after a program that is measured, and the seconds that it has to end that by itself."""
+
+
+def _name(number: int) -> str:
+    with contextlib.suppress(OSError):
+        return Path(f"/proc/{number}/comm").read_text(encoding="ascii", errors="replace").strip()
+    return ""
+
+
 @cache
 def adopt_orphans() -> None:
     """From now on whatever a descendant leaves behind becomes a child of this process, not of the system's
@@ -42,10 +52,13 @@ def children() -> frozenset[int]:
 
 def end_all_but(known: frozenset[int]) -> None:
     """End the children that are not among the known ones, and what they leave behind in turn."""
-    until = time.monotonic() + _LONGEST_SECONDS
+    began = time.monotonic()
+    until = began + _LONGEST_SECONDS
     while (others := children() - known) and time.monotonic() < until:
         for number in others:
-            with contextlib.suppress(ProcessLookupError):
+            if time.monotonic() - began < _PATIENCE and _name(number) == _KEEPER:
+                continue  # it ends what it looks after, and removes its control group
+            with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.kill(number, signal.SIGKILL)
             with contextlib.suppress(ChildProcessError):
                 os.waitpid(number, os.WNOHANG)

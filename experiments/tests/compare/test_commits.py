@@ -58,7 +58,7 @@ CURRENT = f"{COPY} && ln -sfn $PWD HERE/current"
 ONCE = f"[ -e HERE/once ] || cp prog.in HERE/once; cp HERE/once prog.in && {COPY}"
 """As with a build folder that both builds share: the second one finds nothing to do."""
 
-TOOK = ("--time-from", "took ([0-9]+) ms", "--time", "1s", "-q")
+TOOK = ("--time-from", "took ([0-9]+) ms", "--time", "30s", "-q")
 ALLOWED = {"GIT_ALLOW_PROTOCOL": "file"}
 ONE_LEFT = (
     "where HEAD left main; 1 commit of main since then is not in HEAD (--base-exactly compares with main"

@@ -124,7 +124,7 @@ TEST_F(TurnsCommand, LetsTheEventDrivenSimulationTakePart) {
               0);
     const auto alone = run_carom({"run", scene, "--variant", "event_driven", "--json"});
     EXPECT_EQ(record("two")["state_hash"], Json::parse(alone.output)["state_hash"]);
-    EXPECT_EQ(record("two")["turns"]["seconds"].size(), 60);
+    EXPECT_EQ(record("two")["turns"]["seconds"].size(), 30);
     EXPECT_EQ(record("two")["check"]["verdict"], "passed");
 }
 
