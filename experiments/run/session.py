@@ -106,7 +106,7 @@ class Session:
             if self._schedule.is_complete(experiment):
                 self._schedule.begin(experiment)  # it may have fewer points than when it was completed
         settings = self._study.settings
-        looks = settings.figures and settings.blocks is None and not settings.builds
+        looks = (settings.figures or bool(settings.builds)) and settings.blocks is None
         self._keep_time_to_decide()
         deciding = [one for one in self._incomplete if may_decide(one)] if looks else self._incomplete
         begun = self._first_blocks(deciding, FIRST_LOOK if looks else 0)
@@ -131,7 +131,8 @@ class Session:
         """
         begun = []
         for experiment in sorted(experiments, key=self._schedule.least_seconds) if wanted else experiments:
-            if wanted and self._schedule.seconds_of(experiment, wanted) > self._time_left():
+            least = min(wanted, experiment.question.blocks.wanted)
+            if wanted and self._schedule.seconds_of(experiment, least) > self._time_left():
                 continue
             begun.append(experiment)
             self._run_control(everything=False)

@@ -240,6 +240,25 @@ CASES = (
         ("--export-csv: found x, which --export-json names too",), code=1, not_left=("x",),
     ),
     Case(
+        WRITTEN, "one export given twice", "refused",
+        ("--export-csv", "x", "--export-csv", "y", "true", "ls"),
+        ("--export-csv: found x and y, expected one file",), code=1, not_left=("x", "y"),
+    ),
+    Case(
+        WRITTEN, "an export to a program that is compared", "refused",
+        ("--export-json", "./a", "./a", "true"),
+        ("--export-json: found ./a, which a uses",), code=1, files={"a": "exit 0"},
+    ),
+    Case(
+        WRITTEN, "an export to a link to itself", "refused", ("--export-json", "loop", "true", "ls"),
+        ("--export-json: found loop, which is a link to itself",), code=1, setup="ln -s loop loop",
+    ),
+    Case(
+        WRITTEN, "an export over a file of some mode", "the mode stays", ("--export-csv", "x", "true", "ls"),
+        code=None, setup="echo > x; chmod 640 x",
+        through='"$@"; code=$?; test $(stat -c %a x) = 640 && exit $code',
+    ),
+    Case(
         WRITTEN, "an export and --append to one name", "refused",
         ("--export-json", "x", "--append", "x", "true", "ls"), ("which --export-json names too",), code=1,
         not_left=("x",),

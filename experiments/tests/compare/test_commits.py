@@ -233,6 +233,12 @@ OF_SUBMODULES = {
 }
 
 PROGRAMS = {
+    "a file of the user's own checkout": Case(
+        SLOWER,
+        1,
+        ("of your own checkout: both commits would use it; expected a path inside the checkout",),
+        run=("sh", "HERE/a repository/prog.in"),
+    ),
     "installed": Case(
         SLOWER, 1, (f"found HERE/fixed/prog, {SHARED}",), build=INSTALL, run=("HERE/fixed/prog",)
     ),
