@@ -38,7 +38,8 @@ struct TurnsPlan {
 };
 
 /// How many rounds there are, if a turn is to last `turn_seconds` on the median of the contenders and no turn
-/// may be shorter than two steps, a first one that finds other caches and one that does not; at least one. `expected_seconds` are those of each contender's whole run.
+/// may be shorter than two steps, a first one that finds other caches and one that does not; at least one.
+/// `expected_seconds` are those of each contender's whole run.
 int count_rounds(std::span<const double> expected_seconds, int fewest_steps, double turn_seconds);
 
 /// All contenders advance from their first step to their last together: in each round each of them takes the

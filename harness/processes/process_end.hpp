@@ -24,10 +24,10 @@ struct ProcessEnd {
     int exit_code = 0;
     int signal = 0; ///< the one that killed it, or 0
     bool out_of_time = false;
-    std::string went_on;     ///< the names of what it had started and that went on after its own end, if it
-                             ///< ran out of time
+    std::string went_on; ///< the names of what it had started and that went on after its own end, if it
+                         ///< ran out of time
     double seconds_left_behind = 0; ///< how long what it had started went on after its own end
-    double user_seconds = 0; ///< of CPU time, of all that it started
+    double user_seconds = 0;        ///< of CPU time, of all that it started
     double system_seconds = 0;
     std::optional<std::int64_t> peak_memory_bytes; ///< of all together, or of the largest (see memory_of)
     std::string memory_of;                         ///< of what that is the peak, or why it is not known
