@@ -21,23 +21,10 @@ _PROGRAM = b"\x7fELF"
 _MARKS = (b"benchmark_list_tests", b"libbenchmark.so")
 """What stands in a program that has the library in it, or that loads it."""
 
-
-_WRAPPERS = frozenset(
-    (
-        "env",
-        "taskset",
-        "numactl",
-        "nice",
-        "ionice",
-        "chrt",
-        "stdbuf",
-        "setarch",
-        "nohup",
-        "prlimit",
-        "sudo",
-        "timeout",
-    )
-)
+_WRAPPERS = frozenset((
+    "env", "taskset", "numactl", "nice", "ionice", "chrt", "stdbuf", "setarch", "nohup", "prlimit", "sudo",
+    "timeout",
+))  # fmt: skip
 """Programs that become the one among their words."""
 _BEHIND_INPUT = 4
 """The place of a command's first word behind a shell that opens its input (commands.py)."""

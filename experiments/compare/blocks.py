@@ -57,11 +57,6 @@ class Runs:
     tries: int = 0
     """How many runs ended well, those included that no longer count."""
 
-    @property
-    def is_unlike(self) -> bool:
-        """Whether its runs ended with more than one exit code, so that their times are of unlike kinds."""
-        return len(self.codes) > 1
-
     def median(self, name: str) -> float:
         """The middle of one of the lists."""
         return statistics.median(getattr(self, name))
@@ -209,7 +204,7 @@ class Blocks:
                 runs.counts.setdefault(name, []).append(amount)
         runs.memory = process["peak_memory_reason"]
         runs.undisturbed = process["undisturbed"] or runs.undisturbed
-        if runs.is_unlike:
+        if len(runs.codes) > 1:
             runs.reason = (
                 f"found runs that ended unlike ({codes_said(runs.codes)}): their times are not of one kind"
             )

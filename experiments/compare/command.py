@@ -118,11 +118,10 @@ def _remarks(course: Course) -> tuple[str, ...]:
         often = zip(asked.commands, asked.rounds, strict=True)
         told = ", ".join(f"{one.name} {number}" for one, number in often)
         remarks.append(f"runs of each in a block, in random order and none of them stopped: {told}")
-    for one in asked.commands:
-        for case in range(len(asked.cases) or 1):
-            runs = course.blocks.runs[one.name, case]
-            if runs.all and not asked.has_printed_times and not asked.cases:
-                of_both = [course.first.get((name, case), 0.0) for name in (one.name, one.name + AGAIN)]
+    if not (asked.has_printed_times or asked.cases):
+        for one in asked.commands:
+            if (runs := course.blocks.runs[one.name, 0]).all:
+                of_both = [course.first.get((name, 0), 0.0) for name in (one.name, one.name + AGAIN)]
                 remarks += unlike_runs(one.name, max(of_both), runs)
     codes = {one.name: course.blocks.runs[one.name, 0].codes for one in asked.commands}
     if len({tuple(one) for one in codes.values() if one}) > 1:

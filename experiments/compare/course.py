@@ -98,7 +98,9 @@ class Course:
         if earlier.how is None:
             return
         before, self.left_out = self.asked, [*earlier.how.left_out]
-        self._begin_again(replace(self.asked, rounds=earlier.how.rounds, turns=earlier.how.turns))
+        # What the user says of turns stands; a session that was measured in another way is not gone on with.
+        turns = earlier.how.turns if before.turns is None else before.turns
+        self._begin_again(replace(self.asked, rounds=earlier.how.rounds, turns=turns))
         told = earlier.go_on(self.blocks)
         if told:
             warn(
@@ -151,9 +153,7 @@ class Course:
             self._begin_again(asked)
 
     def _block(self) -> None:
-        """A block, and what is to be said and left out of what failed in it. Raises InputError where nothing
-        is left to be compared.
-        """
+        """A block; what failed in it is left out from then on."""
         blocks, asked = self.blocks, self.asked
         if blocks.run(vary_layout=not asked.fixed_layout):
             return
