@@ -23,7 +23,8 @@ _WORD = r"""(?:\$(?=[ \t]|$)|[\w./:,@%^+=-]|'[^']*'|"[^"$`\\!]*")+"""
 _SIMPLE = re.compile(rf"[ \t]*{_WORD}(?:[ \t]+{_WORD})*[ \t]*")
 """A line in which a shell has nothing to do: plain words, and quotes around what is taken as it is."""
 _OF_THE_SHELL = frozenset((
-    ":", ".", "cd", "command", "eval", "exec", "exit", "export", "read", "set", "trap", "ulimit", "umask", "wait",
+    ":", ".", "cd", "command", "eval", "exec", "exit", "export", "read", "set", "trap", "ulimit", "umask",
+    "wait",
 ))  # fmt: skip
 """Commands that are no programs."""
 _ASSIGNMENT = re.compile(r"([A-Za-z_]\w*)=(.*)", re.DOTALL)
