@@ -26,6 +26,10 @@ def _of_commits() -> list[tuple[str, str, str]]:
     """What `carom gate` is given, and what it says first."""
     cases = {**COMMITS, **WHAT_GIT_SAYS, **OF_SUBMODULES, **PROGRAMS}
     return [
-        ("commits", name, f"exit code {one.code}: {one.told[0].removeprefix('carom: ')}")
+        (
+            "commits",
+            name,
+            f"exit code {one.code}: {one.told[0].removeprefix('carom: ').replace('HERE', '/folder')}",
+        )
         for name, one in cases.items()
     ]

@@ -7,7 +7,7 @@ from experiments.support.descendants import hear_of_ends
 from support.errors import Interrupted
 
 # Slurm sends SIGUSR1 ahead of a task's time limit.
-_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1)
 
 
 def stop_at_signals() -> None:
