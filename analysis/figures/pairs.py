@@ -46,16 +46,17 @@ def pair_drawing(
     resolving a pair that each takes.
     """
     times = data.study.times_of(sides.experiment)
-    candidate, reference = (
-        _one_a_block(times[times["series"] == name]) for name in (sides.candidate, sides.reference)
-    )
+    both = [times[times["series"] == name] for name in (sides.candidate, sides.reference)]
+    candidate, reference = map(_one_a_block, both)
     if candidate.empty or reference.empty:
         return None
     if work and (times["question_kind"] == COUNTS).all():
         return _of_counts(data, sides)
     theirs = data.published.ratio(sides.experiment, sides.candidate, sides.reference)
     figure, axes = new_figure(2.3, columns=2 + (theirs is not None) + work, widths=_widths(theirs, work))
-    pairs = log_ratios(reference, candidate)
+    # Of several scenes of a sweep, one value a block.
+    pairs = log_ratios(both[1], both[0], match=("x",)).groupby(PAIR, as_index=False, sort=False)
+    pairs = pairs[["log_ratio", "bias"]].mean()
     if row is None:
         row = judge_one(pairs["log_ratio"], by.margin, by.error, biases=pairs["bias"])
     runs = data.published.experiment(sides.experiment)

@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 from matplotlib import image
 
-from analysis import figures
+from analysis import claims, figures
 from analysis.figures import FIGURES, Entry
 from analysis.figures.labels import label_ends, spread
 from analysis.figures.pairs import ratio_panel
@@ -189,6 +189,25 @@ def test_the_ladder_has_short_names_beside_the_long_ones(tmp_path: Path) -> None
     rows = [[cell.text for cell in row] for row in table.rows]
     variants = {record["tags"]["series"]: record["axes"]["variant"] for record in study(["ladder"], blocks=1)}
     assert {row[0]: row[2] for row in rows} == variants
+
+
+def test_a_figure_and_the_claim_about_it_tell_one_ratio(tmp_path: Path) -> None:
+    """A burst in one turn of each second process: ratios of sums, or of processes, would be others."""
+    for number, one in enumerate(study(["neighbourhood"], blocks=6)):
+        for run in one["repetitions"]:
+            run["steps_seconds"] = 1.0
+        each = [0.1 + 0.01 * (number % 5) + 0.001 * turn for turn in range(8)]
+        each[3] *= 1 + 20 * (number % 2)
+        seconds = each * len(one["repetitions"])
+        one["turns"] = {"contenders": 2, "seed": 1, "rounds": 8, "seconds": seconds}
+        write(tmp_path, [one])
+    (drawn,) = draw_all(tmp_path, ["neighbourhood"], formats=("svg",))
+    studies = split(load(tmp_path))
+    table = claims.evaluate(studies[0], studies, published.load(), claims.load(tmp_path)).set_index("id")
+    ratio = (
+        str(table.loc["four_boxes", "measured"]).removeprefix("four against nine: ").partition(" of time")[0]
+    )
+    assert f"{ratio} against nine boxes" in drawn.caption
 
 
 def test_svg_png_and_pdf_are_written_whole(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from analysis.claims.alternatives import alternatives
 from analysis.statistics.looks import ERROR
-from analysis.statistics.pairs import join_replicates, log_ratios, without_partner
+from analysis.statistics.pairs import join_replicates, location, log_ratios, scaled, without_partner
 
 OTHERS = 16
 REPLICATES = 4
@@ -28,6 +28,45 @@ def test_replicates_in_skewed_noise_are_as_slow_as_a_single_run() -> None:
     assert abs(ratios.mean()) < 3 * ratios.std() / np.sqrt(len(ratios))
     of_medians = single[:, 0] - np.median(several, axis=1)
     assert of_medians.mean() > 3 * of_medians.std() / np.sqrt(len(of_medians))
+
+
+def in_rounds(turns: NDArray[np.float64], block: int = 0) -> pd.DataFrame:
+    """Return a process with these turns, whose time is their sum."""
+    return processes(np.log([[turns.sum()]])).assign(
+        block=block, steps_seconds_of_runs=[np.array([turns.sum()])], steps_seconds_of_rounds=[turns]
+    )
+
+
+def test_a_burst_in_a_turn_moves_the_ratio_of_sums_and_not_that_of_rounds() -> None:
+    generator = np.random.default_rng(4)
+    machine = np.exp(generator.normal(0, 0.2, 24))  # what a round suffers its turns share
+    reference = machine * np.exp(generator.normal(0, 0.01, 24))
+    candidate = machine * np.exp(generator.normal(0.05, 0.01, 24))
+    candidate[7] *= 10
+    [ratio] = log_ratios(in_rounds(reference), in_rounds(candidate))["log_ratio"]
+    assert abs(ratio - 0.05) < 0.01
+    assert np.log(candidate.sum() / reference.sum()) > 0.3
+
+
+def test_processes_without_turns_or_with_unlike_ones_are_compared_by_their_middles() -> None:
+    none = np.empty(0)
+    sides = [in_rounds(np.full(4, seconds)).assign(steps_seconds_of_rounds=[none]) for seconds in (1.0, 2.0)]
+    assert np.isclose(log_ratios(*sides)["log_ratio"][0], np.log(2))
+    unlike = log_ratios(in_rounds(np.full(4, 1.0)), in_rounds(np.full(5, 3.0)))
+    assert np.isclose(unlike["log_ratio"][0], np.log(3))
+
+
+def test_a_factor_scales_rounds_as_it_scales_the_time() -> None:
+    times = scaled(in_rounds(np.array([1.0, 3.0])), "seconds", pd.Series([2.0]))
+    assert list(times["seconds_of_rounds"][0]) == [2.0, 6.0]
+    assert times["seconds"][0] == 8.0
+
+
+def test_the_location_is_the_mean_where_nothing_is_far_off_and_hardly_moved_where_something_is() -> None:
+    values = np.random.default_rng(5).normal(3, 1, 1000)
+    assert abs(location(values) - values.mean()) < 0.03
+    assert abs(location(np.r_[values, np.full(50, 1e9)]) - 3) < 0.15
+    assert location(np.array([2.0, 2.0, 2.0, 9.0])) == 2.0
 
 
 def test_replicates_are_one_sample_of_their_block() -> None:
