@@ -112,9 +112,9 @@ def _figures(options: argparse.Namespace) -> int:
 
 
 def _follow(options: argparse.Namespace) -> int:
-    """Answer a line with a line of JSON: `open` with what is open; `compared N` with what `carom compare`
-    asks, whose error N calls share; `picture` with the file of its picture; `report` with the files of the
-    report, `page` with its HTML alone, `report HOW FAR` with that of what is there so far.
+    """Answer a line with a line of JSON: `open` with what is open; `compared N CLOCK` with what `carom
+    compare` asks, whose error N calls share; `picture` with the file of its picture; `report` with the files
+    of the report, `page` with its HTML alone, `report HOW FAR` with that of what is there so far.
     """
     from analysis.claims import Tested
     from analysis.commands.open_questions import open_questions
@@ -125,8 +125,8 @@ def _follow(options: argparse.Namespace) -> int:
         match line.split():
             case ["open"]:
                 answer: object = open_questions(options.results, remembered)
-            case ["compared", many] if many.isdigit():
-                answer = programs_compared(options.results, int(many))
+            case ["compared", many, clock] if many.isdigit():
+                answer = programs_compared(options.results, int(many), clock)
             case ["picture"]:
                 from analysis.commands.programs_picture import programs_picture
 
@@ -141,7 +141,7 @@ def _follow(options: argparse.Namespace) -> int:
 
                 answer = [str(write_meanwhile(options.results, _asked(options), " ".join(how_far)))]
             case _:
-                expected = "expected `open`, `compared N`, `picture`, `page`, `report` or `report ...`"
+                expected = "expected `open`, `compared N CLOCK`, `picture`, `page`, `report` or `report ...`"
                 raise InputError(f"follow: found {line.strip()!r}, {expected}")
         print(json.dumps(answer), flush=True)
     return 0

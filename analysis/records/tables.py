@@ -59,7 +59,7 @@ CONTEXT = [
 ]  # fmt: skip
 OF_PARTS = {
     "runs": [*WORK, *ERRORS, *CHECKS],
-    "times": ["lost_by_turns"],
+    "times": ["lost_by_turns", "stops", "processor_seconds"],
     "trajectory": ["time", "rms_distance"],
     "phases": ["phase", "wall_seconds", "serial_seconds"],
     "threads": ["phase", "thread", "busy_seconds", "waiting_seconds"],
@@ -192,10 +192,16 @@ def trajectory(record: Record) -> Iterable[Row]:
 
 def times(record: Record) -> Iterable[Row]:
     """Give one row for a process that was timed: `lost_by_turns`, the share of its time that coming back to
-    cold caches took, NaN where not known.
+    cold caches took, and `stops`, in how many slices a run of a whole program was, 0 if it was never stopped;
+    NaN where not known. `processor_seconds` is the median of its runs.
     """
     if len(seconds_of_runs(record)):
-        yield {"lost_by_turns": _lost_by_turns(record)}
+        processor = [one["cpu_seconds"] for one in record["repetitions"]]
+        yield {
+            "lost_by_turns": _lost_by_turns(record),
+            "stops": _stops(record),
+            "processor_seconds": float(np.median(processor)),
+        }
 
 
 def seconds_of_runs(record: Record) -> Floats:
@@ -220,6 +226,13 @@ def _lost_by_turns(record: Record) -> float:
     steps, rounds = record["scene"]["steps"], turns["rounds"]
     found = excess(turns["seconds"], turns["returning_seconds"], steps, rounds)
     return float(found.share) if found else math.nan
+
+
+def _stops(record: Record) -> float:
+    if record["kind"] != "process":
+        return math.nan
+    slices, runs = len((record.get("turns") or {}).get("seconds", [])), len(record["repetitions"])
+    return slices / runs if slices > runs else 0.0
 
 
 def phases(record: Record) -> Iterable[Row]:

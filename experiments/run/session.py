@@ -108,7 +108,7 @@ class Session:
         settings = self._study.settings
         looks = (settings.figures or bool(settings.builds)) and settings.blocks is None
         self._keep_time_to_decide()
-        deciding = [one for one in self._incomplete if may_decide(one)] if looks else self._incomplete
+        deciding = [one for one in self._incomplete if self._may_decide(one)] if looks else self._incomplete
         begun = self._first_blocks(deciding, FIRST_LOOK if looks else 0)
         self._measure([one for one in begun if one.question.blocks.wanted > 1])
         if settings.builds:
@@ -142,6 +142,9 @@ class Session:
                 self._measure([experiment])
         return begun
 
+    def _may_decide(self, experiment: Experiment) -> bool:
+        return may_decide(experiment, self._study.scale.name)
+
     def _time_left(self) -> float:
         """Seconds until measuring stops."""
         return self._until - time.monotonic()
@@ -151,7 +154,7 @@ class Session:
         fits, the cheapest first; then settle more in what is left. Returns what the last look found.
         """
         self._keep_time_to_decide()
-        rest = [one for one in self._incomplete if not may_decide(one)]
+        rest = [one for one in self._incomplete if not self._may_decide(one)]
         whole = self._until
         if rest:
             self._until -= REST_SHARE * max(0.0, whole - time.monotonic())

@@ -28,6 +28,9 @@ class Process {
 
     bool has_ended() const { return has_ended_; }
 
+    /// How long it took, at the end of its last slice, until it was known to stand still.
+    double seconds_to_stop() const { return seconds_to_stop_; }
+
     /// How it ended, once it has.
     const ProcessEnd& end() const { return end_; }
 
@@ -41,6 +44,7 @@ class Process {
     bool has_begun_ = false;
     bool has_ended_ = false;
     double first_slice_began_ = 0;
+    double seconds_to_stop_ = 0;
     Suspensions suspensions_;
     ProcessEnd end_;
 };

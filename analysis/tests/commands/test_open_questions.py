@@ -82,7 +82,7 @@ def test_the_conversation_is_a_line_for_a_line(
     assert page == written[:1]
     assert not (tmp_path / "report.pdf").exists(), "it would be outdated"
     assert (
-        "found 'dance', expected `open`, `compared N`, `picture`, `page`, `report` or `report ...`"
+        "found 'dance', expected `open`, `compared N CLOCK`, `picture`, `page`, `report` or `report ...`"
         in said.err
     )
     assert (tmp_path / "figures" / "neighbourhood.svg").exists()
