@@ -10,6 +10,7 @@ namespace carom {
 
 void add_doctor_command(CLI::App& program) {
     auto json = std::make_shared<bool>(false);
+    auto noise = std::make_shared<bool>(false);
     auto build = std::make_shared<bool>(false);
     auto measure = std::make_shared<bool>(false);
     CLI::App* command =
@@ -18,12 +19,19 @@ void add_doctor_command(CLI::App& program) {
     command->add_flag("--json", *json, "Print the findings as one JSON object");
     command->add_flag("--measure-costs", *measure,
                       "Measure anew, and keep, what work costs here: `run --error-below` chooses by it");
+    command->add_flag("--noise", *noise,
+                      "Watch equal work for 20 s, and draw how much neighbouring stretches of time differ");
     command->add_flag("--build", *build, "Print only how this program was built, as one JSON object");
-    command->callback([json, build, measure] {
+    command->callback([json, noise, build, measure] {
         if (*build) {
             auto built = build_json();
             built["openmp"] = {{"runtime", read_openmp().runtime}};
             std::cout << json_text(built, 2) << '\n';
+            return;
+        }
+        if (*noise) {
+            constexpr double seconds = 20;
+            std::cout << noise_figure(measure_noise(seconds));
             return;
         }
         if (*measure) {

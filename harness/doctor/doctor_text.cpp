@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <CLI/StringTools.hpp>
 
@@ -162,6 +163,21 @@ std::string costs_line(const Findings& findings) {
 }
 
 } // namespace
+
+std::string noise_figure(const Noise& noise) {
+    constexpr double most = 40;
+    double widest = 1e-9;
+    for (const Neighbours& one : noise.neighbours) {
+        widest = std::max(widest, one.difference);
+    }
+    std::string text = "turns of   neighbours differ by   a second of turns leaves open\n";
+    for (const Neighbours& one : noise.neighbours) {
+        const auto length = static_cast<std::size_t>(std::ceil(most * one.difference / widest));
+        text += format("%5.0f ms   %17.2f %%   %25.3f %%   %s\n", 1e3 * one.seconds, 100 * one.difference,
+                       100 * one.difference * std::sqrt(one.seconds), std::string(length, '#').c_str());
+    }
+    return text;
+}
 
 std::string doctor_text(const Findings& findings) {
     return machine_lines(findings.machine, findings.memory_available_bytes) +

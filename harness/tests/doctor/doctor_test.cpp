@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -185,6 +186,23 @@ TEST(Noise, IsTheSpreadOfTheDurations) {
     EXPECT_DOUBLE_EQ(noise.median_seconds, 0.050);
     EXPECT_DOUBLE_EQ(noise.p95_over_median, 95.0 / 50);
     EXPECT_DOUBLE_EQ(noise.max_over_median, 100.0 / 50);
+}
+
+TEST(Noise, OfNeighboursIsThatOfStretchesOfALength) {
+    std::vector<double> durations;
+    for (int k = 0; k < 400; ++k) {
+        // Every other stretch of ten is a tenth longer.
+        durations.push_back((k / 10) % 2 == 0 ? 1e-3 : 1.1e-3);
+    }
+    const auto found = neighbours(durations);
+    ASSERT_EQ(found.size(), 4) << "of 1, 2, 5 and 10: of 20 there are too few";
+    EXPECT_EQ(found[0].difference, 0);
+    EXPECT_EQ(found[3].seconds, 0.01);
+    EXPECT_NEAR(found[3].difference, std::log(1.1) / 0.6745, 1e-9);
+    const Noise noise{.neighbours = found};
+    EXPECT_NE(noise_figure(noise).find("   10 ms               14.13 %                       1.413 %   ####"),
+              std::string::npos)
+        << noise_figure(noise);
 }
 
 TEST(Noise, OfOneSpinIsNone) {
