@@ -7,7 +7,7 @@
 .SILENT:
 .PHONY: help setup environment build build-gcc build-clang install uninstall package calibration-gcc \
         tests-gcc tests-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files experiments appendix calibrate \
-        usual-ways bench-records docs lint lint-quick format clean distclean settings
+        usual-ways docs lint lint-quick format clean distclean settings
 
 export COMPILER ?= gcc
 CXX_gcc := g++
@@ -164,9 +164,6 @@ calibration-gcc: calibration-%: settings
 
 calibrate: environment settings calibration-gcc ## measure how often verdicts are wrong on this machine (TIME=60 RESULTS=results/calibration)
 	$(python) experiments calibrate $(results) $${TIME:+--seconds "$$TIME"}
-
-bench-records: environment settings build-gcc ## how long it takes to read up to 100 000 made-up records
-	$(python) experiments.records_benchmark --output results/records
 
 usual-ways: environment settings build-gcc ## hold `carom compare` against hyperfine, perf stat and others (ROUNDS=10)
 	$(python) experiments.usual_ways --rounds $${ROUNDS:-10} --output results/usual_ways.csv >/dev/null
