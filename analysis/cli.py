@@ -48,7 +48,9 @@ def _parser() -> argparse.ArgumentParser:
     verb(_report, "write report.html and report.pdf", "results").add_argument("--study", **asked)
     claims = verb(_claims, "print each published claim with its verdict, a line each", "results")
     claims.add_argument("--verbose", action="store_true", help="and below it all that is known of it")
-    _add_export(verb(_export, "write a table with a row a timed repetition, for other tools", "results"))
+    export = verb(_export, "write a CSV table with a row a timed repetition, for other tools", "results")
+    told = "default: measurements.csv in the results; - is standard output"
+    export.add_argument("--output", type=Path, metavar="FILE", help=told)
     told = "answer each line of standard input, as a running study asks: open, page, report"
     verb(_follow, told, "results").add_argument("--study", **asked)
     verb(
@@ -60,14 +62,6 @@ def _parser() -> argparse.ArgumentParser:
     verb(_calibration, told, "results/calibration")
     _add_movie(verb(_movie, "draw a run as an animation, or one step of it as a picture"))
     return parser
-
-
-def _add_export(export: argparse.ArgumentParser) -> None:
-    kind = export.add_mutually_exclusive_group()
-    kind.add_argument("--csv", action="store_true", help="as CSV (the default)")
-    kind.add_argument("--parquet", action="store_true", help="as Parquet (needs pyarrow)")
-    told = "default: measurements.csv or .parquet in the results; - is standard output"
-    export.add_argument("--output", type=Path, metavar="FILE", help=told)
 
 
 def _add_movie(movie: argparse.ArgumentParser) -> None:
@@ -179,7 +173,7 @@ def _claims(options: argparse.Namespace) -> int:
 def _export(options: argparse.Namespace) -> int:
     from analysis.commands.export import write
 
-    written = write(options.results, options.output, parquet=options.parquet)
+    written = write(options.results, options.output)
     if written is not None:
         print(written)
     return 0
