@@ -152,9 +152,10 @@ experiments: environment settings ## run the study, then report (STUDY= SCALE= S
 	$(run)
 
 # analysis/report/graphs.toml says which graphs these are.
-appendix: ## draw the graphs of the published appendix, measuring what is missing (SCALE= RESULTS= BUDGET=)
-	$(MAKE) --no-print-directory experiments \
-		STUDY=neighbourhood,self_contained_checkered,self_contained_track,self_contained_repeat,schedule_find,schedule_resolve,schedule_resolve_row
+graphs := neighbourhood,self_contained_checkered,self_contained_track,self_contained_repeat,schedule_find,schedule_resolve,schedule_resolve_row
+appendix: ## draw the graphs of the published appendix as SVG and PDF, measuring what is missing (SCALE= RESULTS= BUDGET=)
+	$(MAKE) --no-print-directory experiments STUDY=$(graphs)
+	test -n "$${DRY_RUN-}" || $(python) analysis figures $(results) --experiment $(graphs)
 
 calibration-gcc: calibration-%: settings
 	$(call own_build,build/$*)

@@ -45,7 +45,7 @@ def _parser() -> argparse.ArgumentParser:
     }
     figures = verb(_figures, "draw the figures of whatever records are there", "results")
     figures.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
-    verb(_report, "write report.html and report.pdf", "results").add_argument("--study", **asked)
+    verb(_report, "write report.html", "results").add_argument("--study", **asked)
     claims = verb(_claims, "print each published claim with its verdict, a line each", "results")
     claims.add_argument("--verbose", action="store_true", help="and below it all that is known of it")
     export = verb(_export, "write a CSV table with a row a timed repetition, for other tools", "results")
@@ -95,7 +95,7 @@ def _figures(options: argparse.Namespace) -> int:
     def files(of_claims: int) -> list[Path]:
         if of_claims:
             return draw_all_claims(options.results)
-        return [figure.files[0] for figure in draw_all(options.results, wanted)]
+        return [figure.files[0] for figure in draw_all(options.results, wanted, pdf=True)]
 
     drawn, *claims = in_parallel(files, 1 if wanted else 2)
     for file in chain(drawn, *claims):
@@ -107,8 +107,8 @@ def _figures(options: argparse.Namespace) -> int:
 
 def _follow(options: argparse.Namespace) -> int:
     """Answer a line with a line of JSON: `open` with what is open; `compared N` with what `carom compare`
-    asks, whose error N calls share; `picture` with the file of its picture; `report` with the files of the
-    report, `page` with its HTML alone, `report HOW FAR` with that of what is there so far.
+    asks, whose error N calls share; `picture` with the file of its picture; `report` with the file of the
+    report, `report HOW FAR` with that of what is there so far.
     """
     from analysis.claims import Tested
     from analysis.commands.open_questions import open_questions
@@ -125,17 +125,12 @@ def _follow(options: argparse.Namespace) -> int:
                 from analysis.commands.programs_picture import programs_picture
 
                 answer = str(programs_picture(options.results))
-            case ["report" | "page" as wanted]:
+            case ["report", *how_far]:
                 from analysis.report import write
 
-                written = write(options.results, _asked(options), pdf=wanted == "report")
-                answer = [str(path) for path in written]
-            case ["report", *how_far]:
-                from analysis.report import write_meanwhile
-
-                answer = [str(write_meanwhile(options.results, _asked(options), " ".join(how_far)))]
+                answer = str(write(options.results, _asked(options), " ".join(how_far)))
             case _:
-                expected = "expected `open`, `compared N`, `picture`, `page`, `report` or `report ...`"
+                expected = "expected `open`, `compared N`, `picture`, `report` or `report ...`"
                 raise InputError(f"follow: found {line.strip()!r}, {expected}")
         print(json.dumps(answer), flush=True)
     return 0
@@ -144,7 +139,7 @@ def _follow(options: argparse.Namespace) -> int:
 def _report(options: argparse.Namespace) -> int:
     from analysis.report import write
 
-    print(*write(options.results, _asked(options)), sep="\n")
+    print(write(options.results, _asked(options)))
     return 0
 
 
