@@ -53,11 +53,6 @@ def _parser() -> argparse.ArgumentParser:
     export.add_argument("--output", type=Path, metavar="FILE", help=told)
     told = "answer each line of standard input, as a running study asks: open, page, report"
     verb(_follow, told, "results").add_argument("--study", **asked)
-    verb(
-        _performance,
-        "print the ladder, the limits and the speed of the exact simulation as Markdown tables",
-        "results",
-    )
     told = "tell how often verdicts are wrong here, from what `carom study calibrate` measured"
     verb(_calibration, told, "results/calibration")
     _add_movie(verb(_movie, "draw a run as an animation, or one step of it as a picture"))
@@ -171,18 +166,6 @@ def _export(options: argparse.Namespace) -> int:
     written = write(options.results, options.output)
     if written is not None:
         print(written)
-    return 0
-
-
-def _performance(options: argparse.Namespace) -> int:
-    from analysis.commands.performance import markdown
-    from analysis.records.reading import load
-    from analysis.records.studies import split
-
-    texts = [(study.name, markdown(study)) for study in split(load(options.results))]
-    if not any(text for _, text in texts):
-        raise InputError(f"{options.results}: no records of the ladder, the limits or exact_threads yet")
-    print("\n\n".join(f"{name}:\n\n{text}" for name, text in texts if text))
     return 0
 
 
