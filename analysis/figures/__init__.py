@@ -21,7 +21,6 @@ from analysis.figures import (
     ladder,
     limits,
     machines,
-    more_cores,
     pairs,
     phases,
     promises,
@@ -152,7 +151,6 @@ FIGURES = [
     _of_kind("phases", "The phases of a step", phases.profile, "Where the time of a step goes"),
     _of_kind("limits", "How close to the limits of the machine", limits.phases_against_limits,
              "Phases of a step against the limits of this machine"),
-    _of_kind("more_cores", "More cores", more_cores.more_cores, "The fastest variant on more cores"),
     _own("timeline", "A step on every thread", timeline.timeline, "phases"),
     _counted("counters_hardware", "Hardware counters", "papi-hardware", "Hardware counters (PAPI)"),
     _counted("counters_software", "Software counters", "papi-software", "Software counters (PAPI)"),
@@ -174,7 +172,6 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
     "phases": phases.profile,
     "ladder": ladder.waterfall,
     "limits": limits.phases_against_limits,
-    "more_cores": more_cores.more_cores,
     KIND: ways.ways,
     PAUSES: ways.pauses,
 }

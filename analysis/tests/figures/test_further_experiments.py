@@ -31,7 +31,6 @@ LIKE = [
     ("phases", "phases"),
     ("ladder", "ladder"),
     ("limits", "limits"),
-    ("more_cores", "more_cores"),
     ("ways", "ways"),
 ]
 
