@@ -12,7 +12,7 @@ import pytest
 from analysis.cli import main
 from analysis.commands.export import COLUMNS, measurements
 from analysis.records.reading import load
-from analysis.records.tables import LATER_COLUMNS
+from analysis.records.tables import AXIS_COLUMNS
 from analysis.statistics.pairs import timed_runs
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET
@@ -49,7 +49,7 @@ def test_the_page_tells_each_column() -> None:
 
 
 def test_every_policy_has_a_column() -> None:
-    assert set(LATER_COLUMNS) <= {one.name for one in COLUMNS}
+    assert set(AXIS_COLUMNS) <= {one.name for one in COLUMNS}
 
 
 def test_the_example_of_the_page_runs(results: Path) -> None:
