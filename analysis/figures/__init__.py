@@ -21,7 +21,6 @@ from analysis.figures import (
     ladder,
     limits,
     machines,
-    more_cores,
     pairs,
     phases,
     promises,
@@ -33,7 +32,7 @@ from analysis.figures import (
     ways,
 )
 from analysis.figures.captions import growth_sentence, linear_sentence, minimum_sentence
-from analysis.figures.style import FORMATS, Data, Drawing, mark_partial, partial, save, styled
+from analysis.figures.style import Data, Drawing, mark_partial, partial, save, styled
 from analysis.records.studies import Study
 from analysis.support.parallel import in_parallel
 from analysis.support.values import Table
@@ -152,7 +151,6 @@ FIGURES = [
     _of_kind("phases", "The phases of a step", phases.profile, "Where the time of a step goes"),
     _of_kind("limits", "How close to the limits of the machine", limits.phases_against_limits,
              "Phases of a step against the limits of this machine"),
-    _of_kind("more_cores", "More cores", more_cores.more_cores, "The fastest variant on more cores"),
     _own("timeline", "A step on every thread", timeline.timeline, "phases"),
     _counted("counters_hardware", "Hardware counters", "papi-hardware", "Hardware counters (PAPI)"),
     _counted("counters_software", "Software counters", "papi-software", "Software counters (PAPI)"),
@@ -174,7 +172,6 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
     "phases": phases.profile,
     "ladder": ladder.waterfall,
     "limits": limits.phases_against_limits,
-    "more_cores": more_cores.more_cores,
     KIND: ways.ways,
     PAUSES: ways.pauses,
 }
@@ -182,24 +179,24 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
 
 
 def draw(
-    data: Data, folder: Path, prefix: str = "", wanted: Sequence[str] = (), formats: Sequence[str] = FORMATS
+    data: Data, folder: Path, prefix: str = "", wanted: Sequence[str] = (), *, pdf: bool = False
 ) -> Iterator[Drawn]:
     """Draw every figure that the study has records for, or those of the experiments wanted, into the folder.
 
-    Each is written as SVG, PNG and PDF, or in the formats wanted, and marked as partial where planned records
-    are missing. Several are drawn at once, one on each processor.
+    Each is written as SVG, and as `pdf` if wanted, and marked as partial where planned records are missing.
+    Several are drawn at once, one on each processor.
     """
     known = [*FIGURES, *further(data.study)]
     entries = [entry for entry in known if not wanted or entry.experiment in wanted]
     bias_sentence(data.study)  # before there are several processes, of which each would work it out
 
     def drawn(number: int) -> Drawn | None:
-        return _draw(entries[number], data, folder, f"{prefix}{entries[number].name}", formats)
+        return _draw(entries[number], data, folder, f"{prefix}{entries[number].name}", pdf=pdf)
 
     yield from filter(None, in_parallel(drawn, len(entries)))
 
 
-def _draw(entry: Entry, data: Data, folder: Path, name: str, formats: Sequence[str]) -> Drawn | None:
+def _draw(entry: Entry, data: Data, folder: Path, name: str, *, pdf: bool) -> Drawn | None:
     with styled(name):
         drawing = entry.draw(data)
     if drawing is None:
@@ -209,7 +206,7 @@ def _draw(entry: Entry, data: Data, folder: Path, name: str, formats: Sequence[s
     caption = f"{drawing.caption} {missing[0].upper()}{missing[1:]}." if missing else drawing.caption
     if drawing.verdicts is not None and data.study.times_of(entry.experiment)["in_turns"].all():
         caption += bias_sentence(data.study)
-    return Drawn(entry, caption, save(drawing, folder, name, formats), drawing.verdicts, drawing.tables)
+    return Drawn(entry, caption, save(drawing, folder, name, pdf=pdf), drawing.verdicts, drawing.tables)
 
 
 def further(study: Study) -> list[Entry]:

@@ -16,7 +16,7 @@ from analysis.derived.accuracy import SMALL, Choice, Measure, Race
 from analysis.figures.captions import opening
 from analysis.figures.hover import Told, tell
 from analysis.figures.labels import HOLLOW_SIGNS, SIGNS, key, label_points, logarithmic_ticks, plain_ticks
-from analysis.figures.recording import when_laid_out
+from analysis.figures.layout import when_laid_out
 from analysis.figures.style import FAINT, INK, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.support.values import Cell, Interval, Row, Table, table_of
 from analysis.support.wording import NO_BREAK, exact, interval, number

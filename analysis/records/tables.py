@@ -4,7 +4,6 @@ Every table of what was measured carries the same columns of context (see `conte
 """
 
 import math
-import re
 import shlex
 from collections.abc import Iterable
 from typing import Any
@@ -25,22 +24,18 @@ TAGS = [
 AXES = [
     "variant", "neighbourhood", "order", "self_contained", "direction", "find_schedule",
     "resolve_schedule", "find_chunk", "resolve_chunk", "threads", "substeps", "tolerance",
+    "storage", "prefetch", "box_side", "overlaps", "search", "worklist", "impact", "precision",
 ]  # fmt: skip
 SCENE = ["particles", "side", "radius", "steps", "area_fraction"]
 PROVENANCE = [
     "cpu_model", "cores", "hardware_threads", "affinity", "memory_bytes", "virtualised", "governor",
     "operating_system", "compiler", "compiler_flags", "build_type", "binary_sha256",
 ]  # fmt: skip
-LATER_AXES = {
-    "storage": "numbered", "prefetch": "on", "box_side": "wide", "overlaps": "lists", "search": "exact",
-    "worklist": "all", "impact": "step_end", "precision": "double",
-}  # fmt: skip
-"""Policies that not all records name, each with its value in those that do not."""
 COLUMN_OF = {"overlaps": "overlaps_kept"}
 """The columns of axes whose name in the record is that of a count, too."""
-LATER_COLUMNS = [COLUMN_OF.get(name, name) for name in LATER_AXES]
+AXIS_COLUMNS = [COLUMN_OF.get(name, name) for name in AXES]
 WORK = ["overlaps", "pair_resolves", "pair_attempts", "sweeps"]
-"""Totals over the S steps; `pair_attempts` is NaN where they were not counted."""
+"""Totals over the S steps, NaN of a whole process."""
 ERRORS = [
     "energy_drift", "discs_outside", "unresolved_pairs", "momentum_drift", "penetration_worst",
     "penetration_mean", "time_to_tenth_radius", "collision_rate", "collision_rate_reference", "pressure",
@@ -50,9 +45,8 @@ CHECKS = ["has_errors", "check_verdict", "check_scope", "check_reason", "repetit
 PLACE = ["file", "machine", "experiment", "scale", "scene_name", "session"]
 NO_SCENE: dict[str, Any] = {"name": "", "sha256": "", **dict.fromkeys(SCENE)}
 """Of a program that is about something else than discs."""
-_OLD_REPLICATE = re.compile(r"(?:(.*) )?replicate (\d+)")
 CONTEXT = [
-    "file", "kind", "question_kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene",
+    "file", "kind", "question_kind", "recorded_at", *TAGS, *AXIS_COLUMNS, "scene",
     "scene_sha256", *SCENE, *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment",
     "warm_ups", "in_turns", "time_from", "undisturbed", "command", "compiler_family", "node", "machine",
     "revision",
@@ -94,12 +88,11 @@ def context(name: str, record: Record) -> Row:
         "question_kind": tags.get("kind", tags.get("figure")),
         "recorded_at": record["recorded_at"],
         **{column: tags.get(column) for column in TAGS},
-        **_replicate(tags),
+        "replicate": tags.get("replicate", 1),
         "series": str(tags["series"]),
         "session": str(tags.get("session", "")),
         "scale": str(tags.get("scale", "unstated")),
-        **{column: record["axes"].get(column) for column in AXES},
-        **{COLUMN_OF.get(name, name): record["axes"].get(name, old) for name, old in LATER_AXES.items()},
+        **{COLUMN_OF.get(name, name): record["axes"].get(name) for name in AXES},
         "scene": scene["name"],
         "scene_sha256": scene["sha256"],
         **{column: scene[column] for column in SCENE},
@@ -129,15 +122,6 @@ def place(name: str, record: Record) -> Row:
         "experiment": tags.get("experiment"),
         **{column: str(tags.get(column, "")) for column in ("scale", "scene_name", "session")},
     }
-
-
-def _replicate(tags: dict[str, Any]) -> dict[str, Any]:
-    """Return the label and the number of the replicate, which was a word of the label before it was a tag."""
-    label = tags.get("label")
-    old = _OLD_REPLICATE.fullmatch(str(label)) if tags.get("figure") == "schedule" else None
-    if "replicate" in tags or old is None:
-        return {"label": label, "replicate": tags.get("replicate", 1)}
-    return {"label": old[1] or None, "replicate": int(old[2])}
 
 
 def revision_of(origin: dict[str, Any]) -> str:

@@ -35,6 +35,7 @@ class Machine:
             "hardware_threads": self.hardware_threads,
             "affinity": f"0-{self.hardware_threads - 1}",
             "affinity_count": self.hardware_threads,
+            "cpu_quota": None,
             "oversubscribed": threads > self.hardware_threads,
             "memory_bytes": 8 << 30,
             "virtualised": True,
@@ -73,7 +74,7 @@ class Point:
     axes: dict[str, Any] = field(default_factory=dict)
     scene: dict[str, Any] = field(default_factory=dict)
     pair_resolves: int = 12_000_000
-    pair_attempts: int | None = 30_000_000
+    pair_attempts: int = 30_000_000
     scene_name: str | None = None
     errors: dict[str, Any] | None = None
     tags: dict[str, str | float] = field(default_factory=dict)
@@ -93,6 +94,14 @@ AXES: dict[str, Any] = {
     "threads": 2,
     "substeps": 1,
     "tolerance": "relative",
+    "storage": "numbered",
+    "prefetch": "on",
+    "box_side": "wide",
+    "overlaps": "lists",
+    "search": "exact",
+    "worklist": "all",
+    "impact": "step_end",
+    "precision": "double",
 }
 SCENE: dict[str, Any] = {
     "name": "scene.in",

@@ -231,22 +231,6 @@ def _limits() -> list[Point]:
     ]
 
 
-MORE_CORES = {"two discs": (2, 2e-4), "10k": (10_000, 0.1), "1M": (1_000_000, 9.0)}
-
-
-def _more_cores() -> list[Point]:
-    """Steps that share out evenly over threads, but for 1e-5 s a step and thread beyond the first."""
-    return [
-        _at(
-            "threads", threads, seconds / threads + 100 * 1e-5 * (threads - 1), "fastest",
-            axes={"variant": "fastest", "threads": threads}, scene_name=name, tags={"series_number": 1},
-            scene={"particles": discs, "radius": 16.0, "side": 57.0 * math.sqrt(discs)},
-        )
-        for name, (discs, seconds) in MORE_CORES.items()
-        for threads in (1, 2, 4)
-    ]  # fmt: skip
-
-
 TRUE_BIAS = 0.01
 """How much longer a pair's other one takes by turns than in a process of its own."""
 
@@ -305,5 +289,4 @@ EXPERIMENTS: dict[str, Callable[[], list[Point]]] = {
     "promises": _promises,
     "ways": _ways,
     "ways_of_processes": _ways,
-    "more_cores": _more_cores,
 }

@@ -11,7 +11,7 @@ from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
 from analysis.tests.synthetic_promises import promises
 
-PROFILED = ("phases", "limits", "more_cores")
+PROFILED = ("phases", "limits")
 COPY = {"L2": (1 << 20, 40e9), "L3": (4 << 20, 20e9), "memory": (2 << 30, 8e9)}
 ARITHMETIC = 3e9
 SHARES = {"move": 0.03, "bin": 0.12, "find": 0.3, "resolve": 0.55}
@@ -49,7 +49,7 @@ def study(
                 records.append(profile(record, SHARES, counters(record)) if name in PROFILED else record)
                 if name == "promises" and block == 0:
                     records.append(promises(record))
-    if {"limits", "more_cores"} & set(names):
+    if "limits" in names:
         records.append(limits(machine or Machine(), COPY, ARITHMETIC))
     return records
 

@@ -45,10 +45,6 @@ KINDS = {
     "limits": Kind(
         "the phases of a step, and what the machine can do", "how near they are", ("limits",), scenes=True
     ),
-    "more_cores": Kind(
-        "the phases of a step, and what the machine can do", "how well a model foretells them",
-        ("more_cores",), sweep="threads", scenes=True,
-    ),
     "speed_against_error": Kind(
         "times and errors, and a general engine", "what is cheapest for an error", ("speed_against_error",),
         errors=True, sweep="substeps", scenes=True,

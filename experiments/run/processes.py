@@ -234,7 +234,6 @@ class Processes:
         around = {
             "prepare": placed(command.prepare, scene, output),
             "conclude": placed(command.conclude, scene, output),
-            "kept_by": command.kept_by,
             "fresh_folder": command.fresh_folder,
             "exit_codes": command.exit_codes,
         }

@@ -279,7 +279,7 @@ class Session:
         now = time.monotonic()
         self._report_due = now + max(REPORT_PAUSE, (now - began) / REPORT_SHARE)
         if done.exit_code == 0:
-            self._display.line(f"report of what is there: {json.loads(done.output)[0]}")
+            self._display.line(f"report of what is there: {json.loads(done.output)}")
         else:
             warn(f"the report of what is there could not be written: {done.reason}")
 
@@ -288,14 +288,13 @@ class Session:
         if not self._study.settings.figures:
             return 0
         self._display.now("writing the report")
-        done = self._analysis.ask("report" if self._study.scale.pdf else "page", REPORT_LIMIT)
+        done = self._analysis.ask("report", REPORT_LIMIT)
         if done.exit_code != 0:
             warn(f"the report could not be written: {done.reason}")
             return REPORT_FAILED
         for line in done.error.splitlines():
             warn(line)
-        for path in json.loads(done.output):
-            self._display.line(path)
+        self._display.line(json.loads(done.output))
         return 0
 
     def _failed(self) -> int:

@@ -16,7 +16,7 @@ namespace carom {
 /// whole, however that ends.
 class Process {
   public:
-    /// Nothing of it runs yet. Throws InputError if there is no room for it, or `kept_by` cannot be had.
+    /// Nothing of it runs yet. Throws InputError if there is no room for it.
     explicit Process(ProcessCommand command, KeptBy kept_by = KeptBy::whatever_works);
 
     /// Lets it begin and waits for nothing. What it does before it is first advanced is not timed.

@@ -79,7 +79,7 @@ ContenderRun::ContenderRun(const ProgramContender& contender) : contender_(conte
     if (failure_.empty()) {
         ProcessCommand command = contender.command;
         command.folder = folder_;
-        process_ = std::make_unique<Process>(command, contender.kept_by);
+        process_ = std::make_unique<Process>(command);
     }
 }
 
@@ -116,7 +116,7 @@ std::string ContenderRun::run_beside(const std::string& what, const std::vector<
                                  .environment = contender_.command.environment,
                                  .most_seconds = contender_.command.most_seconds,
                                  .pattern = ""};
-    const std::string why = why_failed(command, run_undisturbed(command, contender_.kept_by), {0});
+    const std::string why = why_failed(command, run_undisturbed(command), {0});
     return why.empty() ? "" : what + ": " + why;
 }
 
