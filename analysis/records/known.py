@@ -22,7 +22,7 @@ from analysis.support.values import Floats
 from support.files import of_json, to_json
 from support.known_files import FOLDER, Stamp, files_below, is_worth_keeping, keep, kept, lasting
 
-VERSION = 3
+VERSION = 4
 _CONTEXTS = "contexts"
 _OF_RECORD = {name: getattr(tables, name) for name in tables.OF_PARTS}
 _ALONE = {name: getattr(tables, name) for name in tables.ALONE} | {"promises": promises.promises}
@@ -33,7 +33,7 @@ _COLUMNS = {
     "promises": promises.COLUMNS,
 }
 _FLOATS = {**tables.FLOATS, "promises": promises.NUMBERS}
-_KIND = {"limits": "limits", "outside": "outside", "promises": "promises", "failures": "failure"}
+_KIND = {"limits": "limits", "promises": "promises", "failures": "failure"}
 """The kind of record that each table of its own is of."""
 
 

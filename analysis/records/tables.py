@@ -69,14 +69,10 @@ OF_PARTS = {
 ALONE = {
     "limits": ["file", "machine", "compiler", "limit", "threads", "level", "working_set_bytes", "lanes",
                "best", "median", "repetitions"],
-    "outside": ["file", "machine", "scale", "experiment", "scene_name", "scene_sha256", "block", "session",
-                "substeps", "engine", "seconds", "energy_drift"],
     "failures": ["file", *TAGS, "command", "exit_code", "reason", "recorded_at", "owner", "program_sha256"],
 }  # fmt: skip
 """The tables of records of other kinds, each made by the function of its name."""
-FLOATS = {
-    "runs": [*ERRORS, "pair_attempts"], "trajectory": ["rms_distance"], "outside": ["energy_drift"],
-}  # fmt: skip
+FLOATS = {"runs": [*ERRORS, "pair_attempts"], "trajectory": ["rms_distance"]}
 """Columns that are numbers, NaN where nothing is known, even where that is everywhere."""
 
 
@@ -258,25 +254,6 @@ def limits(name: str, record: Record) -> Iterable[Row]:
         }
         for limit, rate in rates.items()
         for row in record["limits"][limit]
-    )
-
-
-def outside(name: str, record: Record) -> Iterable[Row]:
-    """Give one row a run of a general engine beside the variants: where it stands, `engine` with its version,
-    `seconds` for a unit of simulated time, and the size of its relative `energy_drift`.
-    """
-    drift = record["errors"]["energy_drift"]
-    return (
-        {
-            **place(name, record),
-            "block": record["tags"].get("block"),
-            "scene_sha256": record["scene"]["sha256"],
-            "substeps": record["axes"]["substeps"],
-            "engine": f"{record['engine']['name']} {record['engine']['version']}",
-            "seconds": run["steps_seconds"] / record["scene"]["steps"],
-            "energy_drift": None if drift is None else abs(float(drift)),
-        }
-        for run in record["repetitions"]
     )
 
 

@@ -50,7 +50,7 @@ KINDS = {
         ("more_cores",), sweep="threads", scenes=True,
     ),
     "speed_against_error": Kind(
-        "times and errors, and a general engine", "what is cheapest for an error", ("speed_against_error",),
+        "times and errors", "what is cheapest for an error", ("speed_against_error",),
         errors=True, sweep="substeps", scenes=True,
     ),
     "hard_cases": Kind(
