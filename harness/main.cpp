@@ -52,8 +52,7 @@ void add_verbs(CLI::App& program) {
     add_python_verbs(program, groups::study);
     add_group(program, groups::machine,
               {add_doctor_command, add_limits_command, add_bench_command, add_profile_command});
-    add_group(program, groups::none,
-              {add_turns_command, add_processes_command, add_promises_command, add_help_command});
+    add_group(program, groups::none, {add_turns_command, add_processes_command, add_help_command});
     program.footer(
         "Exit codes: 0 done; 1 wrong usage or bad input, told in one line; 2 a result failed its check. "
         "A scene of `-` is read from standard input.");

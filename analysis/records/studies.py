@@ -82,7 +82,6 @@ def split(records: Records) -> list[Study]:
             **{name: _part(getattr(records, name), file=runs["file"]) for name in MEASURED},
             failures=_failures(records, key[0], key[2], runs),
             limits=_part(records.limits, machine=key[:1]),
-            promises=_part(records.promises, machine=key[:1], revision=key[1:2], scale=key[2:]),
         )
         for key, alike in records.runs.groupby(keys)
         for program, runs in _by_program(alike)

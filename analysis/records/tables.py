@@ -53,7 +53,7 @@ NO_SCENE: dict[str, Any] = {"name": "", "sha256": "", **dict.fromkeys(SCENE)}
 _OLD_REPLICATE = re.compile(r"(?:(.*) )?replicate (\d+)")
 CONTEXT = [
     "file", "kind", "question_kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene",
-    "scene_sha256", *SCENE, *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment",
+    *SCENE, *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment",
     "warm_ups", "in_turns", "time_from", "undisturbed", "command", "compiler_family", "node", "machine",
     "revision",
 ]  # fmt: skip
@@ -97,7 +97,6 @@ def context(name: str, record: Record) -> Row:
         **{column: record["axes"].get(column) for column in AXES},
         **{COLUMN_OF.get(name, name): record["axes"].get(name, old) for name, old in LATER_AXES.items()},
         "scene": scene["name"],
-        "scene_sha256": scene["sha256"],
         **{column: scene[column] for column in SCENE},
         **{column: origin[column] for column in PROVENANCE},
         "openmp": f"{origin['openmp']['runtime']} {origin['openmp']['version']}",
@@ -113,17 +112,6 @@ def context(name: str, record: Record) -> Row:
         "node": slurm.get("SLURMD_NODENAME", origin["host"]),
         "machine": machine_of(origin),
         "revision": revision_of(origin),
-    }
-
-
-def place(name: str, record: Record) -> Row:
-    """Return where a record stands that is of no variant or program: a few columns of `context`."""
-    tags = record["tags"]
-    return {
-        "file": name,
-        "machine": machine_of(record["provenance"]),
-        "experiment": tags.get("experiment"),
-        **{column: str(tags.get(column, "")) for column in ("scale", "scene_name", "session")},
     }
 
 

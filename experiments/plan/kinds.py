@@ -56,9 +56,6 @@ KINDS = {
     "hard_cases": Kind(
         "times and errors", "each against what it is held to", ("hard_cases",), errors=True, scenes=True
     ),
-    "promises": Kind(
-        "times, and runs that promise an error", "whether promises are kept", ("promises",), scenes=True
-    ),
     COUNTS: Kind("work, once each", "a ratio of counts, by the claim about it", ("comparison",)),
 }  # fmt: skip
 """By the name that a question and its records give."""

@@ -19,8 +19,8 @@ from support.known_files import FOLDER
 
 OLD = 1_000_000_000
 """Seconds: a time of files long ago."""
-TABLES = [*reading.MEASURED, "limits", "promises", "failures"]
-OF_EVERY_KIND = ["steps", "phases", "hard_cases", "limits", "promises"]
+TABLES = [*reading.MEASURED, "limits", "failures"]
+OF_EVERY_KIND = ["steps", "phases", "hard_cases", "limits"]
 """Experiments whose records fill every table."""
 
 
