@@ -146,9 +146,7 @@ std::string noise_line(const Noise& noise) {
 
 std::string costs_line(const Findings& findings) {
     if (!findings.costs) {
-        return line("costs",
-                    "of work are not measured yet: `run --error-below` does it at its first call, and "
-                    "--measure-costs");
+        return line("costs", "of work are not measured yet: `run --error-below` does it at its first call");
     }
     const auto event = findings.costs->costs.find(std::string(event_driven().name));
     const std::string collision =
@@ -158,7 +156,7 @@ std::string costs_line(const Findings& findings) {
                      1e6 * event->second.front().seconds.collisions, event->second.front().discs,
                      1e6 * event->second.back().seconds.collisions, event->second.back().discs);
     return line("costs", "of work, by which `run --error-below` chooses: " + findings.costs_file + collision +
-                             "; --measure-costs measures them anew");
+                             "; measured anew once that file is removed");
 }
 
 } // namespace
