@@ -75,6 +75,9 @@ std::string processor_lines(const Findings& findings) {
                                      "each is halted for a part of the time",
                                      *quota, *quota == 1 ? "" : "s"));
     }
+    if (machine.has_unread_cpu_quota) {
+        text += line("CPU quota", "cannot be read: control groups of version 1 grant the processors here");
+    }
     return text +
            line("threads", "Carom takes " + counted(findings.threads_by_default, "thread") +
                                " by default, on " + counted(findings.usable_processors, "usable processor"));
