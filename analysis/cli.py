@@ -102,8 +102,8 @@ def _figures(options: argparse.Namespace) -> int:
 
 def _follow(options: argparse.Namespace) -> int:
     """Answer a line with a line of JSON: `open` with what is open; `compared N CLOCK` with what `carom
-    compare` asks, whose error N calls share; `picture` with the file of its picture; `report` with the file of the
-    report, `report HOW FAR` with that of what is there so far.
+    compare` asks, whose error N calls share; `picture` with the file of its picture; `report` with the file
+    of the report, `report HOW FAR` with that of what is there so far.
     """
     from analysis.claims import Tested
     from analysis.commands.open_questions import open_questions

@@ -23,7 +23,6 @@ from analysis.figures import (
     machines,
     pairs,
     phases,
-    promises,
     scaling,
     schedules,
     speed_against_error,
@@ -97,17 +96,17 @@ def _counted(name: str, title: str, source: str, subject: str) -> Entry:
 
 def _accuracy(kind: str, experiment: str, name: str, title: str) -> list[Entry]:
     """Return the entries of an experiment about errors: one figure, or one for each measure."""
-    single = {PROMISES: promises.promises, HARD_CASES: hard_cases.hard_cases}
-    drawn = bound(single.get(kind, speed_against_error.draw), experiment=experiment, subject=title)
-    if kind in single:
+    if kind == HARD_CASES:
+        drawn = bound(hard_cases.hard_cases, experiment=experiment, subject=title)
         return [Entry(name, experiment, title, drawn, kind)]
+    drawn = bound(speed_against_error.draw, experiment=experiment, subject=title)
     return [
         Entry(f"{name}-{one.key}", experiment, f"{title}: {one.title}", bound(drawn, measure=one), kind)
         for one in MEASURES
     ]
 
 
-SPEED_AGAINST_ERROR, PROMISES, HARD_CASES = OF_ERRORS = ("speed_against_error", "promises", "hard_cases")
+SPEED_AGAINST_ERROR, HARD_CASES = OF_ERRORS = ("speed_against_error", "hard_cases")
 """The kinds of experiments about errors, whose figures have a part of the report of their own."""
 
 _EARLY = "Resolving self-contained pairs early, on against off, under the"
@@ -158,7 +157,6 @@ FIGURES = [
     _counted("counters_simulated", "Simulated counters", "cachegrind",
              "Simulated counters (cachegrind, one thread)"),
     *_accuracy(SPEED_AGAINST_ERROR, "speed_against_error", "speed_against_error", "Speed against error"),
-    *_accuracy(PROMISES, "promises", "promises", "Promised against delivered error"),
     *_accuracy(HARD_CASES, "hard_cases", "hard_cases", "Hard cases"),
 ]  # fmt: skip
 

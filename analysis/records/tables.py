@@ -47,7 +47,7 @@ NO_SCENE: dict[str, Any] = {"name": "", "sha256": "", **dict.fromkeys(SCENE)}
 """Of a program that is about something else than discs."""
 CONTEXT = [
     "file", "kind", "question_kind", "recorded_at", *TAGS, *AXIS_COLUMNS, "scene",
-    "scene_sha256", *SCENE, *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment",
+    *SCENE, *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment",
     "warm_ups", "in_turns", "time_from", "undisturbed", "command", "compiler_family", "node", "machine",
     "revision",
 ]  # fmt: skip
@@ -63,14 +63,10 @@ OF_PARTS = {
 ALONE = {
     "limits": ["file", "machine", "compiler", "limit", "threads", "level", "working_set_bytes", "lanes",
                "best", "median", "repetitions"],
-    "outside": ["file", "machine", "scale", "experiment", "scene_name", "scene_sha256", "block", "session",
-                "substeps", "engine", "seconds", "energy_drift"],
     "failures": ["file", *TAGS, "command", "exit_code", "reason", "recorded_at", "owner", "program_sha256"],
 }  # fmt: skip
 """The tables of records of other kinds, each made by the function of its name."""
-FLOATS = {
-    "runs": [*ERRORS, "pair_attempts"], "trajectory": ["rms_distance"], "outside": ["energy_drift"],
-}  # fmt: skip
+FLOATS = {"runs": [*ERRORS, "pair_attempts"], "trajectory": ["rms_distance"]}
 """Columns that are numbers, NaN where nothing is known, even where that is everywhere."""
 
 
@@ -94,7 +90,6 @@ def context(name: str, record: Record) -> Row:
         "scale": str(tags.get("scale", "unstated")),
         **{COLUMN_OF.get(name, name): record["axes"].get(name) for name in AXES},
         "scene": scene["name"],
-        "scene_sha256": scene["sha256"],
         **{column: scene[column] for column in SCENE},
         **{column: origin[column] for column in PROVENANCE},
         "openmp": f"{origin['openmp']['runtime']} {origin['openmp']['version']}",
@@ -110,17 +105,6 @@ def context(name: str, record: Record) -> Row:
         "node": slurm.get("SLURMD_NODENAME", origin["host"]),
         "machine": machine_of(origin),
         "revision": revision_of(origin),
-    }
-
-
-def place(name: str, record: Record) -> Row:
-    """Return where a record stands that is of no variant or program: a few columns of `context`."""
-    tags = record["tags"]
-    return {
-        "file": name,
-        "machine": machine_of(record["provenance"]),
-        "experiment": tags.get("experiment"),
-        **{column: str(tags.get(column, "")) for column in ("scale", "scene_name", "session")},
     }
 
 
@@ -255,25 +239,6 @@ def limits(name: str, record: Record) -> Iterable[Row]:
         }
         for limit, rate in rates.items()
         for row in record["limits"][limit]
-    )
-
-
-def outside(name: str, record: Record) -> Iterable[Row]:
-    """Give one row a run of a general engine beside the variants: where it stands, `engine` with its version,
-    `seconds` for a unit of simulated time, and the size of its relative `energy_drift`.
-    """
-    drift = record["errors"]["energy_drift"]
-    return (
-        {
-            **place(name, record),
-            "block": record["tags"].get("block"),
-            "scene_sha256": record["scene"]["sha256"],
-            "substeps": record["axes"]["substeps"],
-            "engine": f"{record['engine']['name']} {record['engine']['version']}",
-            "seconds": run["steps_seconds"] / record["scene"]["steps"],
-            "energy_drift": None if drift is None else abs(float(drift)),
-        }
-        for run in record["repetitions"]
     )
 
 

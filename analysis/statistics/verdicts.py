@@ -64,8 +64,8 @@ def judge_one(
     the whole of the error is this look's, and none depends on the one before. `biases`: by how much each log
     ratio is too great because of how it was measured, NaN where not known. Where half of them are known, and
     their middle is more than two of its standard errors from 0, the verdict has to stand with and without it,
-    and the interval reaches over both. `stops`: how often a run of the programs was stopped; where some blocks
-    have far more, the ratio is that of no stops at all (see `stopping`).
+    and the interval reaches over both. `stops`: how often a run of the programs was stopped; where some
+    blocks have far more, the ratio is that of no stops at all (see `stopping`).
     """
     values = np.asarray(log_ratios, dtype=float)
     values = values if once else seen(values)

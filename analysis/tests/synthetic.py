@@ -259,28 +259,6 @@ def limits(machine: Machine, copy: dict[str, tuple[int, float]], arithmetic: flo
     }
 
 
-def outside(
-    machine: Machine, beside: dict[str, Any], substeps: int, block: int, seconds: float, drift: float | None
-) -> dict[str, Any]:
-    """Return the record of a general engine's run on the scene of another record, `seconds` for each unit of
-    time.
-    """
-    scene = beside["tags"]["scene_name"]
-    tags = {
-        "experiment": "speed_against_error", "series": "outside", "scene_name": scene,
-        "x_name": "substeps", "x": substeps, "block": block, "scale": "paper", "session": "s1",
-        "point": f"outside-{scene}-{substeps}",
-    }  # fmt: skip
-    return record("outside", tags) | {
-        "engine": {"name": "Chipmunk", "version": "7.0.3", "iterations": 10},
-        "axes": {"threads": 1, "substeps": substeps},
-        "scene": beside["scene"],
-        "repetitions": [dict.fromkeys(("steps_seconds", "cpu_seconds"), beside["scene"]["steps"] * seconds)],
-        "errors": {"energy_drift": drift, "discs_outside": 0},
-        "provenance": machine.provenance("g++ 12.2.0", 1),
-    }
-
-
 def failure(experiment: str, series: str, reason: str, **tags: str) -> dict[str, Any]:
     """Return the record of a point that failed."""
     where: dict[str, str | float] = {"x_name": "none", "x": 0, "block": 0, "scale": "paper", "site": "local"}

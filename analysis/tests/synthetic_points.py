@@ -176,14 +176,6 @@ def _hard_cases() -> list[Point]:
     ]  # fmt: skip
 
 
-def _promises() -> list[Point]:
-    scenes = {"200 discs, 0.05": 200, "3000 discs, 0.65": 3000}
-    return [
-        Point("event-driven", 0, 0.01, scene_name=name, scene={"particles": particles, "steps": 16})
-        for name, particles in scenes.items()
-    ]
-
-
 def _control() -> list[Point]:
     return [Point(label, 0, 1.1, label=label) for label in ("A", "A-again")]
 
@@ -286,7 +278,6 @@ EXPERIMENTS: dict[str, Callable[[], list[Point]]] = {
     "control": _control,
     "speed_against_error": _speed_against_error,
     "hard_cases": _hard_cases,
-    "promises": _promises,
     "ways": _ways,
     "ways_of_processes": _ways,
 }

@@ -9,7 +9,6 @@ import numpy as np
 from analysis.tests.synthetic import Machine, bench, failure, limits, profile
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
-from analysis.tests.synthetic_promises import promises
 
 PROFILED = ("phases", "limits")
 COPY = {"L2": (1 << 20, 40e9), "L3": (4 << 20, 20e9), "memory": (2 << 30, 8e9)}
@@ -47,8 +46,6 @@ def study(
                     scale=scale, points_planned=len(points), blocks_planned=blocks, figure=_figure(name),
                 )  # fmt: skip
                 records.append(profile(record, SHARES, counters(record)) if name in PROFILED else record)
-                if name == "promises" and block == 0:
-                    records.append(promises(record))
     if "limits" in names:
         records.append(limits(machine or Machine(), COPY, ARITHMETIC))
     return records
@@ -63,7 +60,6 @@ def _figure(experiment: str) -> str:
         "ladder",
         "speed_against_error",
         "hard_cases",
-        "promises",
     ):
         return experiment
     if any(point.in_turns for point in points):

@@ -1,7 +1,6 @@
 #include <iostream>
 #include <memory>
 
-#include "harness/accuracy/costs.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/doctor/findings.hpp"
 #include "harness/support/json.hpp"
@@ -12,17 +11,14 @@ void add_doctor_command(CLI::App& program) {
     auto json = std::make_shared<bool>(false);
     auto noise = std::make_shared<bool>(false);
     auto build = std::make_shared<bool>(false);
-    auto measure = std::make_shared<bool>(false);
     CLI::App* command =
         program.add_subcommand("doctor", "Tell what this machine can and cannot measure, and why. It changes "
-                                         "nothing, unless --measure-costs is given");
+                                         "nothing");
     command->add_flag("--json", *json, "Print the findings as one JSON object");
-    command->add_flag("--measure-costs", *measure,
-                      "Measure anew, and keep, what work costs here: `run --error-below` chooses by it");
     command->add_flag("--noise", *noise,
                       "Watch equal work for 20 s, and draw how much neighbouring stretches of time differ");
     command->add_flag("--build", *build, "Print only how this program was built, as one JSON object");
-    command->callback([json, noise, build, measure] {
+    command->callback([json, noise, build] {
         if (*build) {
             auto built = build_json();
             built["openmp"] = {{"runtime", read_openmp().runtime}};
@@ -33,9 +29,6 @@ void add_doctor_command(CLI::App& program) {
             constexpr double seconds = 20;
             std::cout << noise_figure(measure_noise(seconds));
             return;
-        }
-        if (*measure) {
-            keep_costs_anew();
         }
         constexpr double noise_seconds = 2;
         const Findings findings = examine_machine(noise_seconds);

@@ -76,6 +76,9 @@ std::string processor_lines(const Findings& findings) {
                                      "each is halted for a part of the time",
                                      *quota, *quota == 1 ? "" : "s"));
     }
+    if (machine.has_unread_cpu_quota) {
+        text += line("CPU quota", "cannot be read: control groups of version 1 grant the processors here");
+    }
     return text +
            line("threads", "Carom takes " + counted(findings.threads_by_default, "thread") +
                                " by default, on " + counted(findings.usable_processors, "usable processor"));
@@ -147,9 +150,7 @@ std::string noise_line(const Noise& noise) {
 
 std::string costs_line(const Findings& findings) {
     if (!findings.costs) {
-        return line("costs",
-                    "of work are not measured yet: `run --error-below` does it at its first call, and "
-                    "--measure-costs");
+        return line("costs", "of work are not measured yet: `run --error-below` does it at its first call");
     }
     const auto event = findings.costs->costs.find(std::string(event_driven().name));
     const std::string collision =
@@ -159,7 +160,7 @@ std::string costs_line(const Findings& findings) {
                      1e6 * event->second.front().seconds.collisions, event->second.front().discs,
                      1e6 * event->second.back().seconds.collisions, event->second.back().discs);
     return line("costs", "of work, by which `run --error-below` chooses: " + findings.costs_file + collision +
-                             "; --measure-costs measures them anew");
+                             "; measured anew once that file is removed");
 }
 
 } // namespace

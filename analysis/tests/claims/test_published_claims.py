@@ -68,10 +68,10 @@ def test_the_questions_name_the_claims_and_the_runner_knows_them() -> None:
             claim.id for claim in CLAIMS if "quick" not in (*claim.scales, *claim.smaller_scales)
         ],
     }
-    for name, claims in wanted.items():
+    for name, listed_there in wanted.items():
         listed = re.search(rf"{name} = \((.*?)\)", known, re.DOTALL)
         assert listed is not None
-        assert re.findall(r'"(\w+)"', listed[1]) == claims
+        assert re.findall(r'"(\w+)"', listed[1]) == listed_there
 
 
 def test_the_choice_that_is_ringed_is_a_published_point() -> None:

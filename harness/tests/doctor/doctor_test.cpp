@@ -147,7 +147,11 @@ TEST(Doctor, ALimitOfProcessorsIsShownWithTheThreadsThatFollow) {
         << text;
     machine.cpu_quota = {};
     machine.hardware_threads = 3;
+    machine.has_unread_cpu_quota = false;
     EXPECT_EQ(unwrapped(found).find("CPU quota"), std::string::npos);
+    machine.has_unread_cpu_quota = true;
+    EXPECT_NE(unwrapped(found).find("CPU quota cannot be read: control groups of version 1"),
+              std::string::npos);
     EXPECT_EQ(unwrapped(found).find("2-4, of"), std::string::npos);
 }
 
