@@ -14,7 +14,6 @@ from experiments.support.digest import digest_of_hashes
 from support.errors import InputError
 
 CHECK_FAILED = 2
-NOT_BUILT_IN = 3
 
 GENERATOR = "gcc"
 """The build that makes the scenes, whichever is measured."""

@@ -182,9 +182,9 @@ class Processes:
         file = self._store.temporary / "processes" / "processes.json"
         file.write_text(json.dumps(described), encoding="utf-8")
         command = (str(self._instrument.path), "processes", str(file), "--seed", str(seed))
-        command += ("--slice", str(self._slice))
+        in_slices = (*command, "--slice", str(self._slice))
         # The instrument itself is bound nowhere: what it starts would inherit that.
-        return run_alone(command, (), seconds + MARGIN_SECONDS)
+        return run_alone(in_slices, (), seconds + MARGIN_SECONDS)
 
     def _turns(self, one: Asked, beside: Sequence[Asked]) -> bool | None:
         """Whether it takes turns with those beside it, as it is said or was found out. If one minds, none of

@@ -12,8 +12,8 @@ from experiments.plan.program import CHECK_FAILED, Program, generate
 from experiments.plan.scenes import AnyScene, NoScene, SceneFile, SceneFolder
 from experiments.results.store import Store
 from experiments.results.summary import summary_of, unusable
-from experiments.run.beside import BesideRecords
 from experiments.run.host_lock import run_alone
+from experiments.run.machine_limits import MachineLimits
 from experiments.run.processes import Asked, Left, Processes
 from experiments.run.together import have_room, is_alike
 from experiments.run.verify import Verifier, representative, scope_of
@@ -93,7 +93,7 @@ class Runner:
         self._processes = Processes(store, generator, time_limit, slice_seconds, tells=tells)
         self._verifier = Verifier(store, generator, self._processes, time_limit)
         self._written = Written(store)
-        self._beside = BesideRecords(store, time_limit)
+        self._limits = MachineLimits(store, time_limit)
 
     def run(self, tasks: Sequence[Task]) -> list[ProcessResult]:
         """Verify the points' variants as far as that is still to be done, then measure the points: several of
@@ -147,7 +147,7 @@ class Runner:
             verdict = self._verifier.check(representative(task.experiment, point), checked)
             if verdict.exit_code != 0:
                 return self._fail(task, verdict)
-        failed = self._beside.ensure(point, task.block, scene, task.tags(self._store.session))
+        failed = self._limits.ensure(point)
         return self._fail(task, failed) if failed is not None else scene
 
     def scene(self, scene: AnyScene) -> SceneFile:

@@ -1,9 +1,9 @@
 """Stands in for the carom program: same command line, same exit codes, same records, no discs.
 
 The environment says what goes wrong: FAKE_SECONDS (each measurement takes that long), FAKE_CHECK_SECONDS
-(each check), FAKE_PROMISES_SECONDS (promises of errors), FAKE_CHECK_FAILS, FAKE_BENCH_CRASHES,
+(each check), FAKE_CHECK_FAILS, FAKE_BENCH_CRASHES,
 FAKE_RESULT_WRONG, FAKE_NO_RECORD, FAKE_HANGS (the variant concerned), FAKE_SUSPENDED (the verb concerned;
-only as often as the file FAKE_SUSPENSIONS has lines, if there is one), FAKE_LIMITS_FAIL, FAKE_PROMISES_FAIL.
+only as often as the file FAKE_SUSPENSIONS has lines, if there is one), FAKE_LIMITS_FAIL.
 FAKE_LOG is a file that gets a line for every call, FAKE_SPANS one that gets a line for every call that
 computes: its verb, when it began and when it ended. FAKE_UNDISTURBED is the reason why processes do not take
 turns, where nobody said whether; with FAKE_MINDS only of those with it among their words.
@@ -74,29 +74,20 @@ def answer_with(verb: str, options: Options, positional: list[str]) -> int:
             return 2
     elif verb in ("bench", "profile"):
         return measure(verb, positional[0], options)
-    elif verb in ("limits", "outside", "promises"):
-        return measure_beside(verb, options, positional)
+    elif verb == "limits":
+        return measure_limits(options)
     else:
         print(f'found "{verb}", expected a verb', file=sys.stderr)
         return 1
     return 0
 
 
-def measure_beside(verb: str, options: Options, positional: list[str]) -> int:
-    said = os.environ.get("FAKE_OUTSIDE")
-    if verb == "outside" and said != "measure":
-        print(said or "built without Chipmunk", file=sys.stderr)
-        return 1 if said else 3
-    if verb == "limits" and "FAKE_LIMITS_FAIL" in os.environ:
+def measure_limits(options: Options) -> int:
+    if "FAKE_LIMITS_FAIL" in os.environ:
         print("--threads: found 2, but OpenMP grants 1", file=sys.stderr)
         return 1
-    if verb == "promises" and "FAKE_PROMISES_FAIL" in os.environ:
-        print("no exact run to measure an error by", file=sys.stderr)
-        return 1
-    seconds = "FAKE_PROMISES_SECONDS" if verb == "promises" else "FAKE_SECONDS"
-    time.sleep(float(os.environ.get(seconds, "0")))
-    make = {"limits": make_limits, "outside": make_outside, "promises": make_promises}[verb]
-    write(options["record"], json.dumps(make(positional, options)))
+    time.sleep(float(os.environ.get("FAKE_SECONDS", "0")))
+    write(options["record"], json.dumps(make_limits(options)))
     return 0
 
 
@@ -316,37 +307,12 @@ def any_record(kind: str, options: Options) -> dict[str, Any]:
     }
 
 
-def make_limits(_positional: list[str], options: Options) -> dict[str, Any]:
+def make_limits(options: Options) -> dict[str, Any]:
     rate = {"best": 2e9, "median": 1e9, "repetitions": 5}
     threads = {"threads": int(options["threads"])}
     copy = {"level": "memory", "working_set_bytes": 1 << 20, **threads, "bytes_per_second": rate}
     arithmetic = {"lanes": 2, **threads, "operations_per_second": rate}
     return any_record("limits", options) | {"limits": {"copy": [copy], "arithmetic": [arithmetic]}}
-
-
-def make_outside(positional: list[str], options: Options) -> dict[str, Any]:
-    bench = make_record("bench", positional[0], options | {"variant": "published", "threads": 1}, wrong=False)
-    return any_record("outside", options) | {
-        **{key: bench[key] for key in ("scene", "repetitions")},
-        "engine": {"name": "Chipmunk", "version": "7.0.3", "iterations": 10},
-        "axes": {"threads": 1, "substeps": int(options["substeps"])},
-        "errors": {"energy_drift": -0.003, "discs_outside": 0},
-    }
-
-
-def make_promises(positional: list[str], options: Options) -> dict[str, Any]:
-    bench = make_record("bench", positional[0], options | {"variant": "published"}, wrong=False)
-    chosen = {"variant": "published", "substeps": 2, "seconds": 0.25, "error": 0.01}
-    promise = {
-        "measure": "path", "error_below": 0.02, "promised": 0.015, "trial_seconds": 0.1, "methods": 29,
-        "chosen": chosen, "cheapest": {**chosen, "seconds": 0.2},
-    }  # fmt: skip
-    return any_record("promises", options) | {
-        "axes": {"threads": int(options["threads"])},
-        "scene": bench["scene"],
-        "promises": [promise],
-        "process_seconds": 1.0,
-    }
 
 
 def axes(options: Options) -> dict[str, Any]:

@@ -92,7 +92,7 @@ def test_anything_in_a_results_folder_is_put_aside_or_counted_once(
 def test_a_record_of_another_kind_is_put_aside(measured: Workplace) -> None:
     first, second = sorted((measured.results / "records" / "pair").rglob("*.json"))[:2]
     bench = json.loads(first.read_text(encoding="utf-8"))
-    limits = make_limits([], {"threads": "1", "tags": bench["tags"]})
+    limits = make_limits({"threads": "1", "tags": bench["tags"]})
     first.write_text(json.dumps(limits), encoding="utf-8")
     wrong = measured.results / "failures" / "pair" / second.name
     wrong.parent.mkdir(parents=True)

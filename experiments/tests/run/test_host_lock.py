@@ -49,16 +49,14 @@ def test_what_two_runners_run_does_not_overlap(empty_workplace: Workplace) -> No
     place.question("close", LIMITS)
     place.question("errors", ERRORS)
     spans = place.root / "spans"
-    place.behave(
-        FAKE_SPANS=str(spans), FAKE_SECONDS="0.02", FAKE_CHECK_SECONDS="0.05", FAKE_OUTSIDE="measure"
-    )
+    place.behave(FAKE_SPANS=str(spans), FAKE_SECONDS="0.02", FAKE_CHECK_SECONDS="0.05")
     runners = [place.start("run", "--no-figures", "--results", name) for name in ("one", "two")]
     for runner in runners:
         _, error = runner.communicate(timeout=120)
         assert runner.returncode == 0
         assert all("waits for another measurement (process " in line for line in error.splitlines())
     lines = [line.split() for line in spans.read_text(encoding="utf-8").splitlines()]
-    assert {verb for verb, _, _ in lines} == {"bench", "check", "limits", "outside", "profile", "turns"}
+    assert {verb for verb, _, _ in lines} == {"bench", "check", "limits", "profile", "turns"}
     times_of = sorted((float(began), float(ended), verb) for verb, began, ended in lines)
     for before, after in itertools.pairwise(times_of):
         assert before[1] <= after[0], f"{after[2]} began before {before[2]} had ended"

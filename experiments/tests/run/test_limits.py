@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from experiments.run.beside import BESIDE
+from experiments.run.machine_limits import FOLDER
 from experiments.run.session import run
 from experiments.tests.conftest import DAMAGES, PAIR, Workplace, damage
 
-FOLDER = BESIDE["limits"].folder
 LIMITS = PAIR.replace('figure = "comparison"', 'figure = "limits"\nverb = "profile"\nthreads = 1')
 
 
