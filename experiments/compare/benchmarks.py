@@ -86,7 +86,9 @@ def names_benchmark(command: Compared) -> str | None:
 
 
 def _is_benchmark(word: str, folder: Path) -> bool:
-    return _has_library(found(word, folder))
+    """Whether it is one. Carom itself loads the library, too, and is none."""
+    program = found(word, folder)
+    return not program.resolve().name.startswith("carom") and _has_library(program)
 
 
 def _begins_with(file: Path, mark: bytes) -> bool:

@@ -68,7 +68,7 @@ class Asked:
 def parse(arguments: Sequence[str]) -> Asked:
     """Read the words behind `carom compare`. Raises InputError, or leaves like any parser."""
     own, words = split_off(arguments)
-    options = _parser().parse_args(own)
+    options = _parser().parse_intermixed_args(own)
     commands = commands_of(options, words)
     asked = asked_of(options, commands, reference_of(options.reference, [one.name for one in commands]))
     return replace(with_cases(asked, options), earlier=options.append)

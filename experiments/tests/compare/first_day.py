@@ -156,6 +156,11 @@ CASES = (
         },
     ),
     Case(
+        TIMED, "a comparison within a comparison", "one line at once: each would wait for the other",
+        ("-n", "true", "-n", "inner", "true"), ("inner: failed after 0 runs", "runs within another measure"),
+        code=2, through='"$@" "$1 compare true ls"',
+    ),
+    Case(
         TIME, "a short command beside a long one", "each as often as it needs, within --time",
         ("true", "./b"), ("true 15", "b 1"), code=None, files={"b": "sleep 0.6"}, time="5s",
     ),

@@ -11,7 +11,7 @@ import pytest
 
 from experiments.compare.answer import Answer, Difference
 from experiments.compare.gate import SLOWER, UNDECIDED, verdict
-from experiments.tests.compare.calls import BENCHMARK, CAROM, needs_the_program
+from experiments.tests.compare.calls import BENCHMARK, CAROM, left_behind, needs_the_program
 from experiments.tests.conftest import ROOT, is_running
 
 PRINTS = "#!/bin/sh\n# {tag}\necho took $((100 + {more})) ms\n"
@@ -66,8 +66,7 @@ def gate(repository: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 def require_untouched(repository: Path) -> None:
-    left = [one.name for one in (repository.parent / "tmp").iterdir() if not one.name.endswith(".lock")]
-    assert left == []
+    assert left_behind(repository.parent) == []
     assert git(repository, "worktree", "list").count("\n") == 0
     assert git(repository, "status", "--porcelain") == ""
 
