@@ -112,12 +112,12 @@ def common_cases(commands: Sequence[Compared], pattern: str | None) -> tuple[str
 
     Raises InputError for a program that lists none, and where there is none in common.
     """
-    listed = {one.name: _listed(one, pattern) for one in commands}
-    common = [name for name in listed[commands[0].name] if all(name in names for names in listed.values())]
-    for command, names in listed.items():
+    listed = [_listed(one, pattern) for one in commands]
+    common = [name for name in listed[0] if all(name in names for names in listed)]
+    for command, names in zip(commands, listed, strict=True):
         alone = [name for name in names if name not in common]
         if alone:
-            warn(f"carom: not compared, since not all have it: {', '.join(alone)} of {command}")
+            warn(f"carom: not compared, since not all have it: {', '.join(alone)} of {command.called}")
     if not common:
         raise InputError("--gb: found no case that all commands have, expected one at least")
     return tuple(common)
@@ -128,15 +128,15 @@ def _listed(command: Compared, pattern: str | None) -> list[str]:
     try:
         require_executable(first, command.folder)
     except UnfitError as unfit:
-        raise InputError(f'{command.name}: found "{first}", which {unfit}') from unfit
+        raise InputError(f'{command.called}: found "{first}", which {unfit}') from unfit
     own = call.filter if call is not None else None
     words = (os.fspath(found(first, command.folder)), *command.words[1:])
     around = (command.folder, {**os.environ, **dict(command.environment)})
     try:
-        return cases(words, pattern or own or ".", command.name, *around)
+        return cases(words, pattern or own or ".", command.called, *around)
     except InputError as error:
         raise InputError(
-            str(error).replace(f"{command.name}.filter: ", f"{command.name}: --filter: ")
+            str(error).replace(f"{command.called}.filter: ", f"{command.called}: --filter: ")
         ) from error
 
 

@@ -32,7 +32,7 @@ _ASSIGNMENT = re.compile(r"([A-Za-z_]\w*)=(.*)", re.DOTALL)
 
 @dataclass(frozen=True)
 class Compared:
-    """One of the commands: what it is called, its words, and the line that the user wrote."""
+    """One of the commands: what it is called in tables, its words, and the line that the user wrote."""
 
     name: str
     words: tuple[str, ...]
@@ -46,6 +46,8 @@ class Compared:
     """The pattern of the time that it prints."""
     levels: Levels = ()
     """The value of each list that its line has."""
+    called: str = ""
+    """What messages call it: as the user wrote it, or by the name that the user gave."""
 
     @property
     def has_shell(self) -> bool:
@@ -82,7 +84,8 @@ def commands_of(options: argparse.Namespace, words_behind: Sequence[str]) -> tup
         told = f"expected two or more to compare, {MOST_COMMANDS} at most"
         raise InputError(f"found {_commands_said(len(written))}, {told}")
     read = [(dict[str, str](), one.words) if one.words else words_of(one.line) for one in written]
-    names = _names(options, written, [words for _, words in read])
+    called = _names(options, written)
+    names = called if options.name else names_of([words for _, words in read], called)
     prepare, conclude = (
         [_words_beside(_given(options, key, written, at)) for at in range(len(written))]
         for key in ("prepare", "conclude")
@@ -97,6 +100,7 @@ def commands_of(options: argparse.Namespace, words_behind: Sequence[str]) -> tup
             environment=_environment(options.env, one.values, name, names, of_line),
             levels=one.levels,
             time_from=options.time_from and fill(options.time_from, one.values),
+            called=called[at],
         )
         for at, (one, name, (of_line, words)) in enumerate(zip(written, names, read, strict=True))
     )
@@ -130,12 +134,10 @@ def _written(options: argparse.Namespace, split: Sequence[Sequence[str]]) -> lis
     return list(found.values())
 
 
-def _names(
-    options: argparse.Namespace, written: Sequence[_Written], words: Sequence[tuple[str, ...]]
-) -> list[str]:
+def _names(options: argparse.Namespace, written: Sequence[_Written]) -> list[str]:
     """What the commands are called. Raises InputError for names that are not as many, or not told apart."""
     if not options.name:
-        names = names_of(words, [_called(one, written) for one in written])
+        names = [_called(one, written) for one in written]
         _require_names(names, "found")
         return names
     number = len(options.name)

@@ -81,8 +81,8 @@ def _built(options: argparse.Namespace, run: Sequence[str], stack: ExitStack) ->
             require_two_programs(run, trees["base"], trees["head"])
     words, line, pattern = tuple(run), " ".join(run), options.time_from
     return tuple(
-        Compared(f"{name} {tree.commit.short}", words, line, folder=tree.folder, time_from=pattern)
-        for name, tree in trees.items()
+        Compared(name, words, line, folder=tree.folder, time_from=pattern, called=name)
+        for name, tree in ((f"{name} {tree.commit.short}", tree) for name, tree in trees.items())
     )
 
 

@@ -52,7 +52,8 @@ void close_all_but(std::vector<int> kept) {
 class Keeping {
   public:
     Keeping(const ProcessCommand& command, const Cgroup* group, int line)
-        : group_(group), line_(line), output_(command.pattern), error_("") {
+        : most_milliseconds_behind_(command.most_milliseconds_behind), group_(group), line_(line),
+          output_(command.pattern), error_("") {
         sigset_t of_children;
         sigemptyset(&of_children);
         sigaddset(&of_children, SIGCHLD);
@@ -122,7 +123,11 @@ class Keeping {
                                        {.fd = line_, .events = POLLIN, .revents = 0},
                                        {.fd = pipes_.output, .events = POLLIN, .revents = 0},
                                        {.fd = pipes_.error, .events = POLLIN, .revents = 0}}};
-        if (poll(waiting.data(), waiting.size(), -1) < 0) {
+        const int left = milliseconds_left_behind();
+        if (left == 0) {
+            end_all();
+        }
+        if (left == 0 || poll(waiting.data(), waiting.size(), left) < 0) {
             return;
         }
         if (waiting[0].revents != 0) {
@@ -138,6 +143,15 @@ class Keeping {
         if (waiting[3].revents != 0) {
             read_from(pipes_.error, error_);
         }
+    }
+
+    /// How long what it started may go on from now; -1 as long as nothing limits that.
+    int milliseconds_left_behind() const {
+        if (!program_has_ended_ || most_milliseconds_behind_ < 0) {
+            return -1;
+        }
+        const double behind = 1000 * (process_seconds() - program_ended_at_);
+        return std::max(0, most_milliseconds_behind_ - static_cast<int>(behind));
     }
 
     /// Takes leave of all that have ended; nobody left is the end of the program, also if it ended before.
@@ -239,6 +253,7 @@ class Keeping {
                 {"error_output", printed_json(error_)}};
     }
 
+    int most_milliseconds_behind_;
     const Cgroup* group_;
     int line_;
     int children_ = -1; ///< readable when one of them has ended
