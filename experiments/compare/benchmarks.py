@@ -2,13 +2,12 @@
 
 import mmap
 import os
-import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from experiments.compare.commands import Compared
+from experiments.compare.commands import Compared, words_in
 from experiments.plan.benchmark_cases import cases
 from experiments.plan.executable import UnfitError, found, require_executable
 from experiments.run.progress import about, warn
@@ -75,11 +74,7 @@ def names_benchmark(command: Compared) -> str | None:
     if _begins_with(program, b"#!"):
         texts.append(program.read_text(encoding="utf-8", errors="replace"))
     for text in texts:
-        try:
-            words = shlex.split(text, comments=True)
-        except ValueError:
-            words = text.split()
-        for word in words:
+        for word in words_in(text):
             if "/" in word and _is_benchmark(word, command.folder):
                 return word
     return None

@@ -21,7 +21,7 @@ from experiments.plan.scale import find_scale
 from experiments.plan.scenes import SceneFolder
 from experiments.plan.site import load_site, this_machine
 from experiments.results.store import Store, new_session
-from experiments.run.progress import warn
+from experiments.run.progress import several, warn
 from experiments.run.runner import Runner
 from experiments.support import process
 from experiments.support.descendants import children, end_all_but
@@ -94,8 +94,8 @@ def _exit_code(blocks: Blocks, found: Found, stopped: int | None) -> int:
     for name, case in {(name.removesuffix(AGAIN), case): None for name, case in blocks.failed}:
         same = [blocks.runs[key] for key in ((name, case), (name + AGAIN, case)) if key in blocks.runs]
         runs, reason = sum(one.tries for one in same), next(one.reason for one in same if one.reason)
-        again = "; where a run leaves something, `--prepare` can put it back" if 0 < runs <= _FEW else ""
-        well = f"{runs} run{'' if runs == 1 else 's'}{' that ended well' if runs else ''}"
+        again = "; `--prepare` of `carom compare` puts back what a run leaves" if 0 < runs <= _FEW else ""
+        well = f"{several(runs, 'run')}{' that ended well' if runs else ''}"
         whose = f"{called[name]}, {cases[case]}" if cases else called[name]
         warn(f"carom: {whose}: failed after {well}: {reason}{again}")
     if stopped is not None:

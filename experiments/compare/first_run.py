@@ -91,14 +91,11 @@ def require_alike(asked: Asked) -> None:
 def require_meant(asked: Asked, runs: Mapping[Key, Runs]) -> None:
     """Raises InputError for a Google Benchmark that would be timed as a whole although nobody said so."""
     for one in asked.commands:
-        if not (asked.is_whole or asked.cases) and _has_table(runs[one.name, 0].output):
+        heads = (tuple(line.split()[:4]) for line in runs[one.name, 0].output.splitlines())
+        if not (asked.is_whole or asked.cases) and _TABLE in heads:
             told = f"{one.called}: runs a Google Benchmark, which repeats its cases until their time is full"
             expected = "expected that program with its arguments alone, or --no-gb to time it as a whole"
             raise NotMeantError(f"{told}; {expected}")
-
-
-def _has_table(output: str) -> bool:
-    return any(tuple(line.split()[:4]) == _TABLE for line in output.splitlines())
 
 
 def unlike_runs(name: str, first: float, runs: Runs) -> list[str]:
@@ -107,8 +104,8 @@ def unlike_runs(name: str, first: float, runs: Runs) -> list[str]:
     if first - usual > _LEAST and first > usual * 3:
         took = f"the first run of {name} took {duration(first)}, the others {duration(usual)}"
         told.append(
-            f"{took}: it found something to do, or in memory, that they did not. `--prepare` can put things "
-            "back before each run"
+            f"{took}: it found something to do, or in memory, that they did not. `--prepare` of "
+            "`carom compare` puts things back before each run"
         )
     if runs.left_behind and (share := statistics.median(runs.left_behind)) > 0.1:
         told.append(f"{100 * share:.0f} % of the time of {name} is of what it has left in the background")

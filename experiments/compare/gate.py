@@ -11,7 +11,7 @@ from experiments.compare import exports, values
 from experiments.compare.answer import Answer
 from experiments.compare.command import WITHDRAWN, measured
 from experiments.compare.commands import WORDS, Compared, split_off
-from experiments.compare.options import add_measuring, asked_of, with_cases
+from experiments.compare.options import add_measuring, asked_of, read, with_cases
 from experiments.compare.same_program import require_two_files, require_two_programs
 from experiments.compare.worktrees import Commit, Repository, Tree, build, repository
 from experiments.run.progress import warn
@@ -28,7 +28,7 @@ def gate(arguments: Sequence[str]) -> int:
     differs from itself. Raises InputError before anything is measured.
     """
     words, run = split_off(arguments)
-    options = _parser().parse_args(words)
+    options = read(_parser(), words)
     if not run:
         raise InputError(
             f"found no command, expected `{WORDS} WORDS` at the end: what is run of both commits"

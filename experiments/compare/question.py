@@ -21,10 +21,10 @@ _OPTIONS = {
     "time.stdout: ": "--time-from: ",
     "time: ": "--time-from: ",
     "turns = false": "`--turns off`",
-    " (it was stopped now and then while others ran)": "",
+    "Exec format error": "Exec format error: a script names its interpreter in its first line, as #!/bin/sh",
     "nothing beside what is timed": "nothing beside what is timed (`--setup` starts what is to go on)",
 }
-"""What a question's file calls what an option says. Whether a stop is the cause of a failure is not known."""
+"""What a question's file calls what an option says."""
 _OPENMP = ("OMP_", "GOMP_", "KMP_")
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 
+from experiments.run.progress import several
 from support.errors import InputError, quoted
 
 Levels = tuple[tuple[str, str], ...]
@@ -44,7 +45,7 @@ def joined(arguments: Sequence[str]) -> list[str]:
         least = 2 if word in LIST else 3 if word in RANGE else 0
         if len(rest) < least:
             expected = "NAME A,B" if word in LIST else "NAME FIRST LAST [STEP]"
-            raise InputError(f"{word}: found {len(rest)} words behind it, expected {expected}")
+            raise InputError(f"{word}: found {several(len(rest), 'word')} behind it, expected {expected}")
         taken = least + (word in RANGE and len(rest) > least and _number(rest[least]) is not None)
         own, rest = rest[:taken], rest[taken:]
         more = list(itertools.takewhile(_is_no_program, rest))

@@ -57,18 +57,16 @@ class Waits:
 
     def bound(self, name: str) -> socket.socket:
         """The socket of that name, once nobody else has it."""
+        lock = socket.socket(socket.AF_UNIX)
         while True:
-            lock = socket.socket(socket.AF_UNIX)
             try:
                 lock.bind(name)
+                lock.listen()
+                return lock
             except OSError as error:
-                lock.close()
                 if error.errno != errno.EADDRINUSE:
                     raise
                 self._wait(name)
-            else:
-                lock.listen()
-                return lock
 
     def _wait(self, name: str) -> None:
         """Wait for the end of whoever has the name, and say so the first time."""

@@ -21,7 +21,7 @@ def stop_at_signals() -> None:
         signal.signal(number, _interrupt)
     if early := heard & signal.sigpending():
         os._exit(128 + min(early))
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
+    signal.pthread_sigmask(signal.SIG_SETMASK, ())
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

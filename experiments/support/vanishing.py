@@ -33,7 +33,7 @@ def vanishing_folder(prefix: str, then: str = "") -> Iterator[Path]:
     removes what is left.
     """
     with tempfile.TemporaryDirectory(prefix=prefix, ignore_cleanup_errors=True) as folder:
-        words = ("sh", "-c", _REMOVE, "sh", folder, then)
+        words = ("/bin/sh", "-c", _REMOVE, "sh", folder, then)
         nowhere = subprocess.DEVNULL
         remover = subprocess.Popen(
             words, cwd="/", stdin=subprocess.PIPE, stdout=nowhere, stderr=nowhere, start_new_session=True

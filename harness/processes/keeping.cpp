@@ -52,7 +52,7 @@ void close_all_but(std::vector<int> kept) {
 class Keeping {
   public:
     Keeping(const ProcessCommand& command, const Cgroup* group, int line)
-        : most_milliseconds_behind_(command.most_milliseconds_behind), group_(group), line_(line),
+        : most_seconds_behind_(command.most_seconds_behind), group_(group), line_(line),
           output_(command.pattern), error_("") {
         sigset_t of_children;
         sigemptyset(&of_children);
@@ -123,12 +123,12 @@ class Keeping {
                                        {.fd = line_, .events = POLLIN, .revents = 0},
                                        {.fd = pipes_.output, .events = POLLIN, .revents = 0},
                                        {.fd = pipes_.error, .events = POLLIN, .revents = 0}}};
-        const int left = milliseconds_left_behind();
-        if (left == 0) {
-            end_all();
-        }
-        if (left == 0 || poll(waiting.data(), waiting.size(), left) < 0) {
+        const bool is_behind = program_has_ended_ && most_seconds_behind_ < 1e9;
+        if (poll(waiting.data(), waiting.size(), is_behind ? 100 : -1) < 0) {
             return;
+        }
+        if (is_behind && process_seconds() > program_ended_at_ + most_seconds_behind_) {
+            end_all();
         }
         if (waiting[0].revents != 0) {
             reap();
@@ -143,15 +143,6 @@ class Keeping {
         if (waiting[3].revents != 0) {
             read_from(pipes_.error, error_);
         }
-    }
-
-    /// How long what it started may go on from now; -1 as long as nothing limits that.
-    int milliseconds_left_behind() const {
-        if (!program_has_ended_ || most_milliseconds_behind_ < 0) {
-            return -1;
-        }
-        const double behind = 1000 * (process_seconds() - program_ended_at_);
-        return std::max(0, most_milliseconds_behind_ - static_cast<int>(behind));
     }
 
     /// Takes leave of all that have ended; nobody left is the end of the program, also if it ended before.
@@ -253,7 +244,7 @@ class Keeping {
                 {"error_output", printed_json(error_)}};
     }
 
-    int most_milliseconds_behind_;
+    double most_seconds_behind_;
     const Cgroup* group_;
     int line_;
     int children_ = -1; ///< readable when one of them has ended

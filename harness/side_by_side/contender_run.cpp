@@ -118,7 +118,7 @@ std::string ContenderRun::run_beside(const std::string& what, const std::vector<
                                  .folder = folder_,
                                  .environment = contender_.command.environment,
                                  .most_seconds = contender_.command.most_seconds,
-                                 .most_milliseconds_behind = 2000,
+                                 .most_seconds_behind = 2,
                                  .pattern = ""};
     const std::string why = why_failed(command, run_undisturbed(command, contender_.kept_by), {0});
     return why.empty() ? "" : what + ": " + why;

@@ -278,7 +278,7 @@ class Contest {
             return;
         }
         if (undisturbed_[k].empty()) {
-            measured_[k].failure = run_in_turns.failure + hint_of_slices(run_in_turns.end);
+            measured_[k].failure = run_in_turns.failure;
         } else {
             keep_undisturbed(k, undisturbed_[k].back(),
                              "a run in slices failed (" + run_in_turns.failure +

@@ -148,13 +148,27 @@ CASES = (
         ("true", "-n", "a", "ls", "-n", "b"), ("  a  ", "  b  "), code=None,
     ),
     Case(
+        TIMED, "options of another tool", "the first of them is named", ("-w", "3", "-r", "10", "true", "ls"),
+        ("unrecognized arguments: -w (",), code=1,
+    ),
+    Case(
+        TIMED, "--vs between lines", "one line that says what is missing", ("true", "--vs", "ls"),
+        ("found --vs, expected `--` before it",), code=1,
+    ),
+    Case(
+        TIMED, "a script without a first line for its interpreter", "the line is named",
+        ("sh -c :", "./a.sh"), ("./a.sh: failed after 0 runs: ", "in its first line, as #!/bin/sh"), code=2,
+        files={"a.sh": "true"}, setup="chmod +x a.sh",
+    ),
+    Case(
         TIMED, "Carom itself", "is no Google Benchmark, although it loads the library",
         ("-n", "true", "-n", "carom", "true"), ("  carom  ",), ("Google Benchmark",), code=None,
         through='"$@" "$1 --version"',
     ),
     Case(
         TIMED, "a command that fails now and then", "how many runs ended well, how this one ended, no cause",
-        ("./a", "./b"), (" runs that ended well: exit code 3: bad luck",), ("now and then",), code=2,
+        ("--turns", "off", "./a", "./b"), (" runs that ended well: exit code 3: bad luck",),
+        ("now and then",), code=2,
         files={
             "a": LOOP.format(times=20000)
             + "echo x >> n; [ $(wc -l < n) != 9 ] || { echo bad luck >&2; exit 3; }",
@@ -290,7 +304,7 @@ CASES = (
     Case(
         WRITTEN, "an export to a program that is compared", "refused",
         ("--export-json", "./a", "./a", "true"),
-        ("--export-json: found ./a, which a uses",), code=1, files={"a": "exit 0"},
+        ("--export-json: found ./a, which ./a uses",), code=1, files={"a": "exit 0"},
     ),
     Case(
         WRITTEN, "an export to a link to itself", "refused", ("--export-json", "loop", "true", "ls"),
@@ -317,6 +331,10 @@ CASES = (
         'cp "$1" $all/build/gcc/ && touch $all/.venv/bin/python && chmod 0 $all/.venv/bin; shift\n'
         "[ $(id -u) != 0 ] || other='setpriv --reuid=65534 --clear-groups'\n"
         'cd /; $other $all/build/gcc/carom "$@"; code=$?; chmod 755 $all/.venv/bin; rm -r $all; exit $code',
+    ),
+    Case(
+        ENDS, "a working folder that is gone", "one line that says so", ("true", "ls"),
+        ("carom: is called in a folder that is gone",), code=1, through='mkdir x; cd x; rmdir ../x; "$@"',
     ),
     Case(
         ENDS, "Ctrl-C at once", "ends silently", ("true", "ls"), untold=("Traceback",), code=130,
