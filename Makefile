@@ -7,7 +7,7 @@
 .SILENT:
 .PHONY: help setup environment build build-gcc build-clang install uninstall package calibration-gcc \
         tests-gcc tests-clang test test-all sanitize test-slurm fuzz fuzz-scenes fuzz-files experiments appendix calibrate \
-        usual-ways bench-records docs lint lint-quick format clean distclean settings
+        docs lint lint-quick format clean distclean settings
 
 export COMPILER ?= gcc
 CXX_gcc := g++
@@ -38,14 +38,13 @@ limits := $${BUDGET:+--budget "$$BUDGET"} $${UNTIL:+"--until-$$UNTIL"}
 #:   JOBS=       compilers and tests at a time (one a processor)
 #:   WERROR=     1: a compiler's warning stops the build (no)
 #:   TIME=       seconds of random input for each reader, and of each stream of calibrate (60)
-#:   ROUNDS=     of usual-ways (10)
 #:   FIGURES=    those of docs/figures/figures.toml that docs makes again (all that are stale)
 #:   PYTHON=     the Python that makes .venv, 3.11 or newer (the system's)
 #:
 #: Exit codes: 0 done; else 2, and make's last line names that of the command, `Error N`:
 #:   1 wrong input or usage, told in one line; 2 a point or a check failed, as the report says; 130 stopped, the
 #:   same command goes on.
-settings := STUDY SCALE SITE QUESTIONS RESULTS BUDGET UNTIL DRY_RUN PREFIX DESTDIR COMPILER JOBS WERROR TIME ROUNDS FIGURES PYTHON
+settings := STUDY SCALE SITE QUESTIONS RESULTS BUDGET UNTIL DRY_RUN PREFIX DESTDIR COMPILER JOBS WERROR TIME FIGURES PYTHON
 of_tools := CC CXX CFLAGS CXXFLAGS LDFLAGS MAKEFLAGS SHELL CMAKE_% CTEST_% CCACHE_% CAROM_% PYTEST_% OMP_% PIP_%
 given := $(foreach one,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(one)))),$(one)))
 unknown := $(firstword $(filter-out $(settings) $(of_tools),$(given)))
@@ -153,9 +152,10 @@ experiments: environment settings ## run the study, then report (STUDY= SCALE= S
 	$(run)
 
 # analysis/report/graphs.toml says which graphs these are.
-appendix: ## draw the graphs of the published appendix, measuring what is missing (SCALE= RESULTS= BUDGET=)
-	$(MAKE) --no-print-directory experiments \
-		STUDY=neighbourhood,self_contained_checkered,self_contained_track,self_contained_repeat,schedule_find,schedule_resolve,schedule_resolve_row
+graphs := neighbourhood,self_contained_checkered,self_contained_track,self_contained_repeat,schedule_find,schedule_resolve,schedule_resolve_row
+appendix: ## draw the graphs of the published appendix as SVG and PDF, measuring what is missing (SCALE= RESULTS= BUDGET=)
+	$(MAKE) --no-print-directory experiments STUDY=$(graphs)
+	test -n "$${DRY_RUN-}" || $(python) analysis figures $(results) --experiment $(graphs)
 
 calibration-gcc: calibration-%: settings
 	$(call own_build,build/$*)
@@ -164,13 +164,6 @@ calibration-gcc: calibration-%: settings
 
 calibrate: environment settings calibration-gcc ## measure how often verdicts are wrong on this machine (TIME=60 RESULTS=results/calibration)
 	$(python) experiments calibrate $(results) $${TIME:+--seconds "$$TIME"}
-
-bench-records: environment settings build-gcc ## how long it takes to read up to 100 000 made-up records
-	$(python) experiments.records_benchmark --output results/records
-
-usual-ways: environment settings build-gcc ## hold `carom compare` against hyperfine, perf stat and others (ROUNDS=10)
-	$(python) experiments.usual_ways --rounds $${ROUNDS:-10} --output results/usual_ways.csv >/dev/null
-	$(python) experiments.usual_ways --rounds $${ROUNDS:-10} --busy 2 --output results/usual_ways.csv
 
 docs: environment settings build-gcc ## make docs/reference and the figures that are stale again (FIGURES=; may take hours)
 	$(python) docs.generate $${FIGURES:+--figures "$$FIGURES"}

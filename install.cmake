@@ -35,6 +35,5 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMPRESSION_TYPE gzip)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libpango-1.0-0, libpangoft2-1.0-0, fonts-dejavu-core") # for the PDF of a report
 set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/package.cmake)
 include(CPack)

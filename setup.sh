@@ -4,15 +4,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-# Ubuntu 22.04 (jammy) has Python 3.10 as python3, and no libharfbuzz-subset0.
+# Ubuntu 22.04 (jammy) has Python 3.10 as python3.
 python_packages=python3,python3-venv
-pdf_packages=libpango-1.0-0,libpangoft2-1.0-0,libharfbuzz-subset0,fonts-dejavu-core
-pdf_libraries="libpango-1.0.so.0 libpangoft2-1.0.so.0 libharfbuzz-subset.so.0"
-if grep -qs '^UBUNTU_CODENAME=jammy' /etc/os-release; then
-    python_packages=python3.11,python3.11-venv
-    pdf_packages=libpango-1.0-0,libpangoft2-1.0-0,fonts-dejavu-core
-    pdf_libraries="libpango-1.0.so.0 libpangoft2-1.0.so.0"
-fi
+! grep -qs '^UBUNTU_CODENAME=jammy' /etc/os-release || python_packages=python3.11,python3.11-venv
 
 # Each line: needed or optional; the packages that bring it; the question that finds it, from wherever it came.
 requirements() {
@@ -31,7 +25,6 @@ needed   libcli11-dev       header_found g++ CLI/CLI.hpp
 needed   nlohmann-json3-dev header_found g++ nlohmann/json.hpp
 needed   libgtest-dev       header_found g++ gtest/gtest.h
 needed   $python_packages   find_python
-optional $pdf_packages libraries_found $pdf_libraries
 optional ninja-build        command_found ninja
 optional libhwloc-dev       header_found g++ hwloc.h
 optional valgrind           command_found valgrind
@@ -52,11 +45,6 @@ header_found() {
     for prefix in "${prefixes[@]}"; do options+=("-I$prefix/include"); done
     printf '#if !__has_include(<%s>)\n#error missing\n#endif\n' "$2" |
         "$1" -E -x c++ "${options[@]}" - >/dev/null 2>&1
-}
-
-libraries_found() {
-    find_python || python=python3
-    "$python" -c 'import ctypes, sys; [ctypes.CDLL(name) for name in sys.argv[1:]]' "$@" 2>/dev/null
 }
 
 # Sets `python` to one that is new enough and can make a virtual environment.
@@ -97,7 +85,6 @@ Without one, Carom takes any copy that it is pointed at:
     module load gcc llvm cmake papi python       (names differ between clusters: module avail)
     export CMAKE_PREFIX_PATH=/one/prefix:/another (libraries with include/ and lib/ below)
     export PATH=/one/prefix/bin:\$PATH             (compilers and tools)
-    export LD_LIBRARY_PATH=/one/prefix/lib        (Pango)
     make setup PYTHON=/path/to/python3.11         (Python 3.11 or newer, with venv)
 Then run make setup again.
 TEXT
@@ -125,7 +112,7 @@ install_packages() {
     fi
     mapfile -t optional < <(missing_packages optional)
     ((${#optional[@]} == 0)) || echo "setup: going on without ${optional[*]} ($why):" \
-        "slower builds, fewer counters or no PDF report"
+        "slower builds or fewer counters"
 }
 
 # What tells one Python installation from another.

@@ -45,29 +45,18 @@ def _parser() -> argparse.ArgumentParser:
     }
     figures = verb(_figures, "draw the figures of whatever records are there", "results")
     figures.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
-    verb(_report, "write report.html and report.pdf", "results").add_argument("--study", **asked)
+    verb(_report, "write report.html", "results").add_argument("--study", **asked)
     claims = verb(_claims, "print each published claim with its verdict, a line each", "results")
     claims.add_argument("--verbose", action="store_true", help="and below it all that is known of it")
-    _add_export(verb(_export, "write a table with a row a timed repetition, for other tools", "results"))
+    export = verb(_export, "write a CSV table with a row a timed repetition, for other tools", "results")
+    told = "default: measurements.csv in the results; - is standard output"
+    export.add_argument("--output", type=Path, metavar="FILE", help=told)
     told = "answer each line of standard input, as a running study asks: open, page, report"
     verb(_follow, told, "results").add_argument("--study", **asked)
-    verb(
-        _performance,
-        "print the ladder, the limits and the speed of the exact simulation as Markdown tables",
-        "results",
-    )
     told = "tell how often verdicts are wrong here, from what `carom study calibrate` measured"
     verb(_calibration, told, "results/calibration")
     _add_movie(verb(_movie, "draw a run as an animation, or one step of it as a picture"))
     return parser
-
-
-def _add_export(export: argparse.ArgumentParser) -> None:
-    kind = export.add_mutually_exclusive_group()
-    kind.add_argument("--csv", action="store_true", help="as CSV (the default)")
-    kind.add_argument("--parquet", action="store_true", help="as Parquet (needs pyarrow)")
-    told = "default: measurements.csv or .parquet in the results; - is standard output"
-    export.add_argument("--output", type=Path, metavar="FILE", help=told)
 
 
 def _add_movie(movie: argparse.ArgumentParser) -> None:
@@ -101,7 +90,7 @@ def _figures(options: argparse.Namespace) -> int:
     def files(of_claims: int) -> list[Path]:
         if of_claims:
             return draw_all_claims(options.results)
-        return [figure.files[0] for figure in draw_all(options.results, wanted)]
+        return [figure.files[0] for figure in draw_all(options.results, wanted, pdf=True)]
 
     drawn, *claims = in_parallel(files, 1 if wanted else 2)
     for file in chain(drawn, *claims):
@@ -112,9 +101,9 @@ def _figures(options: argparse.Namespace) -> int:
 
 
 def _follow(options: argparse.Namespace) -> int:
-    """Answer a line with a line of JSON: `open` with what is open; `compared N` with what `carom compare`
-    asks, whose error N calls share; `picture` with the file of its picture; `report` with the files of the
-    report, `page` with its HTML alone, `report HOW FAR` with that of what is there so far.
+    """Answer a line with a line of JSON: `open` with what is open; `compared N CLOCK` with what `carom
+    compare` asks, whose error N calls share; `picture` with the file of its picture; `report` with the file
+    of the report, `report HOW FAR` with that of what is there so far.
     """
     from analysis.claims import Tested
     from analysis.commands.open_questions import open_questions
@@ -125,23 +114,18 @@ def _follow(options: argparse.Namespace) -> int:
         match line.split():
             case ["open"]:
                 answer: object = open_questions(options.results, remembered)
-            case ["compared", many] if many.isdigit():
-                answer = programs_compared(options.results, int(many))
+            case ["compared", many, clock] if many.isdigit():
+                answer = programs_compared(options.results, int(many), clock)
             case ["picture"]:
                 from analysis.commands.programs_picture import programs_picture
 
                 answer = str(programs_picture(options.results))
-            case ["report" | "page" as wanted]:
+            case ["report", *how_far]:
                 from analysis.report import write
 
-                written = write(options.results, _asked(options), pdf=wanted == "report")
-                answer = [str(path) for path in written]
-            case ["report", *how_far]:
-                from analysis.report import write_meanwhile
-
-                answer = [str(write_meanwhile(options.results, _asked(options), " ".join(how_far)))]
+                answer = str(write(options.results, _asked(options), " ".join(how_far)))
             case _:
-                expected = "expected `open`, `compared N`, `picture`, `page`, `report` or `report ...`"
+                expected = "expected `open`, `compared N CLOCK`, `picture`, `report` or `report ...`"
                 raise InputError(f"follow: found {line.strip()!r}, {expected}")
         print(json.dumps(answer), flush=True)
     return 0
@@ -150,7 +134,7 @@ def _follow(options: argparse.Namespace) -> int:
 def _report(options: argparse.Namespace) -> int:
     from analysis.report import write
 
-    print(*write(options.results, _asked(options)), sep="\n")
+    print(write(options.results, _asked(options)))
     return 0
 
 
@@ -179,21 +163,9 @@ def _claims(options: argparse.Namespace) -> int:
 def _export(options: argparse.Namespace) -> int:
     from analysis.commands.export import write
 
-    written = write(options.results, options.output, parquet=options.parquet)
+    written = write(options.results, options.output)
     if written is not None:
         print(written)
-    return 0
-
-
-def _performance(options: argparse.Namespace) -> int:
-    from analysis.commands.performance import markdown
-    from analysis.records.reading import load
-    from analysis.records.studies import split
-
-    texts = [(study.name, markdown(study)) for study in split(load(options.results))]
-    if not any(text for _, text in texts):
-        raise InputError(f"{options.results}: no records of the ladder, the limits or exact_threads yet")
-    print("\n\n".join(f"{name}:\n\n{text}" for name, text in texts if text))
     return 0
 
 

@@ -52,12 +52,10 @@ void add_verbs(CLI::App& program) {
     add_python_verbs(program, groups::study);
     add_group(program, groups::machine,
               {add_doctor_command, add_limits_command, add_bench_command, add_profile_command});
-    add_group(program, groups::none,
-              {add_turns_command, add_processes_command, add_outside_command, add_promises_command,
-               add_help_command});
+    add_group(program, groups::none, {add_turns_command, add_processes_command, add_help_command});
     program.footer(
-        "Exit codes: 0 done; 1 wrong usage or bad input, told in one line; 2 a result failed its check; "
-        "3 this build lacks what was asked for. A scene of `-` is read from standard input.");
+        "Exit codes: 0 done; 1 wrong usage or bad input, told in one line; 2 a result failed its check. "
+        "A scene of `-` is read from standard input.");
 }
 
 } // namespace
@@ -98,8 +96,6 @@ int main(int count, char** arguments) {
         return fail(1, error.what());
     } catch (const carom::CheckError& error) {
         return fail(2, error.what());
-    } catch (const carom::NotBuiltIn& error) {
-        return fail(3, error.what());
     } catch (const std::bad_alloc&) {
         return fail(1, "out of memory: expected a machine with room for the scene and its boxes");
     } catch (const std::exception& error) {

@@ -15,6 +15,9 @@ PAUSES = "pauses"
 PLAN = "plan.json"
 """The file of a results folder that tells how many blocks each experiment was given."""
 
+WALL, PROCESSOR = "wall", "processor"
+"""The clocks by which commands are judged."""
+
 AGAIN = " again"
 """Behind the name of the reference where `carom compare` runs it under a second one."""
 

@@ -8,11 +8,8 @@
 namespace carom {
 
 template class EventDriven<double, CollisionLog<double>&>;
-template class EventDriven<long double, CollisionLog<long double>&>;
 template class EventWindows<double, CollisionLog<double>&>;
-template class EventWindows<long double, CollisionLog<long double>&>;
 template class ExactSimulation<double, CollisionLog<double>&>;
-template class ExactSimulation<long double, CollisionLog<long double>&>;
 
 std::unique_ptr<Simulation> simulate_event_driven_logged(const Scene& scene, const Tuning& tuning,
                                                          CollisionLog<double>& log) {

@@ -50,7 +50,7 @@ def write(folder: Path) -> tuple[str, list[Path]]:
     target = folder / f"{NAME}.md"
     with replacing(target) as part:
         part.write_text(text, encoding="utf-8")
-    return text, [target, *save(draw(compared, calibration.origin), folder, NAME, formats=("svg",))]
+    return text, [target, *save(draw(compared, calibration.origin), folder, NAME)]
 
 
 def _errors(table: pd.DataFrame) -> str:

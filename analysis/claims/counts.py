@@ -36,7 +36,7 @@ def fewer_wasted_attempts(
     if before.empty or after.empty:
         return no_records(experiment, "a sweep of seeds")
     if runs["pair_attempts"].isna().any():
-        return Outcome(OPEN, why="attempts were not counted by the program that made the records")
+        return Outcome(OPEN, why="attempts were not counted: whole processes tell none")
     rows = {
         value: directed(_over_seeds(before, after, value), once=True)
         for value in ("wasted_attempts", "pair_attempts", "pair_resolves")

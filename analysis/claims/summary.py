@@ -13,6 +13,8 @@ from analysis.support.wording import NO_BREAK, count, number
 MARKS = {HOLDS: "✓", HOLDS_BY_LESS: "✓", FAILS: "✗"}
 UNDECIDED, UNMEASURED = "?", "–"
 TOO_FEW_BLOCKS = "too few blocks for an interval"
+_ON_THE_MARGIN = 0.005
+"""An effect so near to the margin is on it: to settle on which side would take thousands of blocks."""
 _IN_FULL = 100
 """From this per cent on a change has no decimals."""
 
@@ -35,7 +37,9 @@ def colour_of(row: Mapping[str, Any]) -> str:
 
 
 def verdict_in_short(row: Mapping[str, Any]) -> str:
-    """Return the verdict of a row of `evaluate` in few words; of one that is open, what it lacks."""
+    """Return the verdict of a row of `evaluate` in few words; of one that is open, what is known and what it
+    lacks.
+    """
     said = str(row["said"]).partition(" (claimed")[0]
     if row["verdict"] in DECIDED:
         return said
@@ -45,9 +49,23 @@ def verdict_in_short(row: Mapping[str, Any]) -> str:
         return said
     if 0 < row["blocks"] < FEWEST:
         return f"not decided: {TOO_FEW_BLOCKS}"
+    if not row["blocks"]:
+        return "cannot be decided here"
+    effect = first_effect(row)
+    known = _known_in_short(effect) if effect is not None else ""
     if isfinite(row["needed"]):
-        return f"not decided: about {count(int(row['needed']) - row['blocks'], 'more block')}"
-    return "not decided: not in sight" if row["blocks"] else "cannot be decided here"
+        more = count(int(row["needed"]) - row["blocks"], "more block")
+        return f"{known or 'not decided'}: about {more}"
+    return known or "not decided: not in sight"
+
+
+def _known_in_short(effect: Effect) -> str:
+    """Return what an interval says although it reaches across the margin."""
+    if effect.is_exponent or not effect.has_interval:
+        return ""
+    most = f"{100 * max(abs(effect.here.low - 1), abs(effect.here.high - 1)):.1f}{NO_BREAK}%"
+    lies_on_it = any(abs(effect.here.estimate - end) <= _ON_THE_MARGIN for end in effect.within)
+    return f"on the margin, at most {most}" if lies_on_it else f"at most {most}"
 
 
 def change_in_short(effect: Effect) -> str:

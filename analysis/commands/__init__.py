@@ -1,4 +1,4 @@
-"""Verbs that are more than a figure, a claim or the report: compare, movie, performance.
+"""Verbs that are more than a figure, a claim or the report: what is open, export, movie.
 
 Uses all other rooms.
 """

@@ -1,8 +1,6 @@
 """What was measured as one tidy table for other tools: a row a timed repetition of a point."""
 
-import importlib.util
 import sys
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,11 +11,6 @@ from analysis.records.reading import load
 from analysis.statistics.pairs import runs_of
 from support.errors import InputError
 from support.files import replacing
-
-NO_PYARROW = (
-    "--parquet: needs the Python package pyarrow, which is not here; "
-    "install it with `{} -m pip install pyarrow`, or give --csv"
-)
 
 
 @dataclass(frozen=True)
@@ -111,28 +104,15 @@ def measurements(results: Path) -> pd.DataFrame:
     return table[[column.name for column in COLUMNS]].reset_index(drop=True)
 
 
-def write(results: Path, output: Path | None, *, parquet: bool = False) -> Path | None:
-    """Write the table as CSV or Parquet, into `measurements.*` of the results folder if no `output` is named;
-    return the file. An output of `-` is standard output, for CSV alone, and None is returned.
-
-    Raises InputError where Parquet cannot be written, and what `measurements` raises.
+def write(results: Path, output: Path | None) -> Path | None:
+    """Write the table as CSV, into `measurements.csv` of the results folder if no `output` is named; return
+    the file. An output of `-` is standard output, and None is returned. Raises what `measurements` raises.
     """
-    to_stdout = output is not None and str(output) == "-"
-    if parquet and importlib.util.find_spec("pyarrow") is None:
-        raise InputError(NO_PYARROW.format(sys.executable))
-    if parquet and to_stdout:
-        raise InputError("--output: found -, expected a file: Parquet is not written to standard output")
     table = measurements(results)
-    if to_stdout:
+    if output is not None and str(output) == "-":
         table.to_csv(sys.stdout, index=False, lineterminator="\n")
         return None
-    target = output or results / f"measurements.{'parquet' if parquet else 'csv'}"
+    target = output or results / "measurements.csv"
     with replacing(target) as part:
-        _writer(table, parquet=parquet)(part)
+        table.to_csv(part, index=False, lineterminator="\n")
     return target
-
-
-def _writer(table: pd.DataFrame, *, parquet: bool) -> Callable[[Path], None]:
-    if parquet:
-        return lambda part: table.to_parquet(part, index=False, engine="pyarrow")
-    return lambda part: table.to_csv(part, index=False, lineterminator="\n")

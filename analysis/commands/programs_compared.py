@@ -12,25 +12,29 @@ from analysis.records.reading import load
 from analysis.records.studies import split
 from analysis.statistics.forecast import blocks_to_decide
 from analysis.statistics.looks import ERROR, next_look
+from analysis.statistics.pairs import rounds_of, runs_of
 from analysis.statistics.ranking import ranking
 from analysis.statistics.verdicts import corrected, judge_one
 from support.files import read_json
-from support.vocabulary import AGAIN, ASKED
+from support.vocabulary import AGAIN, ASKED, PROCESSOR, WALL
 
 LEAGUE = 3
 """So many commands are a league, in which every pair is compared."""
 
 
-def programs_compared(results: Path, many: int = 1) -> dict[str, Any]:
+def programs_compared(results: Path, many: int = 1, clock: str = WALL) -> dict[str, Any]:
     """Return `commands`: a row of `verdicts.judge` for each command but the reference and each case `x`, with
     the number of blocks that are `needed` to settle it, None where that is not in sight, and `low_of_all`,
     the lower end of the interval that holds together with those of all rows, in `many` calls; `controls`: the
     same of the reference under its second name, a row a case, and whether it `differs` from itself; `places`:
     with three commands or more, in the order of their times, the places and the bracket of each; `effects`:
     rows of the sums of logarithms that `asked.json` asks for; and `next`, the number of blocks at which
-    to look again.
+    to look again. By the `clock` of the processor times are those in which it computed.
     """
     times = times_of(results)
+    if clock == PROCESSOR and not times.empty:
+        parts = [rounds_of("steps_seconds"), runs_of("steps_seconds")]
+        times = times.assign(steps_seconds=times["processor_seconds"]).drop(columns=parts)
     if times.empty:
         nothing: dict[str, Any] = {key: [] for key in ("commands", "controls", "places", "effects")}
         return {**nothing, "next": next_look(0)}

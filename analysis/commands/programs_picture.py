@@ -33,7 +33,7 @@ def programs_picture(results: Path) -> Path:
     table = _rows(times, against, asked(results)["cases"])
     with styled("compared"):
         drawing = Drawing(_figure(times, table, against, stated(times)), "")
-        [file] = save(drawing, results, "compared", ("svg",))
+        [file] = save(drawing, results, "compared")
     return file
 
 

@@ -163,21 +163,6 @@ def _summary(study: Study, experiment: str) -> pd.DataFrame:
     return summarise(times(study, experiment), POINT, "seconds")
 
 
-def outside(study: Study, experiment: str, measure: Measure) -> pd.DataFrame:
-    """Return a row for each scene and number of substeps of a general engine: `engine`, `median`, `low`,
-    `high` of the seconds for a unit of simulated time, and `error`, on the scenes of its runs. Empty but
-    for the drift of energy.
-    """
-    (table,) = study.of(experiment, "outside")
-    table = table[table["scene_sha256"].isin(study.runs_of(experiment)["scene_sha256"])]
-    table = table.dropna(subset=["energy_drift"])
-    keys = ["scene_name", "substeps", "engine"]
-    if table.empty or measure.key != "energy":
-        return pd.DataFrame(columns=keys)
-    errors = table.groupby(keys)["energy_drift"].median().rename("error").reset_index()
-    return summarise(table, keys, "seconds").merge(errors, on=keys)
-
-
 def orders(table: pd.DataFrame) -> pd.DataFrame:
     """Return per scene and series of `points` the fitted `order` of the error in dt, an Interval."""
     keys = ["scene_name", "series"]

@@ -11,7 +11,7 @@ import pandas as pd
 
 from analysis.derived.counters import QUANTITIES, derived
 from analysis.records.studies import Study
-from analysis.records.tables import COLUMN_OF, LATER_AXES
+from analysis.records.tables import COLUMN_OF
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import ratios_of, scaled
 from analysis.statistics.verdicts import COLUMNS, judge
@@ -19,7 +19,8 @@ from analysis.support.wording import NO_INTERVAL, number, scene_in_words
 
 RUNG = ["scene_name", "series_number"]
 POLICIES = [
-    "neighbourhood", "order", "self_contained", "direction", "find_schedule", "resolve_schedule", *LATER_AXES,
+    "neighbourhood", "order", "self_contained", "direction", "find_schedule", "resolve_schedule",
+    "storage", "prefetch", "box_side", "overlaps", "search", "worklist", "impact", "precision",
 ]  # fmt: skip
 INSTRUCTIONS = "instructions per disc and step"
 SOURCES = ("papi-hardware", "cachegrind")

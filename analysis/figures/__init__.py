@@ -21,10 +21,8 @@ from analysis.figures import (
     ladder,
     limits,
     machines,
-    more_cores,
     pairs,
     phases,
-    promises,
     scaling,
     schedules,
     speed_against_error,
@@ -33,7 +31,7 @@ from analysis.figures import (
     ways,
 )
 from analysis.figures.captions import growth_sentence, linear_sentence, minimum_sentence
-from analysis.figures.style import FORMATS, Data, Drawing, mark_partial, partial, save, styled
+from analysis.figures.style import Data, Drawing, mark_partial, partial, save, styled
 from analysis.records.studies import Study
 from analysis.support.parallel import in_parallel
 from analysis.support.values import Table
@@ -98,17 +96,17 @@ def _counted(name: str, title: str, source: str, subject: str) -> Entry:
 
 def _accuracy(kind: str, experiment: str, name: str, title: str) -> list[Entry]:
     """Return the entries of an experiment about errors: one figure, or one for each measure."""
-    single = {PROMISES: promises.promises, HARD_CASES: hard_cases.hard_cases}
-    drawn = bound(single.get(kind, speed_against_error.draw), experiment=experiment, subject=title)
-    if kind in single:
+    if kind == HARD_CASES:
+        drawn = bound(hard_cases.hard_cases, experiment=experiment, subject=title)
         return [Entry(name, experiment, title, drawn, kind)]
+    drawn = bound(speed_against_error.draw, experiment=experiment, subject=title)
     return [
         Entry(f"{name}-{one.key}", experiment, f"{title}: {one.title}", bound(drawn, measure=one), kind)
         for one in MEASURES
     ]
 
 
-SPEED_AGAINST_ERROR, PROMISES, HARD_CASES = OF_ERRORS = ("speed_against_error", "promises", "hard_cases")
+SPEED_AGAINST_ERROR, HARD_CASES = OF_ERRORS = ("speed_against_error", "hard_cases")
 """The kinds of experiments about errors, whose figures have a part of the report of their own."""
 
 _EARLY = "Resolving self-contained pairs early, on against off, under the"
@@ -152,7 +150,6 @@ FIGURES = [
     _of_kind("phases", "The phases of a step", phases.profile, "Where the time of a step goes"),
     _of_kind("limits", "How close to the limits of the machine", limits.phases_against_limits,
              "Phases of a step against the limits of this machine"),
-    _of_kind("more_cores", "More cores", more_cores.more_cores, "The fastest variant on more cores"),
     _own("timeline", "A step on every thread", timeline.timeline, "phases"),
     _counted("counters_hardware", "Hardware counters", "papi-hardware", "Hardware counters (PAPI)"),
     _counted("counters_software", "Software counters", "papi-software", "Software counters (PAPI)"),
@@ -160,7 +157,6 @@ FIGURES = [
     _counted("counters_simulated", "Simulated counters", "cachegrind",
              "Simulated counters (cachegrind, one thread)"),
     *_accuracy(SPEED_AGAINST_ERROR, "speed_against_error", "speed_against_error", "Speed against error"),
-    *_accuracy(PROMISES, "promises", "promises", "Promised against delivered error"),
     *_accuracy(HARD_CASES, "hard_cases", "hard_cases", "Hard cases"),
 ]  # fmt: skip
 
@@ -174,7 +170,6 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
     "phases": phases.profile,
     "ladder": ladder.waterfall,
     "limits": limits.phases_against_limits,
-    "more_cores": more_cores.more_cores,
     KIND: ways.ways,
     PAUSES: ways.pauses,
 }
@@ -182,24 +177,24 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
 
 
 def draw(
-    data: Data, folder: Path, prefix: str = "", wanted: Sequence[str] = (), formats: Sequence[str] = FORMATS
+    data: Data, folder: Path, prefix: str = "", wanted: Sequence[str] = (), *, pdf: bool = False
 ) -> Iterator[Drawn]:
     """Draw every figure that the study has records for, or those of the experiments wanted, into the folder.
 
-    Each is written as SVG, PNG and PDF, or in the formats wanted, and marked as partial where planned records
-    are missing. Several are drawn at once, one on each processor.
+    Each is written as SVG, and as `pdf` if wanted, and marked as partial where planned records are missing.
+    Several are drawn at once, one on each processor.
     """
     known = [*FIGURES, *further(data.study)]
     entries = [entry for entry in known if not wanted or entry.experiment in wanted]
     bias_sentence(data.study)  # before there are several processes, of which each would work it out
 
     def drawn(number: int) -> Drawn | None:
-        return _draw(entries[number], data, folder, f"{prefix}{entries[number].name}", formats)
+        return _draw(entries[number], data, folder, f"{prefix}{entries[number].name}", pdf=pdf)
 
     yield from filter(None, in_parallel(drawn, len(entries)))
 
 
-def _draw(entry: Entry, data: Data, folder: Path, name: str, formats: Sequence[str]) -> Drawn | None:
+def _draw(entry: Entry, data: Data, folder: Path, name: str, *, pdf: bool) -> Drawn | None:
     with styled(name):
         drawing = entry.draw(data)
     if drawing is None:
@@ -209,7 +204,7 @@ def _draw(entry: Entry, data: Data, folder: Path, name: str, formats: Sequence[s
     caption = f"{drawing.caption} {missing[0].upper()}{missing[1:]}." if missing else drawing.caption
     if drawing.verdicts is not None and data.study.times_of(entry.experiment)["in_turns"].all():
         caption += bias_sentence(data.study)
-    return Drawn(entry, caption, save(drawing, folder, name, formats), drawing.verdicts, drawing.tables)
+    return Drawn(entry, caption, save(drawing, folder, name, pdf=pdf), drawing.verdicts, drawing.tables)
 
 
 def further(study: Study) -> list[Entry]:

@@ -11,8 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-POINTS_PER_INCH = 72
-"""The unit of an SVG that matplotlib writes."""
+from analysis.figures.layout import POINTS_PER_INCH
 
 CLOSE = 1.0
 """Points within which a mark of the SVG is the one of a point."""

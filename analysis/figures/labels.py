@@ -16,7 +16,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLoca
 from matplotlib.transforms import ScaledTranslation
 from scipy.optimize import isotonic_regression
 
-from analysis.figures.recording import POINTS_PER_INCH, when_laid_out
+from analysis.figures.layout import POINTS_PER_INCH, when_laid_out
 from analysis.figures.style import WIDTH
 from analysis.support.wording import exact
 

@@ -16,7 +16,7 @@ from analysis.derived.accuracy import SMALL, Choice, Measure, Race
 from analysis.figures.captions import opening
 from analysis.figures.hover import Told, tell
 from analysis.figures.labels import HOLLOW_SIGNS, SIGNS, key, label_points, logarithmic_ticks, plain_ticks
-from analysis.figures.recording import when_laid_out
+from analysis.figures.layout import when_laid_out
 from analysis.figures.style import FAINT, INK, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.support.values import Cell, Interval, Row, Table, table_of
 from analysis.support.wording import NO_BREAK, exact, interval, number
@@ -43,16 +43,12 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     scenes = dict(list(table.groupby("scene_name", sort=False)))
     figure, panels = new_figure(3.0, columns=len(scenes))
     shown = _looks(table)
-    outside = accuracy.outside(data.study, experiment, measure)
-    outside = outside[outside["scene_name"].isin(scenes)]
     zero = 10 ** np.floor(np.log10(table.loc[table["error"] > 0, "error"].min()) - 1)
     labels: dict[str, list[Label]] = {}
     for axes, (scene, part) in zip(panels, scenes.items(), strict=True):
         labels[str(scene)] = _front(axes, part, zero)
         for series, line in part.groupby("series"):
             _line(axes, line, zero, shown[str(series)])
-        beside = outside[outside["scene_name"] == scene]
-        labels[str(scene)] += _outside(axes, beside, zero) if len(beside) else []
         axes.set(xscale="log", yscale="log")
         corner: Any = {"xycoords": "axes fraction", "ha": "right", "va": "top"}
         axes.annotate(_panel_name(str(scene), part), (1, 1), fontsize=7, color=INK, **corner)
@@ -63,15 +59,13 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
         (f"{(SIGNS if look.dashes == '-' else HOLLOW_SIGNS)[look.marker]} {series}", look.colour)
         for series, look in shown.items()
     ]
-    entries += [(f"◆ {engine}", INK) for engine in outside["engine"].unique()]
     key(panels[0], [*entries, ("▬ Pareto front (substeps)", FAINT)])
     for axes, texts in zip(panels, labels.values(), strict=True):
         when_laid_out(figure, bound(label_points, axes, texts, INK))
     tables = [_advice(table, accuracy.races(data.study, experiment), measure)]
     if measure.converges:
         tables.append(_orders(table))
-    caption = _caption(table, data, experiment, subject, measure) + _outside_sentence(outside, table)
-    return Drawing(figure, caption, tables=tables)
+    return Drawing(figure, _caption(table, data, experiment, subject, measure), tables=tables)
 
 
 def _looks(table: pd.DataFrame) -> dict[str, Look]:
@@ -115,42 +109,6 @@ def _front(axes: Axes, part: pd.DataFrame, zero: float) -> list[Label]:
         (f"{substeps:g}" if substeps else series, one, other)
         for one, other, substeps, series in zip(x, y, rows["substeps"], rows["series"], strict=True)
     ][::-1]
-
-
-def _outside(axes: Axes, rows: pd.DataFrame, zero: float) -> list[Label]:
-    """Draw a general engine's points as diamonds; return its least and most substeps as labels."""
-    rows = rows.sort_values("substeps")
-    x, y = rows["error"].clip(lower=zero), MILLI * rows["median"]
-    spread = [MILLI * (rows["median"] - rows["low"]), MILLI * (rows["high"] - rows["median"])]
-    points, *_ = axes.errorbar(
-        x, y, yerr=spread, color=INK, linestyle=":", marker="D", markersize=3.5, linewidth=0.8
-    )
-    named = rows.assign(series=rows["engine"], x=rows["substeps"])
-    tell(points, [_told(row) for row in named.to_dict("records")])
-    return [
-        (f"{rows['substeps'].iloc[end]:g}", x.iloc[end], y.iloc[end])
-        for end in dict.fromkeys((0, len(rows) - 1))
-    ]
-
-
-def _outside_sentence(outside: pd.DataFrame, table: pd.DataFrame) -> str:
-    """Say what a general engine takes and loses with one substep, beside the cheapest choice there."""
-    said = []
-    for scene, rows in outside.groupby("scene_name", sort=False):
-        first = rows.sort_values("substeps").iloc[0]
-        cheapest = table[table["scene_name"] == scene].sort_values("median").iloc[0]
-        times = number(first["median"] / cheapest["median"])
-        said.append(
-            f"{scene}: {number(MILLI * first['median'])}{NO_BREAK}ms with a drift of "
-            f"{first['error']:.2g} in steps of 1/{first['substeps']:g}, {times} times the time of "
-            f"{run_label(str(cheapest['series']), cheapest['x'])}"
-        )
-    if not said:
-        return ""
-    return (
-        f" {' and '.join(outside['engine'].unique())}, a general engine on one thread, stands outside: it is "
-        f"not checked, and not on the front. {'; '.join(said)}."
-    )
 
 
 def _panel_name(scene: str, part: pd.DataFrame) -> str:

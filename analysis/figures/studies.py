@@ -5,15 +5,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from analysis.figures import Drawn, draw, titles
-from analysis.figures.style import FORMATS, Data
+from analysis.figures.style import Data
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
 from support.errors import InputError
 
 
-def draw_all(results: Path, wanted: Sequence[str] = (), formats: Sequence[str] = FORMATS) -> list[Drawn]:
-    """Load a results folder and draw into its `figures/`, all experiments or those wanted.
+def draw_all(results: Path, wanted: Sequence[str] = (), *, pdf: bool = False) -> list[Drawn]:
+    """Load a results folder and draw into its `figures/`, all experiments or those wanted, as SVG and, if
+    wanted, as `pdf`.
 
     Raises InputError for an experiment that is neither one of the published questions nor in the records.
     """
@@ -23,16 +24,15 @@ def draw_all(results: Path, wanted: Sequence[str] = (), formats: Sequence[str] =
         if name not in names:
             raise InputError(f"--experiment: found {name!r}, expected one of {', '.join(names)}")
     studies = split(records)
-    return [figure for study in studies for figure in draw_study(study, studies, results, wanted, formats)]
+    return [figure for study in studies for figure in draw_study(study, studies, results, wanted, pdf=pdf)]
 
 
 def draw_study(
-    study: Study, studies: Sequence[Study], results: Path, wanted: Sequence[str] = (),
-    formats: Sequence[str] = FORMATS,
-) -> list[Drawn]:  # fmt: skip
+    study: Study, studies: Sequence[Study], results: Path, wanted: Sequence[str] = (), *, pdf: bool = False
+) -> list[Drawn]:
     """Draw one study; the files of any but the first carry its name."""
     data = Data(study, studies, published.load(), results)
-    return list(draw(data, results / "figures", prefix_of(study, studies), wanted, formats))
+    return list(draw(data, results / "figures", prefix_of(study, studies), wanted, pdf=pdf))
 
 
 def prefix_of(study: Study, studies: Sequence[Study]) -> str:

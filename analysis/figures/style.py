@@ -14,7 +14,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 
 from analysis.figures.hover import identify, with_titles
-from analysis.figures.recording import Recording, families, lay_out
+from analysis.figures.layout import lay_out
 from analysis.records.plans import planned_runs
 from analysis.records.published import Published
 from analysis.records.studies import Study
@@ -74,9 +74,11 @@ _THINGS: Mapping[str, int] = {
 """Which look a thing has in all figures; one that is not here gets the first that is left."""
 
 INK, FAINT, BAND = "#222222", "#8a8a8a", "#ececec"
-FORMATS = ("svg", "png", "pdf")
+DOTS_PER_INCH = 200
+"""Of what a figure has as pixels."""
 WIDTH = 7.0
 SETTINGS: Any = {
+    "font.family": "DejaVu Sans",
     "font.size": 8,
     "axes.titlesize": 8,
     "axes.titlelocation": "left",
@@ -129,7 +131,7 @@ class Drawing:
 @contextmanager
 def styled(name: str) -> Iterator[None]:
     """Draw in the common style; `name` keeps the identifiers inside an SVG the same from run to run."""
-    with mpl.rc_context({**SETTINGS, "font.family": list(families()), "svg.hashsalt": name}):
+    with mpl.rc_context({**SETTINGS, "svg.hashsalt": name}):
         yield
 
 
@@ -198,21 +200,19 @@ def mark_partial(figure: Figure, text: str | None) -> None:
         figure.suptitle(text, x=0.995, ha="right", fontsize=7, color=VERMILLION, weight="bold")
 
 
-def save(drawing: Drawing, folder: Path, name: str, formats: Sequence[str] = FORMATS) -> list[Path]:
-    """Write the figure in these formats and return the files; outdated ones in other formats are removed."""
-    files = []
+def save(drawing: Drawing, folder: Path, name: str, *, pdf: bool = False) -> list[Path]:
+    """Write the figure as SVG, and as `pdf` if wanted, and return the files; an outdated PDF is removed."""
+    svg, other = (folder / f"{name}.{suffix}" for suffix in ("svg", "pdf"))
     with styled(name):
         lay_out(drawing.figure)
         lines = identify(drawing.figure)
-        recording = Recording(drawing.figure)
-        for suffix in formats:
-            target = folder / f"{name}.{suffix}"
-            with replacing(target) as part:
-                recording.write(part, suffix)
-                if suffix == "svg":
-                    text = part.read_text(encoding="utf-8")
-                    part.write_text(with_titles(text, drawing.figure, lines), encoding="utf-8")
-            files.append(target)
-    for outdated in set(FORMATS) - set(formats):
-        (folder / f"{name}.{outdated}").unlink(missing_ok=True)
-    return files
+        with replacing(svg) as part:
+            drawing.figure.savefig(part, format="svg", dpi=DOTS_PER_INCH, metadata={"Date": None})
+            text = part.read_text(encoding="utf-8")
+            part.write_text(with_titles(text, drawing.figure, lines), encoding="utf-8")
+        if not pdf:
+            other.unlink(missing_ok=True)
+            return [svg]
+        with replacing(other) as part:
+            drawing.figure.savefig(part, format="pdf", dpi=DOTS_PER_INCH, metadata={"CreationDate": None})
+    return [svg, other]

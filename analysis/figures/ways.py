@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
-from analysis.derived.pauses import STOPPED_BY
 from analysis.derived.pauses import ratios as pause_ratios
 from analysis.derived.ways import APART, TURNS, Comparison, comparisons, overall, said
 from analysis.figures.captions import PROCESSES, opening
@@ -19,7 +18,6 @@ from analysis.support.values import Interval, Table, table_of
 from analysis.support.wording import number
 
 LOOKS = {TURNS: Look(BLUE), APART: Look(VERMILLION, "s", "--")}
-_LOOK_OF_STOP = dict(zip(STOPPED_BY, (Look(BLUE), Look(VERMILLION, "s")), strict=True))
 
 
 def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -96,45 +94,28 @@ def _table(found: list[Comparison]) -> Table:
 
 
 def pauses(data: Data, experiment: str, subject: str) -> Drawing | None:
-    """Draw the time of each program in slices over its time without a pause, by what stopped it."""
+    """Draw the time of each program in slices over its time without a pause."""
     found = pause_ratios(data.study.times_of(experiment))
     if found.empty:
         return None
-    programs = list(found["series"].drop_duplicates())
-    figure, [axes] = new_figure(1.0 + 0.32 * max(len(programs), 4))
-    _pause_ratios(axes, found, programs)
-    key(axes, [(name, _LOOK_OF_STOP[label].colour) for label, name in STOPPED_BY.items()])
+    figure, [axes] = new_figure(1.0 + 0.32 * max(len(found), 4))
+    _rows(axes, list(found["series"])[::-1])
+    for height, row in enumerate(found[::-1].itertuples()):
+        _interval(axes, row.ratio, height, row.series, Look(BLUE), "" if row.sliced else "white")
+    axes.set_xlabel("time in slices against time without a pause, %")
     opened = opening(data.study.times_of(experiment), subject, PROCESSES)
     caption = (
         f"{opened} Time in slices against time without a pause, by pairs within blocks, with 95 % "
         "intervals. A hollow dot is a program that was found to mind being stopped, and so was not."
     )
-    return Drawing(figure, caption, tables=[_pause_table(found, programs)])
+    return Drawing(figure, caption, tables=[_pause_table(found)])
 
 
-def _pause_ratios(axes: Axes, found: pd.DataFrame, programs: list[str]) -> None:
-    _rows(axes, programs[::-1])
-    for height, program in enumerate(reversed(programs)):
-        for aside, (label, name) in zip((0.15, -0.15), STOPPED_BY.items(), strict=True):
-            for row in found[(found["series"] == program) & (found["label"] == label)].itertuples():
-                inside, look = "" if row.sliced else "white", _LOOK_OF_STOP[label]
-                _interval(axes, row.ratio, height + aside, f"{program}, {name}", look, inside)
-    axes.set_xlabel("time in slices against time without a pause, %")
-
-
-def _pause_table(found: pd.DataFrame, programs: list[str]) -> Table:
+def _pause_table(found: pd.DataFrame) -> Table:
     rows = []
-    for program in programs:
-        of_it = found[found["series"] == program].set_index("label")
-        ratios = [_pause_told(of_it, label) for label in STOPPED_BY]
-        rows.append([program, number(of_it["seconds"].iloc[0]), *ratios, str(of_it["blocks"].max())])
-    columns = ["program", "s without a pause", *STOPPED_BY.values(), "blocks"]
+    for row in found.itertuples():
+        told = said(row.ratio) + ("" if row.sliced else " (not stopped)")
+        rows.append([row.series, number(row.seconds), told, str(row.blocks)])
+    columns = ["program", "s without a pause", "in slices", "blocks"]
     title = "Time in slices against time without a pause, with 95 % intervals over the blocks"
     return table_of(title, columns, rows)
-
-
-def _pause_told(of_it: pd.DataFrame, label: str) -> str:
-    if label not in of_it.index:
-        return "not measured"
-    ratio = of_it.loc[label, "ratio"]
-    return said(ratio) + ("" if of_it.loc[label, "sliced"] else " (not stopped)")

@@ -14,7 +14,7 @@ from typing import Any, Self
 import numpy as np
 import pandas as pd
 
-from analysis.records import promises, tables
+from analysis.records import tables
 from analysis.records.checking import checked
 from analysis.records.columns import Integers, Rows
 from analysis.statistics.pairs import rounds_of, runs_of
@@ -22,18 +22,16 @@ from analysis.support.values import Floats
 from support.files import of_json, to_json
 from support.known_files import FOLDER, Stamp, files_below, is_worth_keeping, keep, kept, lasting
 
-VERSION = 3
+VERSION = 4
 _CONTEXTS = "contexts"
 _OF_RECORD = {name: getattr(tables, name) for name in tables.OF_PARTS}
-_ALONE = {name: getattr(tables, name) for name in tables.ALONE} | {"promises": promises.promises}
+_ALONE = {name: getattr(tables, name) for name in tables.ALONE}
 _COLUMNS = {
     _CONTEXTS: tables.CONTEXT,
     **{name: ["file", *columns] for name, columns in tables.OF_PARTS.items()},
     **tables.ALONE,
-    "promises": promises.COLUMNS,
 }
-_FLOATS = {**tables.FLOATS, "promises": promises.NUMBERS}
-_KIND = {"limits": "limits", "outside": "outside", "promises": "promises", "failures": "failure"}
+_KIND = {"limits": "limits", "failures": "failure"}
 """The kind of record that each table of its own is of."""
 
 
@@ -94,7 +92,7 @@ class Known:
                 series = contexts.at(at, tables.CONTEXT) | series
             if table == "times":
                 series |= self._times(list(series["file"]))
-            found[table] = pd.DataFrame(series).astype(dict.fromkeys(_FLOATS.get(table, ()), float))
+            found[table] = pd.DataFrame(series).astype(dict.fromkeys(tables.FLOATS.get(table, ()), float))
         return found
 
     def _times(self, files: list[str]) -> dict[str, Any]:

@@ -20,8 +20,7 @@ class Tables:
 
     `runs` has a row per record, `times` per process that was timed, `trajectory` per comparison with the
     reference, `phases` per phase and `threads` per phase and thread of a profiled run, `counters` per counter
-    and thread, `limits` per rate that a machine reached at most, `outside` per run of a general engine
-    beside the variants, `promises` per bound of an error, `failures` per failed point.
+    and thread, `limits` per rate that a machine reached at most, `failures` per failed point.
     """
 
     runs: pd.DataFrame
@@ -31,8 +30,6 @@ class Tables:
     threads: pd.DataFrame
     counters: pd.DataFrame
     limits: pd.DataFrame
-    outside: pd.DataFrame
-    promises: pd.DataFrame
     failures: pd.DataFrame
 
 

@@ -18,9 +18,8 @@ CHECK_FAILED = 2
 class Study(Tables):
     """The tables of one machine, source revision and scale; nothing here may be merged with another study.
 
-    `limits` are of the machine, whatever the revision and the scale, `outside` of the machine and the scale,
-    since another engine is the same in every revision. `program` are the hashes of its programs, where
-    another study has others on the machine.
+    `limits` are of the machine, whatever the revision and the scale. `program` are the hashes of
+    its programs, where another study has others on the machine.
     """
 
     machine: str
@@ -83,8 +82,6 @@ def split(records: Records) -> list[Study]:
             **{name: _part(getattr(records, name), file=runs["file"]) for name in MEASURED},
             failures=_failures(records, key[0], key[2], runs),
             limits=_part(records.limits, machine=key[:1]),
-            outside=_part(records.outside, machine=key[:1], scale=key[2:]),
-            promises=_part(records.promises, machine=key[:1], revision=key[1:2], scale=key[2:]),
         )
         for key, alike in records.runs.groupby(keys)
         for program, runs in _by_program(alike)

@@ -4,7 +4,6 @@ Every table of what was measured carries the same columns of context (see `conte
 """
 
 import math
-import re
 import shlex
 from collections.abc import Iterable
 from typing import Any
@@ -25,22 +24,18 @@ TAGS = [
 AXES = [
     "variant", "neighbourhood", "order", "self_contained", "direction", "find_schedule",
     "resolve_schedule", "find_chunk", "resolve_chunk", "threads", "substeps", "tolerance",
+    "storage", "prefetch", "box_side", "overlaps", "search", "worklist", "impact", "precision",
 ]  # fmt: skip
 SCENE = ["particles", "side", "radius", "steps", "area_fraction"]
 PROVENANCE = [
     "cpu_model", "cores", "hardware_threads", "affinity", "memory_bytes", "virtualised", "governor",
     "operating_system", "compiler", "compiler_flags", "build_type", "binary_sha256",
 ]  # fmt: skip
-LATER_AXES = {
-    "storage": "numbered", "prefetch": "on", "box_side": "wide", "overlaps": "lists", "search": "exact",
-    "worklist": "all", "impact": "step_end", "precision": "double",
-}  # fmt: skip
-"""Policies that not all records name, each with its value in those that do not."""
 COLUMN_OF = {"overlaps": "overlaps_kept"}
 """The columns of axes whose name in the record is that of a count, too."""
-LATER_COLUMNS = [COLUMN_OF.get(name, name) for name in LATER_AXES]
+AXIS_COLUMNS = [COLUMN_OF.get(name, name) for name in AXES]
 WORK = ["overlaps", "pair_resolves", "pair_attempts", "sweeps"]
-"""Totals over the S steps; `pair_attempts` is NaN where they were not counted."""
+"""Totals over the S steps, NaN of a whole process."""
 ERRORS = [
     "energy_drift", "discs_outside", "unresolved_pairs", "momentum_drift", "penetration_worst",
     "penetration_mean", "time_to_tenth_radius", "collision_rate", "collision_rate_reference", "pressure",
@@ -50,16 +45,15 @@ CHECKS = ["has_errors", "check_verdict", "check_scope", "check_reason", "repetit
 PLACE = ["file", "machine", "experiment", "scale", "scene_name", "session"]
 NO_SCENE: dict[str, Any] = {"name": "", "sha256": "", **dict.fromkeys(SCENE)}
 """Of a program that is about something else than discs."""
-_OLD_REPLICATE = re.compile(r"(?:(.*) )?replicate (\d+)")
 CONTEXT = [
-    "file", "kind", "question_kind", "recorded_at", *TAGS, *AXES, *LATER_COLUMNS, "scene",
-    "scene_sha256", *SCENE, *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment",
+    "file", "kind", "question_kind", "recorded_at", *TAGS, *AXIS_COLUMNS, "scene",
+    *SCENE, *PROVENANCE, "openmp", "openmp_runtime", "proc_bind", "environment",
     "warm_ups", "in_turns", "time_from", "undisturbed", "command", "compiler_family", "node", "machine",
     "revision",
 ]  # fmt: skip
 OF_PARTS = {
     "runs": [*WORK, *ERRORS, *CHECKS],
-    "times": ["lost_by_turns"],
+    "times": ["lost_by_turns", "stops", "processor_seconds"],
     "trajectory": ["time", "rms_distance"],
     "phases": ["phase", "wall_seconds", "serial_seconds"],
     "threads": ["phase", "thread", "busy_seconds", "waiting_seconds"],
@@ -69,14 +63,10 @@ OF_PARTS = {
 ALONE = {
     "limits": ["file", "machine", "compiler", "limit", "threads", "level", "working_set_bytes", "lanes",
                "best", "median", "repetitions"],
-    "outside": ["file", "machine", "scale", "experiment", "scene_name", "scene_sha256", "block", "session",
-                "substeps", "engine", "seconds", "energy_drift"],
     "failures": ["file", *TAGS, "command", "exit_code", "reason", "recorded_at", "owner", "program_sha256"],
 }  # fmt: skip
 """The tables of records of other kinds, each made by the function of its name."""
-FLOATS = {
-    "runs": [*ERRORS, "pair_attempts"], "trajectory": ["rms_distance"], "outside": ["energy_drift"],
-}  # fmt: skip
+FLOATS = {"runs": [*ERRORS, "pair_attempts"], "trajectory": ["rms_distance"]}
 """Columns that are numbers, NaN where nothing is known, even where that is everywhere."""
 
 
@@ -94,14 +84,12 @@ def context(name: str, record: Record) -> Row:
         "question_kind": tags.get("kind", tags.get("figure")),
         "recorded_at": record["recorded_at"],
         **{column: tags.get(column) for column in TAGS},
-        **_replicate(tags),
+        "replicate": tags.get("replicate", 1),
         "series": str(tags["series"]),
         "session": str(tags.get("session", "")),
         "scale": str(tags.get("scale", "unstated")),
-        **{column: record["axes"].get(column) for column in AXES},
-        **{COLUMN_OF.get(name, name): record["axes"].get(name, old) for name, old in LATER_AXES.items()},
+        **{COLUMN_OF.get(name, name): record["axes"].get(name) for name in AXES},
         "scene": scene["name"],
-        "scene_sha256": scene["sha256"],
         **{column: scene[column] for column in SCENE},
         **{column: origin[column] for column in PROVENANCE},
         "openmp": f"{origin['openmp']['runtime']} {origin['openmp']['version']}",
@@ -118,26 +106,6 @@ def context(name: str, record: Record) -> Row:
         "machine": machine_of(origin),
         "revision": revision_of(origin),
     }
-
-
-def place(name: str, record: Record) -> Row:
-    """Return where a record stands that is of no variant or program: a few columns of `context`."""
-    tags = record["tags"]
-    return {
-        "file": name,
-        "machine": machine_of(record["provenance"]),
-        "experiment": tags.get("experiment"),
-        **{column: str(tags.get(column, "")) for column in ("scale", "scene_name", "session")},
-    }
-
-
-def _replicate(tags: dict[str, Any]) -> dict[str, Any]:
-    """Return the label and the number of the replicate, which was a word of the label before it was a tag."""
-    label = tags.get("label")
-    old = _OLD_REPLICATE.fullmatch(str(label)) if tags.get("figure") == "schedule" else None
-    if "replicate" in tags or old is None:
-        return {"label": label, "replicate": tags.get("replicate", 1)}
-    return {"label": old[1] or None, "replicate": int(old[2])}
 
 
 def revision_of(origin: dict[str, Any]) -> str:
@@ -192,10 +160,16 @@ def trajectory(record: Record) -> Iterable[Row]:
 
 def times(record: Record) -> Iterable[Row]:
     """Give one row for a process that was timed: `lost_by_turns`, the share of its time that coming back to
-    cold caches took, NaN where not known.
+    cold caches took, and `stops`, in how many slices a run of a whole program was, 0 if it was never stopped;
+    NaN where not known. `processor_seconds` is the median of its runs.
     """
     if len(seconds_of_runs(record)):
-        yield {"lost_by_turns": _lost_by_turns(record)}
+        processor = [one["cpu_seconds"] for one in record["repetitions"]]
+        yield {
+            "lost_by_turns": _lost_by_turns(record),
+            "stops": _stops(record),
+            "processor_seconds": float(np.median(processor)),
+        }
 
 
 def seconds_of_runs(record: Record) -> Floats:
@@ -220,6 +194,13 @@ def _lost_by_turns(record: Record) -> float:
     steps, rounds = record["scene"]["steps"], turns["rounds"]
     found = excess(turns["seconds"], turns["returning_seconds"], steps, rounds)
     return float(found.share) if found else math.nan
+
+
+def _stops(record: Record) -> float:
+    if record["kind"] != "process":
+        return math.nan
+    slices, runs = len((record.get("turns") or {}).get("seconds", [])), len(record["repetitions"])
+    return slices / runs if slices > runs else 0.0
 
 
 def phases(record: Record) -> Iterable[Row]:
@@ -258,25 +239,6 @@ def limits(name: str, record: Record) -> Iterable[Row]:
         }
         for limit, rate in rates.items()
         for row in record["limits"][limit]
-    )
-
-
-def outside(name: str, record: Record) -> Iterable[Row]:
-    """Give one row a run of a general engine beside the variants: where it stands, `engine` with its version,
-    `seconds` for a unit of simulated time, and the size of its relative `energy_drift`.
-    """
-    drift = record["errors"]["energy_drift"]
-    return (
-        {
-            **place(name, record),
-            "block": record["tags"].get("block"),
-            "scene_sha256": record["scene"]["sha256"],
-            "substeps": record["axes"]["substeps"],
-            "engine": f"{record['engine']['name']} {record['engine']['version']}",
-            "seconds": run["steps_seconds"] / record["scene"]["steps"],
-            "energy_drift": None if drift is None else abs(float(drift)),
-        }
-        for run in record["repetitions"]
     )
 
 

@@ -20,7 +20,6 @@ from analysis.figures.style import (
     BAND,
     BLUE,
     FAINT,
-    FORMATS,
     INK,
     SKY,
     VERMILLION,
@@ -252,9 +251,9 @@ def _caption(rows: Sequence[Mapping[Any, Any]]) -> str:
 
 
 def draw(
-    data: Data, prefix: str = "", table: pd.DataFrame | None = None, formats: Sequence[str] = FORMATS
+    data: Data, prefix: str = "", table: pd.DataFrame | None = None, *, pdf: bool = False
 ) -> tuple[str, list[Path]]:
-    """Write the figure into the folder of figures, wide in these formats and narrow as SVG.
+    """Write the figure into the folder of figures, wide and narrow as SVG, wide as `pdf` as well if wanted.
 
     The claims are evaluated unless their `table` is given. Return the figure's caption and files, none where
     there is nothing to draw.
@@ -269,16 +268,17 @@ def draw(
         if drawing is None:
             return "", []
         caption = drawing.caption
-        files += save(drawing, data.folder / "figures", name, formats if layout is WIDE else ("svg",))
+        files += save(drawing, data.folder / "figures", name, pdf=pdf and layout is WIDE)
     return caption, files
 
 
 def draw_all_claims(results: Path) -> list[Path]:
-    """Draw the claims of every study of a results folder in all formats; return the first file of each.
+    """Draw the claims of every study of a results folder as SVG and PDF; return the first file of each.
 
     What cannot be read is told by whoever draws the other figures of the folder.
     """
     studies = split(load(results, lambda _: None))
     times = published.load()
-    drawn = [draw(Data(study, studies, times, results), prefix_of(study, studies))[1] for study in studies]
+    pairs = [(Data(study, studies, times, results), prefix_of(study, studies)) for study in studies]
+    drawn = [draw(data, prefix, pdf=True)[1] for data, prefix in pairs]
     return [files[0] for files in drawn if files]

@@ -14,7 +14,7 @@ from analysis.claims import missing, summary
 from analysis.claims.entry import CLAIMS_FILE, questions_folder
 from analysis.figures import Drawn, titles
 from analysis.figures.studies import draw_study, prefix_of
-from analysis.figures.style import FORMATS, Data
+from analysis.figures.style import Data
 from analysis.records import published
 from analysis.records.reading import Records
 from analysis.records.studies import Study, split
@@ -31,16 +31,14 @@ from support.vocabulary import CONTROL
 STYLE = Path(__file__).parent / "report.css"
 
 
-def content(
-    records: Records, results: Path, asked: Sequence[str] = (), formats: Sequence[str] = FORMATS
-) -> dict[str, Any]:
-    """Return the template's variables; draws the figures into the results folder, in these formats.
+def content(records: Records, results: Path, asked: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the template's variables; draws the figures into the results folder.
 
     Questions that were `asked` by name lead; without any, all of them were.
     """
     studies = split(records)
     own = (results / CLAIMS_FILE.name).exists()
-    found = [_study(study, studies, results, asked, formats) for study in studies]
+    found = [_study(study, studies, results, asked) for study in studies]
     # A study that has what was asked comes before one that has not.
     found.sort(key=lambda study: bool(asked) and not study["asked"])
     for position, study in enumerate(found, start=1):
@@ -68,10 +66,8 @@ def content(
     }
 
 
-def _study(
-    study: Study, studies: Sequence[Study], results: Path, asked: Collection[str], formats: Sequence[str]
-) -> dict[str, Any]:
-    drawn = draw_study(study, studies, results, formats=formats)
+def _study(study: Study, studies: Sequence[Study], results: Path, asked: Collection[str]) -> dict[str, Any]:
+    drawn = draw_study(study, studies, results)
     table = claims.evaluate(study, studies, published.load(), claims.load(results))
     rows = table.to_dict("records")
     shown = parts(study, drawn, rows)
@@ -95,7 +91,7 @@ def _study(
         **_claims(table, places, asked),
         "prefix": prefix,
         "said": first_screen.sentences(study, rows, drawn, anchors),
-        "figure": _all_claims(all_claims.draw(data, prefix, table, formats), rows, anchors, prefix),
+        "figure": _all_claims(all_claims.draw(data, prefix, table), rows, anchors, prefix),
         "beside": first_screen.beside(study, table, is_first=study is studies[0]),
         "without_records": list(table.loc[table["missing"], "id"]) if study is studies[0] else [],
     }

@@ -88,11 +88,12 @@ class Centre:
         return Centre(-self.estimate, self.error, self.freedom, averages)
 
 
-def measure(differences: ArrayLike, *, independent: bool = False) -> Centre:
+def measure(differences: ArrayLike, *, independent: bool = False, factor: float = 1.0) -> Centre:
     """Return the centre of all the differences, which are in the order of time; its error is NaN of fewer
     than `FEWEST`.
 
     `independent`: nothing can make one depend on the one before, as where each has a seed of its own.
+    `factor`: by how much the error is greater, as something else was estimated from the same values.
     """
     values = np.asarray(differences, dtype=float)
     count = len(values)
@@ -110,8 +111,8 @@ def measure(differences: ArrayLike, *, independent: bool = False) -> Centre:
     has_ranks = count >= RANKS_FROM
     error = _error(averages, count) if has_ranks else max(_error(averages, count), deviation)
     error = error or deviation
-    factor = 1.0 if independent else widening(values, estimate, error * np.sqrt(count))
-    return Centre(estimate, error * factor, count - 1, averages if has_ranks else None)
+    error *= factor * (1.0 if independent else widening(values, estimate, error * np.sqrt(count)))
+    return Centre(estimate, error, count - 1, averages if has_ranks else None)
 
 
 def centre(differences: ArrayLike, level: float | None = None, *, independent: bool = False) -> Interval:

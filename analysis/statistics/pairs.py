@@ -3,16 +3,12 @@
 import numpy as np
 import pandas as pd
 
+from analysis.statistics.location import location
 from analysis.statistics.returning import bias
 from analysis.support.values import Floats
 
 PAIR = ["node", "block", "session"]
 """What two records of a pair have in common: nothing else was measured together."""
-
-_BEND = 1.5
-_OF_NORMAL = 1.4826
-"""Standard deviations of a normal distribution in its median absolute deviation."""
-_CLOSE, _MOST_STEPS = 1e-6, 50
 
 
 def scaled(times: pd.DataFrame, value: str, factor: pd.Series) -> pd.DataFrame:
@@ -54,8 +50,9 @@ def log_ratios(
     by: tuple[str, ...] = (),
 ) -> pd.DataFrame:
     """Return a row a pair, in the order of time: the columns of `by` and of `match`, those of `PAIR`,
-    `log_ratio` = ln(candidate / reference), and `bias`, by how much turns make it too great (NaN where not
-    known). Each group of candidates that the columns `by` tell apart is compared on its own.
+    `log_ratio` = ln(candidate / reference), `bias`, by how much turns make it too great, and `stops`, how
+    often a run of whole programs was stopped (NaN where not known). Each group of candidates that the columns
+    `by` tell apart is compared on its own.
 
     Takes a row a process on either side. Where the two took turns, each turn of the one stands beside that of
     the other in the same round, and Huber's location of the rounds' log ratios is the block's: a burst of
@@ -70,7 +67,10 @@ def log_ratios(
     joined = pd.merge(*sides, on=keys, suffixes=("_reference", "_candidate"))
     ratios = list(map(_block_ratio, joined["logs_reference"], joined["logs_candidate"]))
     biases = list(map(bias, joined["lost_reference"], joined["lost_candidate"]))
-    found = joined[[*by, *keys, "at_reference"]].assign(log_ratio=np.array(ratios, dtype=float), bias=biases)
+    stops = (joined["stops_reference"] + joined["stops_candidate"]) / 2
+    found = joined[[*by, *keys, "at_reference"]].assign(
+        log_ratio=np.array(ratios, dtype=float), bias=biases, stops=stops
+    )
     return found.sort_values(["at_reference", *PAIR], kind="stable").drop(columns="at_reference")
 
 
@@ -78,7 +78,7 @@ def narrow(times: pd.DataFrame, *keys: str, value: str = "steps_seconds") -> pd.
     """Return the columns `keys` and those that ratios and summaries of `value` need: the fewer a table has,
     the faster are its parts.
     """
-    needed = [*keys, *PAIR, "file", "recorded_at", "lost_by_turns", value]
+    needed = [*keys, *PAIR, "file", "recorded_at", "lost_by_turns", "stops", value]
     needed += [runs_of(value), rounds_of(value)]
     return times[[column for column in dict.fromkeys(needed) if column in times]]
 
@@ -110,18 +110,18 @@ def without_partner(runs: pd.DataFrame) -> pd.DataFrame:
 
 def _per_block(processes: pd.DataFrame, keys: list[str], value: str) -> pd.DataFrame:
     """Return what each block has beside its `keys`: `logs` of its rounds, or of its runs, the time `at` which
-    it was recorded, and the share of its time `lost` by turns.
+    it was recorded, the share of its time `lost` by turns, and its `stops`.
     """
     runs = processes.get(runs_of(value), processes[value])
     rounds = processes.get(rounds_of(value), runs)
     parts = [one if len(np.atleast_1d(one)) else run for one, run in zip(rounds, runs, strict=True)]
     logs = [np.log(np.atleast_1d(np.asarray(one, dtype=float))) for one in parts]
     at = processes.get("recorded_at", processes["block"])
-    lost = processes.get("lost_by_turns", np.nan)
-    table = processes[keys].assign(logs=logs, at=at, lost=lost)
+    told = {"lost": processes.get("lost_by_turns", np.nan), "stops": processes.get("stops", np.nan)}
+    table = processes[keys].assign(logs=logs, at=at, **told)
     if not table.duplicated(keys).any():
         return table
-    table = table.groupby(keys).agg({"logs": _of_replicates, "at": "min", "lost": "mean"})
+    table = table.groupby(keys).agg({"logs": _of_replicates, "at": "min", "lost": "mean", "stops": "mean"})
     return table.reset_index()
 
 
@@ -136,20 +136,6 @@ def _block_ratio(reference: Floats, candidate: Floats) -> float:
     if len(reference) == len(candidate):
         return location(candidate - reference)
     return float(np.log(np.median(np.exp(candidate)) / np.median(np.exp(reference))))
-
-
-def location(values: Floats) -> float:
-    """Return Huber's location of the values: their mean, but that one further from it than 1.5 robust
-    standard deviations counts no more than one at that distance (Ann. Math. Stat. 35, 1964).
-    """
-    found = float(np.median(values))
-    reach = _BEND * _OF_NORMAL * float(np.median(np.abs(values - found)))
-    for _ in range(_MOST_STEPS if reach > 0 else 0):
-        step = float(np.clip(values - found, -reach, reach).mean())
-        found += step
-        if abs(step) < _CLOSE * reach:
-            break
-    return found
 
 
 def rounds_of(value: str) -> str:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from analysis.statistics.intervals import FEWEST, measure
 from analysis.statistics.looks import ERROR, seen, share
+from analysis.statistics.stopping import unstopped
 from analysis.support.values import Floats, Interval
 
 MARGIN = 0.02
@@ -33,7 +34,7 @@ def judge(pairs: pd.DataFrame, by: list[str], margin: float = MARGIN, error: flo
     """
     rows = [
         dict(zip(by, key, strict=True))
-        | judge_one(group["log_ratio"], margin, error, biases=group.get("bias"))
+        | judge_one(group["log_ratio"], margin, error, biases=group.get("bias"), stops=group.get("stops"))
         for key, group in pairs.groupby(by, sort=True)
     ]
     table = pd.DataFrame(rows, columns=[*by, *COLUMNS])
@@ -54,6 +55,7 @@ def judge_one(
     *,
     once: bool = False,
     biases: ArrayLike | None = None,
+    stops: ArrayLike | None = None,
 ) -> dict[str, Any]:
     """Return the row of one comparison standing alone: the columns that `judge` adds, and `denials`.
 
@@ -62,10 +64,15 @@ def judge_one(
     the whole of the error is this look's, and none depends on the one before. `biases`: by how much each log
     ratio is too great because of how it was measured, NaN where not known. Where half of them are known, and
     their middle is more than two of its standard errors from 0, the verdict has to stand with and without it,
-    and the interval reaches over both.
+    and the interval reaches over both. `stops`: how often a run of the programs was stopped; where some
+    blocks have far more, the ratio is that of no stops at all (see `stopping`).
     """
     values = np.asarray(log_ratios, dtype=float)
     values = values if once else seen(values)
+    if stops is not None and len(values) >= FEWEST:
+        values, factor = unstopped(values, np.asarray(stops, dtype=float)[: len(values)])
+        if factor > 1:
+            return _judged(values, margin, error, once, factor)
     known = np.empty(0) if biases is None else np.asarray(biases, dtype=float)[: len(values)]
     known = known[~np.isnan(known)]
     row = _judged(values, margin, error, once)
@@ -82,10 +89,10 @@ def _is_sure(biases: Floats) -> bool:
     return bool(abs(np.median(biases)) > 2 * error)
 
 
-def _judged(values: Floats, margin: float, error: float, once: bool) -> dict[str, Any]:
+def _judged(values: Floats, margin: float, error: float, once: bool, factor: float = 1.0) -> dict[str, Any]:
     bound, blocks = np.log1p(margin), len(values)
     part = 1.0 if once else share(blocks)
-    found = measure(values, independent=once)
+    found = measure(values, independent=once, factor=factor)
     faster, slower = found.p_value(-bound, "less"), found.p_value(bound, "greater")
     not_faster, not_slower = found.p_value(-bound, "greater"), found.p_value(bound, "less")
     verdict, p = decide(faster, slower, max(not_faster, not_slower), blocks, part, error)

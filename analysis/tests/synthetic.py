@@ -35,6 +35,7 @@ class Machine:
             "hardware_threads": self.hardware_threads,
             "affinity": f"0-{self.hardware_threads - 1}",
             "affinity_count": self.hardware_threads,
+            "cpu_quota": None,
             "oversubscribed": threads > self.hardware_threads,
             "memory_bytes": 8 << 30,
             "virtualised": True,
@@ -73,7 +74,7 @@ class Point:
     axes: dict[str, Any] = field(default_factory=dict)
     scene: dict[str, Any] = field(default_factory=dict)
     pair_resolves: int = 12_000_000
-    pair_attempts: int | None = 30_000_000
+    pair_attempts: int = 30_000_000
     scene_name: str | None = None
     errors: dict[str, Any] | None = None
     tags: dict[str, str | float] = field(default_factory=dict)
@@ -93,6 +94,14 @@ AXES: dict[str, Any] = {
     "threads": 2,
     "substeps": 1,
     "tolerance": "relative",
+    "storage": "numbered",
+    "prefetch": "on",
+    "box_side": "wide",
+    "overlaps": "lists",
+    "search": "exact",
+    "worklist": "all",
+    "impact": "step_end",
+    "precision": "double",
 }
 SCENE: dict[str, Any] = {
     "name": "scene.in",
@@ -247,28 +256,6 @@ def limits(machine: Machine, copy: dict[str, tuple[int, float]], arithmetic: flo
             ],
         },
         "provenance": machine.provenance("g++ 12.2.0", 2),
-    }
-
-
-def outside(
-    machine: Machine, beside: dict[str, Any], substeps: int, block: int, seconds: float, drift: float | None
-) -> dict[str, Any]:
-    """Return the record of a general engine's run on the scene of another record, `seconds` for each unit of
-    time.
-    """
-    scene = beside["tags"]["scene_name"]
-    tags = {
-        "experiment": "speed_against_error", "series": "outside", "scene_name": scene,
-        "x_name": "substeps", "x": substeps, "block": block, "scale": "paper", "session": "s1",
-        "point": f"outside-{scene}-{substeps}",
-    }  # fmt: skip
-    return record("outside", tags) | {
-        "engine": {"name": "Chipmunk", "version": "7.0.3", "iterations": 10},
-        "axes": {"threads": 1, "substeps": substeps},
-        "scene": beside["scene"],
-        "repetitions": [dict.fromkeys(("steps_seconds", "cpu_seconds"), beside["scene"]["steps"] * seconds)],
-        "errors": {"energy_drift": drift, "discs_outside": 0},
-        "provenance": machine.provenance("g++ 12.2.0", 1),
     }
 
 

@@ -176,14 +176,6 @@ def _hard_cases() -> list[Point]:
     ]  # fmt: skip
 
 
-def _promises() -> list[Point]:
-    scenes = {"200 discs, 0.05": 200, "3000 discs, 0.65": 3000}
-    return [
-        Point("event-driven", 0, 0.01, scene_name=name, scene={"particles": particles, "steps": 16})
-        for name, particles in scenes.items()
-    ]
-
-
 def _control() -> list[Point]:
     return [Point(label, 0, 1.1, label=label) for label in ("A", "A-again")]
 
@@ -229,22 +221,6 @@ def _limits() -> list[Point]:
             (("published", 1.0), ("strips-sorted-contacts", 0.4)), start=1
         )
     ]
-
-
-MORE_CORES = {"two discs": (2, 2e-4), "10k": (10_000, 0.1), "1M": (1_000_000, 9.0)}
-
-
-def _more_cores() -> list[Point]:
-    """Steps that share out evenly over threads, but for 1e-5 s a step and thread beyond the first."""
-    return [
-        _at(
-            "threads", threads, seconds / threads + 100 * 1e-5 * (threads - 1), "fastest",
-            axes={"variant": "fastest", "threads": threads}, scene_name=name, tags={"series_number": 1},
-            scene={"particles": discs, "radius": 16.0, "side": 57.0 * math.sqrt(discs)},
-        )
-        for name, (discs, seconds) in MORE_CORES.items()
-        for threads in (1, 2, 4)
-    ]  # fmt: skip
 
 
 TRUE_BIAS = 0.01
@@ -302,8 +278,6 @@ EXPERIMENTS: dict[str, Callable[[], list[Point]]] = {
     "control": _control,
     "speed_against_error": _speed_against_error,
     "hard_cases": _hard_cases,
-    "promises": _promises,
     "ways": _ways,
     "ways_of_processes": _ways,
-    "more_cores": _more_cores,
 }

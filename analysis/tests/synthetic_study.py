@@ -9,9 +9,8 @@ import numpy as np
 from analysis.tests.synthetic import Machine, bench, failure, limits, profile
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
-from analysis.tests.synthetic_promises import promises
 
-PROFILED = ("phases", "limits", "more_cores")
+PROFILED = ("phases", "limits")
 COPY = {"L2": (1 << 20, 40e9), "L3": (4 << 20, 20e9), "memory": (2 << 30, 8e9)}
 ARITHMETIC = 3e9
 SHARES = {"move": 0.03, "bin": 0.12, "find": 0.3, "resolve": 0.55}
@@ -47,9 +46,7 @@ def study(
                     scale=scale, points_planned=len(points), blocks_planned=blocks, figure=_figure(name),
                 )  # fmt: skip
                 records.append(profile(record, SHARES, counters(record)) if name in PROFILED else record)
-                if name == "promises" and block == 0:
-                    records.append(promises(record))
-    if {"limits", "more_cores"} & set(names):
+    if "limits" in names:
         records.append(limits(machine or Machine(), COPY, ARITHMETIC))
     return records
 
@@ -63,7 +60,6 @@ def _figure(experiment: str) -> str:
         "ladder",
         "speed_against_error",
         "hard_cases",
-        "promises",
     ):
         return experiment
     if any(point.in_turns for point in points):

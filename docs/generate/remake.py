@@ -82,15 +82,12 @@ def record(table: Path, figure: Figure, of: Origin, digest: str) -> None:
 
 
 def origin(root: Path, place: str) -> Origin:
-    """What the records in a folder, the streams of a calibration or the last row of raw data say; without a
-    place, this checkout today. Raises InputError where they say nothing.
+    """What the records in a folder or the streams of a calibration say; without a place, this checkout today.
+    Raises InputError where they say nothing.
     """
     path = root / place
     if not place:
         return _git(root, "rev-parse", "--short=7", "HEAD"), datetime.now(UTC).date(), _this_machine()
-    if path.suffix == ".csv":
-        machine, commit, measured = path.read_text(encoding="utf-8").splitlines()[-1].split(",")[:3]
-        return commit, date.fromisoformat(measured), machine
     if path.is_dir():
         newest = max(_records(path), key=lambda one: str(one["recorded_at"]), default=None)
         if newest is None:

@@ -1,5 +1,6 @@
 """Every figure and measured table says of what it is, and is not older than what it measured."""
 
+import json
 import shutil
 from dataclasses import replace
 from datetime import date
@@ -165,16 +166,23 @@ def test_a_stale_figure_of_another_machine_says_beside_it_that_it_is_older(root:
 # Making them again.
 
 
+def recorded(root: Path) -> None:
+    provenance = {"commit": "abc12345", "virtualised": False, "cores": 2, "cpu_model": 'A "big" one'}
+    (root / "records").mkdir()
+    content = {"provenance": provenance, "recorded_at": "2026-11-26T10:00:00Z"}
+    (root / "records" / "one.json").write_text(json.dumps(content))
+
+
 def test_a_figure_is_copied_and_its_entry_written_anew(root: Path) -> None:
     table = root / "figures.toml"
     table.write_text(
-        '[x]\nmeasures = "q"\ncommand = "mkdir -p r && echo new > r/x.svg"\norigin = "rows.csv"\n\n'
+        '[x]\nmeasures = "q"\ncommand = "mkdir -p r && echo new > r/x.svg"\norigin = "records"\n\n'
         'sources = ["a.hpp"]\n'
         'commit = "0000000"\nmeasured = 2020-01-01\nmachine = "old"\ndigest = "0"\nsame = "once"\n'
         '[x.files]\n"f/x.svg" = "r/x.svg"\n\n[y]\nmeasures = "z"\nsources = ["a.hpp"]\ncommit = "1111111"\n'
         'measured = 2020-01-01\nmachine = "old"\ndigest = "1"\n'
     )
-    (root / "rows.csv").write_text('machine,commit,date\nA "big" one,abc1234,2026-11-26\n')
+    recorded(root)
     (root / "f").mkdir()
     y = load(table)["y"]
     assert remake.make([load(table)["x"]], root, table, are_committed=lambda _: True) == 0
@@ -183,7 +191,7 @@ def test_a_figure_is_copied_and_its_entry_written_anew(root: Path) -> None:
     assert (made.commit, made.measured, made.machine, made.same) == (
         "abc1234",
         date(2026, 11, 26),
-        'A "big" one',
+        'machine with 2 cores (A "big" one)',
         "",
     )
     assert not is_stale(made, root)
@@ -195,11 +203,11 @@ def test_a_figure_without_a_point_that_failed_is_copied_and_said(
 ) -> None:
     table = root / "figures.toml"
     table.write_text(
-        '[x]\nmeasures = "q"\ncommand = "mkdir -p r && echo new > r/x.svg && exit 2"\norigin = "rows.csv"\n'
+        '[x]\nmeasures = "q"\ncommand = "mkdir -p r && echo new > r/x.svg && exit 2"\norigin = "records"\n'
         'sources = ["a.hpp"]\ncommit = "0000000"\nmeasured = 2020-01-01\nmachine = "old"\ndigest = "0"\n'
         '[x.files]\n"f/x.svg" = "r/x.svg"\n'
     )
-    (root / "rows.csv").write_text("machine,commit,date\nA new one,abc1234,2026-11-26\n")
+    recorded(root)
     (root / "f").mkdir()
     assert remake.make([load(table)["x"]], root, table, are_committed=lambda _: True) == 2
     assert (root / "f" / "x.svg").read_text() == "new\n"

@@ -8,6 +8,7 @@ from typing import Any
 
 from experiments.support.process import Coprocess
 from support.errors import InputError
+from support.vocabulary import WALL
 
 _LIMIT = 600.0
 """Seconds after which an answer is given up."""
@@ -60,6 +61,10 @@ class Answer:
     """What the values of lists change, by themselves and together."""
     next: int = 0
     looked_at: int = 0
+    clock: str = WALL
+    """Which time is judged: all that passes, or that in which a processor computed."""
+    by_wall: tuple[Difference, ...] = ()
+    """All differences of the time that passes, where that is not judged."""
 
     def without(self, left_out: Collection[str]) -> "Answer":
         """What it says of all others than these commands, or numbers of cases."""
@@ -108,17 +113,18 @@ class Answer:
         return max(known, default=None) if len(known) == len(of_open) else None
 
 
-def ask(analysis: Coprocess, many: int = 1) -> Answer:
+def ask(analysis: Coprocess, many: int = 1, clock: str = WALL) -> Answer:
     """Ask it, `many` being the calls that share the error of a gate. Raises InputError with its reason where
     it does not answer.
     """
-    told = json.loads(_asked(analysis, f"compared {many}"))
+    told = json.loads(_asked(analysis, f"compared {many} {clock}"))
     rows, controls, effects = (
         tuple(map(_difference, told[key])) for key in ("commands", "controls", "effects")
     )
     places = tuple(Place(one["series"], one["first"], one["last"], one["bracket"]) for one in told["places"])
     blocks = max((one.blocks for one in rows), default=0)
-    return Answer(rows, controls, places, effects, told["next"], blocks)
+    by_wall = ask(analysis, many).commands if clock != WALL else ()
+    return Answer(rows, controls, places, effects, told["next"], blocks, clock, by_wall)
 
 
 def draw(analysis: Coprocess) -> Path:

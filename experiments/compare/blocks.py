@@ -19,12 +19,20 @@ from experiments.results.store import Store
 from experiments.results.summary import summary_of, unusable
 from experiments.run.host_lock import WAITS
 from experiments.run.runner import Runner, Task
+from experiments.run.schedule import FIRST_LOOK
 from experiments.run.together import together
 from support.files import read_json, write_json
+from support.vocabulary import AGAIN
 
 PADDING = "CAROM_PADDING"
 MOST_PADDING = 4096
 """The longest value of the variable that changes where a process finds its stack: a page."""
+
+WAITS_COUNTED = "voluntary_context_switches"
+
+CONTROL_EACH = 4
+"""After the first look the reference runs under its second name in every block of so many: what it is for, an
+effect that turns have on equal programs, is there in all blocks alike."""
 
 _NO_RANDOM_ADDRESSES = 0x0040000
 
@@ -33,6 +41,8 @@ _NO_RANDOM_ADDRESSES = 0x0040000
 class Runs:
     """What was measured of one command, a value a block: seconds, processors busy, and bytes at the most."""
 
+    blocks: list[int] = field(default_factory=list)
+    """The number of each block."""
     seconds: list[float] = field(default_factory=list)
     cores: list[float] = field(default_factory=list)
     bytes: list[float] = field(default_factory=list)
@@ -130,13 +140,17 @@ class Blocks:
             if point is None or wrong is not None:
                 return str(wrong)
             of_block.setdefault(block, set()).add(point.id)
-        whole = next(block for block in itertools.count() if of_block.get(block) != set(points))
+        whole = next(
+            block
+            for block in itertools.count()
+            if of_block.get(block) != {one.id for one in self._points(block)}
+        )
         for record in records:
             point, block = points[record["tags"]["point"]], record["tags"]["block"]
             if block < whole:
                 write_json(self._store.record_path(point, block), record, self._store.temporary)
         for block in range(whole):
-            for point in self.experiment.points:
+            for point in self._points(block):
                 self._take_in(point, block)
         self.done = self.before = whole
         return ""
@@ -147,8 +161,14 @@ class Blocks:
         return [
             read_json(self._store.record_path(point, block))
             for block in range(self.done)
-            for point in self.experiment.points
+            for point in self._points(block)
         ]
+
+    def _points(self, block: int) -> tuple[Point, ...]:
+        """What a block runs."""
+        has_control = block < FIRST_LOOK or block % CONTROL_EACH == 0
+        points = self.experiment.points
+        return points if has_control else tuple(one for one in points if not one.series.endswith(AGAIN))
 
     @property
     def seconds(self) -> float:
@@ -167,13 +187,14 @@ class Blocks:
 
     def run(self, *, vary_layout: bool) -> bool:
         """Run a block; returns whether nothing of it failed that had not failed before."""
-        block, size, failed = self.done, len(self.experiment.points), len(self.failed)
+        block, failed = self.done, len(self.failed)
+        there = self._points(block)
         if vary_layout:
             padding = random.Random(f"{self.experiment.order_seed} {block}").randrange(MOST_PADDING)
             os.environ[PADDING] = "x" * padding
-        order = list(enumerate(self.experiment.block(block)))
+        order = list(enumerate(one for one in self.experiment.block(block) if one in there))
         for group in together(self.experiment, block, order):
-            tasks = [Task(self.experiment, point, block, at, block + 1, size) for at, point in group]
+            tasks = [Task(self.experiment, point, block, at, block + 1, len(there)) for at, point in group]
             with self.others.watching():
                 outcomes = self._runner.run(tasks)
             for task, outcome in zip(tasks, outcomes, strict=True):
@@ -189,6 +210,7 @@ class Blocks:
         record = read_json(self._store.record_path(point, block))
         runs, process = self.runs[key_of(point)], record["process"]
         taken = [one["steps_seconds"] for one in record["repetitions"]]
+        runs.blocks.append(block)
         runs.seconds.append(statistics.median(taken))
         runs.all += taken
         runs.codes.update(process.get("exit_codes") or [process["exit_code"]])
@@ -199,9 +221,12 @@ class Blocks:
         runs.cores.append(busy / max(process["wall_seconds"], 1e-9))
         if process["peak_memory_bytes"] is not None:
             runs.bytes.append(process["peak_memory_bytes"])
+        stops = len((record["turns"] or {}).get("seconds", ())) / len(taken)
         for name, amount in process.get("counted", {}).items():
             if amount is not None:
-                runs.counts.setdefault(name, []).append(amount)
+                # Each stop is a wait that is none of the command's own.
+                own = max(0.0, amount - stops) if name == WAITS_COUNTED else amount
+                runs.counts.setdefault(name, []).append(own)
         runs.memory = process["peak_memory_reason"]
         runs.undisturbed = process["undisturbed"] or runs.undisturbed
         if len(runs.codes) > 1:

@@ -14,7 +14,7 @@ from experiments.compare.first_run import unlike_runs
 from experiments.compare.found import Found
 from experiments.compare.options import Asked, parse
 from experiments.compare.sweeps import contrasts
-from experiments.compare.texts import duration, result
+from experiments.compare.texts import duration, hindered, result
 from experiments.plan.plan import Surroundings
 from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.scale import find_scale
@@ -113,7 +113,7 @@ def _write_down(asked: Asked, store: Store) -> None:
 def _remarks(course: Course) -> tuple[str, ...]:
     """What is to be known of how it was measured."""
     asked, busy = course.asked, course.blocks.others.remark()
-    remarks = [] if busy is None else [busy]
+    remarks = [] if busy is None else [f"{busy}. {hindered(course.answer)}"]
     if asked.rounds:
         often = zip(asked.commands, asked.rounds, strict=True)
         told = ", ".join(f"{one.name} {number}" for one, number in often)

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from experiments.compare.answer import Answer, ask
 from experiments.compare.blocks import Blocks, Key
+from experiments.compare.clock import clock_of
 from experiments.compare.earlier import Earlier, How
 from experiments.compare.first_run import (
     NotMeantError,
@@ -38,7 +39,7 @@ class Course:
         self.asked = asked
         self._around = around
         self.blocks = Blocks(experiment_of(asked, around), store, runner, has_cases=bool(asked.cases))
-        self._answer = Answer()
+        self.answer = Answer()
         self._is_known = False
         self.broken: InputError | OSError | None = None
         """What ended it early, with something measured."""
@@ -54,7 +55,7 @@ class Course:
         self._earlier = earlier
         self._go_on(earlier)
         # The first look takes seconds, in which the analysis loads what it needs.
-        self._answer = ask(judge, self.asked.many)
+        self.answer = ask(judge, self.asked.many)
         self.blocks.begin()
         stopped = None
         try:
@@ -62,7 +63,7 @@ class Course:
                 self._measure(judge, line)
         except Interrupted as interrupted:
             stopped = interrupted.signal_number
-            if self.blocks.done == self._answer.next:
+            if self.blocks.done == self.answer.next:
                 self._look(judge)
         except NotMeantError:
             raise
@@ -82,7 +83,7 @@ class Course:
         """What has come of it."""
         return Found(
             asked=self.asked,
-            answer=self._answer,
+            answer=self.answer,
             runs=self.blocks.runs,
             blocks=self.blocks.done,
             before=self.blocks.before,
@@ -123,7 +124,7 @@ class Course:
         while self._has_time():
             line.show(self._so_far)
             self._block()
-            if blocks.done == self._answer.next:
+            if blocks.done == self.answer.next:
                 self._look(judge)
                 if self._is_enough():
                     return
@@ -174,7 +175,8 @@ class Course:
         return is_time and self._can_go_on()
 
     def _look(self, judge: Coprocess) -> None:
-        self._answer = answer = ask(judge, self.asked.many).without(self.left_out)
+        clock = clock_of(self.asked, self.blocks)
+        self.answer = answer = ask(judge, self.asked.many, clock).without(self.left_out)
         self._earlier.keep(self.blocks, self.how)
         blocks, needed = self.blocks, answer.needed
         more = None if needed is None else (needed - blocks.done) * blocks.seconds_each
@@ -182,11 +184,11 @@ class Course:
         self._looks.append(Look(blocks.done, blocks.seconds, foretold))
 
     def _is_enough(self) -> bool:
-        return self._answer.is_enough(self.asked.margin, one_sided=self.asked.one_sided)
+        return self.answer.is_enough(self.asked.margin, one_sided=self.asked.one_sided)
 
     def _so_far(self) -> str:
         """In one line: what is known, and when more will be."""
-        asked, blocks, answer = self.asked, self.blocks, self._answer
+        asked, blocks, answer = self.asked, self.blocks, self.answer
         left = asked.seconds - blocks.seconds
         told = f"{several(blocks.done, 'block')}, {blocks.seconds:.0f} s"
         if not answer.commands:

@@ -85,6 +85,7 @@ def _json(found: Found) -> str:
         "margin": asked.margin,
         "error": asked.error,
         "withdrawn": answer.is_withdrawn,
+        "clock": answer.clock,
         "cases": asked.cases,
         "rounds": asked.rounds,
         "seconds": found.seconds,
@@ -92,13 +93,21 @@ def _json(found: Found) -> str:
         "blocks_before": found.before,
         "commands": [{"name": one.name, "line": one.line, "words": one.words} for one in asked.commands],
         "differences": [asdict(one) for one in answer.commands],
+        "differences_by_wall": [asdict(one) for one in answer.by_wall],
         "controls": [asdict(one) for one in answer.controls],
         "places": [asdict(one) for one in answer.places],
         "effects": [asdict(one) for one in answer.effects],
         "remarks": found.remarks,
         "looks": [asdict(one) for one in found.looks],
         "runs": [
-            {"command": name, "case": case, "seconds": one.seconds, "cores": one.cores, "bytes": one.bytes}
+            {
+                "command": name,
+                "case": case,
+                "blocks": one.blocks,
+                "seconds": one.seconds,
+                "cores": one.cores,
+                "bytes": one.bytes,
+            }
             | {"counts": one.counts, "exit_codes": one.codes, "failed": one.reason or None}
             for (name, case), one in found.runs.items()
         ],
@@ -113,6 +122,6 @@ def _csv(found: Found) -> str:
     writer.writerow(["command", "case", "block", "seconds", "cores"])
     for (name, case), one in found.runs.items():
         called = found.asked.cases[case] if found.asked.cases else ""
-        for block, row in enumerate(zip(one.seconds, one.cores, strict=True)):
-            writer.writerow([name, called, block, *row])
+        for row in zip(one.blocks, one.seconds, one.cores, strict=True):
+            writer.writerow([name, called, *row])
     return output.getvalue()

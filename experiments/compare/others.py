@@ -58,15 +58,15 @@ class Others:
         busy = _processors() * (1 - self.idle / self.ticks)
         return max(0.0, busy - self.own / self.seconds)
 
+    @property
+    def are_in_the_way(self) -> bool:
+        """Whether they took so much that commands had to wait for a processor."""
+        return (self.busy() or 0.0) >= _LEAST * _processors() and self.idle_processors <= _ROOM
+
     def remark(self) -> str | None:
-        """A line that says so, if others were in the way of the commands."""
-        busy, processors = self.busy(), _processors()
-        if busy is None or busy < _LEAST * processors or self.idle_processors > _ROOM:
-            return None
-        return (
-            f"the machine was busy: other programs took {busy:.1f} of its {processors} processors meanwhile. "
-            "Times are longer then, and verdicts rarer: repeat it on a quiet machine"
-        )
+        """What is to be said of them, if they were in the way of the commands."""
+        took = f"other programs took {self.busy() or 0.0:.1f} of its {_processors()} processors meanwhile"
+        return f"the machine was busy: {took}" if self.are_in_the_way else None
 
 
 def _processors() -> int:

@@ -3,12 +3,13 @@
 import math
 from collections.abc import Sequence
 
-from experiments.compare.answer import Difference, Place
+from experiments.compare.answer import Answer, Difference, Place
 from experiments.compare.blocks import Runs
 from experiments.compare.counts import counted, percent
 from experiments.compare.found import Found
 from experiments.compare.options import Asked
 from experiments.run.progress import about, several
+from support.vocabulary import WALL
 
 _UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
 
@@ -78,12 +79,21 @@ def in_order(found: Found) -> list[Difference]:
 def row(one: Difference, found: Found) -> list[str]:
     """What is compared, by how much it differs, and the verdict; of a case its times beside that."""
     asked = found.asked
-    said = "withdrawn" if found.answer.is_withdrawn else verdict(one, asked)
+    by_clock = "" if found.answer.clock == WALL else ", by processor time"
+    said = "withdrawn" if found.answer.is_withdrawn else verdict(one, asked) + by_clock
     if not asked.cases:
         return [f"{one.name} against {asked.reference}", change(one), said]
     times = [duration(found.runs[name, one.case].median("seconds")) for name in (asked.reference, one.name)]
     whose = f" ({one.name})" if len(asked.commands) > 2 else ""
     return [asked.cases[one.case] + whose, " → ".join(times), change(one), said]
+
+
+def hindered(answer: Answer) -> str:
+    """What a busy machine means for a result."""
+    if answer.clock == WALL:
+        return "Times are longer then, and verdicts rarer: repeat it on a quiet machine"
+    by_wall = "; ".join(f"{one.name} {change(one)}" for one in answer.by_wall)
+    return f"What the commands waited for a processor is left out; with it: {by_wall}"
 
 
 def effects(found: Found) -> list[str]:

@@ -15,6 +15,9 @@ PUBLISHED_CLAIMS = (
 )  # fmt: skip
 """Those of analysis/claims/claims.toml, in its order: a test there compares them."""
 
+LARGE_SCALE_CLAIMS = ("threads", "velocity", "machine", "row")
+"""Those of them that no quick study decides: a test there compares them, too."""
+
 
 def known_claims(file: Path) -> list[str]:
     """The published claims, and those that stand beside a question's file. Raises InputError for a list of

@@ -42,7 +42,6 @@ class Command:
     fresh_folder: bool = False
     exit_codes: tuple[int, ...] = ()
     turns: bool | None = None
-    kept_by: str | None = None
     rounds: int | None = None
     refused: str = ""
     """Why it is not run at all."""
@@ -72,7 +71,7 @@ class Command:
 
 
 _NO_CONTENT = frozenset(("refused", "checker", "another"))
-_LATER = ("prepare", "conclude", "fresh_folder", "exit_codes", "turns", "kept_by", "rounds")
+_LATER = ("prepare", "conclude", "fresh_folder", "exit_codes", "turns", "rounds")
 
 
 @dataclass(frozen=True)
@@ -111,7 +110,7 @@ def command_of(
     command = Command(
         words, place.folder, place.instrument, trajectory, series.time.stdout if series.time else None,
         _unit_seconds(series), name, prepare, conclude,
-        series.fresh_folder, series.exit_codes, series.turns, series.kept_by, series.rounds,
+        series.fresh_folder, series.exit_codes, series.turns, series.rounds,
     )  # fmt: skip
     if trajectory and command.writes_trajectory:
         raise InputError(f"{key}.trajectory: found beside {{out}} in command, expected only one of the two")

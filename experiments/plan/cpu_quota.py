@@ -12,19 +12,18 @@ def read_cpu_quota(root: Path = Path("/")) -> float | None:
     """How many processors' time may be used, such as 1.5: the least that the process's own group and those
     around it allow, as far as it sees them; None where none limits it.
 
-    Read below `root` are proc/self/cgroup, proc/self/mountinfo (man 5 proc) and the groups' `cpu.max`, or
-    `cpu.cfs_quota_us` and `cpu.cfs_period_us` in version 1. What cannot be understood is no limit.
+    Read below `root` are proc/self/cgroup, proc/self/mountinfo (man 5 proc) and the groups' `cpu.max`, of
+    version 2 alone. What cannot be understood is no limit.
     """
-    groups = [(group, version) for version in (1, 2) for group in _limiting_groups(root, version)]
-    quotas = [_quota_of(group, version) for group, version in groups]
+    quotas = [_quota_of(group) for group in _limiting_groups(root)]
     return min((quota for quota in quotas if quota is not None), default=None)
 
 
-def _limiting_groups(root: Path, version: int) -> list[Path]:
-    own = _own_group(root, version)
+def _limiting_groups(root: Path) -> list[Path]:
+    own = next((line[3:] for line in _lines(root / "proc/self/cgroup") if line.startswith("0::")), None)
     groups: list[Path] = []
     tops: list[Path] = []
-    for place, top in _mounts(root, version) if own is not None else ():
+    for place, top in _mounts(root) if own is not None else ():
         tops.append(root / place.lstrip("/"))
         inside = PurePosixPath(own or "/")
         if inside.is_relative_to(top) and ".." not in inside.parts:
@@ -34,35 +33,18 @@ def _limiting_groups(root: Path, version: int) -> list[Path]:
     return groups or tops
 
 
-def _mounts(root: Path, version: int) -> Iterator[tuple[str, str]]:
-    """Where a hierarchy that can limit processors is mounted, and the group that is the top there."""
+def _mounts(root: Path) -> Iterator[tuple[str, str]]:
+    """Where the hierarchy is mounted, and the group that is the top there."""
     for line in _lines(root / "proc/self/mountinfo"):
         about, dash, kind = line.partition(" - ")
-        fields, kinds = about.split(" "), kind.split(" ")
-        if dash and len(fields) >= 5:
-            found = {"cgroup2": 2, "cgroup": 1 if "cpu" in kinds[-1].split(",") else 0}.get(kinds[0])
-            if found == version:
-                yield _unescaped(fields[4]), _unescaped(fields[3])
+        fields = about.split(" ")
+        if dash and len(fields) >= 5 and kind.split(" ")[0] == "cgroup2":
+            yield _unescaped(fields[4]), _unescaped(fields[3])
 
 
-def _own_group(root: Path, version: int) -> str | None:
-    for line in _lines(root / "proc/self/cgroup"):
-        fields = line.split(":", 2)
-        if len(fields) == 3:
-            number, controllers, path = fields
-            if version == 2 and number == "0" and not controllers:
-                return path
-            if version == 1 and "cpu" in controllers.split(","):
-                return path
-    return None
-
-
-def _quota_of(group: Path, version: int) -> float | None:
+def _quota_of(group: Path) -> float | None:
     """What one group allows by itself."""
-    if version == 2:
-        numbers = _first_line(group / "cpu.max").split(" ")
-    else:
-        numbers = [_first_line(group / f"cpu.cfs_{name}_us") for name in ("quota", "period")]
+    numbers = next(iter(_lines(group / "cpu.max")), "").split(" ")
     if len(numbers) != 2 or not all(re.fullmatch("[0-9]{1,18}", number) for number in numbers):
         return None
     quota, period = map(int, numbers)
@@ -79,7 +61,3 @@ def _lines(path: Path) -> list[str]:
         return path.read_text(encoding="utf-8", errors="surrogateescape").split("\n")
     except OSError:
         return []
-
-
-def _first_line(path: Path) -> str:
-    return next(iter(_lines(path)), "")

@@ -45,19 +45,12 @@ KINDS = {
     "limits": Kind(
         "the phases of a step, and what the machine can do", "how near they are", ("limits",), scenes=True
     ),
-    "more_cores": Kind(
-        "the phases of a step, and what the machine can do", "how well a model foretells them",
-        ("more_cores",), sweep="threads", scenes=True,
-    ),
     "speed_against_error": Kind(
-        "times and errors, and a general engine", "what is cheapest for an error", ("speed_against_error",),
+        "times and errors", "what is cheapest for an error", ("speed_against_error",),
         errors=True, sweep="substeps", scenes=True,
     ),
     "hard_cases": Kind(
         "times and errors", "each against what it is held to", ("hard_cases",), errors=True, scenes=True
-    ),
-    "promises": Kind(
-        "times, and runs that promise an error", "whether promises are kept", ("promises",), scenes=True
     ),
     COUNTS: Kind("work, once each", "a ratio of counts, by the claim about it", ("comparison",)),
 }  # fmt: skip

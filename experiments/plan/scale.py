@@ -15,7 +15,7 @@ class Scale:
     """How large the scenes are, which of a question's values are taken, and how long it all may last.
 
     `divisor` divides discs and area, `steps_divisor` the steps, `blocks_divisor` the least number of blocks;
-    the budget covers the report too, which takes about `report_seconds`, as a `pdf` beside the page or not.
+    the budget covers the report too, which takes about `report_seconds`.
     """
 
     name: str
@@ -24,7 +24,6 @@ class Scale:
     blocks_divisor: int
     budget_seconds: float
     report_seconds: float
-    pdf: bool
 
     def question(self, question: Question) -> Question:
         """A question at this scale: a smaller least number of blocks leaves more to the budget.
@@ -68,7 +67,6 @@ _PAPER = Scale(
     blocks_divisor=1,
     budget_seconds=45 * 60,
     report_seconds=40.0,
-    pdf=True,
 )
 _QUICK = Scale(
     "quick",
@@ -77,7 +75,6 @@ _QUICK = Scale(
     blocks_divisor=4,
     budget_seconds=150.0,
     report_seconds=15.0,
-    pdf=False,
 )
 
 SCALES = dict(zip(vocabulary.SCALES, (_PAPER, _QUICK), strict=True))

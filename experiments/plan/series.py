@@ -53,7 +53,6 @@ class Series:
     conclude: tuple[str, ...] = ()
     """Commands that are run, untimed, before and after each run."""
     fresh_folder: bool = False
-    kept_by: str | None = None
     """Each run has a new folder to itself."""
     exit_codes: tuple[int, ...] = ()
     """Those that are fine; without any it is 0."""
@@ -129,7 +128,6 @@ _ONLY_FOR = {
     "variant": ("program", "find_chunk", "resolve_chunk", "optional"),
     "command": (
         "trajectory", "time", "commands", "prepare", "conclude", "fresh_folder", "exit_codes", "turns",
-        "kept_by",
     ),
     "benchmark": (),
 }  # fmt: skip

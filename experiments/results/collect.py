@@ -77,7 +77,7 @@ def _take(store: Store, found: Sequence[_Found]) -> int:
     """How many were new."""
     index = Index(store.root)
     here = index.everything("records") | index.everything("failures")
-    there = {_as_now(path): _Found(store.root / path, one, path) for path, one in here.items() if one}
+    there = {path: _Found(store.root / path, one, path) for path, one in here.items() if one}
     known = {one.summary.digest for one in there.values()}
     measured = _measured([*there.values(), *found])
     taken = 0
@@ -99,12 +99,6 @@ def _take(store: Store, found: Sequence[_Found]) -> int:
         if one.path.parts[:2] == ("failures", COLLECTED) and _is_answered(one, measured):
             store.retire(one.file)
     return taken
-
-
-def _as_now(path: Path) -> Path:
-    """Where a file that may be from before folders had levels would be now."""
-    has_level = path.parent.name == path.name[: len(path.parent.name)]
-    return path if has_level else place_of(path.parent, path.name)
 
 
 def _measured(found: Iterable[_Found]) -> set[tuple[str, str]]:

@@ -109,19 +109,19 @@ class Store:
         found = Found()
         for point in experiment.points:
             key = (point.id, block)
-            summary = _summary_at(self.record_path(point, block))
+            summary = summary_of(read_json(self.record_path(point, block)))
             if unusable(summary, point, block) is None:
                 assert summary is not None
                 found.take(key, summary)
                 continue
-            failure = _summary_at(self.failure_path(point, block))
+            failure = summary_of(read_json(self.failure_path(point, block)))
             if failure is not None and failure.kind == "failure":
                 found.failures[key] = failure.reason
         return found
 
     def has(self, point: Point, block: int) -> bool:
         """Whether one process has been measured by now, perhaps by someone else."""
-        return unusable(_summary_at(self.record_path(point, block)), point, block) is None
+        return unusable(summary_of(read_json(self.record_path(point, block))), point, block) is None
 
     def settle(self, experiment: Experiment) -> Found:
         """Move what is stale out of the way and bring back what fits the plan again; say what is there then.
@@ -165,9 +165,8 @@ class Store:
         """Take in a finished record; an earlier failure of the same process is history then."""
         path, failure = self.record_path(point, block), self.failure_path(point, block)
         move(scratch, path)
-        for answered in (failure, _before_levels(failure), _before_levels(path)):
-            if answered.exists():
-                self.retire(answered)
+        if failure.exists():
+            self.retire(failure)
 
     def keep_failure(self, point: Point, block: int, done: Completed, tags: Tags) -> None:
         """Record that a process failed, why, where and with which program."""
@@ -223,17 +222,6 @@ def place_of(folder: Path, name: str) -> Path:
     point's id, so that no folder holds a hundred thousand files.
     """
     return folder / name[:3] / name if _key(name) else folder / name
-
-
-def _before_levels(path: Path) -> Path:
-    """Where a file of a process was before its folder had levels: such folders are read as they are."""
-    return path.parent.parent / path.name
-
-
-def _summary_at(path: Path) -> Summary | None:
-    """What the file of a process holds, here or where it was before."""
-    found = summary_of(read_json(path))
-    return found if found is not None else summary_of(read_json(_before_levels(path)))
 
 
 _NAME = re.compile(r"(.*?)-b([0-9]{1,9})\.json", re.DOTALL)

@@ -63,10 +63,10 @@ def summary_of(record: Any) -> Summary | None:  # noqa: ANN401 - read from a fil
 
 
 def _owner(record: Any) -> str:  # noqa: ANN401 - read from a file
-    """A failure tells it among its tags; an old one knows its site only."""
+    """A failure tells it among its tags."""
     provenance, tags = record.get("provenance", {}), record["tags"]
     slurm = provenance.get("slurm") or {}
-    host = provenance.get("host") or tags.get("host") or tags.get("site", "unknown")
+    host = provenance.get("host") or tags.get("host", "unknown")
     return str(slurm.get("SLURM_JOB_PARTITION") or tags.get("partition") or host)
 
 

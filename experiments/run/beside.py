@@ -47,14 +47,6 @@ BESIDE = {
         decides=lambda point, _: (point.threads, point.openmp),
         tags=lambda point, _: {"experiment": "limits-of-machines", "site": point.site},
     ),
-    "more_cores": Beside(
-        "limits",
-        "limits-of-machines",
-        "limits of the machine",
-        words=lambda point, _: ("--threads", str(point.machine.hardware_threads)),
-        decides=lambda point, _: (point.machine.hardware_threads,),
-        tags=lambda point, _: {"experiment": "limits-of-machines", "site": point.site},
-    ),
     "promises": Beside(
         "promises",
         "promises-of-errors",

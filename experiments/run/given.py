@@ -12,8 +12,7 @@ def given_before(
 ) -> dict[str, int]:
     """The blocks that an earlier session gave to the experiments that it began.
 
-    A question that now asks for more blocks than that has changed, and is decided anew. In older folders
-    points could stop before others: what all of them have counts, since later blocks lack a point.
+    A question that now asks for more blocks than that has changed, and is decided anew.
     """
     plan = store.note(PLAN) or {}
     given = {}
@@ -21,8 +20,7 @@ def given_before(
         kept = plan.get(experiment.points[0].scale, {}).get(experiment.name)
         minimum = experiment.question.blocks.minimum
         if kept and found[experiment.name].seconds and minimum <= kept["blocks"]:
-            whole = min([kept["blocks"], *kept.get("stopped", {}).values()])
-            given[experiment.name] = max(minimum, int(whole))
+            given[experiment.name] = int(kept["blocks"])
     return given
 
 

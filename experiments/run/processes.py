@@ -20,12 +20,18 @@ from experiments.run.written import Written, touch_of
 from experiments.support.process import Completed
 from support.files import read_json, write_json
 from support.record_schema import is_record
+from support.vocabulary import PAUSES
 
 MARGIN_SECONDS = 60.0
 """What measuring takes beside the processes, before it is given up."""
 
 CROWDED = "too many are compared to wait in memory side by side"
 """Why a program is not stopped."""
+
+SLICE_SECONDS, SHORT_SECONDS = 0.01, 0.002
+"""Of a slice, and of one in every third block: from the two the analysis knows what a stop costs
+(analysis/statistics/stopping.py). The noise of a virtual machine changes within some milliseconds.
+"""
 
 _RUNS = 8
 """Of each at most: one to look at it, two in slices, and where these disagree two more of either kind."""
@@ -60,8 +66,8 @@ class Left:
 class Processes:
     """Runs `carom processes`, which lets them run in turn and leaves a record, or a failure, of each.
 
-    `slice_seconds`: how long the longest runs before the next does; the program's own rule without it. Where
-    it `tells`, a line says of a program why it is not stopped; the record says it in any case.
+    `slice_seconds`: how long the shortest runs before the next does; see `slice_of` without it. Where it
+    `tells`, a line says of a program why it is not stopped; the record says it in any case.
     """
 
     def __init__(
@@ -76,13 +82,14 @@ class Processes:
         self._store = store
         self._instrument = instrument
         self._time_limit = time_limit
-        self._slice = () if slice_seconds is None else ("--slice", str(slice_seconds))
+        self._slice_seconds = slice_seconds
         self._tells = tells
+        self._slice = slice_seconds or SLICE_SECONDS
         self._behaviours = Behaviours(store)
         self._written = Written(store)
 
-    def measure(self, asked: Sequence[Asked], seed: int) -> tuple[Completed, list[Left]]:
-        """How it went, and what is left of each.
+    def measure(self, asked: Sequence[Asked], seed: int, block: int = 0) -> tuple[Completed, list[Left]]:
+        """How it went in a block, and what is left of each.
 
         Where a file among the words changed, all are measured a second time: only then is it known whether
         a program writes it. So they are where one turns out to mind being stopped and others were in slices:
@@ -90,6 +97,7 @@ class Processes:
         somebody built a program anew meanwhile.
         """
         asked = [replace(one, point=self._known(one.point)) for one in asked]
+        self._slice = self._slice_seconds or slice_of(asked[0].point, block)
         done, left = self._run(asked, seed)
         suspected = {
             file: touch_of(file)
@@ -173,7 +181,8 @@ class Processes:
     def _call(self, described: Sequence[dict[str, Any]], seed: int, seconds: float) -> Completed:
         file = self._store.temporary / "processes" / "processes.json"
         file.write_text(json.dumps(described), encoding="utf-8")
-        command = (str(self._instrument.path), "processes", str(file), "--seed", str(seed), *self._slice)
+        command = (str(self._instrument.path), "processes", str(file), "--seed", str(seed))
+        command += ("--slice", str(self._slice))
         # The instrument itself is bound nowhere: what it starts would inherit that.
         return run_alone(command, (), seconds + MARGIN_SECONDS)
 
@@ -225,12 +234,16 @@ class Processes:
         around = {
             "prepare": placed(command.prepare, scene, output),
             "conclude": placed(command.conclude, scene, output),
-            "kept_by": command.kept_by,
             "fresh_folder": command.fresh_folder,
             "exit_codes": command.exit_codes,
         }
         where = {"folder": str(command.folder), "most_seconds": self._time_limit}
         return where | {key: value for key, value in around.items() if value}
+
+
+def slice_of(point: Point, block: int) -> float:
+    """How long a slice is; always the same where it is asked what stops do."""
+    return SHORT_SECONDS if block % 3 == 1 and point.kind != PAUSES else SLICE_SECONDS
 
 
 def _said(one: Asked) -> bool | None:

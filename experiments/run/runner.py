@@ -169,7 +169,7 @@ class Runner:
             )
             for task, scene in ready
         ]
-        done, left = self._processes.measure(asked, seed_of(first))
+        done, left = self._processes.measure(asked, seed_of(first), first.block)
         return [
             self._keep_process(replace(task, point=there.point), scene, there, done)
             for (task, scene), there in zip(ready, left, strict=True)

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from experiments.plan.claims import LARGE_SCALE_CLAIMS
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.results.store import Found, Store
@@ -238,9 +239,12 @@ class Schedule:
         return seconds
 
 
-def may_decide(experiment: Experiment) -> bool:
-    """Whether a claim, or a verdict on a difference, may come of it."""
-    return experiment.question.claim is not None or experiment.question.kind in DECIDING
+def may_decide(experiment: Experiment, scale: str) -> bool:
+    """Whether a claim, or a verdict on a difference, may come of it at that scale."""
+    claim = experiment.question.claim
+    if claim in LARGE_SCALE_CLAIMS and scale == "quick":
+        return False
+    return claim is not None or experiment.question.kind in DECIDING
 
 
 def _once_each(experiment: Experiment, costs: Costs) -> list[tuple[str, object, float]]:

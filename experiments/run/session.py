@@ -108,7 +108,7 @@ class Session:
         settings = self._study.settings
         looks = (settings.figures or bool(settings.builds)) and settings.blocks is None
         self._keep_time_to_decide()
-        deciding = [one for one in self._incomplete if may_decide(one)] if looks else self._incomplete
+        deciding = [one for one in self._incomplete if self._may_decide(one)] if looks else self._incomplete
         begun = self._first_blocks(deciding, FIRST_LOOK if looks else 0)
         self._measure([one for one in begun if one.question.blocks.wanted > 1])
         if settings.builds:
@@ -142,6 +142,9 @@ class Session:
                 self._measure([experiment])
         return begun
 
+    def _may_decide(self, experiment: Experiment) -> bool:
+        return may_decide(experiment, self._study.scale.name)
+
     def _time_left(self) -> float:
         """Seconds until measuring stops."""
         return self._until - time.monotonic()
@@ -151,7 +154,7 @@ class Session:
         fits, the cheapest first; then settle more in what is left. Returns what the last look found.
         """
         self._keep_time_to_decide()
-        rest = [one for one in self._incomplete if not may_decide(one)]
+        rest = [one for one in self._incomplete if not self._may_decide(one)]
         whole = self._until
         if rest:
             self._until -= REST_SHARE * max(0.0, whole - time.monotonic())
@@ -276,7 +279,7 @@ class Session:
         now = time.monotonic()
         self._report_due = now + max(REPORT_PAUSE, (now - began) / REPORT_SHARE)
         if done.exit_code == 0:
-            self._display.line(f"report of what is there: {json.loads(done.output)[0]}")
+            self._display.line(f"report of what is there: {json.loads(done.output)}")
         else:
             warn(f"the report of what is there could not be written: {done.reason}")
 
@@ -285,14 +288,13 @@ class Session:
         if not self._study.settings.figures:
             return 0
         self._display.now("writing the report")
-        done = self._analysis.ask("report" if self._study.scale.pdf else "page", REPORT_LIMIT)
+        done = self._analysis.ask("report", REPORT_LIMIT)
         if done.exit_code != 0:
             warn(f"the report could not be written: {done.reason}")
             return REPORT_FAILED
         for line in done.error.splitlines():
             warn(line)
-        for path in json.loads(done.output):
-            self._display.line(path)
+        self._display.line(json.loads(done.output))
         return 0
 
     def _failed(self) -> int:

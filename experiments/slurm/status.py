@@ -4,15 +4,15 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
+from pathlib import Path
 
 from experiments.run.progress import warn
 from experiments.run.status import new_console, new_table
 from experiments.run.study import Settings, Study
 from experiments.slurm import scheduler
-from experiments.slurm.fates import fate, of_all_tasks
 from experiments.slurm.forecast import Tasks, progress_line, tasks_of
 from experiments.slurm.jobs import PartitionFolder, blocks_of, folders, submitted, units
-from experiments.slurm.scheduler import Queue
+from experiments.slurm.scheduler import Queue, TaskState
 from experiments.slurm.submit import is_active, of_scale, said, too_long
 from experiments.slurm.task_log import Told, read_told
 from support.errors import InputError
@@ -33,8 +33,8 @@ class Row:
 def show_cluster_status(settings: Settings) -> int:
     """Print the state of what has been submitted; nothing is written. Returns the exit code, 0.
 
-    What is done and what failed is told by the files. Slurm tells what runs and waits, and why a task ended
-    early; without its answer both count as missing.
+    What is done and what failed is told by the files. Slurm tells what runs and waits, and as what a task
+    ended; without its answer both count as missing.
     """
     chosen = submitted(settings) or settings
     if settings.study:
@@ -59,7 +59,12 @@ def show_cluster_status(settings: Settings) -> int:
             for reason, number in row.reasons.items()
         ]
         explained += _explain(folder, study, queue)
-        explained += [f"{folder.partition.name}: {line}" for line in of_all_tasks(told)]
+        if len(told.processors) > 1:
+            kinds = ", ".join(sorted(told.processors))
+            explained.append(
+                f"{folder.partition.name}: its nodes differ, and count as {len(told.processors)} machines: "
+                f"{kinds}; `constraint` in the site file picks one"
+            )
         without = too_long(folder, study, is_active(folder, queue))
         explained += [said(folder.partition.name, name, number) for name, number in without.items()]
     screen.print(shown)
@@ -109,11 +114,21 @@ def _explain(folder: PartitionFolder, study: Study, queue: Queue) -> list[str]:
             unfinished -= own
             state = queue.get((job.name, index))
             if own and not (state is not None and state.runs):
-                told[number, fate(state, folder.jobs / f"{number}-{index}.log")] += 1
+                told[number, _fate(state, folder.jobs / f"{number}-{index}.log")] += 1
     name = folder.partition.name
     return [
         f"{name}: job {number}: {count} of the tasks {became}" for (number, became), count in told.items()
     ]
+
+
+def _fate(state: TaskState | None, log: Path) -> str:
+    """What became of a task that left blocks unfinished; `state` is None if Slurm has forgotten it."""
+    if state is not None and state.waits:
+        return f"wait: {state.reason}"
+    if not log.exists():
+        return "never started, and have left the queue (cancelled?)"
+    ended = f"ended as {state.state}" if state is not None else "have ended"
+    return f"{ended} and left processes unfinished; their logs are in {log.parent}"
 
 
 def _progress(folder: PartitionFolder, state: Sequence[Row], told: Told, tasks: Tasks | None) -> str:

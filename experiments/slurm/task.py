@@ -1,6 +1,5 @@
 """One task of a job array: measures the blocks that are its own, within its allocation."""
 
-import os
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,7 +16,7 @@ from experiments.run.together import together
 from experiments.run.whole_blocks import WholeBlocks
 from experiments.slurm.jobs import PartitionFolder, Unit, folders, read_job
 from experiments.slurm.processors import Processors
-from experiments.slurm.task_log import RESTARTS, TaskLog
+from experiments.slurm.task_log import TaskLog
 from support.errors import InputError
 
 
@@ -37,10 +36,8 @@ def work(manifest: Path, index: int) -> int:
         raise InputError(f'{job.settings.site}: has no partition "{job.partition}" any more')
     folder = partitions[job.partition]
     study, log, machine = folder.study(), TaskLog(manifest, index), this_machine()
-    restarts = os.environ.get(RESTARTS, "0")
-    with log.kept(machine.name, os.environ), study.store.shared(), ProgressDisplay() as display:
-        if restarts != "0":
-            display.line(f"started again by Slurm ({RESTARTS}={restarts}): goes on with what was not begun")
+    log.begins(machine.name)
+    with study.store.shared(), ProgressDisplay() as display:
         worker = _Worker(study, display, log, Processors(folder.partition, machine))
         return worker.run(job.tasks[index])
 

@@ -4,7 +4,7 @@ Durations are of the task's own node: nothing here compares the clocks of two ma
 """
 
 import contextlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import fmean
@@ -13,9 +13,6 @@ from typing import Any
 from experiments.slurm.jobs import Unit, read_job
 from support.files import of_json, to_json
 
-RESTARTS = "SLURM_RESTART_COUNT"
-"""Of a task that Slurm started again: after a preemption, `scontrol requeue`, or the end of its node."""
-
 
 class TaskLog:
     """Of one task; each line is whole or, where its node died, the last."""
@@ -23,17 +20,9 @@ class TaskLog:
     def __init__(self, manifest: Path, index: int) -> None:
         self._path = path_of(manifest.parent, manifest.stem, index)
 
-    @contextlib.contextmanager
-    def kept(self, processor: str, environment: Mapping[str, str]) -> Iterator[None]:
-        """Tell of the beginning and the end."""
-        node = environment.get("SLURMD_NODENAME", "")
-        self._tell(began=node, processor=processor, restarts=environment.get(RESTARTS, "0"))
-        try:
-            yield
-        except BaseException as reason:
-            self._tell(stopped=str(reason))
-            raise
-        self._tell(ended=node)
+    def begins(self, processor: str) -> None:
+        """Tell what it runs on."""
+        self._tell(processor=processor)
 
     def measured(self, unit: Unit, seconds: float) -> None:
         """Tell how long a whole block took."""
@@ -51,8 +40,6 @@ class Told:
 
     seconds: dict[str, list[float]] = field(default_factory=dict)
     """Of each whole block that was measured, by experiment."""
-    restarted: int = 0
-    """Tasks that Slurm started again."""
     processors: set[str] = field(default_factory=set)
 
     @property
@@ -94,7 +81,6 @@ def lines(path: Path) -> list[dict[str, Any]]:
 
 
 def _take(told: Told, found: Sequence[dict[str, Any]]) -> None:
-    told.restarted += any(one.get("restarts", "0") != "0" for one in found)
     for one in found:
         match one:
             case {"processor": str() as processor}:

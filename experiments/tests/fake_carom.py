@@ -288,7 +288,14 @@ def make_record(verb: str, scene: str, options: Options, wrong: bool) -> dict[st
         "repetitions": [] if wrong else [{"steps_seconds": seconds, "cpu_seconds": seconds}] * runs,
         "parse_seconds": 0.001,
         "process_seconds": runs * seconds + 0.01,
-        "work": {"steps": int(steps), "overlaps": 5, "pair_resolves": 4, "wall_resolves": 3, "sweeps": 2},
+        "work": {
+            "steps": int(steps),
+            "overlaps": 5,
+            "pair_resolves": 4,
+            "wall_resolves": 3,
+            "pair_attempts": 6,
+            "sweeps": 2,
+        },
         "errors": errors("errors" in options),
         "check": {
             "verdict": "failed" if wrong else "passed",
@@ -356,6 +363,14 @@ def axes(options: Options) -> dict[str, Any]:
         "threads": int(options["threads"]),
         "substeps": int(options.get("substeps", 1)),
         "tolerance": options.get("tolerance", "relative"),
+        "storage": "numbered",
+        "prefetch": "on",
+        "box_side": "wide",
+        "overlaps": "lists",
+        "search": "exact",
+        "worklist": "all",
+        "impact": "step_end",
+        "precision": "double",
     }
 
 
@@ -382,6 +397,7 @@ def provenance() -> dict[str, Any]:
         "hardware_threads": 2,
         "affinity": "0-1",
         "affinity_count": 2,
+        "cpu_quota": None,
         "oversubscribed": False,
         "memory_bytes": 1 << 30,
         "virtualised": False,

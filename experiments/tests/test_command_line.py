@@ -190,8 +190,8 @@ for line in sys.stdin:
         print(*sys.argv[1:], line.strip(), len(glob.glob('results/records/*/*/*.json')), file=file)
     if glob.glob('no_paper'):
         sys.exit('no paper')
-    print('no ink for the PDF', file=sys.stderr)
-    print('["results/report.html"]', flush=True)
+    print('no ink', file=sys.stderr)
+    print('"results/report.html"', flush=True)
 """
 
 
@@ -202,7 +202,7 @@ def test_the_report_comes_last_and_of_everything(workplace: Workplace) -> None:
     first = workplace.start("run", "--builds", "gcc")
     assert (finish(first)[0], (workplace.root / "told").exists()) == (0, False), "another part follows"
     code, output, error = finish(workplace.start())
-    assert (code, error) == (0, "no ink for the PDF\n")
+    assert (code, error) == (0, "no ink\n")
     assert (workplace.root / "told").read_text() == "follow --results results report 16\n"
     assert output.splitlines()[-2:] == ["the study is complete: results/records", "results/report.html"]
     (workplace.root / "no_paper").touch()

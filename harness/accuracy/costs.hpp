@@ -59,9 +59,6 @@ std::filesystem::path costs_file();
 /// The costs that are kept for this machine, if there are any.
 std::optional<Costs> kept_costs();
 
-/// Measures the costs and keeps them in place of those that are kept. Throws InputError if that cannot be.
-Costs keep_costs_anew();
-
 /// Those that are kept. If there are none they are measured and kept; where they cannot be kept, typical ones
 /// hold, so that the same is chosen every time, and a note says so.
 Costs costs_of_machine();

@@ -72,13 +72,6 @@ std::optional<Costs> kept_costs() {
     }
 }
 
-Costs keep_costs_anew() {
-    require_place();
-    const Costs costs = measure_costs();
-    keep(costs);
-    return costs;
-}
-
 Costs costs_of_machine() {
     if (const auto kept = kept_costs()) {
         return *kept;

@@ -223,6 +223,5 @@ std::optional<std::string> PathChecker<Real>::violation_at(Real time,
 }
 
 template class PathChecker<double>;
-template class PathChecker<long double>;
 
 } // namespace carom

@@ -200,6 +200,5 @@ std::optional<std::string> PathSearch<Real>::violation_of(const Segment& one, co
 }
 
 template class PathSearch<double>;
-template class PathSearch<long double>;
 
 } // namespace carom

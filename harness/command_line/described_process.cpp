@@ -73,20 +73,9 @@ template <class Value> void take(const Json& process, const char* key, std::opti
 /// Of one that times itself in short processes: so often at most in one measurement.
 constexpr int most_rounds_of_a_benchmark = 20;
 
-KeptBy kept_by(const std::string& word) {
-    if (word.empty()) {
-        return KeptBy::whatever_works;
-    }
-    if (word != "cgroup" && word != "subreaper") {
-        throw InputError("kept_by: found " + in_quotes(word) + ", expected cgroup or subreaper");
-    }
-    return word == "cgroup" ? KeptBy::cgroup : KeptBy::subreaper;
-}
-
 ProgramContender contender(const Json& json, bool is_benchmark) {
     ProgramContender one;
     std::map<std::string, std::string> environment;
-    std::string keeper;
     require(json, "command", one.command.words);
     take(json, "folder", one.command.folder);
     take(json, "environment", environment);
@@ -98,8 +87,6 @@ ProgramContender contender(const Json& json, bool is_benchmark) {
     take(json, "warm_ups", one.warm_ups);
     take(json, "expected_seconds", one.expected_seconds);
     take(json, "turns", one.turns);
-    take(json, "kept_by", keeper);
-    one.kept_by = kept_by(keeper);
     one.command.environment = environment_with(environment);
     one.times_itself = is_benchmark || !one.command.pattern.empty();
     take(json, "rounds", one.rounds);

@@ -38,7 +38,7 @@ constexpr std::array python_verbs{
     PythonVerb{"report", groups::study, "analysis", true, false, "Write the report of whatever was measured"},
     PythonVerb{"claims", groups::study, "analysis", true, false, "Print each claim with its verdict"},
     PythonVerb{"export", groups::study, "analysis", true, false,
-               "Write a table with a row a measurement, as CSV or Parquet"},
+               "Write a CSV table with a row a measurement"},
     PythonVerb{"figures", groups::study, "analysis", true, false,
                "Draw the figures of whatever was measured"},
 };

@@ -18,7 +18,5 @@ void add_generate_command(CLI::App& program);
 void add_reference_command(CLI::App& program);
 void add_doctor_command(CLI::App& program);
 void add_limits_command(CLI::App& program);
-void add_outside_command(CLI::App& program);
-void add_promises_command(CLI::App& program);
 
 } // namespace carom

@@ -1,7 +1,6 @@
 #include <iostream>
 #include <memory>
 
-#include "harness/accuracy/costs.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/doctor/findings.hpp"
 #include "harness/support/json.hpp"
@@ -10,24 +9,26 @@ namespace carom {
 
 void add_doctor_command(CLI::App& program) {
     auto json = std::make_shared<bool>(false);
+    auto noise = std::make_shared<bool>(false);
     auto build = std::make_shared<bool>(false);
-    auto measure = std::make_shared<bool>(false);
     CLI::App* command =
         program.add_subcommand("doctor", "Tell what this machine can and cannot measure, and why. It changes "
-                                         "nothing, unless --measure-costs is given");
+                                         "nothing");
     command->add_flag("--json", *json, "Print the findings as one JSON object");
-    command->add_flag("--measure-costs", *measure,
-                      "Measure anew, and keep, what work costs here: `run --error-below` chooses by it");
+    command->add_flag("--noise", *noise,
+                      "Watch equal work for 20 s, and draw how much neighbouring stretches of time differ");
     command->add_flag("--build", *build, "Print only how this program was built, as one JSON object");
-    command->callback([json, build, measure] {
+    command->callback([json, noise, build] {
         if (*build) {
             auto built = build_json();
             built["openmp"] = {{"runtime", read_openmp().runtime}};
             std::cout << json_text(built, 2) << '\n';
             return;
         }
-        if (*measure) {
-            keep_costs_anew();
+        if (*noise) {
+            constexpr double seconds = 20;
+            std::cout << noise_figure(measure_noise(seconds));
+            return;
         }
         constexpr double noise_seconds = 2;
         const Findings findings = examine_machine(noise_seconds);

@@ -19,6 +19,13 @@
 namespace carom {
 namespace {
 
+/// The word for a measure on the command line and in summaries, and what it means.
+struct MeasureText {
+    Measure measure;
+    const char* word;
+    const char* meaning;
+};
+
 constexpr std::array measure_texts{
     MeasureText{.measure = Measure::path,
                 .word = "path",
@@ -41,42 +48,17 @@ std::string error_text(const Tried& tried) {
                             : format("%.2g", tried.error);
 }
 
-} // namespace
-
 const MeasureText& text_of(Measure measure) {
     return *std::ranges::find(measure_texts, measure, &MeasureText::measure);
 }
 
+/// The variant with the length of its step.
 std::string text_of(const Method& method) {
     const std::string name(method.variant->name);
     if (method.variant->engine == Engine::event_driven) {
         return name;
     }
     return name + ", dt = " + (method.substeps == 1 ? "1" : "1/" + number_text(method.substeps));
-}
-
-std::vector<std::pair<std::string, Measure>> measure_choices() {
-    std::vector<std::pair<std::string, Measure>> choices;
-    for (const MeasureText& one : measure_texts) {
-        choices.emplace_back(one.word, one.measure);
-    }
-    return choices;
-}
-
-void add_error_bound_options(CLI::App& command, ErrorBound& bound) {
-    auto* below =
-        command
-            .add_option("--error-below", bound.below,
-                        "Choose the cheapest variant and step whose error is below this, by a trial")
-            ->check(positive_number())
-            ->type_name("X")
-            ->default_str("")
-            ->excludes(command.get_option("--variant"))
-            ->excludes(command.get_option("--substeps"));
-    add_choice<Measure>(command, "--measure", bound.measure, measure_choices(),
-                        "Which error: of the paths at time 1, in radii, or of the collision rate or the "
-                        "pressure, relative")
-        ->needs(below);
 }
 
 void require_exact_run(const Scene& scene, const ErrorBound& bound) {
@@ -89,6 +71,28 @@ void require_exact_run(const Scene& scene, const ErrorBound& bound) {
             ": there is no exact run to measure an error by; expected discs apart from each other "
             "and from the walls");
     }
+}
+
+} // namespace
+
+void add_error_bound_options(CLI::App& command, ErrorBound& bound) {
+    std::vector<std::pair<std::string, Measure>> measures;
+    for (const MeasureText& one : measure_texts) {
+        measures.emplace_back(one.word, one.measure);
+    }
+    auto* below =
+        command
+            .add_option("--error-below", bound.below,
+                        "Choose the cheapest variant and step whose error is below this, by a trial")
+            ->check(positive_number())
+            ->type_name("X")
+            ->default_str("")
+            ->excludes(command.get_option("--variant"))
+            ->excludes(command.get_option("--substeps"));
+    add_choice<Measure>(command, "--measure", bound.measure, measures,
+                        "Which error: of the paths at time 1, in radii, or of the collision rate or the "
+                        "pressure, relative")
+        ->needs(below);
 }
 
 std::optional<Chosen> choose_method(const Scene& scene, const ErrorBound& bound,

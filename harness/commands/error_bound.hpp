@@ -1,9 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -28,30 +25,12 @@ struct Chosen {
     Trial trial;
 };
 
-/// The word for a measure on the command line and in records, and what it means.
-struct MeasureText {
-    Measure measure;
-    const char* word;
-    const char* meaning;
-};
-
-const MeasureText& text_of(Measure measure);
-
-/// Every word with its measure.
-std::vector<std::pair<std::string, Measure>> measure_choices();
-
-/// The variant with the length of its step.
-std::string text_of(const Method& method);
-
-/// Throws InputError for a scene that has no exact run: whose discs overlap at the start, or without a unit
-/// of time.
-void require_exact_run(const Scene& scene, const ErrorBound& bound);
-
 /// Adds --error-below and --measure, beside which nobody may choose a variant or substeps.
 void add_error_bound_options(CLI::App& command, ErrorBound& bound);
 
 /// The cheapest method for the scene whose error is below the bound; nothing if there is no bound. Throws
-/// InputError if no method is known to reach it, with the one that comes nearest, and as require_exact_run.
+/// InputError if no method is known to reach it, with the one that comes nearest, or if the scene has no
+/// exact run: discs overlap at the start, or there is no unit of time.
 std::optional<Chosen> choose_method(const Scene& scene, const ErrorBound& bound,
                                     const SimulationOptions& options);
 

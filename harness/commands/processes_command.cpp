@@ -173,9 +173,10 @@ void add_processes_command(CLI::App& program) {
                      "JSON file: a list with, for each process, an object with its command (a list of words) "
                      "and the file for its record")
         ->required();
-    add_number(*command, "--slice", options->how.slice_seconds, 1e-3, 1e6,
-               "Seconds that the longest runs before the next does, the others in proportion; below "
-               "some 0.02 the stops lengthen what is timed");
+    add_number(
+        *command, "--slice", options->how.slice_seconds, 1e-3, 1e6,
+        "Seconds that the shortest runs before the next does, the others in proportion; longer where it "
+        "takes more than a tenth of that until a program stands still");
     add_number(*command, "--seed", options->how.seed, 0, std::numeric_limits<std::uint64_t>::max(),
                "Of the order of the slices");
     command->callback([options] { processes(*options); });

@@ -25,20 +25,19 @@ struct ReferenceOptions {
     std::string output;
     double time = 0;
     int threads = 1;
-    bool extended = false;
     bool check = false;
     bool json = false;
 };
 
 /// Pressure on the walls: momentum taken up per time and length of wall.
-template <class Real, class Log>
-nlohmann::ordered_json counts_json(const ExactSimulation<Real, Log>& reference, const Scene& scene,
-                                   Real start) {
-    const Real end = kinetic_energy(reference.discs());
-    const auto time = static_cast<double>(reference.time());
-    const auto impulse = static_cast<double>(reference.wall_impulse());
-    const auto if_above_0 = [](auto whole, auto value) {
-        return whole > 0 ? nlohmann::ordered_json(static_cast<double>(value / whole)) : nullptr;
+template <class Log>
+nlohmann::ordered_json counts_json(const ExactSimulation<double, Log>& reference, const Scene& scene,
+                                   double start) {
+    const double end = kinetic_energy(reference.discs());
+    const double time = reference.time();
+    const double impulse = reference.wall_impulse();
+    const auto if_above_0 = [](double whole, double value) {
+        return whole > 0 ? nlohmann::ordered_json(value / whole) : nullptr;
     };
     return {{"time", time},
             {"particles", scene.discs.size()},
@@ -50,19 +49,18 @@ nlohmann::ordered_json counts_json(const ExactSimulation<Real, Log>& reference, 
 }
 
 /// Writes what `reference` is at the asked time, which `checker` has followed if there is one.
-template <class Real, class Log>
-void simulate(const ReferenceOptions& options, const Scene& scene, ExactSimulation<Real, Log> reference,
-              PathChecker<Real>* checker) {
-    const Real start = kinetic_energy(reference.discs());
-    const bool ended = reference.advance(static_cast<Real>(options.time));
+template <class Log>
+void simulate(const ReferenceOptions& options, const Scene& scene, ExactSimulation<double, Log> reference,
+              PathChecker<double>* checker) {
+    const double start = kinetic_energy(reference.discs());
+    const bool ended = reference.advance(options.time);
     const auto wrong = checker ? checker->violation_at(reference.time(), reference.discs()) : std::nullopt;
     if (wrong) {
         throw CheckError(shown_name(options.scene) + ", " + *wrong);
     }
     if (!ended) {
         throw CheckError(shown_name(options.scene) + ": the collisions at time " +
-                         number_text(static_cast<double>(reference.time())) +
-                         " do not come to an end: a disc is wedged");
+                         number_text(reference.time()) + " do not come to an end: a disc is wedged");
     }
     if (!options.json) {
         write_text(options.output, disc_lines(reference.discs()));
@@ -74,25 +72,17 @@ void simulate(const ReferenceOptions& options, const Scene& scene, ExactSimulati
 }
 
 /// Collisions are told only to a checker: several threads tell them one after the other, which takes time.
-template <class Real> void simulate(const ReferenceOptions& options, const Scene& scene) {
-    if (!options.check) {
-        simulate<Real>(options, scene, ExactSimulation<Real>(scene, options.threads), nullptr);
-        return;
-    }
-    PathChecker<Real> checker(scene);
-    CollisionLog<Real>& told = checker;
-    simulate<Real>(options, scene, ExactSimulation<Real, CollisionLog<Real>&>(scene, options.threads, told),
-                   &checker);
-}
-
 void reference(const ReferenceOptions& options) {
     require_writable(options.output);
     const Scene scene = read_scene(options.scene);
-    if (options.extended) {
-        simulate<long double>(options, scene);
-    } else {
-        simulate<double>(options, scene);
+    if (!options.check) {
+        simulate(options, scene, ExactSimulation<double>(scene, options.threads), nullptr);
+        return;
     }
+    PathChecker<double> checker(scene);
+    CollisionLog<double>& told = checker;
+    simulate(options, scene, ExactSimulation<double, CollisionLog<double>&>(scene, options.threads, told),
+             &checker);
 }
 
 } // namespace
@@ -107,7 +97,6 @@ void add_reference_command(CLI::App& program) {
         ->default_str("");
     add_number(*command, "--threads", options->threads, 1, most_threads, "Threads; the result is the same")
         ->default_str("1");
-    command->add_flag("--extended", options->extended, "Compute in long double instead of double");
     command->add_flag("--check", options->check,
                       "Follow every collision with an independent checker; exit 2 at the first violation");
     command->add_option("--output", options->output, "File to write instead of standard output");

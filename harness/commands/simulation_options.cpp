@@ -118,7 +118,7 @@ Scene read_scene_and_settle_threads(SimulationOptions& options, AskedThreads mea
     if (asked) {
         require_threads(threads);
     }
-    Scene scene = read_scene(options.scene, threads, [&](const Scene& box, std::size_t discs) {
+    Scene scene = read_scene(options.scene, [&](const Scene& box, std::size_t discs) {
         require_room_to_simulate(options, box, discs);
     });
     const std::size_t discs = scene.discs.size();

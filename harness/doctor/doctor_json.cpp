@@ -49,11 +49,16 @@ Json counters_json(const std::vector<CounterSource>& sources) {
 }
 
 Json noise_json(const Noise& noise) {
+    Json neighbours = Json::array();
+    for (const Neighbours& one : noise.neighbours) {
+        neighbours.push_back({{"seconds", one.seconds}, {"difference", one.difference}});
+    }
     return {{"spins", noise.spins},
             {"median_seconds", noise.median_seconds},
             {"p95_over_median", noise.p95_over_median},
             {"max_over_median", noise.max_over_median},
-            {"steal", or_null(noise.steal)}};
+            {"steal", or_null(noise.steal)},
+            {"neighbours", neighbours}};
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <CLI/StringTools.hpp>
 
@@ -75,6 +76,9 @@ std::string processor_lines(const Findings& findings) {
                                      "each is halted for a part of the time",
                                      *quota, *quota == 1 ? "" : "s"));
     }
+    if (machine.has_unread_cpu_quota) {
+        text += line("CPU quota", "cannot be read: control groups of version 1 grant the processors here");
+    }
     return text +
            line("threads", "Carom takes " + counted(findings.threads_by_default, "thread") +
                                " by default, on " + counted(findings.usable_processors, "usable processor"));
@@ -146,9 +150,7 @@ std::string noise_line(const Noise& noise) {
 
 std::string costs_line(const Findings& findings) {
     if (!findings.costs) {
-        return line("costs",
-                    "of work are not measured yet: `run --error-below` does it at its first call, and "
-                    "--measure-costs");
+        return line("costs", "of work are not measured yet: `run --error-below` does it at its first call");
     }
     const auto event = findings.costs->costs.find(std::string(event_driven().name));
     const std::string collision =
@@ -158,10 +160,25 @@ std::string costs_line(const Findings& findings) {
                      1e6 * event->second.front().seconds.collisions, event->second.front().discs,
                      1e6 * event->second.back().seconds.collisions, event->second.back().discs);
     return line("costs", "of work, by which `run --error-below` chooses: " + findings.costs_file + collision +
-                             "; --measure-costs measures them anew");
+                             "; measured anew once that file is removed");
 }
 
 } // namespace
+
+std::string noise_figure(const Noise& noise) {
+    constexpr double most = 40;
+    double widest = 1e-9;
+    for (const Neighbours& one : noise.neighbours) {
+        widest = std::max(widest, one.difference);
+    }
+    std::string text = "turns of   neighbours differ by   a second of turns leaves open\n";
+    for (const Neighbours& one : noise.neighbours) {
+        const auto length = static_cast<std::size_t>(std::ceil(most * one.difference / widest));
+        text += format("%5.0f ms   %17.2f %%   %25.3f %%   %s\n", 1e3 * one.seconds, 100 * one.difference,
+                       100 * one.difference * std::sqrt(one.seconds), std::string(length, '#').c_str());
+    }
+    return text;
+}
 
 std::string doctor_text(const Findings& findings) {
     return machine_lines(findings.machine, findings.memory_available_bytes) +

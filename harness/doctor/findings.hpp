@@ -59,6 +59,9 @@ Findings examine_machine(double noise_seconds);
 /// The findings as one object; null is what is not known.
 nlohmann::ordered_json doctor_json(const Findings& findings);
 
+/// How much neighbouring stretches of time differ, by their length, as lines with a bar each.
+std::string noise_figure(const Noise& noise);
+
 /// The findings for a reader: lines of at most 80 columns.
 std::string doctor_text(const Findings& findings);
 

@@ -102,13 +102,13 @@ std::vector<fs::path> groups_at(const fs::path& root, const CgroupMount& mount, 
     return groups;
 }
 
-/// The groups that limit this process in one version's hierarchy, as far as it sees them.
-std::vector<fs::path> limiting_groups(const fs::path& root, bool is_version_2) {
-    const auto own = own_cgroup(root, is_version_2);
+/// The groups that limit this process, as far as it sees them.
+std::vector<fs::path> limiting_groups(const fs::path& root) {
+    const auto own = own_cgroup(root, true);
     std::vector<fs::path> groups;
     std::vector<fs::path> tops;
     for (const CgroupMount& mount : cgroup_mounts(root)) {
-        if (own && mount.is_version_2 == is_version_2) {
+        if (own && mount.is_version_2) {
             const auto more = groups_at(root, mount, *own);
             groups.insert(groups.end(), more.begin(), more.end());
             tops.push_back(root / mount.place.relative_path());
@@ -118,36 +118,31 @@ std::vector<fs::path> limiting_groups(const fs::path& root, bool is_version_2) {
     return groups.empty() ? tops : groups;
 }
 
-std::optional<double> quotient(std::string_view quota, std::string_view period) {
-    const auto microseconds = parse_number<std::int64_t>(quota);
-    const auto of = parse_number<std::int64_t>(period);
-    return microseconds && of && *microseconds > 0 && *of > 0
-               ? std::optional(static_cast<double>(*microseconds) / static_cast<double>(*of))
-               : std::nullopt;
-}
-
 /// What one group allows by itself.
-std::optional<double> quota_of(const fs::path& group, bool is_version_2) {
-    if (is_version_2) {
-        const auto numbers = split(first_line(group / "cpu.max").value_or(""), ' ');
-        return numbers.size() == 2 ? quotient(numbers[0], numbers[1]) : std::nullopt;
+std::optional<double> quota_of(const fs::path& group) {
+    const auto numbers = split(first_line(group / "cpu.max").value_or(""), ' ');
+    if (numbers.size() != 2) {
+        return std::nullopt;
     }
-    return quotient(first_line(group / "cpu.cfs_quota_us").value_or(""),
-                    first_line(group / "cpu.cfs_period_us").value_or(""));
+    const auto quota = parse_number<std::int64_t>(numbers[0]);
+    const auto period = parse_number<std::int64_t>(numbers[1]);
+    return quota && period && *quota > 0 && *period > 0
+               ? std::optional(static_cast<double>(*quota) / static_cast<double>(*period))
+               : std::nullopt;
 }
 
 } // namespace
 
 std::optional<double> read_cpu_quota(const fs::path& root) {
     std::optional<double> least;
-    for (const bool is_version_2 : {false, true}) {
-        for (const fs::path& group : limiting_groups(root, is_version_2)) {
-            if (const auto quota = quota_of(group, is_version_2)) {
-                least = std::min(*quota, least.value_or(*quota));
-            }
+    for (const fs::path& group : limiting_groups(root)) {
+        if (const auto quota = quota_of(group)) {
+            least = std::min(*quota, least.value_or(*quota));
         }
     }
     return least;
 }
+
+bool has_unread_cpu_quota(const fs::path& root) { return own_cgroup(root, false).has_value(); }
 
 } // namespace carom

@@ -25,8 +25,11 @@ std::optional<std::filesystem::path> own_cgroup(const std::filesystem::path& roo
 /// the same.
 ///
 /// Read are, below `root`, proc/self/cgroup and proc/self/mountinfo (man 5 proc) and in the groups `cpu.max`
-/// of version 2 (Documentation/admin-guide/cgroup-v2.rst of Linux) or `cpu.cfs_quota_us` and
-/// `cpu.cfs_period_us` of version 1. What is missing or cannot be understood is no limit.
+/// of version 2 (Documentation/admin-guide/cgroup-v2.rst of Linux). What is missing or cannot be understood
+/// is no limit.
 std::optional<double> read_cpu_quota(const std::filesystem::path& root = "/");
+
+/// Whether processors are granted by control groups of version 1, whose limits are not read.
+bool has_unread_cpu_quota(const std::filesystem::path& root = "/");
 
 } // namespace carom

@@ -149,6 +149,7 @@ Machine read_machine() {
     machine.operating_system = read_operating_system();
     read_affinity(machine);
     machine.cpu_quota = read_cpu_quota();
+    machine.has_unread_cpu_quota = has_unread_cpu_quota();
     return machine;
 }
 

@@ -16,6 +16,7 @@ struct Machine {
     std::string affinity; ///< the CPUs this process may run on, as 0-3,8
     int affinity_count = 1;
     std::optional<double> cpu_quota; ///< processors' time that control groups grant; empty if they limit none
+    bool has_unread_cpu_quota = false; ///< those that grant processors are of version 1, which is not read
     std::int64_t memory_bytes = 0;
     bool virtualised = false;            ///< the CPU shows the hypervisor flag
     std::optional<std::string> governor; ///< of CPU frequency

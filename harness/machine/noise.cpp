@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <numeric>
 #include <sstream>
 #include <string>
 
@@ -79,7 +81,32 @@ Noise spread(std::vector<double> durations) {
             .median_seconds = median,
             .p95_over_median = quantile(0.95) / median,
             .max_over_median = durations.back() / median,
-            .steal = {}};
+            .steal = {},
+            .neighbours = {}};
+}
+
+std::vector<Neighbours> neighbours(const std::vector<double>& durations) {
+    constexpr std::size_t fewest = 16;
+    constexpr double of_normal = 0.6745; ///< standard deviations within which half of all values lie
+    std::vector<Neighbours> found;
+    for (const std::size_t length : {1, 2, 5, 10, 20, 50, 100, 200}) {
+        std::vector<double> logs;
+        for (std::size_t at = 0; at + length <= durations.size(); at += length) {
+            const auto begin = durations.begin() + static_cast<std::ptrdiff_t>(at);
+            logs.push_back(
+                std::log(std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(length), 0.0)));
+        }
+        std::vector<double> differences;
+        for (std::size_t at = 1; at < logs.size(); at += 2) {
+            differences.push_back(std::abs(logs[at] - logs[at - 1]));
+        }
+        if (differences.size() >= fewest) {
+            const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+            std::ranges::nth_element(differences, middle);
+            found.push_back({1e-3 * static_cast<double>(length), *middle / of_normal});
+        }
+    }
+    return found;
 }
 
 Noise measure_noise(double seconds) {
@@ -90,7 +117,9 @@ Noise measure_noise(double seconds) {
     do {
         durations.push_back(timed_spin(turns));
     } while (process_seconds() - start < seconds);
+    std::vector<Neighbours> found = neighbours(durations);
     Noise noise = spread(std::move(durations));
+    noise.neighbours = std::move(found);
     noise.steal = stolen_share(before, read_cpu_time());
     return noise;
 }

@@ -6,6 +6,12 @@
 
 namespace carom {
 
+/// How much the time of the same work differs between two stretches one after the other.
+struct Neighbours {
+    double seconds;    ///< what a stretch takes
+    double difference; ///< standard deviation of the logarithm of their ratio, from its middle half
+};
+
 /// How evenly the machine does the same work again and again.
 struct Noise {
     int spins = 0;
@@ -13,7 +19,13 @@ struct Noise {
     double p95_over_median = 0; ///< 95th percentile over median
     double max_over_median = 0;
     std::optional<double> steal; ///< share of all CPUs' time that the host gave to others; empty if not told
+    std::vector<Neighbours> neighbours; ///< by the length of a stretch, as far as there are enough of it
 };
+
+/// The differences of neighbours among these durations, each of about a millisecond, in their order: joined
+/// to stretches of 1, 2, 5 ... 200. What takes turns is compared with its neighbours, so that turns are best
+/// as short as the least of difference times the root of the length, which is what a given time leaves open.
+std::vector<Neighbours> neighbours(const std::vector<double>& durations);
 
 /// Does a fixed spin of about a millisecond for so many seconds on the calling thread, and looks at the clock
 /// after each.

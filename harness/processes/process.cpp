@@ -92,7 +92,10 @@ void Process::advance(double seconds) {
             return;
         }
         if (process_seconds() >= until) {
-            if (tree_->stop(most_seconds_to_stop)) {
+            const double asked = process_seconds();
+            const bool stands_still = tree_->stop(most_seconds_to_stop);
+            seconds_to_stop_ = process_seconds() - asked;
+            if (stands_still) {
                 break;
             }
             ++end_.ran_on;

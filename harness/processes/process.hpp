@@ -16,7 +16,7 @@ namespace carom {
 /// whole, however that ends.
 class Process {
   public:
-    /// Nothing of it runs yet. Throws InputError if there is no room for it, or `kept_by` cannot be had.
+    /// Nothing of it runs yet. Throws InputError if there is no room for it.
     explicit Process(ProcessCommand command, KeptBy kept_by = KeptBy::whatever_works);
 
     /// Lets it begin and waits for nothing. What it does before it is first advanced is not timed.
@@ -27,6 +27,9 @@ class Process {
     void advance(double seconds);
 
     bool has_ended() const { return has_ended_; }
+
+    /// How long it took, at the end of its last slice, until it was known to stand still.
+    double seconds_to_stop() const { return seconds_to_stop_; }
 
     /// How it ended, once it has.
     const ProcessEnd& end() const { return end_; }
@@ -41,6 +44,7 @@ class Process {
     bool has_begun_ = false;
     bool has_ended_ = false;
     double first_slice_began_ = 0;
+    double seconds_to_stop_ = 0;
     Suspensions suspensions_;
     ProcessEnd end_;
 };

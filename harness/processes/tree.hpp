@@ -12,8 +12,7 @@ class Cgroup;
 /// What is to keep together all that a program starts.
 enum class KeptBy {
     whatever_works, ///< a control group where one can be had
-    cgroup,
-    subreaper, ///< signals to each process below a keeper, to which orphans fall (prctl(2))
+    subreaper,      ///< signals to each process below a keeper, to which orphans fall (prctl(2))
 };
 
 /// All that a program has started, which can be stopped, let go on and ended.
@@ -37,7 +36,6 @@ class Tree {
     virtual std::string name() const = 0;
 };
 
-/// Throws InputError if a control group is asked for where none can be had.
 std::unique_ptr<Tree> make_tree(KeptBy kept_by);
 
 } // namespace carom

@@ -1,11 +1,8 @@
 #include "harness/scenes/scene_file.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
-#include "harness/scenes/disc_lines.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/free_memory.hpp"
 #include "harness/support/input_file.hpp"
@@ -21,9 +18,7 @@ constexpr const char* of_older_format = "the number of discs N, an integer (this
 /// Reads a text line by line and field by field, and knows where it is.
 class LineReader {
   public:
-    /// `beyond` is how many bytes follow the text.
-    LineReader(std::string_view text, const std::string& name, std::size_t beyond = 0)
-        : rest_(text), name_(name), beyond_(beyond) {}
+    LineReader(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
 
     [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
         throw InputError(name_ + ":" + std::to_string(line_number_) + ": found " + found + ", expected " +
@@ -74,13 +69,12 @@ class LineReader {
         }
     }
 
-    std::size_t bytes_left() const { return rest_.size() + beyond_; }
+    std::size_t bytes_left() const { return rest_.size(); }
 
   private:
     std::string_view rest_;
     std::string_view line_;
     std::string name_;
-    std::size_t beyond_;
     std::size_t line_number_ = 0;
 };
 
@@ -149,13 +143,8 @@ void read_discs(LineReader& reader, std::vector<Disc>& discs) {
 Scene parse(std::string_view text, const std::string& name, const RequireRoom& require_room) {
     LineReader reader(text, name);
     Scene scene = read_header(reader, name, require_room);
-    const Pieces pieces{.size = text.size(), .at = [text](std::size_t offset, std::span<char> buffer) {
-                            return text.substr(offset, buffer.size());
-                        }};
-    if (!read_disc_lines(pieces, text.size() - reader.bytes_left(), scene.discs, 1)) {
-        read_discs(reader, scene.discs);
-        reader.end_text();
-    }
+    read_discs(reader, scene.discs);
+    reader.end_text();
     return scene;
 }
 
@@ -182,21 +171,8 @@ Scene parse_scene(std::string_view text, const std::string& name) {
     return parse(text, name, require_room_for_discs);
 }
 
-Scene read_scene(const std::filesystem::path& path, int threads, const RequireRoom& require_room) {
-    const InputFile file(path);
-    const Pieces pieces{.size = file.size(), .at = [&file](std::size_t offset, std::span<char> buffer) {
-                            return file.piece(offset, buffer);
-                        }};
-    std::array<char, 4096> buffer;
-    const std::string_view start = pieces.at(0, buffer);
-    if (start.size() <= file.size() && std::ranges::count(start, '\n') >= 4) {
-        LineReader reader(start, shown_name(path), file.size() - start.size());
-        Scene scene = read_header(reader, shown_name(path), require_room);
-        if (read_disc_lines(pieces, file.size() - reader.bytes_left(), scene.discs, threads)) {
-            return scene;
-        }
-    }
-    return parse(file.whole(), shown_name(path), require_room);
+Scene read_scene(const std::filesystem::path& path, const RequireRoom& require_room) {
+    return parse(read_file(path), shown_name(path), require_room);
 }
 
 std::string scene_text(const Scene& scene) {

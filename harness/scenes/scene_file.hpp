@@ -32,10 +32,8 @@ using RequireRoom = std::function<void(const Scene& box, std::size_t discs)>;
 /// Requires room for the discs themselves.
 void require_room_for_discs(const Scene& box, std::size_t discs);
 
-/// Reads and parses a scene file, or standard input for "-", on at most so many threads of OpenMP; the scene,
-/// or the error, is the same on any number. Throws InputError.
-Scene read_scene(const std::filesystem::path& path, int threads = 1,
-                 const RequireRoom& require_room = require_room_for_discs);
+/// Reads and parses a scene file, or standard input for "-". Throws InputError.
+Scene read_scene(const std::filesystem::path& path, const RequireRoom& require_room = require_room_for_discs);
 
 /// The text that `parse_scene` reads back as the same scene, to the last bit.
 std::string scene_text(const Scene& scene);

@@ -82,7 +82,7 @@ ContenderRun::ContenderRun(const ProgramContender& contender) : contender_(conte
     if (failure_.empty()) {
         ProcessCommand command = contender.command;
         command.folder = folder_;
-        process_ = std::make_unique<Process>(command, contender.kept_by);
+        process_ = std::make_unique<Process>(command);
     }
 }
 
@@ -120,7 +120,7 @@ std::string ContenderRun::run_beside(const std::string& what, const std::vector<
                                  .most_seconds = contender_.command.most_seconds,
                                  .most_seconds_behind = 2,
                                  .pattern = ""};
-    const std::string why = why_failed(command, run_undisturbed(command, contender_.kept_by), {0});
+    const std::string why = why_failed(command, run_undisturbed(command), {0});
     return why.empty() ? "" : what + ": " + why;
 }
 

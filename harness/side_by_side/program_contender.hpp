@@ -7,7 +7,6 @@
 
 #include "harness/processes/process_command.hpp"
 #include "harness/processes/process_end.hpp"
-#include "harness/processes/tree.hpp"
 
 namespace carom {
 
@@ -18,12 +17,11 @@ struct ProgramContender {
     std::vector<std::string> conclude; ///< and of one that is run after each
     bool fresh_folder = false;         ///< each run has a new and empty folder, which is removed afterwards
     int warm_ups = 0;                  ///< runs before the first that counts
-    KeptBy kept_by = KeptBy::whatever_works;
-    std::optional<bool> turns;   ///< whether it is sliced; found out if nobody says so
-    bool times_itself = false;   ///< it would count as its own time what it stands still
-    int most_rounds = 1;         ///< of one that times itself within short processes: how often it runs
-    std::optional<int> rounds;   ///< how often it runs, each time without a pause, whatever it is
-    double expected_seconds = 0; ///< how long it takes undisturbed, or 0 where nobody knows
+    std::optional<bool> turns;         ///< whether it is sliced; found out if nobody says so
+    bool times_itself = false;         ///< it would count as its own time what it stands still
+    int most_rounds = 1;               ///< of one that times itself within short processes: how often it runs
+    std::optional<int> rounds;         ///< how often it runs, each time without a pause, whatever it is
+    double expected_seconds = 0;       ///< how long it takes undisturbed, or 0 where nobody knows
 
     /// Why a run failed; empty if it did not.
     std::function<std::string(const ProcessEnd&)> failure;

@@ -29,6 +29,19 @@ double waiting(const ProcessEnd& end) {
 
 double time(const ProcessEnd& end) { return end.wall_seconds(); }
 
+/// Whether all it waited for was a processor, of which it used one at a time: what it waits then is of the
+/// machine. Each stop is a wait that is none of its own.
+bool computes_alone(const ProcessEnd& end) {
+    constexpr double waits = 10;
+    constexpr double waits_a_second = 20;
+    constexpr double one_processor = 1.05;
+    const auto counted = end.counted.find("voluntary_context_switches");
+    return counted != end.counted.end() && end.cpu_seconds() > least_cpu_seconds &&
+           end.cpu_seconds() < one_processor * end.wall_seconds() &&
+           counted->second - static_cast<double>(end.seconds.size()) <
+               waits + waits_a_second * end.wall_seconds();
+}
+
 bool apart(const std::vector<ProcessEnd>& ones, const std::vector<ProcessEnd>& others,
            const std::function<double(const ProcessEnd&)>& value, double margin) {
     const auto [least, most] = std::ranges::minmax(ones, {}, value);
@@ -54,6 +67,9 @@ std::string why_idle(const ProcessEnd& undisturbed, double idle_processors) {
 }
 
 bool may_disagree(const std::vector<ProcessEnd>& undisturbed, const std::vector<ProcessEnd>& in_slices) {
+    if (std::ranges::all_of(undisturbed, computes_alone) && std::ranges::all_of(in_slices, computes_alone)) {
+        return apart(undisturbed, in_slices, &ProcessEnd::cpu_seconds, margin_of_time);
+    }
     return apart(undisturbed, in_slices, time, margin_of_time) ||
            apart(undisturbed, in_slices, waiting, margin_of_waiting);
 }

@@ -8,7 +8,7 @@
 namespace carom {
 
 struct Together {
-    double slice_seconds = 0.05;
+    double slice_seconds = 0.01;
     std::uint64_t seed = 1; ///< of the order of slices and of stretches
 };
 

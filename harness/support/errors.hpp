@@ -14,9 +14,4 @@ class CheckError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// What this build of the program cannot do: one line that names what it was built without. Exit code 3.
-class NotBuiltIn : public std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
-
 } // namespace carom

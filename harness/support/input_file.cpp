@@ -40,56 +40,28 @@ std::string shown_name(const std::filesystem::path& path) {
     return is_standard_input(path) ? "standard input" : path.string();
 }
 
-InputFile::InputFile(const std::filesystem::path& path)
-    : path_(shown_name(path)), descriptor_(open_to_read(path)) {
-    if (descriptor_ < 0) {
-        refuse(path_, "cannot be read", errno);
+std::string read_file(const std::filesystem::path& path) {
+    const std::string name = shown_name(path);
+    const int file = open_to_read(path);
+    if (file < 0) {
+        refuse(name, "cannot be read", errno);
     }
     struct stat status{};
-    int error = fstat(descriptor_, &status) == 0 ? 0 : errno;
-    if (S_ISDIR(status.st_mode)) {
-        error = EISDIR;
-    }
-    if (error != 0) {
-        close(descriptor_);
-        refuse(path_, "cannot be read", error);
-    }
-    // Some of standard input may have been read by somebody else: it has no beginning to go back to.
-    const bool plain = S_ISREG(status.st_mode) && !is_standard_input(path);
-    size_ = plain ? static_cast<std::size_t>(status.st_size) : 0;
-}
-
-InputFile::~InputFile() { close(descriptor_); }
-
-std::string_view InputFile::piece(std::size_t offset, std::span<char> buffer) const {
-    std::size_t filled = 0;
-    while (filled < buffer.size()) {
-        const ssize_t count = uninterrupted([&] {
-            return pread(descriptor_, buffer.data() + filled, buffer.size() - filled,
-                         static_cast<off_t>(offset + filled));
-        });
-        if (count <= 0) {
-            break;
-        }
-        filled += static_cast<std::size_t>(count);
-    }
-    return {buffer.data(), filled};
-}
-
-std::string InputFile::whole() const {
     std::string text;
-    text.reserve(size_);
+    if (fstat(file, &status) == 0 && S_ISREG(status.st_mode)) {
+        text.reserve(static_cast<std::size_t>(status.st_size));
+    }
     std::array<char, 1 << 16> buffer;
     ssize_t count = 0;
-    while ((count = uninterrupted([&] { return read(descriptor_, buffer.data(), buffer.size()); })) > 0) {
+    while ((count = uninterrupted([&] { return read(file, buffer.data(), buffer.size()); })) > 0) {
         text.append(buffer.data(), static_cast<std::size_t>(count));
     }
+    const int error = errno;
+    close(file);
     if (count < 0) {
-        refuse(path_, "reading broke off", errno);
+        refuse(name, error == EISDIR ? "cannot be read" : "reading broke off", error);
     }
     return text;
 }
-
-std::string read_file(const std::filesystem::path& path) { return InputFile(path).whole(); }
 
 } // namespace carom

@@ -26,11 +26,11 @@ template <class Number> std::optional<Number> parse_number(std::string_view text
 
 /// Takes the next word off a line, up to a blank; empty at the end of the line.
 inline std::string_view take_word(std::string_view& line) {
-    constexpr std::string_view blank = " \t\r";
-    line.remove_prefix(std::min(line.find_first_not_of(blank), line.size()));
-    const std::string_view word = line.substr(0, line.find_first_of(blank));
-    line.remove_prefix(word.size());
-    return word;
+    constexpr auto is_blank = [](char letter) { return letter == ' ' || letter == '\t' || letter == '\r'; };
+    const auto* const begin = std::find_if_not(line.begin(), line.end(), is_blank);
+    const auto* const end = std::find_if(begin, line.end(), is_blank);
+    line = {end, line.end()};
+    return {begin, end};
 }
 
 /// Appends the shortest text that reads back as the same number; of a whole number up to 1e15 its digits,

@@ -62,9 +62,16 @@ def test_the_questions_name_the_claims_and_the_runner_knows_them() -> None:
             asked.setdefault(claim, set()).add(path.stem)
     assert asked == {claim.id: set(claim.experiments) for claim in CLAIMS}
     known = (ROOT / "experiments" / "plan" / "claims.py").read_text(encoding="utf-8")
-    listed = re.search(r"PUBLISHED_CLAIMS = \((.*?)\)", known, re.DOTALL)
-    assert listed is not None
-    assert re.findall(r'"(\w+)"', listed[1]) == [claim.id for claim in CLAIMS]
+    wanted = {
+        "PUBLISHED_CLAIMS": [claim.id for claim in CLAIMS],
+        "LARGE_SCALE_CLAIMS": [
+            claim.id for claim in CLAIMS if "quick" not in (*claim.scales, *claim.smaller_scales)
+        ],
+    }
+    for name, listed_there in wanted.items():
+        listed = re.search(rf"{name} = \((.*?)\)", known, re.DOTALL)
+        assert listed is not None
+        assert re.findall(r'"(\w+)"', listed[1]) == listed_there
 
 
 def test_the_choice_that_is_ringed_is_a_published_point() -> None:

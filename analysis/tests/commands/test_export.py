@@ -12,7 +12,7 @@ import pytest
 from analysis.cli import main
 from analysis.commands.export import COLUMNS, measurements
 from analysis.records.reading import load
-from analysis.records.tables import LATER_COLUMNS
+from analysis.records.tables import AXIS_COLUMNS
 from analysis.statistics.pairs import timed_runs
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET
@@ -49,7 +49,7 @@ def test_the_page_tells_each_column() -> None:
 
 
 def test_every_policy_has_a_column() -> None:
-    assert set(LATER_COLUMNS) <= {one.name for one in COLUMNS}
+    assert set(AXIS_COLUMNS) <= {one.name for one in COLUMNS}
 
 
 def test_the_example_of_the_page_runs(results: Path) -> None:
@@ -80,7 +80,6 @@ def test_standard_output(results: Path, capsys: pytest.CaptureFixture[str]) -> N
         (["--results", "absent"], "absent: no such folder"),
         (["--results", "empty"], "empty: no timed records yet"),
         (["--output", "file/table.csv"], "expected a writable place with room"),
-        (["--parquet", "--output", "-"], "--output: found -, expected a file"),
     ],
 )
 def test_bad_input_is_one_line_and_leaves_nothing(
@@ -91,29 +90,9 @@ def test_bad_input_is_one_line_and_leaves_nothing(
     said: str,
 ) -> None:
     monkeypatch.chdir(results.parent)
-    monkeypatch.setattr("importlib.util.find_spec", lambda _: object())
     Path("empty").mkdir()
     Path("file").touch()
     assert main(["export", *words]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert said in line
     assert not list(results.parent.rglob("*.csv")) + list(results.parent.rglob("*.part*"))
-
-
-def test_parquet_without_its_library_is_one_line(
-    results: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
-    assert main(["export", "--parquet", "--results", str(results)]) == 1
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "needs the Python package pyarrow" in line
-    assert "-m pip install pyarrow`" in line
-    assert not (results / "measurements.parquet").exists()
-
-
-def test_parquet_holds_the_same(results: Path) -> None:
-    pytest.importorskip("pyarrow")
-    assert main(["export", "--parquet", "--results", str(results)]) == 0
-    pd.testing.assert_frame_equal(
-        pd.read_parquet(results / "measurements.parquet"), measurements(results), check_dtype=False
-    )

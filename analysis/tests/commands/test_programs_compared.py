@@ -72,7 +72,7 @@ def test_without_records_there_is_nothing_to_draw(tmp_path: Path) -> None:
 def test_the_lines_of_the_conversation(
     results: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("sys.stdin", iter(["compared 2\n", "picture\n"]))
+    monkeypatch.setattr("sys.stdin", iter(["compared 2 wall\n", "picture\n"]))
     assert main(["follow", "--results", str(results)]) == 0
     first, second = capsys.readouterr().out.splitlines()
     assert np.isfinite(json.loads(first)["commands"][0]["ratio"])

@@ -20,7 +20,7 @@ from analysis.records.studies import Study, split
 from analysis.report.horizons import horizons
 from analysis.statistics.bootstrap import summarise
 from analysis.tests.report.test_report import Page, text_of
-from analysis.tests.synthetic import Machine, outside, write
+from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET, Noise, times_table
 from analysis.tests.synthetic_points import SUBSTEPS
 from analysis.tests.synthetic_study import study
@@ -55,10 +55,6 @@ def drawing(study: Study, key: str, folder: Path) -> Drawing:
     drawn = draw(Data(study, [study], published.load(), folder), NAME, "Speed against error", BY_KEY[key])
     assert drawn is not None
     return drawn
-
-
-def on_scene(records: list[dict[str, Any]], name: str) -> dict[str, Any]:
-    return next(record for record in records if record["tags"]["scene_name"] == name)
 
 
 def points(measured: Study, measure: Measure) -> Any:  # noqa: ANN401
@@ -300,44 +296,6 @@ def test_numbers_read_well() -> None:
     assert run_label("row", 1) == "row, dt\u00a0=\u00a01"
 
 
-def test_a_general_engine_stands_outside_where_energy_is_measured_and_nowhere_else(tmp_path: Path) -> None:
-    variants = records()
-    beside = on_scene(variants, "medium")
-    engine = [
-        outside(Machine(), beside, substeps, block, 0.02 * substeps, -3e-3 / substeps)
-        for substeps in (1, 4)
-        for block in range(3)
-    ]
-    another = beside | {"scene": beside["scene"] | {"sha256": "0" * 64}}
-    old = [outside(Machine(), another, 1, block, 5.0, -1.0) for block in range(3, 8)]
-    write(tmp_path, [*variants, *engine, *old, outside(Machine(), beside, 8, 0, 1.0, None)])
-    found = split(load(tmp_path))[0]
-    table = accuracy.outside(found, NAME, BY_KEY["energy"])
-    assert table[["scene_name", "substeps", "engine"]].to_numpy().tolist() == [
-        ["medium", 1, "Chipmunk 7.0.3"],
-        ["medium", 4, "Chipmunk 7.0.3"],
-    ]
-    assert table["median"].tolist() == pytest.approx([0.02, 0.08])
-    assert table["error"].tolist() == pytest.approx([3e-3, 7.5e-4])
-    cheapest = points(found, BY_KEY["energy"]).query("scene_name == 'medium'")["median"].min()
-    caption = drawing(found, "energy", tmp_path).caption
-    assert "Chipmunk 7.0.3, a general engine on one thread, stands outside" in caption
-    assert re.search(r"medium: 20\.0\sms with a drift of 0\.003 in steps of 1/1, [\d.]+ times", caption)
-    assert cheapest < 0.02
-    assert accuracy.outside(found, NAME, BY_KEY["path"]).empty
-    assert "Chipmunk" not in drawing(found, "path", tmp_path).caption
-
-
-def test_a_scene_on_which_no_variant_has_an_error_is_left_out_with_its_engine(tmp_path: Path) -> None:
-    variants = records()
-    for record in variants:
-        if record["tags"]["scene_name"] == "dense":
-            record.pop("errors", None)
-    engine = [outside(Machine(), on_scene(variants, "dense"), 1, block, 0.02, -3e-3) for block in range(3)]
-    write(tmp_path, [*variants, *engine])
-    assert "Chipmunk" not in drawing(split(load(tmp_path))[0], "energy", tmp_path).caption
-
-
 def test_where_the_reference_is_0_there_is_no_relative_error(tmp_path: Path) -> None:
     variants = records()
     for record in variants:
@@ -347,8 +305,3 @@ def test_where_the_reference_is_0_there_is_no_relative_error(tmp_path: Path) -> 
     found = split(load(tmp_path))[0]
     assert set(points(found, BY_KEY["pressure"])["scene_name"]) == {"dilute", "medium"}
     assert "dense" not in drawing(found, "pressure", tmp_path).caption
-
-
-def test_without_a_general_engine_nothing_is_said_of_one(measured: Study, folder: Path) -> None:
-    assert accuracy.outside(measured, NAME, BY_KEY["energy"]).empty
-    assert "outside" not in drawing(measured, "energy", folder).caption

@@ -108,7 +108,7 @@ def test_a_measure_that_is_missing_fails_unless_none_is_asked_for(tmp_path: Path
 
 def test_the_report_has_verdict_and_number_of_every_cell(tmp_path: Path) -> None:
     write(tmp_path, records())
-    (drawn,) = draw_all(tmp_path, formats=("svg",))
+    (drawn,) = draw_all(tmp_path)
     assert [table.title for table in drawn.tables] == ["In double precision:", "In float precision:"]
     assert all(len(table.rows) == 6 for table in drawn.tables)
     text = text_of(report.render(tmp_path))
@@ -149,7 +149,7 @@ def test_variants_at_contact_have_a_table_of_their_own(
     made = records()
     at_contact(made, "row")
     write(tmp_path, made)
-    (drawn,) = draw_all(tmp_path, formats=("svg",))
+    (drawn,) = draw_all(tmp_path)
     assert [(table.title, list(table.columns[2:])) for table in drawn.tables] == [
         ("In double precision:", ["published"]),
         ("In double precision, collisions at contact:", ["row"]),
@@ -163,7 +163,7 @@ def test_a_variant_that_only_failed_has_a_table_too(tmp_path: Path) -> None:
     made = [record for record in records() if record["tags"]["series"] == "row"]
     made.append(failure("hard_cases", "nine", "step 3: left colliding", scene_name="cradle"))
     write(tmp_path, made)
-    (drawn,) = draw_all(tmp_path, formats=("svg",))
+    (drawn,) = draw_all(tmp_path)
     assert [table.title for table in drawn.tables] == ["Without any record:", "In double precision:"]
     assert [cell.text for cell in drawn.tables[0].rows[0]][-1] == "✗: step 3: left colliding"
 

@@ -11,13 +11,12 @@ from xml.etree import ElementTree
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib import image
 
 from analysis import claims, figures
 from analysis.figures import FIGURES, Entry
 from analysis.figures.labels import label_ends, spread
+from analysis.figures.layout import lay_out
 from analysis.figures.pairs import ratio_panel
-from analysis.figures.recording import lay_out
 from analysis.figures.studies import draw_all
 from analysis.figures.style import Data, new_figure, styled
 from analysis.figures.sweeps import level_of
@@ -123,7 +122,7 @@ def test_partial_data_are_drawn_or_left_out_but_never_fail(
 
 def test_partial_data_are_marked_in_figure_and_caption(tmp_path: Path) -> None:
     write(tmp_path, [record for record in study(["steps"], blocks=4) if record["tags"]["block"] != 2])
-    (drawn,) = draw_all(tmp_path, formats=("svg",))
+    (drawn,) = draw_all(tmp_path)
     assert drawn.caption.endswith("Partial: 30 of 40 runs.")
 
 
@@ -134,28 +133,28 @@ def test_a_block_that_was_left_has_another_in_its_place(tmp_path: Path) -> None:
     left = [record for record in records if record["tags"]["block"] != 1 or record["tags"]["x"] < 100]
     assert len(left) < 50
     write(tmp_path, left)
-    assert "artial" not in draw_all(tmp_path, formats=("svg",))[0].caption
+    assert "artial" not in draw_all(tmp_path)[0].caption
     for path in tmp_path.glob("records/steps/*-b4.json"):
         path.unlink()
     missing = 50 - len(left)
-    assert draw_all(tmp_path, formats=("svg",))[0].caption.endswith(f"Partial: {40 - missing} of 40 runs.")
+    assert draw_all(tmp_path)[0].caption.endswith(f"Partial: {40 - missing} of 40 runs.")
 
 
 def test_what_is_planned_is_what_the_runner_wrote_down_last(tmp_path: Path) -> None:
     """Records of a question of ten values, of which two were taken out."""
     records = [record for record in study(["steps"], blocks=4) if record["tags"]["x"] <= 160]
     write(tmp_path, records)
-    assert draw_all(tmp_path, formats=("svg",))[0].caption.endswith("Partial: 32 of 40 runs.")
+    assert draw_all(tmp_path)[0].caption.endswith("Partial: 32 of 40 runs.")
     points = sorted({record["tags"]["point"] for record in records})
     plan: dict[str, Any] = {"paper": {"steps": {"runs": 32, "points": points}}}
     (tmp_path / "plan.json").write_text(json.dumps(plan))
-    assert "artial" not in draw_all(tmp_path, formats=("svg",))[0].caption
+    assert "artial" not in draw_all(tmp_path)[0].caption
     plan["paper"]["steps"]["runs"] = 39
     (tmp_path / "plan.json").write_text(json.dumps(plan))
-    assert draw_all(tmp_path, formats=("svg",))[0].caption.endswith("Partial: 32 of 39 runs.")
+    assert draw_all(tmp_path)[0].caption.endswith("Partial: 32 of 39 runs.")
     for other in ({"paper": {"steps": {"runs": 32, "points": points[1:]}}}, {"paper": {"steps": 3}}, {}, 7):
         (tmp_path / "plan.json").write_text(json.dumps(other))
-        assert draw_all(tmp_path, formats=("svg",))[0].caption.endswith("Partial: 32 of 40 runs."), (
+        assert draw_all(tmp_path)[0].caption.endswith("Partial: 32 of 40 runs."), (
             "it is not the plan of these"
         )
 
@@ -166,7 +165,7 @@ def test_a_timeline_calls_its_scene_as_other_figures_do(tmp_path: Path) -> None:
     for number, name in enumerate(("scene.in", "unknown.in")):
         text = json.dumps(trace(f"find_static, {name}, 2 threads", 3))
         (tmp_path / "timelines" / f"{number}.json").write_text(text)
-    (drawn,) = (one for one in draw_all(tmp_path, formats=("svg",)) if one.entry.name == "timeline")
+    (drawn,) = (one for one in draw_all(tmp_path) if one.entry.name == "timeline")
     caption = drawn.caption.replace("\u00a0", " ")
     assert "find_static, 100 000 discs at area fraction 0.80, 2 threads: " in caption
     assert "find_static, unknown.in, 2 threads: " in caption
@@ -174,7 +173,7 @@ def test_a_timeline_calls_its_scene_as_other_figures_do(tmp_path: Path) -> None:
 
 def test_the_phases_and_the_hard_cases_say_what_they_show(tmp_path: Path) -> None:
     write(tmp_path, study(["phases", "hard_cases"], blocks=2))
-    drawn = {one.entry.name: one for one in draw_all(tmp_path, formats=("svg",))}
+    drawn = {one.entry.name: one for one in draw_all(tmp_path)}
     caption = drawn["phases"].caption.replace("\u00a0", " ")
     assert "(100 000 discs at area fraction 0.80, 2 threads)" in caption
     svg = drawn["hard_cases"].files[0].read_text(encoding="utf-8")
@@ -184,7 +183,7 @@ def test_the_phases_and_the_hard_cases_say_what_they_show(tmp_path: Path) -> Non
 
 def test_the_ladder_has_short_names_beside_the_long_ones(tmp_path: Path) -> None:
     write(tmp_path, study(["ladder"], blocks=4))
-    (drawn,) = draw_all(tmp_path, formats=("svg",))
+    (drawn,) = draw_all(tmp_path)
     (table,) = drawn.tables
     rows = [[cell.text for cell in row] for row in table.rows]
     variants = {record["tags"]["series"]: record["axes"]["variant"] for record in study(["ladder"], blocks=1)}
@@ -201,7 +200,7 @@ def test_a_figure_and_the_claim_about_it_tell_one_ratio(tmp_path: Path) -> None:
         seconds = each * len(one["repetitions"])
         one["turns"] = {"contenders": 2, "seed": 1, "rounds": 8, "seconds": seconds}
         write(tmp_path, [one])
-    (drawn,) = draw_all(tmp_path, ["neighbourhood"], formats=("svg",))
+    (drawn,) = draw_all(tmp_path, ["neighbourhood"])
     studies = split(load(tmp_path))
     table = claims.evaluate(studies[0], studies, published.load(), claims.load(tmp_path)).set_index("id")
     ratio = (
@@ -210,27 +209,28 @@ def test_a_figure_and_the_claim_about_it_tell_one_ratio(tmp_path: Path) -> None:
     assert f"{ratio} against nine boxes" in drawn.caption
 
 
-def test_svg_png_and_pdf_are_written_whole(tmp_path: Path) -> None:
+def test_svg_and_pdf_are_written_whole(tmp_path: Path) -> None:
     write(tmp_path, study(["neighbourhood"], blocks=3))
-    (drawn,) = draw_all(tmp_path, ["neighbourhood"])
-    assert [path.suffix for path in drawn.files] == [".svg", ".png", ".pdf"]
-    svg, png, pdf = drawn.files
+    (drawn,) = draw_all(tmp_path, ["neighbourhood"], pdf=True)
+    assert [path.suffix for path in drawn.files] == [".svg", ".pdf"]
+    svg, pdf = drawn.files
     assert ElementTree.parse(svg).getroot().tag.endswith("svg")
-    assert image.imread(png).shape[1] == 1400
     assert pdf.read_bytes().startswith(b"%PDF")
     assert not list((tmp_path / "figures").glob("*.part*"))
+    draw_all(tmp_path, ["neighbourhood"])
+    assert not pdf.exists(), "it would be outdated"
 
 
 def test_the_same_records_give_the_same_svg(tmp_path: Path) -> None:
     write(tmp_path, study(["steps"], blocks=2))
-    first = draw_all(tmp_path, formats=("svg",))[0].files[0].read_bytes()
-    assert draw_all(tmp_path, formats=("svg",))[0].files[0].read_bytes() == first
+    first = draw_all(tmp_path)[0].files[0].read_bytes()
+    assert draw_all(tmp_path)[0].files[0].read_bytes() == first
 
 
 def test_a_second_machine_has_files_of_its_own(tmp_path: Path) -> None:
     write(tmp_path, study(["steps"], blocks=3))
     write(tmp_path, study(["steps"], blocks=2, machine=Machine(host="bench-2")))
-    names = [drawn.files[0].stem for drawn in draw_all(tmp_path, formats=("svg",))]
+    names = [drawn.files[0].stem for drawn in draw_all(tmp_path)]
     assert names[0] == "steps"
     assert names[1].startswith("bench-2-example-cpu")
 
@@ -238,7 +238,7 @@ def test_a_second_machine_has_files_of_its_own(tmp_path: Path) -> None:
 def test_several_machines_are_in_one_machine_figure(tmp_path: Path) -> None:
     for host in ("bench-1", "bench-2"):
         write(tmp_path, study(["machine"], blocks=6, machine=Machine(host=host)))
-    caption = draw_all(tmp_path, formats=("svg",))[0].caption
+    caption = draw_all(tmp_path)[0].caption
     assert "bench-1: Example CPU" in caption
     assert "bench-2: Example CPU" in caption
 
@@ -251,7 +251,7 @@ def test_the_order_that_others_are_compared_with_does_not_depend_on_the_times(
     slow = study(["sequential_orders"], blocks=4)
     write(tmp_path, [one for one in fast if one["tags"]["series"] == "once"])
     write(tmp_path, [one for one in slow if one["tags"]["series"] != "once"])
-    (drawn,) = draw_all(tmp_path, formats=("svg",))
+    (drawn,) = draw_all(tmp_path)
     assert "Against once: repeat" in drawn.caption
 
 

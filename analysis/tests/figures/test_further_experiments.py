@@ -31,7 +31,6 @@ LIKE = [
     ("phases", "phases"),
     ("ladder", "ladder"),
     ("limits", "limits"),
-    ("more_cores", "more_cores"),
     ("ways", "ways"),
 ]
 
@@ -63,9 +62,7 @@ def test_every_kind_is_tried() -> None:
 def test_every_kind_is_drawn_without_a_published_series(tmp_path: Path, kind: str, known: str) -> None:
     drawn = drawn_of(tmp_path, unknown(known, kind))
     assert drawn.entry.title == "small_chunks"
-    assert [path.name for path in drawn.files] == [
-        f"small_chunks.{suffix}" for suffix in ("svg", "png", "pdf")
-    ]
+    assert [path.name for path in drawn.files] == ["small_chunks.svg"]
     assert drawn.caption.startswith(
         "Small_chunks" if kind != "machine" and kind != "phases" else "small_chunks"
     )
@@ -81,7 +78,7 @@ def test_every_kind_is_drawn_without_a_published_series(tmp_path: Path, kind: st
 )
 def test_partial_data_never_fail(tmp_path: Path, kind: str, known: str, kept: slice) -> None:
     write(tmp_path, unknown(known, kind)[kept])
-    draw_all(tmp_path, formats=("svg",))
+    draw_all(tmp_path)
 
 
 def test_the_title_is_that_of_the_question(tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ def marks(svg: Path) -> list[tuple[float, float, str]]:
 
 def test_a_point_tells_its_x_its_value_and_its_interval(tmp_path: Path) -> None:
     write(tmp_path, study(["steps"], blocks=6, noise=QUIET))
-    (drawn,) = draw_all(tmp_path, formats=("svg",))
+    (drawn,) = draw_all(tmp_path)
     measured = [mark for mark in marks(drawn.files[0]) if "time of the steps" in mark[2]]
     assert len(measured) == 10
     said = sorted(measured)[0][2].split("\n")
@@ -42,7 +42,7 @@ def test_the_words_are_those_of_the_point_at_that_place(tmp_path: Path) -> None:
     x, y = np.array([9.0, 1.0, 20.0, 4.0, 5.0]), np.array([2.0, 50.0, 5.0, np.nan, 1e9])
     (line,) = axes.plot(x, y, "o")
     tell(line, [Told("<a>", str(one), str(other)) for one, other in zip(x, y, strict=True)])
-    (file,) = save(Drawing(figure, ""), tmp_path, "drawn", ["svg"])
+    (file,) = save(Drawing(figure, ""), tmp_path, "drawn")
     found = {said: place for *place, said in marks(file)}
     assert "<a>\nsize: 9.0\ntime, s: 2.0" in found
     assert found["<a>\nsize: 9.0\ntime, s: 2.0"][0] > found["<a>\nsize: 1.0\ntime, s: 50.0"][0]
@@ -53,7 +53,7 @@ def test_the_words_are_those_of_the_point_at_that_place(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["neighbourhood", "ladder", "limits", "hard_cases", "schedule_find", "row"])
 def test_every_kind_of_figure_tells(tmp_path: Path, name: str) -> None:
     write(tmp_path, study([name], blocks=4, noise=QUIET))
-    drawn = draw_all(tmp_path, [name], ("svg",))
+    drawn = draw_all(tmp_path, [name])
     for figure in drawn:
         assert any(re.search(r"\d", said) for _, _, said in marks(figure.files[0])), figure.entry.name
 

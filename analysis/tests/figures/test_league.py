@@ -89,7 +89,7 @@ def test_the_table_is_in_order_with_brackets_checks_and_failures(results: Path) 
     records = load(results)
     studies = split(records)
     data = Data(studies[0], studies, published.load(), results)
-    [drawn] = draw(data, results / "figures", formats=("svg",))
+    [drawn] = draw(data, results / "figures")
     [table] = drawn.tables
     assert [[cell.text for cell in row] for row in table.rows] == [
         ["1 to 2", "anna", "1.00", "a", "its own program, steps 0 to 20"],
@@ -108,7 +108,7 @@ def test_the_table_is_in_order_with_brackets_checks_and_failures(results: Path) 
 
 
 def test_the_report_names_commands_and_claims_nothing(results: Path) -> None:
-    [html, *_] = write(results)
+    html = write(results)
     text = html.read_text(encoding="utf-8")
     assert "&#39;./a b&#39; anna" in text or "'./a b' anna" in text
     assert "of programs whose results are not checked" in text
@@ -117,7 +117,7 @@ def test_the_report_names_commands_and_claims_nothing(results: Path) -> None:
 
 def test_the_report_repeats_questions_of_another_folder(results: Path) -> None:
     (results / "claims.toml").write_text('questions = "my questions"\n')
-    [html, *_] = write(results)
+    html = write(results)
     assert "SCALE=paper QUESTIONS=&#39;my questions&#39;" in html.read_text(encoding="utf-8")
 
 

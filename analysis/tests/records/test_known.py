@@ -19,8 +19,8 @@ from support.known_files import FOLDER
 
 OLD = 1_000_000_000
 """Seconds: a time of files long ago."""
-TABLES = [*reading.MEASURED, "limits", "outside", "promises", "failures"]
-OF_EVERY_KIND = ["steps", "phases", "hard_cases", "limits", "promises"]
+TABLES = [*reading.MEASURED, "limits", "failures"]
+OF_EVERY_KIND = ["steps", "phases", "hard_cases", "limits"]
 """Experiments whose records fill every table."""
 
 
@@ -66,7 +66,7 @@ def assert_same(one: Records, other: Records) -> None:
 
 def test_a_second_process_reads_no_record_again(results: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first = from_files(results)
-    assert all(len(getattr(first, name)) for name in TABLES if name != "outside")
+    assert all(len(getattr(first, name)) for name in TABLES)
     assert len(first.skipped) == 2
 
     def refused(*_: object) -> None:

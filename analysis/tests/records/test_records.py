@@ -185,34 +185,3 @@ def test_a_series_of_two_programs_makes_two_studies_and_two_series_one(tmp_path:
     assert [set(one.times["compiler"]) for one in (first, second)] == [{old, clang}, {new}]
     assert first.program in first.name
     assert first.name != second.name
-
-
-@pytest.mark.parametrize(
-    ("tags", "read"),
-    [
-        ({"replicate": 3}, (None, 3)),
-        ({"replicate": 3, "label": "A"}, ("A", 3)),
-        ({}, (None, 1)),
-        ({"label": "replicate 4", "figure": "schedule"}, (None, 4)),
-        ({"label": "warm replicate 12", "figure": "schedule"}, ("warm", 12)),
-        ({"label": "replicate 4", "figure": "comparison"}, ("replicate 4", 1)),
-        ({"label": "replicate 4", "figure": "schedule", "replicate": 1}, ("replicate 4", 1)),
-        ({"label": "replicates", "figure": "schedule"}, ("replicates", 1)),
-    ],
-)
-def test_a_replicate_has_a_number_of_its_own_and_had_it_in_its_label(
-    tmp_path: Path, tags: dict[str, str | float], read: tuple[str | None, int]
-) -> None:
-    write(tmp_path, [record(**tags)])
-    [row] = load(tmp_path).runs.to_dict("records")
-    assert (row["label"], row["replicate"]) == read
-
-
-def test_old_and_new_replicates_of_one_block_are_told_apart(tmp_path: Path) -> None:
-    labels: list[dict[str, str | float]] = [{}, {"label": "replicate 2"}, {"replicate": 3}]
-    for tags in labels:
-        one = Point("guided", 4, 1.0, "chunk", tags={"figure": "schedule", **tags})
-        write(tmp_path, [bench("schedule", one, 0, [1.0], Machine())])
-    runs = load(tmp_path).runs
-    assert sorted(runs["replicate"]) == [1, 2, 3]
-    assert runs["label"].isna().all()

@@ -166,7 +166,7 @@ def test_the_figure_is_a_file_like_others(refuted: Path, capsys: pytest.CaptureF
     assert main(["figures", "--results", str(refuted)]) == 0
     assert str(refuted / "figures" / "claims.svg") in capsys.readouterr().out.splitlines()
     written = {path.suffix for path in (refuted / "figures").glob("claims.*")}
-    assert written == {".svg", ".png", ".pdf"}
+    assert written == {".svg", ".pdf"}
     text = (refuted / "figures" / "claims.svg").read_text(encoding="utf-8")
     assert text.count('xlink:href="../report.html#claim-') == len(claims.load())
 

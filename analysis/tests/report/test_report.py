@@ -1,14 +1,11 @@
 import re
-import sys
 from dataclasses import replace
 from html.parser import HTMLParser
-from importlib.abc import MetaPathFinder
 from pathlib import Path
 
 import pytest
 
 from analysis import claims, report
-from analysis.cli import main
 from analysis.figures.style import Data
 from analysis.records.reading import load
 from analysis.report.provenance import commands, in_the_clock
@@ -93,40 +90,14 @@ def test_it_says_machine_control_noise_gaps_failures_and_commands(page: str) -> 
         assert said in text
 
 
-def test_html_and_pdf_of_partial_data(tmp_path: Path) -> None:
+def test_html_of_partial_data(tmp_path: Path) -> None:
     write(tmp_path, study(["neighbourhood"], blocks=2))
-    html, pdf = report.write(tmp_path)
-    assert pdf.read_bytes().startswith(b"%PDF")
+    html = report.write(tmp_path)
     text = text_of(html.read_text(encoding="utf-8"))
     assert "16 claims have no records yet, and no verdict: threads, particles, grid_length, radius" in text
     assert "Radius ( make experiments STUDY=radius )" in text
     assert "nothing vouches for the rest" in text
     assert not list(tmp_path.glob("*.part*"))
-
-
-def test_without_pango_only_the_pdf_is_missing(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    write(tmp_path, study(["neighbourhood"], blocks=2))
-    (tmp_path / "report.pdf").write_text("of earlier records")
-
-    class WithoutPango(MetaPathFinder):
-        def find_spec(self, name: str, *_: object) -> None:
-            if name == "weasyprint":
-                print("WeasyPrint could not import some external libraries.")
-                raise OSError("cannot load library 'libpango-1.0-0':\nno such file")
-
-    for name in [name for name in sys.modules if name.partition(".")[0] == "weasyprint"]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setattr(sys, "meta_path", [WithoutPango(), *sys.meta_path])
-    assert main(["report", "--results", str(tmp_path)]) == 0
-    said = capsys.readouterr()
-    assert said.out == f"{tmp_path / 'report.html'}\n"
-    (line,) = said.err.splitlines()
-    assert line.startswith(f"{tmp_path / 'report.pdf'}: not written, only the HTML: cannot load library")
-    assert "apt install libpango-1.0-0" in line
-    assert (tmp_path / "report.html").exists()
-    assert not (tmp_path / "report.pdf").exists()
 
 
 def test_no_records_at_all_still_make_a_report(tmp_path: Path) -> None:

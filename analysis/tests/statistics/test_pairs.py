@@ -5,8 +5,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from analysis.claims.alternatives import alternatives
+from analysis.statistics.location import location
 from analysis.statistics.looks import ERROR
-from analysis.statistics.pairs import join_replicates, location, log_ratios, scaled, without_partner
+from analysis.statistics.pairs import join_replicates, log_ratios, scaled, without_partner
 
 OTHERS = 16
 REPLICATES = 4

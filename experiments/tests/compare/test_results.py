@@ -6,6 +6,8 @@ import json
 import re
 from pathlib import Path
 
+import pytest
+
 from experiments.tests.compare.calls import (
     TOOK,
     left_behind,
@@ -79,12 +81,19 @@ def test_a_file_goes_on_with_what_is_in_it(folder: Path) -> None:
     assert [len(one["records"]) for one in sessions] == [18, 3]
 
 
-def test_a_file_of_something_else_is_no_earlier_call(folder: Path) -> None:
-    (folder / "kept.json").write_text('{"sessions": 1}', encoding="utf-8")
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ('{"sessions": 1}', "is no file of an earlier call"),
+        ('{"schema_version": 1, "sessions": 1}', "found schema version 1, expected 2"),
+    ],
+)
+def test_a_file_of_something_else_is_no_earlier_call(folder: Path, content: str, told: str) -> None:
+    (folder / "kept.json").write_text(content, encoding="utf-8")
     done = run(folder, "compare", "./short", "./long", "--append", "kept.json")
     assert done.returncode == 1
-    assert "--append: kept.json: is no file of an earlier call" in done.stderr
-    assert (folder / "kept.json").read_text(encoding="utf-8") == '{"sessions": 1}'
+    assert f"--append: kept.json: {told}" in done.stderr
+    assert (folder / "kept.json").read_text(encoding="utf-8") == content
 
 
 def test_a_page_has_the_verdict_and_its_picture(folder: Path) -> None:

@@ -54,7 +54,7 @@ MISTAKES = {
     "unknown figure": (
         CHUNKS.replace('"schedule"', '"shedule"'),
         'figure: found "shedule", expected one of scaling, trend, comparison, schedule, machine, phases, '
-        "control, speed_against_error, hard_cases, ladder, limits, more_cores, promises, ways, pauses; "
+        "control, speed_against_error, hard_cases, ladder, limits, ways, pauses; "
         'did you mean "schedule"?',
     ),
     "unknown claim": (

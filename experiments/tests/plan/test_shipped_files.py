@@ -52,8 +52,8 @@ def test_every_question_of_the_study_is_there() -> None:
         "threads", "particles", "grid_length", "radius", "steps", "min_velocity", "max_velocity", "machine",
         "neighbourhood", "self_contained_checkered", "self_contained_track", "self_contained_repeat",
         "schedule_find", "schedule_resolve", "schedule_resolve_row", "row", "reverse", "sequential_orders",
-        "compiler", "phases", "ladder", "rungs", "limits", "more_cores", "density", "small_scenes",
-        "oversubscription", "control", "speed_against_error", "hard_cases", "promises", "ways",
+        "compiler", "phases", "ladder", "rungs", "limits", "density", "small_scenes",
+        "oversubscription", "control", "speed_against_error", "hard_cases", "ways",
         "ways_of_processes",
     }  # fmt: skip
 

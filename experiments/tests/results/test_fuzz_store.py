@@ -15,6 +15,7 @@ from experiments.run.session import run
 from experiments.run.status import rows
 from experiments.run.study import Study
 from experiments.tests.conftest import PAIR, Workplace
+from experiments.tests.fake_carom import make_limits
 from support.record_schema import is_record
 
 NAMES = st.one_of(
@@ -91,9 +92,8 @@ def test_anything_in_a_results_folder_is_put_aside_or_counted_once(
 def test_a_record_of_another_kind_is_put_aside(measured: Workplace) -> None:
     first, second = sorted((measured.results / "records" / "pair").rglob("*.json"))[:2]
     bench = json.loads(first.read_text(encoding="utf-8"))
-    outside = {**bench, "kind": "outside", "axes": {"threads": 1, "substeps": 1}}
-    outside["engine"] = {"name": "Chipmunk", "version": "7.0.3", "iterations": 10}
-    first.write_text(json.dumps(outside), encoding="utf-8")
+    limits = make_limits([], {"threads": "1", "tags": bench["tags"]})
+    first.write_text(json.dumps(limits), encoding="utf-8")
     wrong = measured.results / "failures" / "pair" / second.name
     wrong.parent.mkdir(parents=True)
     second.rename(wrong)

@@ -23,7 +23,7 @@ for line in sys.stdin:
     if line.startswith("report"):
         with open(REPORTS, "a") as file:
             file.write(line)
-        print(json.dumps(["results/report.html"]), flush=True)
+        print(json.dumps("results/report.html"), flush=True)
         continue
     records = [json.load(open(path)) for path in glob.glob("results/records/*/*/*.json")]
     blocks = {}
@@ -230,19 +230,3 @@ def test_blocks_of_what_is_open_take_turns(needing: Workplace) -> None:
     after = blocks[blocks.index(("pair", 2)) :] if ("pair", 2) in blocks else []
     assert {name for name, _ in blocks[4:6]} == {"pair", "chunks"}, blocks
     assert [name for name, _ in after[:4]] in (["pair", "chunks"] * 2, ["chunks", "pair"] * 2), blocks
-
-
-def test_a_folder_in_which_points_had_stopped_counts_the_blocks_of_all(workplace: Workplace) -> None:
-    run(replace(workplace.settings, figures=False, blocks=4))
-    study = Study(workplace.settings)
-    [chunks] = [one for one in study.experiments if one.name == "chunks"]
-    note = study.store.note("plan.json")
-    note["paper"]["chunks"] |= {"blocks": 4, "stopped": {chunks.points[-1].id: 3}}
-    (workplace.results / "plan.json").write_text(json.dumps(note))
-    for path in (workplace.results / "records" / "chunks").rglob(f"{chunks.points[-1].id}-b3.json"):
-        path.unlink()
-    before = len(workplace.calls())
-    run(replace(workplace.settings, figures=False))
-    assert len(workplace.records("chunks")) == 11
-    assert not any("--tag" in call["words"] for call in workplace.calls()[before:])
-    assert workplace.rows()["chunks"].blocks == 3

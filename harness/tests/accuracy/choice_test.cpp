@@ -11,9 +11,9 @@
 
 #include "harness/accuracy/choice.hpp"
 #include "harness/accuracy/error_measures.hpp"
-#include "harness/accuracy/promise.hpp"
 #include "harness/accuracy/trial.hpp"
 #include "harness/scenes/generate.hpp"
+#include "harness/tests/accuracy/error_of.hpp"
 #include "variants/event_driven_variant.hpp"
 
 namespace carom {
@@ -150,7 +150,7 @@ TEST_P(KeptPromise, OnScenesNotSeenBefore) {
             const ErrorMeasures errors =
                 measure_errors(scene, *method.variant, {.substeps = method.substeps});
             ++made;
-            kept += error_of(errors, GetParam()) <= bound ? 1 : 0;
+            kept += tests::error_of(errors, GetParam()) <= bound ? 1 : 0;
         }
     }
     EXPECT_EQ(made, 36);
@@ -164,44 +164,6 @@ INSTANTIATE_TEST_SUITE_P(TryMethods, KeptPromise,
                                                 : now.param == Measure::collision_rate ? "collision_rate"
                                                                                        : "pressure");
                          });
-
-TEST(KeepPromise, NamesTheCheapestOfAllThatKeepTheBound) {
-    for (const std::uint64_t seed : {1U, 2U, 3U}) {
-        const Scene scene = unseen(seed);
-        const Tuning tuning;
-        const Costs costs = typical_costs();
-        const auto promise = Promises(scene, tuning, costs).keep(Measure::path, 0.05);
-        ASSERT_TRUE(promise);
-        EXPECT_TRUE(promise->is_kept());
-        EXPECT_EQ(promise->delivered.method, promise->promised.method);
-        EXPECT_NEAR(promise->delivered.error, promise->promised.error, 1e-9) << "the trial was its beginning";
-        EXPECT_LE(promise->cheapest.error, 0.05);
-        EXPECT_GE(promise->cost_ratio(), 1);
-        EXPECT_EQ(promise->methods, 1 + 4 * 7);
-    }
-}
-
-TEST(KeepPromise, OfNoSuchMethodIsNotMade) {
-    const Scene scene = unseen(3);
-    const Tuning tuning;
-    const Costs costs = typical_costs();
-    EXPECT_FALSE(Promises(scene, tuning, costs).keep(Measure::path, 1e-30));
-}
-
-TEST(ErrorOf, IsNotANumberWhereThereIsNoReference) {
-    EXPECT_TRUE(std::isnan(error_of(ErrorMeasures(), Measure::path)));
-    ErrorMeasures measures;
-    measures.reference.emplace();
-    measures.reference->trajectory.push_back({.time = 1, .rms_distance = 0.25});
-    measures.reference->collision_rate = 2;
-    measures.reference->pressure = 4;
-    EXPECT_EQ(error_of(measures, Measure::path), 0.25);
-    EXPECT_TRUE(std::isnan(error_of(measures, Measure::pressure))) << "the run's is not known";
-    measures.pressure = 3;
-    measures.collision_rate = 2.5;
-    EXPECT_EQ(error_of(measures, Measure::pressure), 0.25);
-    EXPECT_EQ(error_of(measures, Measure::collision_rate), 0.25);
-}
 
 TEST(TryMethods, TriesNothingThatCostsMoreThanWhatReachesTheBound) {
     const Scene scene = unseen(3);

@@ -10,10 +10,10 @@
 
 #include "harness/accuracy/choice.hpp"
 #include "harness/accuracy/error_measures.hpp"
-#include "harness/accuracy/promise.hpp"
 #include "harness/accuracy/trial.hpp"
 #include "harness/scenes/generate.hpp"
 #include "harness/scenes/piece.hpp"
+#include "harness/tests/accuracy/error_of.hpp"
 #include "harness/verify/event_driven_violation.hpp"
 
 namespace carom {
@@ -65,7 +65,7 @@ TEST(TryMethods, PromisesNoErrorThatAPieceCannotTell) {
         const auto tried = std::ranges::find(trial.tried, at_contact, &Tried::method);
         ASSERT_NE(tried, trial.tried.end());
         const double error =
-            error_of(measure_errors(scene, *at_contact.variant, {.substeps = 1}), Measure::path);
+            tests::error_of(measure_errors(scene, *at_contact.variant, {.substeps = 1}), Measure::path);
         EXPECT_LE(error, tried->largest_error()) << "seed " << seed << ", expected " << tried->error;
     }
 }
@@ -166,7 +166,7 @@ TEST(TryMethods, PromisesWhatHoldsWhereDiscsAreFast) {
     const auto choice = cheapest_below(trial.tried, 0.05, scene.steps);
     ASSERT_TRUE(choice);
     const Tuning tuning{.substeps = choice->method.substeps};
-    EXPECT_LE(error_of(measure_errors(scene, *choice->method.variant, tuning), Measure::path), 0.05);
+    EXPECT_LE(tests::error_of(measure_errors(scene, *choice->method.variant, tuning), Measure::path), 0.05);
 }
 
 } // namespace

@@ -12,11 +12,11 @@
 namespace carom::tests {
 
 /// An event-driven run of a scene, followed by its checker.
-template <class Real> struct ExactRun {
+struct ExactRun {
     static constexpr const char* given_up = "given up";
 
-    PathChecker<Real> checker;
-    EventDriven<Real, CollisionLog<Real>&> simulation;
+    PathChecker<double> checker;
+    EventDriven<double, CollisionLog<double>&> simulation;
 
     explicit ExactRun(const Scene& scene) : checker(scene), simulation(scene, checker) {}
 
@@ -24,8 +24,7 @@ template <class Real> struct ExactRun {
     /// is, but it takes more events than that.
     std::string wrong(const Scene& scene, int looks, const EventLimits& limits = {}) {
         for (int look = 1; look <= looks; ++look) {
-            const Real time =
-                static_cast<Real>(scene.steps) * static_cast<Real>(look) / static_cast<Real>(looks);
+            const double time = 1.0 * scene.steps * look / looks;
             if (!simulation.advance(time, limits)) {
                 return checker.violation_at(simulation.time(), simulation.discs()).value_or(given_up);
             }

@@ -47,8 +47,8 @@ TEST_F(CommandLine, HelpsWithTheProgramAndEveryVerb) {
     EXPECT_EQ(help.error, "");
     EXPECT_LE(width(help.output), 80);
     for (const std::string verb : {"list", "run", "check", "bench", "profile", "generate", "reference",
-                                   "doctor", "limits", "outside", "turns", "help"}) {
-        const bool is_listed = verb != "outside" && verb != "turns" && verb != "help";
+                                   "doctor", "limits", "turns", "help"}) {
+        const bool is_listed = verb != "turns" && verb != "help";
         EXPECT_EQ(help.output.find("\n  " + verb + ' ') != std::string::npos, is_listed) << verb;
         const ProgramResult verb_help = run_carom({verb, "--help"});
         EXPECT_EQ(verb_help.exit_code, 0) << verb;

@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// `carom processes` in a process of its own, which is ended before its time.
-class ProcessesKilled : public testing::TestWithParam<std::string> {
+class ProcessesKilled : public testing::Test {
   protected:
     /// Starts it with a program that writes the numbers of all its processes into a file, once it has three.
     std::vector<pid_t> start() {
@@ -28,14 +28,8 @@ class ProcessesKilled : public testing::TestWithParam<std::string> {
         const std::string script = "setsid sh -c 'echo $$ >> " + numbers + "; " + busy +
                                    "' & sleep 600 & echo $! >> " + numbers + "; echo $$ >> " + numbers +
                                    "; " + busy;
-        const Json one{{"command", {"/bin/sh", "-c", script}},
-                       {"record", directory / "a"},
-                       {"turns", true},
-                       {"kept_by", GetParam()}};
-        const Json two{{"command", {"/bin/sh", "-c", busy}},
-                       {"record", directory / "b"},
-                       {"turns", true},
-                       {"kept_by", GetParam()}};
+        const Json one{{"command", {"/bin/sh", "-c", script}}, {"record", directory / "a"}, {"turns", true}};
+        const Json two{{"command", {"/bin/sh", "-c", busy}}, {"record", directory / "b"}, {"turns", true}};
         const std::string file = directory.write("processes.json", Json::array({one, two}).dump());
         carom = fork();
         if (carom == 0) {
@@ -78,10 +72,7 @@ class ProcessesKilled : public testing::TestWithParam<std::string> {
     pid_t carom = 0;
 };
 
-INSTANTIATE_TEST_SUITE_P(, ProcessesKilled, testing::Values("", "subreaper"),
-                         [](const auto& one) { return one.param == "subreaper" ? "BySubreaper" : "AsItIs"; });
-
-TEST_P(ProcessesKilled, LeavesNothingRunning) {
+TEST_F(ProcessesKilled, LeavesNothingRunning) {
     for (const int signal : {SIGKILL, SIGTERM, SIGINT}) {
         directory.write("numbers", "");
         std::vector<pid_t> processes = start();

@@ -173,7 +173,6 @@ TEST_F(ProcessesCommand, RefusesAProcessThatCannotBeBeforeAnyRuns) {
     EXPECT_TRUE(refused(with("rounds", "x"), 1, {"rounds: found", "expected a whole number"}));
     EXPECT_TRUE(refused(with("unit_seconds", "ms"), 1, {"unit_seconds: found", "expected a number"}));
     EXPECT_TRUE(refused(with("threads", 0), 1, {"threads: found 0, expected a number of at least 1"}));
-    EXPECT_TRUE(refused(with("kept_by", "me"), 1, {"kept_by: found 'me', expected cgroup or subreaper"}));
     EXPECT_TRUE(refused(with("exit_codes", {"1"}), 1, {"exit_codes: found", "a list of whole numbers"}));
     EXPECT_TRUE(refused(with("exit_codes", Json::array()), 1, {"exit_codes: found none"}));
     EXPECT_TRUE(refused(with("pattern", "(?i)took ([0-9]+)"), 1, {"time: found", "a regular expression"}));

@@ -134,7 +134,6 @@ TEST_F(Usage, ARecordThatCannotBeWrittenIsToldBeforeTheRun) {
     EXPECT_TRUE(answers({"bench", missing, "--record", nowhere}, expected));
     EXPECT_TRUE(answers({"profile", missing, "--record", nowhere}, expected));
     EXPECT_TRUE(answers({"profile", missing, "--timeline", nowhere}, expected));
-    EXPECT_TRUE(answers({"outside", missing, "--record", nowhere}, expected));
     EXPECT_TRUE(answers({"reference", missing, "--time", "1", "--output", nowhere}, expected));
     EXPECT_TRUE(answers({"limits", "--threads", "1", "--record", nowhere}, expected));
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -146,7 +147,11 @@ TEST(Doctor, ALimitOfProcessorsIsShownWithTheThreadsThatFollow) {
         << text;
     machine.cpu_quota = {};
     machine.hardware_threads = 3;
+    machine.has_unread_cpu_quota = false;
     EXPECT_EQ(unwrapped(found).find("CPU quota"), std::string::npos);
+    machine.has_unread_cpu_quota = true;
+    EXPECT_NE(unwrapped(found).find("CPU quota cannot be read: control groups of version 1"),
+              std::string::npos);
     EXPECT_EQ(unwrapped(found).find("2-4, of"), std::string::npos);
 }
 
@@ -185,6 +190,23 @@ TEST(Noise, IsTheSpreadOfTheDurations) {
     EXPECT_DOUBLE_EQ(noise.median_seconds, 0.050);
     EXPECT_DOUBLE_EQ(noise.p95_over_median, 95.0 / 50);
     EXPECT_DOUBLE_EQ(noise.max_over_median, 100.0 / 50);
+}
+
+TEST(Noise, OfNeighboursIsThatOfStretchesOfALength) {
+    std::vector<double> durations;
+    for (int k = 0; k < 400; ++k) {
+        // Every other stretch of ten is a tenth longer.
+        durations.push_back((k / 10) % 2 == 0 ? 1e-3 : 1.1e-3);
+    }
+    const auto found = neighbours(durations);
+    ASSERT_EQ(found.size(), 4) << "of 1, 2, 5 and 10: of 20 there are too few";
+    EXPECT_EQ(found[0].difference, 0);
+    EXPECT_EQ(found[3].seconds, 0.01);
+    EXPECT_NEAR(found[3].difference, std::log(1.1) / 0.6745, 1e-9);
+    const Noise noise{.neighbours = found};
+    EXPECT_NE(noise_figure(noise).find("   10 ms               14.13 %                       1.413 %   ####"),
+              std::string::npos)
+        << noise_figure(noise);
 }
 
 TEST(Noise, OfOneSpinIsNone) {

@@ -28,6 +28,8 @@ TEST(CpuQuota, IsTheLeastOfTheGroupsAroundTheProcess) {
         const auto expected =
             one["quota"].is_null() ? std::nullopt : std::optional(one["quota"].get<double>());
         EXPECT_EQ(quota, expected) << one["name"];
+        EXPECT_EQ(has_unread_cpu_quota(root / ""), one["name"] == "version 1, which is not read")
+            << one["name"];
     }
 }
 

@@ -1,10 +1,13 @@
 #include <clocale>
+#include <fstream>
 #include <limits>
 #include <locale>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
@@ -76,10 +79,24 @@ TEST(SceneText, IsThePublishedFormat) {
     EXPECT_EQ(scene_text(plain), "2\n10.5\n1\n25\n0 1.5 -2 0.25 0\n1 0.001 4 -1 350\n");
 }
 
-TEST(SceneFile, OfAHundredThousandDiscsIsReadWhole) {
-    const Scene scene = tests::random_scene(100'000, 10'000, 16, 100, 5, 141);
+TEST(SceneFile, OfAMillionDiscsInAnyOrderIsReadWhole) {
+    const Scene scene = tests::random_scene(1'000'000, 30'000, 16, 100, 5, 141);
+    std::string text = scene_text(scene);
+    const std::size_t header = text.find("\n0 ") + 1;
+    const std::size_t half = text.find("\n500000 ") + 1;
+    text = text.substr(0, header) + text.substr(half) + text.substr(header, half - header);
     const tests::TemporaryDirectory directory;
-    EXPECT_TRUE(same_scene(read_scene(directory.write("large.in", scene_text(scene))), scene));
+    EXPECT_TRUE(same_scene(read_scene(directory.write("large.in", text)), scene));
+}
+
+TEST(SceneFile, IsReadFromAPipe) {
+    const tests::TemporaryDirectory directory;
+    const std::string path = directory / "pipe";
+    ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+    const Scene scene = tests::random_scene(4000, 1000, 1, 7, 2, 221);
+    std::thread writer([&] { std::ofstream(path) << scene_text(scene); });
+    EXPECT_TRUE(same_scene(read_scene(path), scene));
+    writer.join();
 }
 
 /// Numbers as in much of Europe: 1.234,5.
