@@ -1,5 +1,6 @@
 """`carom compare` and `carom gate`: commands against one another, until it is settled."""
 
+import os
 import sys
 
 from experiments.compare.command import compare
@@ -22,6 +23,8 @@ def _run() -> int:
     verb, *arguments = sys.argv[1:] or [""]
     if verb not in _VERBS:
         raise InputError(f"found {verb!r}, expected compare or gate")
+    if not os.stat(".").st_nlink:  # noqa: PTH116 - a folder that is removed has no path
+        raise InputError("is called in a folder that is gone, expected one that is there")
     return _VERBS[verb](arguments)
 
 

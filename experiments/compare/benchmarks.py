@@ -2,13 +2,12 @@
 
 import mmap
 import os
-import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from experiments.compare.commands import Compared
+from experiments.compare.commands import Compared, words_in
 from experiments.plan.benchmark_cases import cases
 from experiments.plan.executable import UnfitError, found, require_executable
 from experiments.run.progress import about, warn
@@ -75,18 +74,16 @@ def names_benchmark(command: Compared) -> str | None:
     if _begins_with(program, b"#!"):
         texts.append(program.read_text(encoding="utf-8", errors="replace"))
     for text in texts:
-        try:
-            words = shlex.split(text, comments=True)
-        except ValueError:
-            words = text.split()
-        for word in words:
+        for word in words_in(text):
             if "/" in word and _is_benchmark(word, command.folder):
                 return word
     return None
 
 
 def _is_benchmark(word: str, folder: Path) -> bool:
-    return _has_library(found(word, folder))
+    """Whether it is one. Carom itself loads the library, too, and is none."""
+    program = found(word, folder)
+    return not program.resolve().name.startswith("carom") and _has_library(program)
 
 
 def _begins_with(file: Path, mark: bytes) -> bool:
@@ -110,12 +107,12 @@ def common_cases(commands: Sequence[Compared], pattern: str | None) -> tuple[str
 
     Raises InputError for a program that lists none, and where there is none in common.
     """
-    listed = {one.name: _listed(one, pattern) for one in commands}
-    common = [name for name in listed[commands[0].name] if all(name in names for names in listed.values())]
-    for command, names in listed.items():
+    listed = [_listed(one, pattern) for one in commands]
+    common = [name for name in listed[0] if all(name in names for names in listed)]
+    for command, names in zip(commands, listed, strict=True):
         alone = [name for name in names if name not in common]
         if alone:
-            warn(f"carom: not compared, since not all have it: {', '.join(alone)} of {command}")
+            warn(f"carom: not compared, since not all have it: {', '.join(alone)} of {command.called}")
     if not common:
         raise InputError("--gb: found no case that all commands have, expected one at least")
     return tuple(common)
@@ -126,15 +123,15 @@ def _listed(command: Compared, pattern: str | None) -> list[str]:
     try:
         require_executable(first, command.folder)
     except UnfitError as unfit:
-        raise InputError(f'{command.name}: found "{first}", which {unfit}') from unfit
+        raise InputError(f'{command.called}: found "{first}", which {unfit}') from unfit
     own = call.filter if call is not None else None
     words = (os.fspath(found(first, command.folder)), *command.words[1:])
     around = (command.folder, {**os.environ, **dict(command.environment)})
     try:
-        return cases(words, pattern or own or ".", command.name, *around)
+        return cases(words, pattern or own or ".", command.called, *around)
     except InputError as error:
         raise InputError(
-            str(error).replace(f"{command.name}.filter: ", f"{command.name}: --filter: ")
+            str(error).replace(f"{command.called}.filter: ", f"{command.called}: --filter: ")
         ) from error
 
 

@@ -21,13 +21,13 @@ from experiments.plan.scale import find_scale
 from experiments.plan.scenes import SceneFolder
 from experiments.plan.site import load_site, this_machine
 from experiments.results.store import Store, new_session
-from experiments.run.progress import warn
+from experiments.run.progress import several, warn
 from experiments.run.runner import Runner
 from experiments.support import process
 from experiments.support.descendants import children, end_all_but
 from experiments.support.places import BUILDS, analysis
 from experiments.support.process import Coprocess
-from experiments.support.vanishing import vanishing_folder
+from experiments.support.vanishing import marked, vanishing_folder
 from support.errors import InputError
 from support.vocabulary import AGAIN, ASKED
 
@@ -54,7 +54,7 @@ def measured(asked: Asked, say: Say = lambda _: "") -> tuple[int, Answer]:
     earlier = Earlier(asked.earlier)
     if asked.fixed_layout:
         keep_addresses()
-    with vanishing_folder("carom-compare-") as folder, _set_up(asked):
+    with vanishing_folder("carom-compare-") as folder, _set_up(asked, folder):
         return _measured(asked, earlier, folder, say)
 
 
@@ -90,14 +90,14 @@ def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[i
 def _exit_code(blocks: Blocks, found: Found, stopped: int | None) -> int:
     """What the end comes to; says what failed."""
     cases = found.asked.cases
-    for (name, case), reason in blocks.failed.items():
-        if (name.removesuffix(AGAIN), case) in blocks.failed and name.endswith(AGAIN):
-            continue
-        same = [blocks.runs.get((one, case)) for one in (name, name.removesuffix(AGAIN) + AGAIN)]
-        runs = sum(one.tries for one in same if one is not None)
-        again = "; it worked before: `--prepare` can put things back" if 0 < runs <= _FEW else ""
-        whose = f"{name}, {cases[case]}" if cases else name
-        warn(f"carom: {whose}: failed after {runs} run{'' if runs == 1 else 's'}: {reason}{again}")
+    called = {one.name: one.called for one in found.asked.commands}
+    for name, case in {(name.removesuffix(AGAIN), case): None for name, case in blocks.failed}:
+        same = [blocks.runs[key] for key in ((name, case), (name + AGAIN, case)) if key in blocks.runs]
+        runs, reason = sum(one.tries for one in same), next(one.reason for one in same if one.reason)
+        again = "; `--prepare` of `carom compare` puts back what a run leaves" if 0 < runs <= _FEW else ""
+        well = f"{several(runs, 'run')}{' that ended well' if runs else ''}"
+        whose = f"{called[name]}, {cases[case]}" if cases else called[name]
+        warn(f"carom: {whose}: failed after {well}: {reason}{again}")
     if stopped is not None:
         return 128 + stopped
     return COMMAND_FAILED if blocks.failed else WITHDRAWN if found.answer.is_withdrawn else 0
@@ -136,21 +136,21 @@ def _remarks(course: Course) -> tuple[str, ...]:
 
 
 @contextlib.contextmanager
-def _set_up(asked: Asked) -> Iterator[None]:
+def _set_up(asked: Asked, folder: Path) -> Iterator[None]:
     """Run what comes once before everything, and what comes after it whatever happens. What the first has
     started, such as a server, goes on until then.
     """
     known = children()
     try:
-        _once("--setup", asked.setup)
+        _once("--setup", asked.setup, folder)
         yield
     finally:
-        _once("--cleanup", asked.cleanup)
+        _once("--cleanup", asked.cleanup, folder)
         end_all_but(known)
 
 
-def _once(option: str, lines: Sequence[str]) -> None:
+def _once(option: str, lines: Sequence[str], folder: Path) -> None:
     for line in lines:
-        done = process.run(("sh", "-c", line), dict(os.environ), ends_all=False)
+        done = process.run(("sh", "-c", line), marked(os.environ, folder), ends_all=False)
         if done.exit_code != 0:
             raise InputError(f"{option}: {line}: {done.reason}")

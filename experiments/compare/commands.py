@@ -1,6 +1,7 @@
 """The commands that are compared: from lines or words to words, names and surroundings."""
 
 import argparse
+import itertools
 import os
 import re
 import shlex
@@ -10,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from experiments.compare.sweeps import LINE, Levels, combinations, fill, joined, named_in, require_filled
+from experiments.run.progress import several
 from support.errors import InputError, quoted
 from support.vocabulary import AGAIN
 
@@ -32,7 +34,7 @@ _ASSIGNMENT = re.compile(r"([A-Za-z_]\w*)=(.*)", re.DOTALL)
 
 @dataclass(frozen=True)
 class Compared:
-    """One of the commands: what it is called, its words, and the line that the user wrote."""
+    """One of the commands: what it is called in tables, its words, and the line that the user wrote."""
 
     name: str
     words: tuple[str, ...]
@@ -46,6 +48,8 @@ class Compared:
     """The pattern of the time that it prints."""
     levels: Levels = ()
     """The value of each list that its line has."""
+    called: str = ""
+    """What messages call it: as the user wrote it, or by the name that the user gave."""
 
     @property
     def has_shell(self) -> bool:
@@ -80,9 +84,10 @@ def commands_of(options: argparse.Namespace, words_behind: Sequence[str]) -> tup
     written = _written(options, split)
     if not 1 < len(written) <= MOST_COMMANDS:
         told = f"expected two or more to compare, {MOST_COMMANDS} at most"
-        raise InputError(f"found {_commands_said(len(written))}, {told}")
+        raise InputError(f"found {several(len(written), 'command')}, {told}")
     read = [(dict[str, str](), one.words) if one.words else words_of(one.line) for one in written]
-    names = _names(options, written, [words for _, words in read])
+    called = _names(options, written)
+    names = called if options.name else names_of([words for _, words in read], called)
     prepare, conclude = (
         [_words_beside(_given(options, key, written, at)) for at in range(len(written))]
         for key in ("prepare", "conclude")
@@ -97,6 +102,7 @@ def commands_of(options: argparse.Namespace, words_behind: Sequence[str]) -> tup
             environment=_environment(options.env, one.values, name, names, of_line),
             levels=one.levels,
             time_from=options.time_from and fill(options.time_from, one.values),
+            called=called[at],
         )
         for at, (one, name, (of_line, words)) in enumerate(zip(written, names, read, strict=True))
     )
@@ -130,12 +136,10 @@ def _written(options: argparse.Namespace, split: Sequence[Sequence[str]]) -> lis
     return list(found.values())
 
 
-def _names(
-    options: argparse.Namespace, written: Sequence[_Written], words: Sequence[tuple[str, ...]]
-) -> list[str]:
+def _names(options: argparse.Namespace, written: Sequence[_Written]) -> list[str]:
     """What the commands are called. Raises InputError for names that are not as many, or not told apart."""
     if not options.name:
-        names = names_of(words, [_called(one, written) for one in written])
+        names = [_called(one, written) for one in written]
         _require_names(names, "found")
         return names
     number = len(options.name)
@@ -144,7 +148,8 @@ def _names(
     elif number == len(written):
         names = list(options.name)
     else:
-        raise InputError(f"found {number} names for {_commands_said(len(written))}, expected one for each")
+        told = f"found {number} names for {several(len(written), 'command')}, expected one for each"
+        raise InputError(told)
     _require_names(names, "-n: found")
     return names
 
@@ -158,15 +163,8 @@ def _called(one: _Written, all_of_them: Sequence[_Written]) -> str:
 
 def _split(words: Sequence[str]) -> list[list[str]]:
     """The words of each command. Raises InputError for one that has none."""
-    if not words:
-        return []
-    parts: list[list[str]] = [[]]
-    for word in words:
-        if word == NEXT:
-            parts.append([])
-        else:
-            parts[-1].append(word)
-    if not all(parts):
+    parts = [list(part) for is_next, part in itertools.groupby(words, NEXT.__eq__) if not is_next]
+    if words and len(parts) != list(words).count(NEXT) + 1:
         raise InputError(f"found {NEXT} with no word of a command on one side, expected words on both")
     return parts
 
@@ -188,6 +186,14 @@ def words_of(line: str) -> tuple[dict[str, str], tuple[str, ...]]:
         shutil.which(words[0]) is not None or (words == line.split() and words[0] not in _OF_THE_SHELL)
     )
     return (variables, tuple(words)) if is_program else ({}, ("sh", "-c", line))
+
+
+def words_in(text: str) -> list[str]:
+    """All words of a line for a shell, or of a script."""
+    try:
+        return shlex.split(re.sub("[;|&<>()]", " ", text), comments=True)
+    except ValueError:
+        return text.split()
 
 
 def _words_beside(line: str) -> tuple[str, ...]:
@@ -253,7 +259,7 @@ def _given(options: argparse.Namespace, key: str, written: Sequence[_Written], a
     lines, one = getattr(options, key), written[at]
     number = len({other.at for other in written})
     if len(lines) not in (0, 1, number, len(written)):
-        told = f"found {len(lines)} for {_commands_said(len(written))}, expected one, or one for each"
+        told = f"found {len(lines)} for {several(len(written), 'command')}, expected one, or one for each"
         raise InputError(f"--{key}: {told}")
     if not lines:
         return ""
@@ -291,7 +297,3 @@ def _with_input(words: tuple[str, ...], asked: Path | None, values: Mapping[str,
     if not file.is_file():
         raise InputError(f"--input: found {file}, expected a file that is there")
     return ("sh", "-c", f'exec "$@" < {shlex.quote(str(file.absolute()))}', "sh", *words)
-
-
-def _commands_said(number: int) -> str:
-    return f"{number} command{'' if number == 1 else 's'}"

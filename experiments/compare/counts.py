@@ -38,13 +38,14 @@ def _change(pairs: Sequence[tuple[float, float]]) -> str:
     """The middle of the changes in per cent, and how far they reach."""
     if any(first <= 0 for first, _ in pairs):
         return ""
-    changes = sorted(100 * (second / first - 1) for first, second in pairs)
-    middle, least, most = (_signed(one) for one in (statistics.median(changes), changes[0], changes[-1]))
+    changes = sorted(second / first - 1 for first, second in pairs)
+    middle, least, most = map(percent, (statistics.median(changes), changes[0], changes[-1]))
     return f"{middle} % ({least} to {most})"
 
 
-def _signed(number: float) -> str:
-    return f"{number:+.1f}".replace("-", "−")
+def percent(fraction: float) -> str:
+    """A fraction as a signed percentage without its sign of per cent."""
+    return f"{fraction * 100:+.1f}".replace("-", "−")
 
 
 def _amount(number: float) -> str:

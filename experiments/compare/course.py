@@ -21,10 +21,10 @@ from experiments.compare.first_run import (
 from experiments.compare.found import Found, Look
 from experiments.compare.options import Asked
 from experiments.compare.question import experiment_of
-from experiments.compare.texts import blocks_said, change
+from experiments.compare.texts import change
 from experiments.plan.plan import Surroundings
 from experiments.results.store import Store
-from experiments.run.progress import about, warn
+from experiments.run.progress import about, several, warn
 from experiments.run.runner import Runner
 from experiments.support.process import Coprocess
 from support.errors import InputError, Interrupted
@@ -190,7 +190,7 @@ class Course:
         """In one line: what is known, and when more will be."""
         asked, blocks, answer = self.asked, self.blocks, self.answer
         left = asked.seconds - blocks.seconds
-        told = f"{blocks_said(blocks.done)}, {blocks.seconds:.0f} s"
+        told = f"{several(blocks.done, 'block')}, {blocks.seconds:.0f} s"
         if not answer.commands:
             return f"{told}; a first interval in {about((answer.next - blocks.done) * blocks.seconds_each)}"
         worst = min(answer.commands, key=lambda one: one.is_settled)

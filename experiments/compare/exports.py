@@ -40,7 +40,9 @@ def require_places(
         for word in words:
             file = file_of(word.strip("'\""), one.folder).resolve()
             if file in seen:
-                raise InputError(f"{seen[file]}: found {word}, which {one.name} uses, expected another file")
+                raise InputError(
+                    f"{seen[file]}: found {word}, which {one.called} uses, expected another file"
+                )
 
 
 def write(found: Found, said: list[str], first: str, draw: Callable[[], Path]) -> None:

@@ -39,12 +39,12 @@ class NotMeantError(InputError):
 
 
 def unstoppable(asked: Asked) -> list[str]:
-    """The names of commands whose program gets another user's rights when it starts (set-user-ID), so that
+    """The commands whose program gets another user's rights when it starts (set-user-ID), so that
     this user may not send it a signal.
     """
     if os.geteuid() == 0:
         return []
-    files = [(one.name, found(one.words[0], one.folder)) for one in asked.commands]
+    files = [(one.called, found(one.words[0], one.folder)) for one in asked.commands]
     owners = [(name, file.stat()) for name, file in files if is_file(file)]
     return [name for name, one in owners if one.st_mode & stat.S_ISUID and one.st_uid != os.geteuid()]
 
@@ -81,24 +81,21 @@ def require_alike(asked: Asked) -> None:
         return
     for one in asked.commands:
         if call_of(one) is not None:
-            other = next(each.line for each in asked.commands if call_of(each) is None)
-            told = f"{one.name}: is a Google Benchmark, and {other} is none"
+            other = next(each.called for each in asked.commands if call_of(each) is None)
+            told = f"{one.called}: is a Google Benchmark, and {other} is none"
             raise InputError(f"{told}; expected cases of all, or --no-gb to time whole programs")
         if program := names_benchmark(one):
-            warn(f"carom: {one.name}: is timed as a whole, with the Google Benchmark {program} in it")
+            warn(f"carom: {one.called}: is timed as a whole, with the Google Benchmark {program} in it")
 
 
 def require_meant(asked: Asked, runs: Mapping[Key, Runs]) -> None:
     """Raises InputError for a Google Benchmark that would be timed as a whole although nobody said so."""
     for one in asked.commands:
-        if not (asked.is_whole or asked.cases) and _has_table(runs[one.name, 0].output):
-            told = f"{one.name}: runs a Google Benchmark, which repeats its cases until their time is full"
+        heads = (tuple(line.split()[:4]) for line in runs[one.name, 0].output.splitlines())
+        if not (asked.is_whole or asked.cases) and _TABLE in heads:
+            told = f"{one.called}: runs a Google Benchmark, which repeats its cases until their time is full"
             expected = "expected that program with its arguments alone, or --no-gb to time it as a whole"
             raise NotMeantError(f"{told}; {expected}")
-
-
-def _has_table(output: str) -> bool:
-    return any(tuple(line.split()[:4]) == _TABLE for line in output.splitlines())
 
 
 def unlike_runs(name: str, first: float, runs: Runs) -> list[str]:
@@ -107,8 +104,8 @@ def unlike_runs(name: str, first: float, runs: Runs) -> list[str]:
     if first - usual > _LEAST and first > usual * 3:
         took = f"the first run of {name} took {duration(first)}, the others {duration(usual)}"
         told.append(
-            f"{took}: it found something to do, or in memory, that they did not. `--prepare` can put things "
-            "back before each run"
+            f"{took}: it found something to do, or in memory, that they did not. `--prepare` of "
+            "`carom compare` puts things back before each run"
         )
     if runs.left_behind and (share := statistics.median(runs.left_behind)) > 0.1:
         told.append(f"{100 * share:.0f} % of the time of {name} is of what it has left in the background")

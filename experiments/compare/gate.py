@@ -11,7 +11,7 @@ from experiments.compare import exports, values
 from experiments.compare.answer import Answer
 from experiments.compare.command import WITHDRAWN, measured
 from experiments.compare.commands import WORDS, Compared, split_off
-from experiments.compare.options import add_measuring, asked_of, with_cases
+from experiments.compare.options import add_measuring, asked_of, read, with_cases
 from experiments.compare.same_program import require_two_files, require_two_programs
 from experiments.compare.worktrees import Commit, Repository, Tree, build, repository
 from experiments.run.progress import warn
@@ -28,7 +28,7 @@ def gate(arguments: Sequence[str]) -> int:
     differs from itself. Raises InputError before anything is measured.
     """
     words, run = split_off(arguments)
-    options = _parser().parse_args(words)
+    options = read(_parser(), words)
     if not run:
         raise InputError(
             f"found no command, expected `{WORDS} WORDS` at the end: what is run of both commits"
@@ -81,8 +81,8 @@ def _built(options: argparse.Namespace, run: Sequence[str], stack: ExitStack) ->
             require_two_programs(run, trees["base"], trees["head"])
     words, line, pattern = tuple(run), " ".join(run), options.time_from
     return tuple(
-        Compared(f"{name} {tree.commit.short}", words, line, folder=tree.folder, time_from=pattern)
-        for name, tree in trees.items()
+        Compared(name, words, line, folder=tree.folder, time_from=pattern, called=name)
+        for name, tree in ((f"{name} {tree.commit.short}", tree) for name, tree in trees.items())
     )
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from experiments.compare import values
 from experiments.compare.benchmarks import call_of, common_cases, quick
-from experiments.compare.commands import Compared, commands_of, reference_of, split_off
+from experiments.compare.commands import NEXT, Compared, commands_of, reference_of, split_off
 from experiments.compare.sweeps import LIST, RANGE, fill, named_in, require_filled
 from experiments.plan.series import SECONDS_OF_UNIT, require_one_group
 from experiments.run.progress import warn
@@ -68,10 +68,19 @@ class Asked:
 def parse(arguments: Sequence[str]) -> Asked:
     """Read the words behind `carom compare`. Raises InputError, or leaves like any parser."""
     own, words = split_off(arguments)
-    options = _parser().parse_args(own)
+    options = read(_parser(), own)
     commands = commands_of(options, words)
     asked = asked_of(options, commands, reference_of(options.reference, [one.name for one in commands]))
     return replace(with_cases(asked, options), earlier=options.append)
+
+
+def read(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
+    """What the words say. What is none of them is told by itself, and leaves like any parser."""
+    options, others = parser.parse_known_intermixed_args(words)
+    for one in sorted(others, key=lambda one: not one.startswith("-")):
+        is_word = one == NEXT or not one.startswith("-")
+        parser.error(f"found {one}, expected `--` before it" if is_word else f"unrecognized arguments: {one}")
+    return options
 
 
 def with_cases(asked: Asked, options: argparse.Namespace) -> Asked:
@@ -102,7 +111,7 @@ def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], refere
     for one in commands:
         if one.time_from is not None:
             require_one_group("--time-from", one.time_from)
-    setup, cleanup = (_once(line, commands, what) for what, line in _before_and_after(options))
+    setup, cleanup = (_once(getattr(options, what), commands, f"--{what}") for what in ("setup", "cleanup"))
     return Asked(
         commands=commands,
         reference=reference,
@@ -138,10 +147,6 @@ def _places(options: argparse.Namespace, kind: str) -> list[Path]:
     return files
 
 
-def _before_and_after(options: argparse.Namespace) -> list[tuple[str, str | None]]:
-    return [("--setup", options.setup), ("--cleanup", options.cleanup)]
-
-
 def _once(line: str | None, commands: Sequence[Compared], what: str) -> tuple[str, ...]:
     """The lines that a line is with the values of all commands."""
     if line is None:
@@ -162,20 +167,10 @@ def _parser() -> argparse.ArgumentParser:
         "command differs from itself, so that nothing is certain.",
     )
     add = parser.add_argument
-    add(
-        "lines",
-        nargs="*",
-        metavar="COMMAND",
-        help="a command line; a shell runs it only if it has more than plain words",
-    )
-    add(
-        "-n",
-        "--name",
-        action="append",
-        default=[],
-        metavar="NAME",
-        help="name of a command; given once for each, in their order",
-    )
+    told = "a command line; a shell runs it only if it has more than plain words"
+    add("lines", nargs="*", metavar="COMMAND", help=told)
+    told = "name of a command; given once for each, in their order"
+    add("-n", "--name", action="append", default=[], metavar="NAME", help=told)
     add("--reference", metavar="NAME", help="what the others are compared with (default: the first)")
     told = "a command line that runs before each run, untimed; given once for all commands, or once for each"
     add("--prepare", action="append", default=[], metavar="COMMAND", help=told)
@@ -210,13 +205,8 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
     add("--warmup", type=values.count, default=0, metavar="N", help="untimed runs before each timed one")
     add("--setup", metavar="COMMAND", help="a command line for a shell that runs once, before everything")
     add("--cleanup", metavar="COMMAND", help="the same after everything, whatever happened")
-    add(
-        "--ignore-exit",
-        type=values.codes,
-        default=(),
-        metavar="1,2",
-        help="exit codes that are fine beside 0",
-    )
+    told = "exit codes that are fine beside 0"
+    add("--ignore-exit", type=values.codes, default=(), metavar="1,2", help=told)
     told = "a regular expression with one group: the time that a command prints, in the unit that it prints"
     add("--time-from", metavar="REGEX", help=told)
     told = "of printed times that have no unit: ns, us, ms, s, min or h"
@@ -234,14 +224,7 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
     told = "leave addresses and the size of the environment as they are; else each block varies them"
     add("--fixed-layout", action="store_true", help=told)
     for kind in EXPORTS:
-        also = ("--html",) if kind == "html" else ()
-        add(
-            f"--export-{kind}",
-            *also,
-            type=Path,
-            action="append",
-            default=[],
-            metavar="FILE",
-            help=f"also write the result as {kind}",
-        )
+        words, told = [f"--export-{kind}"], f"also write the result as {kind}"
+        words += ["--html"] if kind == "html" else []
+        add(*words, type=Path, action="append", default=[], metavar="FILE", help=told)
     add("-q", "--quiet", action="store_true", help="print the result alone")

@@ -16,11 +16,13 @@ from support.vocabulary import AGAIN
 
 NAME = "compare"
 _OPTIONS = {
-    ": prepare: ": ": --prepare: ",
-    ": conclude: ": ": --conclude: ",
+    "prepare: ": "--prepare: ",
+    "conclude: ": "--conclude: ",
     "time.stdout: ": "--time-from: ",
     "time: ": "--time-from: ",
     "turns = false": "`--turns off`",
+    "Exec format error": "Exec format error: a script names its interpreter in its first line, as #!/bin/sh",
+    "nothing beside what is timed": "nothing beside what is timed (`--setup` starts what is to go on)",
 }
 """What a question's file calls what an option says."""
 _OPENMP = ("OMP_", "GOMP_", "KMP_")
@@ -70,7 +72,7 @@ def _point(
         [point] = plan(_question([command], asked, case[1]), around).points
     except InputError as error:
         # What is wrong with a series of a file here is wrong with a command.
-        wrong = str(error).replace(f"{command.folder / NAME}: series[1].", f"{command.name}: ")
+        wrong = str(error).replace(f"{command.folder / NAME}: series[1].", f"{command.called}: ")
         raise InputError(in_options(wrong.replace(": command: ", ": "))) from error
     environment = _environment(asked, point.openmp, command.environment)
     return replace(point, series_number=number, openmp=environment, x=case[0], x_name="case")

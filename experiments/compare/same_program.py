@@ -2,11 +2,11 @@
 
 import filecmp
 import re
-import shlex
 import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from experiments.compare.commands import words_in
 from experiments.compare.worktrees import Tree, git
 from experiments.plan.executable import is_file
 from experiments.run.progress import warn
@@ -76,13 +76,5 @@ def _named(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:
 
 def _parts(words: Sequence[str]) -> list[str]:
     """The words, those of lines for a shell among them, and what stands behind a sign of equality."""
-    parts = [part for word in words for part in (word, *_split(word))]
+    parts = [part for word in words for part in (word, *words_in(word))]
     return [*parts, *(part.partition("=")[2] for part in parts)]
-
-
-def _split(line: str) -> list[str]:
-    """The words of a line for a shell; none of what is no such line."""
-    try:
-        return shlex.split(re.sub("[;|&<>()]", " ", line))
-    except ValueError:
-        return []

@@ -2,10 +2,12 @@
 
 import itertools
 import re
+import shutil
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 
+from experiments.run.progress import several
 from support.errors import InputError, quoted
 
 Levels = tuple[tuple[str, str], ...]
@@ -43,13 +45,22 @@ def joined(arguments: Sequence[str]) -> list[str]:
         least = 2 if word in LIST else 3 if word in RANGE else 0
         if len(rest) < least:
             expected = "NAME A,B" if word in LIST else "NAME FIRST LAST [STEP]"
-            raise InputError(f"{word}: found {len(rest)} words behind it, expected {expected}")
+            raise InputError(f"{word}: found {several(len(rest), 'word')} behind it, expected {expected}")
         taken = least + (word in RANGE and len(rest) > least and _number(rest[least]) is not None)
         own, rest = rest[:taken], rest[taken:]
+        more = list(itertools.takewhile(_is_no_program, rest))
+        if more and word in LIST and own[0] in named_in(rest):
+            told = f"found {' '.join(more)} behind {own[1]}, which no program is called"
+            expected = f"{word} {own[0]} {','.join(one.strip(',') for one in (own[1], *more))}"
+            raise InputError(f"{word} {own[0]}: {told}; expected commas between values: {expected}")
         found.append(
             f"--{'list' if word in LIST else 'range'}={chr(0).join((word, *own))}" if least else word
         )
     return found
+
+
+def _is_no_program(word: str) -> bool:
+    return re.fullmatch(r"\w[\w.,/+-]*", word) is not None and shutil.which(word) is None
 
 
 def combinations(asked: Sequence[str], most: int) -> list[dict[str, str]]:
@@ -60,7 +71,8 @@ def combinations(asked: Sequence[str], most: int) -> list[dict[str, str]]:
     for one in asked:
         option, name, *words = one.split(chr(0))
         if not _PLACEHOLDER.fullmatch(f"{{{name}}}"):
-            raise InputError(f"{option}: found {quoted(name)}, expected a name that begins with a letter")
+            expected = f"expected a name and then its values: {option} NAME A,B"
+            raise InputError(f"{option}: found {quoted(name)}, {expected}")
         if name in values:
             raise InputError(f"{option}: found {name} twice, expected one list or range of each name")
         values[name] = _listed(words[0]) if option in LIST else _range(f"{option} {name}", words, most)

@@ -5,18 +5,13 @@ from collections.abc import Sequence
 
 from experiments.compare.answer import Answer, Difference, Place
 from experiments.compare.blocks import Runs
-from experiments.compare.counts import counted
+from experiments.compare.counts import counted, percent
 from experiments.compare.found import Found
 from experiments.compare.options import Asked
-from experiments.run.progress import about
+from experiments.run.progress import about, several
 from support.vocabulary import WALL
 
 _UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
-
-
-def percent(fraction: float, digits: int = 1) -> str:
-    """A fraction as a signed percentage without its sign of per cent."""
-    return f"{fraction * 100:+.{digits}f}".replace("-", "−")
 
 
 def change(one: Difference) -> str:
@@ -152,7 +147,7 @@ def _control(found: Found) -> str:
 def _how_long(found: Found) -> str:
     answer, asked = found.answer, found.asked
     earlier = f", {found.before} of them earlier" if found.before else ""
-    blocks = f"{blocks_said(found.blocks)}{earlier}"
+    blocks = f"{several(found.blocks, 'block')}{earlier}"
     if answer.is_enough(asked.margin, one_sided=asked.one_sided):
         return f"settled after {found.seconds:.0f} s, {blocks}"
     said = f"measured for {found.seconds:.0f} s, {blocks}"
@@ -165,11 +160,6 @@ def _how_long(found: Found) -> str:
     seconds = (answer.needed - answer.looked_at) * found.seconds_each
     option = f"`--time {math.ceil(found.seconds + seconds)}s`"
     return f"{said}: {answer.needed} blocks would settle it, {about(seconds)} more: {option} gives them"
-
-
-def blocks_said(number: int) -> str:
-    """So many blocks."""
-    return f"{number} block{'' if number == 1 else 's'}"
 
 
 def _resources(runs: Runs) -> list[str]:

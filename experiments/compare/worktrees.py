@@ -11,6 +11,7 @@ from pathlib import Path
 
 from experiments.run.progress import warn
 from experiments.support import process
+from experiments.support.vanishing import marked
 from support.errors import InputError
 
 _LAST_LINES = 12
@@ -158,7 +159,9 @@ def repository() -> Repository:
 
 def build(line: str, tree: Tree) -> None:
     """Run the line that builds. Raises InputError with the last of what it said where it fails."""
-    done = process.run(("sh", "-c", f"{line} 2>&1"), _environment(), folder=tree.folder)
+    done = process.run(
+        ("sh", "-c", f"{line} 2>&1"), marked(_environment(), tree.top.parent), folder=tree.folder
+    )
     if done.exit_code != 0:
         said = " | ".join(one.strip() for one in done.output.splitlines()[-_LAST_LINES:] if one.strip())
         raise InputError(f"--build: {tree.commit} does not build: {said or done.reason}")

@@ -1,9 +1,10 @@
 """One program that computes at a time on one host: two at once would disturb each other's measurements."""
 
 import contextlib
-import fcntl
+import errno
 import os
-import tempfile
+import socket
+import struct
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -14,6 +15,9 @@ from experiments.run.progress import warn
 from experiments.support import process
 from experiments.support.process import Completed
 from support.errors import InputError
+
+_AGAIN = 0.001
+"""Seconds until it is tried again to begin, where somebody else was about to, or has just ended."""
 
 
 def run_alone(
@@ -33,25 +37,15 @@ def run_alone(
 
 @contextlib.contextmanager
 def host_lock() -> Iterator[None]:
-    """Wait until no other runner of this user measures on this host, and keep others waiting meanwhile.
+    """Wait until no other runner measures on this host, and keep others waiting meanwhile.
 
-    Runners of other results folders count, and so do tasks of a cluster whose nodes are one host. The kernel
-    lets go of it with its process, however that ends. Raises InputError where the lock cannot be made.
+    Runners of other users and results folders count, and so do tasks of a cluster whose nodes are one host.
+    The lock is the name of a socket, without a file: the kernel lets go of it with its process, however that
+    ends. A container with a network of its own has one of its own. Raises InputError within what another
+    runner measures.
     """
-    path = Path(tempfile.gettempdir()) / f"carom-{os.getuid()}.lock"
-    try:
-        lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
-    except OSError as error:
-        raise InputError(
-            f"{path}: cannot be opened: {error.strerror}; TMPDIR chooses another folder"
-        ) from error
-    try:
-        WAITS.until_free(lock)
-        os.truncate(lock, 0)
-        os.pwrite(lock, f"{os.getpid()}".encode(), 0)
+    with WAITS.bound(f"\0carom {os.environ.get('CAROM_LOCK', '')}"):
         yield
-    finally:
-        os.close(lock)
 
 
 @dataclass
@@ -61,18 +55,45 @@ class Waits:
     seconds: float = 0.0
     is_said: bool = False
 
-    def until_free(self, lock: int) -> None:
-        """Wait for the lock, and say so the first time."""
-        with contextlib.suppress(BlockingIOError):
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            return
-        if not self.is_said:
-            holder = os.pread(lock, 20, 0).decode("ascii", "replace") or "not known"
-            warn(f"carom: waits for another measurement (process {holder})")
-            self.is_said = True
+    def bound(self, name: str) -> socket.socket:
+        """The socket of that name, once nobody else has it."""
+        lock = socket.socket(socket.AF_UNIX)
+        while True:
+            try:
+                lock.bind(name)
+                lock.listen()
+                return lock
+            except OSError as error:
+                if error.errno != errno.EADDRINUSE:
+                    raise
+                self._wait(name)
+
+    def _wait(self, name: str) -> None:
+        """Wait for the end of whoever has the name, and say so the first time."""
         began = time.monotonic()
-        fcntl.flock(lock, fcntl.LOCK_EX)
+        with socket.socket(socket.AF_UNIX) as line, contextlib.suppress(ConnectionError):
+            line.connect(name)
+            holder = struct.unpack("3i", line.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12))[0]
+            if holder in _ancestors():
+                told = "and each would wait for the other: measure either by itself"
+                raise InputError(f"runs within another measurement (process {holder}), {told}")
+            if not self.is_said:
+                warn(f"carom: waits for another measurement (process {holder or 'not known'})")
+                self.is_said = True
+            line.recv(1)
+        time.sleep(_AGAIN)
         self.seconds += time.monotonic() - began
+
+
+def _ancestors() -> Iterator[int]:
+    """This process, the one that started it, and so on."""
+    number = os.getpid()
+    while number > 0:
+        yield number
+        try:
+            number = int(Path(f"/proc/{number}/stat").read_bytes().rpartition(b")")[2].split()[1])
+        except OSError:
+            return
 
 
 WAITS = Waits()

@@ -75,6 +75,11 @@ def about(seconds: float) -> str:
     return f"about {minutes // 60} h {minutes % 60:02d} min"
 
 
+def several(number: int, noun: str) -> str:
+    """So many of what has that name."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
 def warn(text: str) -> None:
     """One line on standard error."""
     print(text, file=sys.stderr, flush=True)

@@ -1,5 +1,6 @@
 """Signals that ask a verb to stop become an exception, so that what it has is kept and told."""
 
+import os
 import signal
 from types import FrameType
 
@@ -11,11 +12,16 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal
 
 
 def stop_at_signals() -> None:
-    """Raise `Interrupted` at each of these signals, but for one that is ignored: `nohup` relies on that."""
+    """Raise `Interrupted` at each of these signals, but for one that is ignored: `nohup` relies on that. One
+    that came before, and which the program held back, is the end at once: nothing has begun.
+    """
     hear_of_ends()
-    for number in _SIGNALS:
-        if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _interrupt)
+    heard = {number for number in _SIGNALS if signal.getsignal(number) is not signal.SIG_IGN}
+    for number in heard:
+        signal.signal(number, _interrupt)
+    if early := heard & signal.sigpending():
+        os._exit(128 + min(early))
+    signal.pthread_sigmask(signal.SIG_SETMASK, ())
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

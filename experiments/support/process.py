@@ -11,7 +11,6 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import IO, Any
 
 from experiments.support.descendants import adopt_orphans, children, end_all_but, hear_of_ends
@@ -104,13 +103,11 @@ def alongside(command: Sequence[str]) -> Iterator[None]:
     """Let a command that prints nothing run until the block ends. It ends with this process, however that
     ends.
     """
-    child = _start(command, None, subprocess.DEVNULL, None)
-    try:
-        yield
-    finally:
-        _kill(child)
-        with child:
-            pass
+    with _start(command, None, subprocess.DEVNULL, None) as child:
+        try:
+            yield
+        finally:
+            _kill(child)
 
 
 class Coprocess:
@@ -128,9 +125,7 @@ class Coprocess:
     def __enter__(self) -> "Coprocess":
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._end()
         self._errors.close()
 

@@ -91,12 +91,8 @@ def _expected(schema: Mapping[str, Any]) -> str:
     if "enum" in schema:
         return "one of " + ", ".join(str(value) for value in schema["enum"])
     text = _TYPES.get(schema.get("type", ""), "another value")
-    if "minimum" in schema:
-        text += f" of at least {schema['minimum']}"
-    if "maximum" in schema:
-        text += f" and at most {schema['maximum']}"
-    if "exclusiveMinimum" in schema:
-        text += f" above {schema['exclusiveMinimum']}"
+    for key, told in (("minimum", "of at least"), ("maximum", "and at most"), ("exclusiveMinimum", "above")):
+        text += f" {told} {schema[key]}" if key in schema else ""
     if schema.get("minLength") or schema.get("minItems") or schema.get("minProperties"):
         text += " that is not empty"
     if schema.get("uniqueItems"):

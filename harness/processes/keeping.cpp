@@ -52,7 +52,8 @@ void close_all_but(std::vector<int> kept) {
 class Keeping {
   public:
     Keeping(const ProcessCommand& command, const Cgroup* group, int line)
-        : group_(group), line_(line), output_(command.pattern), error_("") {
+        : most_seconds_behind_(command.most_seconds_behind), group_(group), line_(line),
+          output_(command.pattern), error_("") {
         sigset_t of_children;
         sigemptyset(&of_children);
         sigaddset(&of_children, SIGCHLD);
@@ -122,8 +123,12 @@ class Keeping {
                                        {.fd = line_, .events = POLLIN, .revents = 0},
                                        {.fd = pipes_.output, .events = POLLIN, .revents = 0},
                                        {.fd = pipes_.error, .events = POLLIN, .revents = 0}}};
-        if (poll(waiting.data(), waiting.size(), -1) < 0) {
+        const bool is_behind = program_has_ended_ && most_seconds_behind_ < 1e9;
+        if (poll(waiting.data(), waiting.size(), is_behind ? 100 : -1) < 0) {
             return;
+        }
+        if (is_behind && process_seconds() > program_ended_at_ + most_seconds_behind_) {
+            end_all();
         }
         if (waiting[0].revents != 0) {
             reap();
@@ -239,6 +244,7 @@ class Keeping {
                 {"error_output", printed_json(error_)}};
     }
 
+    double most_seconds_behind_;
     const Cgroup* group_;
     int line_;
     int children_ = -1; ///< readable when one of them has ended

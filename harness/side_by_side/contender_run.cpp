@@ -51,6 +51,9 @@ std::string why_failed(const ProcessCommand& command, const ProcessEnd& end, con
                    ? limit
                    : limit + "; it had ended, and what it had started went on: " + end.went_on;
     }
+    if (!end.went_on.empty()) {
+        return "left " + end.went_on + " running in the background, expected nothing beside what is timed";
+    }
     if (!end.unknown.empty()) {
         return "nobody knows how it ended: " + end.unknown;
     }
@@ -115,6 +118,7 @@ std::string ContenderRun::run_beside(const std::string& what, const std::vector<
                                  .folder = folder_,
                                  .environment = contender_.command.environment,
                                  .most_seconds = contender_.command.most_seconds,
+                                 .most_seconds_behind = 2,
                                  .pattern = ""};
     const std::string why = why_failed(command, run_undisturbed(command), {0});
     return why.empty() ? "" : what + ": " + why;

@@ -85,11 +85,4 @@ std::string how_they_disagree(const std::vector<ProcessEnd>& undisturbed,
         shortest(undisturbed), shortest(in_slices));
 }
 
-std::string hint_of_slices(const ProcessEnd& end) {
-    if (end.seconds.size() < 2 || end.out_of_time) {
-        return "";
-    }
-    return " (it was stopped now and then while others ran)";
-}
-
 } // namespace carom

@@ -30,7 +30,4 @@ bool may_disagree(const std::vector<ProcessEnd>& undisturbed, const std::vector<
 std::string how_they_disagree(const std::vector<ProcessEnd>& undisturbed,
                               const std::vector<ProcessEnd>& in_slices);
 
-/// What to add to the reason of a failure of a program that was stopped now and then; empty if it was not.
-std::string hint_of_slices(const ProcessEnd& end);
-
 } // namespace carom

@@ -278,10 +278,11 @@ class Contest {
             return;
         }
         if (undisturbed_[k].empty()) {
-            measured_[k].failure = run_in_turns.failure + hint_of_slices(run_in_turns.end);
+            measured_[k].failure = run_in_turns.failure;
         } else {
             keep_undisturbed(k, undisturbed_[k].back(),
-                             "it fails where it is stopped now and then (" + run_in_turns.failure + ")");
+                             "a run in slices failed (" + run_in_turns.failure +
+                                 "), one without a pause did not");
         }
     }
 

@@ -37,8 +37,8 @@ def script(path: Path, text: str) -> None:
 
 
 def left_behind(folder: Path) -> list[str]:
-    """What a call has left in its temporary folder, but for the lock of the machine."""
-    return [one.name for one in (folder / "tmp").iterdir() if not one.name.endswith(".lock")]
+    """What a call has left in its temporary folder."""
+    return [one.name for one in (folder / "tmp").iterdir()]
 
 
 def printed(folder: Path) -> None:

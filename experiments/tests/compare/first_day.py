@@ -139,6 +139,49 @@ CASES = (
         through='"$@"; code=$?; kill -0 $(cat pid) 2>/dev/null || exit $code; exit 9',
     ),
     Case(
+        TIMED, "commands that fail, and differ in one word", "each is named as it was written",
+        ("ls -l x", "ls -a x"),
+        ("carom: ls -l x: failed after 0 runs: exit code 2", "carom: ls -a x: failed after 0 runs"), code=2,
+    ),
+    Case(
+        TIMED, "options between commands", "options",
+        ("true", "-n", "a", "ls", "-n", "b"), ("  a  ", "  b  "), code=None,
+    ),
+    Case(
+        TIMED, "options of another tool", "the first of them is named", ("-w", "3", "-r", "10", "true", "ls"),
+        ("unrecognized arguments: -w (",), code=1,
+    ),
+    Case(
+        TIMED, "--vs between lines", "one line that says what is missing", ("true", "--vs", "ls"),
+        ("found --vs, expected `--` before it",), code=1,
+    ),
+    Case(
+        TIMED, "a script without a first line for its interpreter", "the line is named",
+        ("sh -c :", "./a.sh"), ("./a.sh: failed after 0 runs: ", "in its first line, as #!/bin/sh"), code=2,
+        files={"a.sh": "true"}, setup="chmod +x a.sh",
+    ),
+    Case(
+        TIMED, "Carom itself", "is no Google Benchmark, although it loads the library",
+        ("-n", "true", "-n", "carom", "true"), ("  carom  ",), ("Google Benchmark",), code=None,
+        through='"$@" "$1 --version"',
+    ),
+    Case(
+        TIMED, "a command that fails now and then", "how many runs ended well, how this one ended, no cause",
+        ("--turns", "off", "./a", "./b"), (" runs that ended well: exit code 3: bad luck",),
+        ("now and then",), code=2,
+        files={
+            "a": LOOP.format(times=20000)
+            + "echo x >> n; [ $(wc -l < n) != 9 ] || { echo bad luck >&2; exit 3; }",
+            "b": LOOP.format(times=40000),
+        }, time="10s",
+    ),
+    Case(
+        TIMED, "work that --prepare leaves in the background", "noticed soon, and named",
+        ("--prepare", "sleep 98 &", "-n", "true", "-n", "ls", "true", "ls"),
+        ("true: failed after 0 runs: --prepare: left sleep running in the background", "`--setup`"),
+        code=2, through='timeout 40 "$@"',
+    ),
+    Case(
         TIMED, "a program that needs a terminal", "the hint that it has none", ("./a", "./b"),
         ("a: failed after 0 runs: exit code 1 without a word", "terminal"), code=2,
         files={"a": "test -t 1", "b": _FAST},
@@ -154,6 +197,11 @@ CASES = (
             "a": "until mkdir lock 2>/dev/null; do :; done; " + LOOP.format(times=60000) + "rmdir lock",
             "b": "until mkdir lock 2>/dev/null; do :; done; " + LOOP.format(times=90000) + "rmdir lock",
         },
+    ),
+    Case(
+        TIMED, "a comparison within a comparison", "one line at once: each would wait for the other",
+        ("-n", "true", "-n", "inner", "true"), ("inner: failed after 0 runs", "runs within another measure"),
+        code=2, through='"$@" "$1 compare true ls"',
     ),
     Case(
         TIME, "a short command beside a long one", "each as often as it needs, within --time",
@@ -198,6 +246,15 @@ CASES = (
     Case(
         LISTS, "steps and decimals", "ranges", ("-P", "i", "0.1", "0.5", "0.2", "echo {i}"),
         ("  echo 0.1  ", "  echo 0.3  ", "  echo 0.5  "), code=None,
+    ),
+    Case(
+        LISTS, "blanks between values", "one line that says how they are written",
+        ("-L", "n", "1000", "2000", "seq {n}"),
+        ("-L n: found 2000 behind 1000, ", "expected commas between values: -L n 1000,2000"), code=1,
+    ),
+    Case(
+        LISTS, "`=` between a name and its values", "one line that says how they are written",
+        ("-L", "n=1,2", "seq {n}"), ("expected a name and then its values: -L NAME A,B",), code=1,
     ),
     Case(
         LISTS, "a thousand values", "the option that makes them is named",
@@ -247,7 +304,7 @@ CASES = (
     Case(
         WRITTEN, "an export to a program that is compared", "refused",
         ("--export-json", "./a", "./a", "true"),
-        ("--export-json: found ./a, which a uses",), code=1, files={"a": "exit 0"},
+        ("--export-json: found ./a, which ./a uses",), code=1, files={"a": "exit 0"},
     ),
     Case(
         WRITTEN, "an export to a link to itself", "refused", ("--export-json", "loop", "true", "ls"),
@@ -266,6 +323,22 @@ CASES = (
     Case(
         WRITTEN, "--append to a device", "refused", ("--append", "/dev/null", "true", "ls"),
         ("--append: found /dev/null, which is no file",), code=1,
+    ),
+    Case(
+        ENDS, "Python parts that the user may not read", "one line that names them", ("true", "ls"),
+        ("compare: needs Carom's Python parts, of which you may not read ", "/.venv/bin/python"), code=1,
+        through="all=$(mktemp -d -p /tmp) && chmod 755 $all && mkdir -p $all/build/gcc $all/.venv/bin\n"
+        'cp "$1" $all/build/gcc/ && touch $all/.venv/bin/python && chmod 0 $all/.venv/bin; shift\n'
+        "[ $(id -u) != 0 ] || other='setpriv --reuid=65534 --clear-groups'\n"
+        'cd /; $other $all/build/gcc/carom "$@"; code=$?; chmod 755 $all/.venv/bin; rm -r $all; exit $code',
+    ),
+    Case(
+        ENDS, "a working folder that is gone", "one line that says so", ("true", "ls"),
+        ("carom: is called in a folder that is gone",), code=1, through='mkdir x; cd x; rmdir ../x; "$@"',
+    ),
+    Case(
+        ENDS, "Ctrl-C at once", "ends silently", ("true", "ls"), untold=("Traceback",), code=130,
+        through='timeout --preserve-status --signal=INT 0.1 "$@"',
     ),
     Case(
         ENDS, "standard output is closed", "said, and what was asked for is written",

@@ -34,8 +34,8 @@ def test_cases_of_benchmarks_are_paired_by_name(benchmarks: Path) -> None:
     assert "BM_a     4 ms → 3 ms   −25.0 % [−25.0, −25.0]   faster by more than 2 %" in done.stdout
     assert "BM_b/8   4 ms → 3 ms   −25.0 %" in done.stdout
     assert "control: bench_old against itself: no difference found in any case" in done.stdout
-    assert "not all have it: BM_gone of bench_old" in done.stderr
-    assert "not all have it: BM_new of bench_new" in done.stderr
+    assert "not all have it: BM_gone of ./bench_old" in done.stderr
+    assert "not all have it: BM_new of ./bench_new" in done.stderr
     rows = list(csv.DictReader((benchmarks / "a.csv").open(encoding="utf-8")))
     assert {row["case"] for row in rows} == {"BM_a", "BM_b/8"}
 

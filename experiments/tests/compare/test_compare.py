@@ -43,7 +43,7 @@ def test_a_command_that_fails_is_named_with_its_last_line(folder: Path) -> None:
     script(folder / "fails", "echo first >&2; echo no such scene >&2; exit 3")
     done = run(folder, "compare", "./short", "./fails", "--time", "5s")
     assert done.returncode == 2
-    assert "carom: fails: failed after 0 runs" in done.stderr
+    assert "carom: ./fails: failed after 0 runs" in done.stderr
     assert "no such scene" in done.stderr
     assert left_behind(folder) == []
 
@@ -72,7 +72,7 @@ def test_exit_codes_that_are_fine_are_no_failures(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["./short", "./not_there"], 'carom: not_there: found "./not_there", which is not there'),
+        (["./short", "./not_there"], 'carom: ./not_there: found "./not_there", which is not there'),
         (["./short"], "found 1 command, expected two or more"),
         (["./short", "./long", "--export-json", "tmp"], "--export-json: found tmp, which is a folder"),
         (["./short", "./long", "--turns", "0.1ms"], "--turns: found 0.1ms, expected auto, on, off or"),

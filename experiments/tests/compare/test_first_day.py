@@ -82,19 +82,16 @@ def test_what_was_measured_is_kept_however_it_ends(tmp_path: Path, number: signa
 
 
 def test_another_measurement_is_waited_for_and_that_is_said(tmp_path: Path) -> None:
-    (tmp_path / "tmp").mkdir()
-    environment = {**os.environ, "TMPDIR": str(tmp_path / "tmp")}
     first = subprocess.Popen(
-        [CAROM, "compare", "-q", "--time", "4s", "sleep 1.1", "sleep 1"], cwd=tmp_path, env=environment,
+        [CAROM, "compare", "-q", "--time", "4s", "touch began; sleep 1.1", "sleep 1"], cwd=tmp_path,
         stdout=subprocess.DEVNULL,
     )  # fmt: skip
-    lock = tmp_path / "tmp" / f"carom-{os.getuid()}.lock"
     until = time.monotonic() + 60
-    while time.monotonic() < until and not (lock.exists() and lock.read_text()):
+    while time.monotonic() < until and not (tmp_path / "began").exists():
         time.sleep(0.05)
     second = subprocess.run(
-        [CAROM, "compare", "-q", "--time", "1ms", "true", "ls"], cwd=tmp_path, env=environment,
-        capture_output=True, text=True, timeout=60, check=False,
+        [CAROM, "compare", "-q", "--time", "1ms", "true", "ls"], cwd=tmp_path,
+        env={**os.environ, "TMPDIR": str(tmp_path)}, capture_output=True, text=True, timeout=60, check=False,
     )  # fmt: skip
     assert f"carom: waits for another measurement (process {first.pid})" in second.stderr
     assert second.stderr.count("waits for") == 1

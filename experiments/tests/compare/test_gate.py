@@ -11,7 +11,7 @@ import pytest
 
 from experiments.compare.answer import Answer, Difference
 from experiments.compare.gate import SLOWER, UNDECIDED, verdict
-from experiments.tests.compare.calls import BENCHMARK, CAROM, needs_the_program
+from experiments.tests.compare.calls import BENCHMARK, CAROM, left_behind, needs_the_program
 from experiments.tests.conftest import ROOT, is_running
 
 PRINTS = "#!/bin/sh\n# {tag}\necho took $((100 + {more})) ms\n"
@@ -66,8 +66,7 @@ def gate(repository: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 def require_untouched(repository: Path) -> None:
-    left = [one.name for one in (repository.parent / "tmp").iterdir() if not one.name.endswith(".lock")]
-    assert left == []
+    assert left_behind(repository.parent) == []
     assert git(repository, "worktree", "list").count("\n") == 0
     assert git(repository, "status", "--porcelain") == ""
 
@@ -107,10 +106,11 @@ def test_what_is_not_committed_is_said(repository: Path) -> None:
 
 
 @needs_the_program
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 def test_a_signal_while_it_builds_leaves_nothing(repository: Path, number: signal.Signals) -> None:
+    build = "setsid sleep 1000 & echo $! > ../pid; wait"
     child = subprocess.Popen(
-        [CAROM, "gate", "--base", "base", "--build", "echo $$ > ../pid; exec sleep 1000", "--", "./program"],
+        [CAROM, "gate", "--base", "base", "--build", build, "--", "./program"],
         cwd=repository / "sub",
         env={**os.environ, "TMPDIR": str(repository.parent / "tmp")},
         stderr=subprocess.PIPE,
@@ -123,7 +123,9 @@ def test_a_signal_while_it_builds_leaves_nothing(repository: Path, number: signa
         ]
     child.send_signal(number)
     child.communicate(timeout=60)
-    assert child.returncode == 128 + number
+    assert child.returncode == (-number if number == signal.SIGKILL else 128 + number)
+    while time.monotonic() < until and "\n" in git(repository, "worktree", "list"):
+        time.sleep(0.05)
     require_untouched(repository)
     assert not is_running(int(pids[0])), "what it built with goes on"
 

@@ -1,6 +1,7 @@
 """The lock of a host: measurements on one host never overlap."""
 
 import itertools
+import os
 import subprocess
 import sys
 import time
@@ -30,12 +31,6 @@ def another(seconds: float) -> "subprocess.Popen[str]":
 
 def times(process: "subprocess.Popen[str]") -> list[float]:
     return [float(line) for line in process.communicate(timeout=60)[0].split()]
-
-
-@pytest.fixture(autouse=True)
-def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
-    monkeypatch.setattr("tempfile.tempdir", None)
 
 
 def test_what_two_processes_do_under_it_does_not_overlap() -> None:
@@ -73,12 +68,21 @@ def test_a_killed_process_gives_it_up() -> None:
         assert time.monotonic() - before < 60
 
 
-def test_a_link_in_the_place_of_the_lock_is_refused(tmp_path: Path) -> None:
+def test_within_a_measurement_none_begins() -> None:
     with host_lock():
-        pass
-    (lock,) = tmp_path.iterdir()
-    lock.unlink()
-    lock.symlink_to(tmp_path / "elsewhere")
-    with pytest.raises(InputError, match="cannot be opened"), host_lock():
-        pass
-    assert not (tmp_path / "elsewhere").exists()
+        child = subprocess.run(
+            [sys.executable, "-c", ANOTHER, "0"], stderr=subprocess.PIPE, text=True, timeout=60, check=False
+        )
+        with pytest.raises(InputError, match="runs within another measurement"), host_lock():
+            pass
+    assert "runs within another measurement (process " in child.stderr
+
+
+def test_no_other_measures_although_its_temporary_folder_is_another(tmp_path: Path) -> None:
+    program = [sys.executable, "-c", ANOTHER, "0.3"]
+    both = [
+        subprocess.Popen(program, stdout=subprocess.PIPE, text=True, env={**os.environ, "TMPDIR": folder})
+        for folder in (str(tmp_path), "/tmp")
+    ]
+    first, second = sorted(times(process) for process in both)
+    assert first[1] <= second[0]

@@ -121,12 +121,18 @@ TEST(Together, WhatFindsALockLeftEndsAtItsLimit) {
     }
 }
 
-TEST(Together, AFailureInSlicesSaysThatItMayMind) {
+TEST(Together, AFailureInSlicesNamesNoCauseThatIsNotKnown) {
     ProgramContender minds = scripted(work + "; exit 3");
     minds.turns = true;
     const auto measured = measure_together({minds, minds}, {.slice_seconds = 0.002});
-    EXPECT_EQ(measured[0].failure, "exit code 3 without a word; " + no_terminal +
-                                       " (it was stopped now and then while others ran)");
+    EXPECT_EQ(measured[0].failure, "exit code 3 without a word; " + no_terminal);
+}
+
+TEST(Together, WhatIsLeftInTheBackgroundBeforeARunIsNoticedSoon) {
+    ProgramContender one = scripted("true");
+    one.prepare = {"sh", "-c", "sleep 97 &"};
+    const auto measured = measure_together({one}, {});
+    EXPECT_TRUE(measured[0].failure.starts_with("prepare: left sleep running")) << measured[0].failure;
 }
 
 TEST(Together, NothingIsStoppedThatIsNotToBe) {
