@@ -15,8 +15,8 @@ PAUSES = "pauses"
 PLAN = "plan.json"
 """The file of a results folder that tells how many blocks each experiment was given."""
 
-WALL, PROCESSOR = "wall", "processor"
-"""The clocks by which commands are judged."""
+WALL, OWN = "wall", "own"
+"""The clocks by which commands are judged: all time that passes, or that less waiting for a processor."""
 
 AGAIN = " again"
 """Behind the name of the reference where `carom compare` runs it under a second one."""

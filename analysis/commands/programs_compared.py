@@ -16,7 +16,7 @@ from analysis.statistics.pairs import rounds_of, runs_of
 from analysis.statistics.ranking import ranking
 from analysis.statistics.verdicts import corrected, judge_one
 from support.files import read_json
-from support.vocabulary import AGAIN, ASKED, PROCESSOR, WALL
+from support.vocabulary import AGAIN, ASKED, OWN, WALL
 
 LEAGUE = 3
 """So many commands are a league, in which every pair is compared."""
@@ -29,12 +29,12 @@ def programs_compared(results: Path, many: int = 1, clock: str = WALL) -> dict[s
     same of the reference under its second name, a row a case, and whether it `differs` from itself; `places`:
     with three commands or more, in the order of their times, the places and the bracket of each; `effects`:
     rows of the sums of logarithms that `asked.json` asks for; and `next`, the number of blocks at which
-    to look again. By the `clock` of the processor times are those in which it computed.
+    to look again. The `clock` says whether what commands waited for a processor counts.
     """
     times = times_of(results)
-    if clock == PROCESSOR and not times.empty:
+    if clock == OWN and not times.empty:
         parts = [rounds_of("steps_seconds"), runs_of("steps_seconds")]
-        times = times.assign(steps_seconds=times["processor_seconds"]).drop(columns=parts)
+        times = times.assign(steps_seconds=times["own_seconds"]).drop(columns=parts)
     if times.empty:
         nothing: dict[str, Any] = {key: [] for key in ("commands", "controls", "places", "effects")}
         return {**nothing, "next": next_look(0)}

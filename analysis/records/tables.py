@@ -53,7 +53,7 @@ CONTEXT = [
 ]  # fmt: skip
 OF_PARTS = {
     "runs": [*WORK, *ERRORS, *CHECKS],
-    "times": ["lost_by_turns", "stops", "processor_seconds"],
+    "times": ["lost_by_turns", "stops", "own_seconds"],
     "trajectory": ["time", "rms_distance"],
     "phases": ["phase", "wall_seconds", "serial_seconds"],
     "threads": ["phase", "thread", "busy_seconds", "waiting_seconds"],
@@ -161,14 +161,15 @@ def trajectory(record: Record) -> Iterable[Row]:
 def times(record: Record) -> Iterable[Row]:
     """Give one row for a process that was timed: `lost_by_turns`, the share of its time that coming back to
     cold caches took, and `stops`, in how many slices a run of a whole program was, 0 if it was never stopped;
-    NaN where not known. `processor_seconds` is the median of its runs.
+    NaN where not known. `own_seconds` is the median of its runs less what they waited for a processor.
     """
     if len(seconds_of_runs(record)):
-        processor = [one["cpu_seconds"] for one in record["repetitions"]]
+        waited = [one.get("waited_seconds") for one in record["repetitions"]]
+        own = seconds_of_runs(record) - np.array(waited, dtype=float)
         yield {
             "lost_by_turns": _lost_by_turns(record),
             "stops": _stops(record),
-            "processor_seconds": float(np.median(processor)),
+            "own_seconds": float(np.median(own)),
         }
 
 

@@ -17,7 +17,7 @@ from analysis.support.wording import count, listed, share
 
 BURST = 4.0
 LARGE_EFFECTS = (
-    "trend", "scaling", "machine", "phases", "speed_against_error", "hard_cases", "promises", "counts",
+    "trend", "scaling", "machine", "phases", "speed_against_error", "hard_cases", "counts",
 )  # fmt: skip
 ADVICE = (
     "close other programs, keep the machine on mains power and a fixed clock, run on bare metal or a whole "

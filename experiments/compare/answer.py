@@ -62,7 +62,7 @@ class Answer:
     next: int = 0
     looked_at: int = 0
     clock: str = WALL
-    """Which time is judged: all that passes, or that in which a processor computed."""
+    """Which time is judged (`support.vocabulary`)."""
     by_wall: tuple[Difference, ...] = ()
     """All differences of the time that passes, where that is not judged."""
 

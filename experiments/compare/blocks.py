@@ -18,6 +18,7 @@ from experiments.plan.point import Point
 from experiments.results.store import Store
 from experiments.results.summary import summary_of, unusable
 from experiments.run.host_lock import WAITS
+from experiments.run.processes import HINDERED_SECONDS
 from experiments.run.runner import Runner, Task
 from experiments.run.schedule import FIRST_LOOK
 from experiments.run.together import together
@@ -28,7 +29,7 @@ PADDING = "CAROM_PADDING"
 MOST_PADDING = 4096
 """The longest value of the variable that changes where a process finds its stack: a page."""
 
-WAITS_COUNTED = "voluntary_context_switches"
+_WAITS = "voluntary_context_switches"
 
 CONTROL_EACH = 4
 """After the first look the reference runs under its second name in every block of so many: what it is for, an
@@ -64,6 +65,8 @@ class Runs:
     """The last line that it wrote into its standard error."""
     left_behind: list[float] = field(default_factory=list)
     """Of each block the share of its time that went on after the command had ended."""
+    knows_waiting: bool = True
+    """Whether the system told of each run how long it waited for a processor."""
     tries: int = 0
     """How many runs ended well, those included that no longer count."""
 
@@ -88,6 +91,7 @@ class Blocks:
         self.has_cases = has_cases
         self._store = store
         self._runner = runner
+        self._slice_seconds = runner.slice_seconds
         self.began = time.monotonic()
         self.others = Others()
         self._plan(experiment)
@@ -189,6 +193,8 @@ class Blocks:
         """Run a block; returns whether nothing of it failed that had not failed before."""
         block, failed = self.done, len(self.failed)
         there = self._points(block)
+        is_hindered = self._slice_seconds is None and self.others.are_in_the_way
+        self._runner.slice_seconds = HINDERED_SECONDS if is_hindered else self._slice_seconds
         if vary_layout:
             padding = random.Random(f"{self.experiment.order_seed} {block}").randrange(MOST_PADDING)
             os.environ[PADDING] = "x" * padding
@@ -221,11 +227,12 @@ class Blocks:
         runs.cores.append(busy / max(process["wall_seconds"], 1e-9))
         if process["peak_memory_bytes"] is not None:
             runs.bytes.append(process["peak_memory_bytes"])
+        runs.knows_waiting &= all(one.get("waited_seconds") is not None for one in record["repetitions"])
         stops = len((record["turns"] or {}).get("seconds", ())) / len(taken)
         for name, amount in process.get("counted", {}).items():
             if amount is not None:
                 # Each stop is a wait that is none of the command's own.
-                own = max(0.0, amount - stops) if name == WAITS_COUNTED else amount
+                own = max(0.0, amount - stops) if name == _WAITS else amount
                 runs.counts.setdefault(name, []).append(own)
         runs.memory = process["peak_memory_reason"]
         runs.undisturbed = process["undisturbed"] or runs.undisturbed

@@ -79,7 +79,7 @@ def in_order(found: Found) -> list[Difference]:
 def row(one: Difference, found: Found) -> list[str]:
     """What is compared, by how much it differs, and the verdict; of a case its times beside that."""
     asked = found.asked
-    by_clock = "" if found.answer.clock == WALL else ", by processor time"
+    by_clock = "" if found.answer.clock == WALL else ", waiting for a processor left out"
     said = "withdrawn" if found.answer.is_withdrawn else verdict(one, asked) + by_clock
     if not asked.cases:
         return [f"{one.name} against {asked.reference}", change(one), said]
@@ -93,7 +93,7 @@ def hindered(answer: Answer) -> str:
     if answer.clock == WALL:
         return "Times are longer then, and verdicts rarer: repeat it on a quiet machine"
     by_wall = "; ".join(f"{one.name} {change(one)}" for one in answer.by_wall)
-    return f"What the commands waited for a processor is left out; with it: {by_wall}"
+    return f"With what the commands waited for it: {by_wall}"
 
 
 def effects(found: Found) -> list[str]:

@@ -33,6 +33,10 @@ SLICE_SECONDS, SHORT_SECONDS = 0.01, 0.002
 (analysis/statistics/stopping.py). The noise of a virtual machine changes within some milliseconds.
 """
 
+HINDERED_SECONDS = 0.025
+"""Of a slice where other programs have the processors: who goes on there is often moved to another one, whose
+caches hold nothing of it."""
+
 _RUNS = 8
 """Of each at most: one to look at it, two in slices, and where these disagree two more of either kind."""
 
@@ -66,8 +70,7 @@ class Left:
 class Processes:
     """Runs `carom processes`, which lets them run in turn and leaves a record, or a failure, of each.
 
-    `slice_seconds`: how long the shortest runs before the next does; see `slice_of` without it. Where it
-    `tells`, a line says of a program why it is not stopped; the record says it in any case.
+    Where it `tells`, a line says of a program why it is not stopped; the record says it in any case.
     """
 
     def __init__(
@@ -75,21 +78,21 @@ class Processes:
         store: Store,
         instrument: Program,
         time_limit: float,
-        slice_seconds: float | None = None,
         *,
         tells: bool = True,
     ) -> None:
         self._store = store
         self._instrument = instrument
         self._time_limit = time_limit
-        self._slice_seconds = slice_seconds
         self._tells = tells
-        self._slice = slice_seconds or SLICE_SECONDS
+        self._slice = SLICE_SECONDS
         self._behaviours = Behaviours(store)
         self._written = Written(store)
 
-    def measure(self, asked: Sequence[Asked], seed: int, block: int = 0) -> tuple[Completed, list[Left]]:
-        """How it went in a block, and what is left of each.
+    def measure(
+        self, asked: Sequence[Asked], seed: int, slice_seconds: float
+    ) -> tuple[Completed, list[Left]]:
+        """How it went, and what is left of each; the shortest runs for so many seconds before the next does.
 
         Where a file among the words changed, all are measured a second time: only then is it known whether
         a program writes it. So they are where one turns out to mind being stopped and others were in slices:
@@ -97,7 +100,7 @@ class Processes:
         somebody built a program anew meanwhile.
         """
         asked = [replace(one, point=self._known(one.point)) for one in asked]
-        self._slice = self._slice_seconds or slice_of(asked[0].point, block)
+        self._slice = slice_seconds
         done, left = self._run(asked, seed)
         suspected = {
             file: touch_of(file)

@@ -14,7 +14,7 @@ from experiments.results.store import Store
 from experiments.results.summary import summary_of, unusable
 from experiments.run.host_lock import run_alone
 from experiments.run.machine_limits import MachineLimits
-from experiments.run.processes import Asked, Left, Processes
+from experiments.run.processes import Asked, Left, Processes, slice_of
 from experiments.run.together import have_room, is_alike
 from experiments.run.verify import Verifier, representative, scope_of
 from experiments.run.written import Written, built_anew
@@ -90,7 +90,9 @@ class Runner:
         self._scenes = scenes
         self._generator = generator
         self._time_limit = time_limit
-        self._processes = Processes(store, generator, time_limit, slice_seconds, tells=tells)
+        self.slice_seconds = slice_seconds
+        """How long a whole program runs before the next does; see `slice_of` without it."""
+        self._processes = Processes(store, generator, time_limit, tells=tells)
         self._verifier = Verifier(store, generator, self._processes, time_limit)
         self._written = Written(store)
         self._limits = MachineLimits(store, time_limit)
@@ -169,7 +171,9 @@ class Runner:
             )
             for task, scene in ready
         ]
-        done, left = self._processes.measure(asked, seed_of(first), first.block)
+        done, left = self._processes.measure(
+            asked, seed_of(first), self.slice_seconds or slice_of(first.point, first.block)
+        )
         return [
             self._keep_process(replace(task, point=there.point), scene, there, done)
             for (task, scene), there in zip(ready, left, strict=True)

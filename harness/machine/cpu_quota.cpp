@@ -5,7 +5,6 @@
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "harness/machine/machine.hpp"
@@ -23,10 +22,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
         parts.push_back(part);
     }
     return parts;
-}
-
-bool contains(const std::vector<std::string>& parts, std::string_view part) {
-    return std::ranges::find(parts, part) != parts.end();
 }
 
 /// A blank, tab, line break or backslash stands as three octal digits in mountinfo.
@@ -60,27 +55,18 @@ std::vector<CgroupMount> cgroup_mounts(const fs::path& root) {
         if (fields.size() < 5 || kind.empty()) {
             continue;
         }
-        const bool is_version_2 = kind[0] == "cgroup2";
-        if (is_version_2 || (kind[0] == "cgroup" && contains(split(kind.back(), ','), "cpu"))) {
-            mounts.push_back({unescaped(fields[4]), unescaped(fields[3]), is_version_2});
+        if (kind[0] == "cgroup2") {
+            mounts.push_back({unescaped(fields[4]), unescaped(fields[3])});
         }
     }
     return mounts;
 }
 
-std::optional<fs::path> own_cgroup(const fs::path& root, bool is_version_2) {
+std::optional<fs::path> own_cgroup(const fs::path& root) {
     std::ifstream file(root / "proc/self/cgroup");
     for (std::string line; std::getline(file, line);) {
-        const std::size_t first = line.find(':');
-        const std::size_t second = line.find(':', std::min(first, line.size() - 1) + 1);
-        if (first == std::string::npos || second == std::string::npos) {
-            continue;
-        }
-        const std::string controllers = line.substr(first + 1, second - first - 1);
-        const bool is_wanted = is_version_2 ? line.starts_with("0:") && controllers.empty()
-                                            : contains(split(controllers, ','), "cpu");
-        if (is_wanted) {
-            return line.substr(second + 1);
+        if (line.starts_with("0::")) {
+            return line.substr(3);
         }
     }
     return std::nullopt;
@@ -104,11 +90,11 @@ std::vector<fs::path> groups_at(const fs::path& root, const CgroupMount& mount, 
 
 /// The groups that limit this process, as far as it sees them.
 std::vector<fs::path> limiting_groups(const fs::path& root) {
-    const auto own = own_cgroup(root, true);
+    const auto own = own_cgroup(root);
     std::vector<fs::path> groups;
     std::vector<fs::path> tops;
     for (const CgroupMount& mount : cgroup_mounts(root)) {
-        if (own && mount.is_version_2) {
+        if (own) {
             const auto more = groups_at(root, mount, *own);
             groups.insert(groups.end(), more.begin(), more.end());
             tops.push_back(root / mount.place.relative_path());
@@ -143,6 +129,15 @@ std::optional<double> read_cpu_quota(const fs::path& root) {
     return least;
 }
 
-bool has_unread_cpu_quota(const fs::path& root) { return own_cgroup(root, false).has_value(); }
+bool has_unread_cpu_quota(const fs::path& root) {
+    std::ifstream file(root / "proc/self/cgroup");
+    for (std::string line; std::getline(file, line);) {
+        const auto fields = split(line, ':');
+        if (fields.size() > 1 && std::ranges::count(split(fields[1], ','), "cpu") > 0) {
+            return true;
+        }
+    }
+    return false;
+}
 
 } // namespace carom

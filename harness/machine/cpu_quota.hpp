@@ -6,18 +6,17 @@
 
 namespace carom {
 
-/// A hierarchy of control groups that can limit processors, at one place where it is mounted.
+/// The hierarchy of control groups, at one place where it is mounted.
 struct CgroupMount {
     std::filesystem::path place;
     std::filesystem::path top; ///< the group that is seen there
-    bool is_version_2 = false;
 };
 
-/// All of them, as proc/self/mountinfo below `root` tells.
+/// All of them, of version 2, as proc/self/mountinfo below `root` tells.
 std::vector<CgroupMount> cgroup_mounts(const std::filesystem::path& root = "/");
 
-/// The path of this process's group in a version's hierarchy; empty if it is in none.
-std::optional<std::filesystem::path> own_cgroup(const std::filesystem::path& root, bool is_version_2);
+/// The path of this process's group; empty if it is in none.
+std::optional<std::filesystem::path> own_cgroup(const std::filesystem::path& root);
 
 /// How many processors' time the control groups of this process let it use, such as 1.5: the least that its
 /// own group and those around it allow, as far as it sees them. Empty where none limits it. A container or a

@@ -80,19 +80,8 @@ struct Row {
     std::string aggregate; ///< empty of a run
 };
 
-/// `last` is the name of the case before it: up to version 1.4 aggregates follow the runs, with a name that
-/// goes on after theirs.
-Row row_of(const Json& run, const std::string& last) {
-    const std::string name = name_of(run);
-    if (text_of(run, "run_type") == "aggregate") {
-        return {name, text_of(run, "aggregate_name")};
-    }
-    for (const char* aggregate : {"mean", "median", "stddev"}) {
-        if (!run.contains("run_type") && name == last + "_" + aggregate) {
-            return {last, aggregate};
-        }
-    }
-    return {name, ""};
+Row row_of(const Json& run) {
+    return {name_of(run), text_of(run, "run_type") == "aggregate" ? text_of(run, "aggregate_name") : ""};
 }
 
 /// What of the report is about one case, or several of one name.
@@ -108,7 +97,7 @@ std::map<std::string, Case> cases_of(const Json& benchmarks, const std::string& 
     std::map<std::string, Case> cases;
     std::string last;
     for (const Json& run : benchmarks) {
-        const Row row = row_of(run, last);
+        const Row row = row_of(run);
         // These two are over several cases.
         const bool is_of_family = row.aggregate == "BigO" || row.aggregate == "RMS";
         if (!is_of_family && (row.name == name || row.name.starts_with(name + "/"))) {
@@ -130,8 +119,7 @@ std::map<std::string, Case> cases_of(const Json& benchmarks, const std::string& 
 }
 
 /// Whether several were registered with one name. Their families or instances differ (since version 1.5.5),
-/// or else a number of a repetition, or an aggregate, comes twice. Runs of before version 1.5 have no such
-/// number; repetitions are followed by their mean there.
+/// or else a number of a repetition, or an aggregate, comes twice.
 bool is_several(const Case& one) {
     std::set<std::pair<double, double>> families;
     std::set<double> repetitions;
@@ -154,7 +142,7 @@ bool is_several(const Case& one) {
         note_family(aggregate);
         again = !aggregates.insert(name).second || again;
     }
-    return families.size() > 1 || again || (!is_numbered && one.runs.size() > 1 && one.aggregates.empty());
+    return families.size() > 1 || again || (!is_numbered && one.runs.size() > 1);
 }
 
 /// The runs that count: all repetitions, or the mean of them where the report has only aggregates.
@@ -198,19 +186,9 @@ std::optional<double> mean_of(const std::vector<Json>& runs, const std::string& 
     return std::isfinite(sum) ? std::optional(sum / static_cast<double>(runs.size())) : std::nullopt;
 }
 
-/// How many threads the case ran on: in old versions its name alone tells.
 int threads_of(const Json& run) {
-    if (const auto threads = number_of(run, "threads")) {
-        return *threads > 1 && *threads < 1e9 ? static_cast<int>(*threads) : 1;
-    }
-    constexpr std::string_view key = "/threads:";
-    const std::string name = name_of(run);
-    const std::size_t at = name.rfind(key);
-    if (at == std::string::npos) {
-        return 1;
-    }
-    const std::string_view rest = std::string_view(name).substr(at + key.size());
-    return parse_number<int>(rest.substr(0, rest.find('/'))).value_or(1);
+    const double threads = number_of(run, "threads").value_or(1);
+    return threads > 1 && threads < 1e9 ? static_cast<int>(threads) : 1;
 }
 
 /// The one case of that name, with its full name. Throws InputError.

@@ -26,8 +26,7 @@ namespace fs = std::filesystem;
 /// Where the hierarchy of version 2 is mounted, alone or beside those of version 1; empty if it is not.
 std::string hierarchy() {
     const auto mounts = cgroup_mounts();
-    const auto found = std::ranges::find_if(mounts, &CgroupMount::is_version_2);
-    return found == mounts.end() ? "" : found->place.string();
+    return mounts.empty() ? "" : mounts.front().place.string();
 }
 
 /// What tells the processes of one name space from those of others, which have the same numbers.
@@ -102,7 +101,7 @@ std::unique_ptr<Cgroup> Cgroup::make() {
     if (root.empty()) {
         return nullptr;
     }
-    const std::string own = own_cgroup("/", true).value_or("/").string();
+    const std::string own = own_cgroup("/").value_or("/").string();
     for (const std::string& folder : {root + (own == "/" ? "" : own), root}) {
         if (number == 0) {
             remove_abandoned(folder);
@@ -168,6 +167,18 @@ std::optional<UserAndSystem> Cgroup::cpu_time() const {
         }
     }
     return user && system ? std::optional(UserAndSystem{*user, *system}) : std::nullopt;
+}
+
+std::optional<double> Cgroup::waited_seconds() const {
+    std::ifstream file(path_ + "/cpu.pressure");
+    for (std::string line; std::getline(file, line);) {
+        const auto total = line.find("total=");
+        if (line.starts_with("full ") && total != std::string::npos) {
+            const auto microseconds = parse_number<std::uint64_t>(line.substr(total + 6));
+            return microseconds ? std::optional(1e-6 * static_cast<double>(*microseconds)) : std::nullopt;
+        }
+    }
+    return std::nullopt;
 }
 
 std::optional<std::int64_t> Cgroup::peak_memory() const {

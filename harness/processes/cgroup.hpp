@@ -43,6 +43,10 @@ class Cgroup : public Tree {
     /// Of all that was ever in it, also of what nobody waited for.
     std::optional<UserAndSystem> cpu_time() const;
 
+    /// How long nothing of it ran although something could have: what it waited for a processor. None where
+    /// the system does not tell (PSI).
+    std::optional<double> waited_seconds() const;
+
     /// Of all of it together; none where the group does not account for memory.
     std::optional<std::int64_t> peak_memory() const;
 

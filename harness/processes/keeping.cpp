@@ -26,6 +26,7 @@
 #include "harness/processes/event_counts.hpp"
 #include "harness/processes/kept_program.hpp"
 #include "harness/processes/output_tail.hpp"
+#include "harness/processes/priority.hpp"
 #include "harness/support/json.hpp"
 #include "harness/support/process_clock.hpp"
 
@@ -272,6 +273,7 @@ class Keeping {
 } // namespace
 
 void keep(const ProcessCommand& command, const Cgroup* group, int line) {
+    run_at_once();
     setsid();
     prctl(PR_SET_NAME, "carom-keeper");
     prctl(PR_SET_CHILD_SUBREAPER, 1);

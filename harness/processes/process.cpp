@@ -154,6 +154,7 @@ void Process::take_report(double slice_began) {
             end_.user_seconds = cpu->user;
             end_.system_seconds = cpu->system;
         }
+        end_.waited_seconds = group->waited_seconds();
         if (const auto memory = group->peak_memory()) {
             end_.peak_memory_bytes = memory;
             end_.memory_of = "all of its processes together, with the files that they hold in memory";

@@ -29,6 +29,7 @@ struct ProcessEnd {
     double seconds_left_behind = 0; ///< how long what it had started went on after its own end
     double user_seconds = 0;        ///< of CPU time, of all that it started
     double system_seconds = 0;
+    std::optional<double> waited_seconds; ///< in which all of it that could run waited for a processor
     std::optional<std::int64_t> peak_memory_bytes; ///< of all together, or of the largest (see memory_of)
     std::string memory_of;                         ///< of what that is the peak, or why it is not known
     std::map<std::string, double> counted;         ///< by name: page faults, context switches, and what the
@@ -40,6 +41,8 @@ struct ProcessEnd {
     Printed error;
 
     double wall_seconds() const { return std::accumulate(seconds.begin(), seconds.end(), 0.0); }
+    /// Less what it waited for a processor, as far as that is known.
+    double own_seconds() const { return wall_seconds() - waited_seconds.value_or(0); }
     double cpu_seconds() const { return user_seconds + system_seconds; }
 
     /// Whether it is known to have ended by itself, with exit code 0.

@@ -75,9 +75,9 @@ Json repetitions_json(const ProcessMeasurement& measurement) {
     for (std::size_t k = 0; k < measurement.measured.runs.size(); ++k) {
         const ProcessEnd& end = measurement.measured.runs[k];
         const bool says = !measurement.stated.empty();
-        repetitions.push_back(
-            {{"steps_seconds", says ? measurement.stated[k].seconds : end.wall_seconds()},
-             {"cpu_seconds", says ? measurement.stated[k].cpu_seconds : end.cpu_seconds()}});
+        repetitions.push_back({{"steps_seconds", says ? measurement.stated[k].seconds : end.wall_seconds()},
+                               {"cpu_seconds", says ? measurement.stated[k].cpu_seconds : end.cpu_seconds()},
+                               {"waited_seconds", says ? Json(nullptr) : Json(or_null(end.waited_seconds))}});
     }
     return repetitions;
 }

@@ -24,23 +24,10 @@ constexpr double margin_of_waiting = 1.05;
 constexpr double least_cpu_seconds = 0.05;
 
 double waiting(const ProcessEnd& end) {
-    return end.cpu_seconds() > least_cpu_seconds ? end.wall_seconds() / end.cpu_seconds() : 1;
+    return end.cpu_seconds() > least_cpu_seconds ? end.own_seconds() / end.cpu_seconds() : 1;
 }
 
-double time(const ProcessEnd& end) { return end.wall_seconds(); }
-
-/// Whether all it waited for was a processor, of which it used one at a time: what it waits then is of the
-/// machine. Each stop is a wait that is none of its own.
-bool computes_alone(const ProcessEnd& end) {
-    constexpr double waits = 10;
-    constexpr double waits_a_second = 20;
-    constexpr double one_processor = 1.05;
-    const auto counted = end.counted.find("voluntary_context_switches");
-    return counted != end.counted.end() && end.cpu_seconds() > least_cpu_seconds &&
-           end.cpu_seconds() < one_processor * end.wall_seconds() &&
-           counted->second - static_cast<double>(end.seconds.size()) <
-               waits + waits_a_second * end.wall_seconds();
-}
+double time(const ProcessEnd& end) { return end.own_seconds(); }
 
 bool apart(const std::vector<ProcessEnd>& ones, const std::vector<ProcessEnd>& others,
            const std::function<double(const ProcessEnd&)>& value, double margin) {
@@ -67,9 +54,6 @@ std::string why_idle(const ProcessEnd& undisturbed, double idle_processors) {
 }
 
 bool may_disagree(const std::vector<ProcessEnd>& undisturbed, const std::vector<ProcessEnd>& in_slices) {
-    if (std::ranges::all_of(undisturbed, computes_alone) && std::ranges::all_of(in_slices, computes_alone)) {
-        return apart(undisturbed, in_slices, &ProcessEnd::cpu_seconds, margin_of_time);
-    }
     return apart(undisturbed, in_slices, time, margin_of_time) ||
            apart(undisturbed, in_slices, waiting, margin_of_waiting);
 }

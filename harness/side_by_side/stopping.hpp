@@ -23,7 +23,7 @@ std::string why_idle(const ProcessEnd& undisturbed, double idle_processors);
 double idle_seconds_of_machine();
 
 /// Whether all runs in slices are so much shorter, or so much longer, than all without a pause that noise
-/// does not explain it. Of programs that wait for nothing but a processor that is told by their CPU time.
+/// does not explain it. What they waited for a processor does not count.
 bool may_disagree(const std::vector<ProcessEnd>& undisturbed, const std::vector<ProcessEnd>& in_slices);
 
 /// The same in words, with the times.

@@ -9,6 +9,7 @@
 #include <random>
 #include <utility>
 
+#include "harness/processes/priority.hpp"
 #include "harness/side_by_side/contender_run.hpp"
 #include "harness/side_by_side/slices.hpp"
 #include "harness/side_by_side/stopping.hpp"
@@ -317,6 +318,7 @@ class Contest {
 } // namespace
 
 std::vector<Measured> measure_together(const std::vector<ProgramContender>& contenders, const Together& how) {
+    run_at_once();
     return Contest(contenders, how).measure();
 }
 

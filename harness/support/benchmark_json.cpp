@@ -17,9 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The longest first: one is the beginning of another. Those in lower case are of before version 1.5.
-constexpr std::array<std::string_view, 7> words_of_numbers{"-Infinity", "Infinity", "NaN", "-nan",
-                                                           "-inf",      "nan",      "inf"};
+constexpr std::array<std::string_view, 3> words_of_numbers{"-Infinity", "Infinity", "NaN"};
 
 /// The same, where bytes that are no UTF-8 stand as U+FFFD.
 std::string as_utf8(const std::string& text) {
