@@ -72,7 +72,9 @@ def write_out(path: Path, text: str) -> None:
         with os.fdopen(opened, "w", encoding="utf-8") as stream:
             stream.write(text)
     except OSError as error:
-        raise InputError(f"{path}: {error.strerror or error}, expected somebody who reads it") from error
+        raise InputError(
+            f"{path}: {error.strerror or error}, expected room, and somebody who reads it"
+        ) from error
 
 
 def _opened(path: Path) -> int:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from experiments.compare.commands import Compared, words_in
+from experiments.compare.commands import Compared, words_in, words_of_script
 from experiments.plan.benchmark_cases import cases
 from experiments.plan.executable import UnfitError, found, require_executable
 from experiments.run.progress import about, warn
@@ -49,9 +49,9 @@ class Call:
 
     @property
     def filter(self) -> str | None:
-        """The one that its own arguments have."""
+        """The one that its own arguments have, or the library's variable."""
         given = [one.removeprefix(_FILTER) for one in self.arguments if one.startswith(_FILTER)]
-        return given[-1] if given else None
+        return given[-1] if given else os.environ.get("BENCHMARK_FILTER")
 
 
 def call_of(command: Compared) -> Call | None:
@@ -69,14 +69,11 @@ def call_of(command: Compared) -> Call | None:
 
 def names_benchmark(command: Compared) -> str | None:
     """A word of the command, or of the line for a shell or the script in it, that is a Google Benchmark."""
-    texts = [*command.words]
-    program = found(command.words[0], command.folder)
-    if _begins_with(program, b"#!"):
-        texts.append(program.read_text(encoding="utf-8", errors="replace"))
-    for text in texts:
-        for word in words_in(text):
-            if "/" in word and _is_benchmark(word, command.folder):
-                return word
+    files = [found(word, command.folder) for word in command.words]
+    words = [part for word in command.words for part in words_in(word)]
+    for word in (*words, *(word for file in files for word in words_of_script(file))):
+        if "/" in word and _is_benchmark(word, command.folder):
+            return word
     return None
 
 
@@ -84,14 +81,6 @@ def _is_benchmark(word: str, folder: Path) -> bool:
     """Whether it is one. Carom itself loads the library, too, and is none."""
     program = found(word, folder)
     return not program.resolve().name.startswith("carom") and _has_library(program)
-
-
-def _begins_with(file: Path, mark: bytes) -> bool:
-    try:
-        with file.open("rb") as content:
-            return content.read(len(mark)) == mark
-    except OSError:
-        return False
 
 
 def _has_library(program: Path) -> bool:
@@ -125,6 +114,9 @@ def _listed(command: Compared, pattern: str | None) -> list[str]:
     except UnfitError as unfit:
         raise InputError(f'{command.called}: found "{first}", which {unfit}') from unfit
     own = call.filter if call is not None else None
+    if pattern and own:
+        told = f"--filter: found {pattern} beside {_FILTER}{own} of {command.called}"
+        raise InputError(f"{told}, expected one of the two")
     words = (os.fspath(found(first, command.folder)), *command.words[1:])
     around = (command.folder, {**os.environ, **dict(command.environment)})
     try:

@@ -99,6 +99,8 @@ class Blocks:
     def _plan(self, experiment: Experiment) -> None:
         self.experiment = experiment
         self.done = 0
+        self._took: list[float] = []
+        """Seconds of each block of this call."""
         self.before = 0
         """Blocks that an earlier call measured."""
         self.runs: dict[Key, Runs] = {key_of(point): Runs() for point in experiment.points}
@@ -181,8 +183,8 @@ class Blocks:
 
     @property
     def seconds_each(self) -> float:
-        """What a block of this call took, in the mean."""
-        return self.seconds / max(1, self.done - self.before)
+        """What a block of this call took; the first one does more than the others."""
+        return statistics.median(self._took[1:] or self._took or [0.0])
 
     @property
     def failed(self) -> Mapping[Key, str]:
@@ -191,6 +193,12 @@ class Blocks:
 
     def run(self, *, vary_layout: bool) -> bool:
         """Run a block; returns whether nothing of it failed that had not failed before."""
+        began = self.seconds
+        is_whole = self._run(vary_layout=vary_layout)
+        self._took.append(self.seconds - began)
+        return is_whole
+
+    def _run(self, *, vary_layout: bool) -> bool:
         block, failed = self.done, len(self.failed)
         there = self._points(block)
         is_hindered = self._slice_seconds is None and self.others.are_in_the_way
@@ -222,7 +230,8 @@ class Blocks:
         runs.codes.update(process.get("exit_codes") or [process["exit_code"]])
         runs.tries += len(taken)
         runs.output, runs.error = (process.get(key) or "" for key in ("output_end", "error_end"))
-        runs.left_behind.append(process.get("seconds_left_behind", 0.0) / max(process["wall_seconds"], 1e-9))
+        left_behind = process.get("seconds_left_behind", 0.0) / max(process["wall_seconds"], 1e-9)
+        runs.left_behind.append(min(left_behind, 1.0))  # it passes also while the command stands still
         busy = process["user_seconds"] + process["system_seconds"]
         runs.cores.append(busy / max(process["wall_seconds"], 1e-9))
         if process["peak_memory_bytes"] is not None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from experiments.compare.sweeps import LINE, Levels, combinations, fill, joined, named_in, require_filled
+from experiments.plan.executable import is_file
 from experiments.run.progress import several
 from support.errors import InputError, quoted
 from support.vocabulary import AGAIN
@@ -29,6 +30,9 @@ _OF_THE_SHELL = frozenset((
     "wait",
 ))  # fmt: skip
 """Commands that are no programs."""
+_LONGEST_SCRIPT = 1 << 16
+"""Bytes of a script whose words are looked at."""
+
 _ASSIGNMENT = re.compile(r"([A-Za-z_]\w*)=(.*)", re.DOTALL)
 
 
@@ -194,6 +198,15 @@ def words_in(text: str) -> list[str]:
         return shlex.split(re.sub("[;|&<>()]", " ", text), comments=True)
     except ValueError:
         return text.split()
+
+
+def words_of_script(file: Path) -> list[str]:
+    """All words of a file that is a text, unless it is long; of any other file none."""
+    try:
+        content = file.read_bytes() if is_file(file) and file.stat().st_size <= _LONGEST_SCRIPT else b""
+    except OSError:
+        return []
+    return [] if b"\0" in content else words_in(content.decode("utf-8", errors="replace"))
 
 
 def _words_beside(line: str) -> tuple[str, ...]:

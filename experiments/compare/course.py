@@ -88,6 +88,7 @@ class Course:
             blocks=self.blocks.done,
             before=self.blocks.before,
             seconds=self._seconds,
+            seconds_each=self.blocks.seconds_each,
             machine=self._around.machine.name,
             others=self.blocks.others.busy(),
             looks=tuple(self._looks),

@@ -31,14 +31,11 @@ class Found:
     blocks: int
     before: int
     seconds: float
+    seconds_each: float
+    """What a block of this call took."""
     machine: str
     others: float | None = None
     """How many processors other programs kept busy meanwhile, None where the system does not tell."""
     looks: tuple[Look, ...] = ()
     remarks: tuple[str, ...] = field(default=())
     """Lines on how it was measured."""
-
-    @property
-    def seconds_each(self) -> float:
-        """What a block of this call took, in the mean."""
-        return self.seconds / max(1, self.blocks - self.before)

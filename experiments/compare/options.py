@@ -138,12 +138,13 @@ def _places(options: argparse.Namespace, kind: str) -> list[Path]:
     files: list[Path] = getattr(options, f"export_{kind}")
     if len(files) > 1:
         raise InputError(f"--export-{kind}: found {files[0]} and {files[1]}, expected one file")
-    if (
-        files
-        and named_in([str(files[0])])
-        and (getattr(options, "list", []) or getattr(options, "range", []))
+    for option, file in (
+        (f"--export-{kind}", files[0] if files else None),
+        ("--append", getattr(options, "append", None)),
     ):
-        raise InputError(f"--export-{kind}: found {files[0]}, expected one file for all commands")
+        has_lists = getattr(options, "list", []) or getattr(options, "range", [])
+        if file is not None and has_lists and named_in([str(file)]):
+            raise InputError(f"{option}: found {file}, expected one file for all commands")
     return files
 
 

@@ -1,12 +1,13 @@
 """Whether each of two commits runs what was built of it: builds that share a place make both run one file."""
 
 import filecmp
+import os
 import re
 import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from experiments.compare.commands import words_in
+from experiments.compare.commands import words_in, words_of_script
 from experiments.compare.worktrees import Tree, git
 from experiments.plan.executable import is_file
 from experiments.run.progress import warn
@@ -26,13 +27,13 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int) 
     the trees has.
     """
     own, trees = base.repository.resolve(), base.top.resolve().parent
-    for word in _parts(words):
-        path = Path(word).resolve() if word.startswith("/") else trees
+    of_base, of_head = (set(_read(words, tree.folder)) for tree in (base, head))
+    folders = {(word, Path(word).resolve()) for word in _parts(words) if word.startswith("/")}
+    for word, path in sorted(of_head | folders):
         if path.exists() and path.is_relative_to(own) and not path.is_relative_to(trees):
             told = "of your own checkout: both commits would use it"
             raise InputError(f"found {word}, {told}; expected a path inside the checkout, such as ./prog")
-    of_base = set(_named(words, base.folder))
-    for word, path in _named(words, head.folder):
+    for word, path in sorted(of_head):
         if (word, path) in of_base and path.stat().st_ctime_ns > since:
             found = word if word == str(path) else f"{word}, which is {path}"
             told = "written by the builds: both commits would use what was built last"
@@ -74,7 +75,14 @@ def _named(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:
                 yield word, path.resolve()
 
 
+def _read(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:
+    """The files that words name, and those that the scripts among them do."""
+    for word, path in _named(words, folder):
+        yield word, path
+        yield from _named([one for one in words_of_script(path) if "/" in one], folder)
+
+
 def _parts(words: Sequence[str]) -> list[str]:
     """The words, those of lines for a shell among them, and what stands behind a sign of equality."""
-    parts = [part for word in words for part in (word, *words_in(word))]
+    parts = [os.path.expandvars(part) for word in words for part in (word, *words_in(word))]
     return [*parts, *(part.partition("=")[2] for part in parts)]

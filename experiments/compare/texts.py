@@ -152,7 +152,7 @@ def _how_long(found: Found) -> str:
         return f"settled after {found.seconds:.0f} s, {blocks}"
     said = f"measured for {found.seconds:.0f} s, {blocks}"
     if not found.blocks or not answer.commands:
-        more = max(1, answer.next) * found.seconds_each
+        more = found.seconds + max(1, answer.next - found.blocks) * found.seconds_each
         option = f", which `--time {math.ceil(1.2 * more)}s` gives" if found.blocks else ""
         return f"{said}: an interval needs {answer.next} blocks{option}"
     if answer.needed is None:

@@ -7,8 +7,11 @@ from types import FrameType
 from experiments.support.descendants import hear_of_ends
 from support.errors import Interrupted
 
-# Slurm sends SIGUSR1 ahead of a task's time limit.
-_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1)
+# Slurm sends SIGUSR1 or SIGUSR2 ahead of a task's time limit, the kernel SIGXCPU at that of `ulimit -t`.
+_SIGNALS = (
+    signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2,
+    signal.SIGXCPU, signal.SIGALRM,
+)  # fmt: skip
 
 
 def stop_at_signals() -> None:

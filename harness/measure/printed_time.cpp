@@ -203,6 +203,11 @@ double seconds_of(const Group& group, const std::string& pattern, std::optional<
     if ((read.rest.size() > behind.size() && !is_point) || !(seconds > 0) || !std::isfinite(seconds)) {
         refuse(group.text, ", expected a positive number");
     }
+    static const std::regex of_something_else("[ \t]*(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\\b|[kMG]?Hz|[kM]s\\b)");
+    std::smatch other;
+    if (!read.unit && std::regex_search(behind, other, of_something_else, at_its_beginning)) {
+        refuse(group.text, " with the unit '" + other[1].str() + "', expected a time");
+    }
     if (!unit) {
         refuse(group.text, " without a unit behind it, expected one such as ms, or --unit");
     }

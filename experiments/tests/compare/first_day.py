@@ -103,6 +103,16 @@ CASES = (
         },
     ),
     Case(
+        PRINTED, "an amount of something else, with --unit", "one line that says what stands there",
+        (*_NUMBER, "--unit", "s", "./a", "./b"), ("found '12' with the unit 'MB/s', expected a time",),
+        code=2, files={"a": "echo took 12 MB/s\n", "b": "echo took 13 MB/s\n"},
+    ),
+    Case(
+        LISTS, "--append with a placeholder", "refused: it is one file for all commands",
+        ("-L", "x", "1,2", "--append", "a-{x}", "sleep 0.0{x}"),
+        ("--append: found a-{x}, expected one file for all commands",), code=1, not_left=("a-{x}",),
+    ),
+    Case(
         TIMED, "runs of one command with unlike exit codes", "not compared; how many ended with which",
         ("--ignore-exit", "4", "./a", "./b"), ("a: failed", "with exit code 0", "with exit code 4"),
         code=2, time="10s",
@@ -339,6 +349,11 @@ CASES = (
     Case(
         ENDS, "Ctrl-C at once", "ends silently", ("true", "ls"), untold=("Traceback",), code=130,
         through='timeout --preserve-status --signal=INT 0.1 "$@"',
+    ),
+    Case(
+        ENDS, "a signal that Slurm sends ahead of its limit", "the result is told and written",
+        ("--export-csv", "x", "./short", "./long"), ("./long against ./short",), code=140, left=("x",),
+        files=_WORKS, through='"$@" & sleep 6; kill -USR2 $!; wait $!', time="60s",
     ),
     Case(
         ENDS, "standard output is closed", "said, and what was asked for is written",

@@ -258,6 +258,28 @@ PROGRAMS = {
         build=INSTALL,
         run=("sh", "-c", "cd /; X='1' HERE/fixed/prog; true"),
     ),
+    "installed, for a script of the repository": Case(
+        f"{START} echo 'HERE/fixed/prog' >run.sh && commit script\n"
+        "git checkout -q -b branch && prints 150 && commit slower\n",
+        1,
+        (f"found HERE/fixed/prog, {SHARED}",),
+        build=INSTALL,
+        run=("sh", "run.sh"),
+    ),
+    "a program of the user's own checkout on PATH": Case(
+        f"{SLOWER} mkdir bin && cp prog.in bin/bench && chmod +x bin/bench",
+        1,
+        ("found bench, of your own checkout: both commits would use it",),
+        run=("bench",),
+        env={"PATH": f"HERE/a repository/bin:{os.environ['PATH']}"},
+    ),
+    "a program of the user's own checkout in a variable": Case(
+        SLOWER,
+        1,
+        ("of your own checkout: both commits would use it",),
+        run=("sh", "-c", "sh $BENCH"),
+        env={"BENCH": "HERE/a repository/prog.in"},
+    ),
     "installed, for a loader": Case(
         SLOWER,
         1,

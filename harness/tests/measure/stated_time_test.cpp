@@ -85,6 +85,13 @@ TEST(StatedTime, HasTheUnitThatStandsBehindItOrWithIt) {
               "time: found '12.5 ms total', expected a positive number");
 }
 
+TEST(StatedTime, IsNoAmountOfSomethingElse) {
+    for (const char* unit : {"MB/s", "GB", "B", "%", "KiB", "Hz", "ks"}) {
+        EXPECT_EQ(said(std::string("12 ") + unit + "\n", "([0-9]+)", 1),
+                  std::string("time: found '12' with the unit '") + unit + "', expected a time");
+    }
+}
+
 TEST(StatedTime, MayBeOfHoursMinutesAndSeconds) {
     EXPECT_DOUBLE_EQ(seconds("real\t0m1.234s", "real\\s+(\\S+)"), 1.234);
     EXPECT_DOUBLE_EQ(seconds("real\t2m1.5s", "real\\s+([0-9m.]+)s"), 121.5);
