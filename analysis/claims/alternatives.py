@@ -49,7 +49,10 @@ def alternatives(pairs: pd.DataFrame, margin: float = MARGIN) -> Alternatives:
     that something is faster is Holm-corrected over the alternatives.
     """
     groups = (group for _, group in pairs.groupby("name"))
-    alone = [judge_one(group["log_ratio"], margin, biases=group.get("bias")) for group in groups]
+    alone = [
+        judge_one(group["log_ratio"], margin, biases=group.get("bias"), stops=group.get("stops"))
+        for group in groups
+    ]
     behind = [row["not_faster"] for row in alone]
     ahead = [row["not_equivalent"] if row["ratio"] < 1 else math.inf for row in alone]
     return Alternatives(judge(pairs, ["name"], margin).assign(behind=behind, ahead=ahead), margin)

@@ -34,7 +34,8 @@ def compilers(evidence: Evidence, experiment: str, candidate: str, reference: st
 
 
 def _against(reference: pd.DataFrame, candidate: pd.DataFrame, margin: float) -> Outcome:
-    row = directed(log_ratios(reference, candidate)["log_ratio"], margin)
+    pairs = log_ratios(reference, candidate)
+    row = directed(pairs["log_ratio"], margin, stops=pairs["stops"])
     said, names = told(row, "faster"), [_name(candidate), _name(reference)]
     measured = f"{names[0]} against {names[1]}: {change(row)} of time, {blocks(row)} ({said})"
     figure = Compared(f"time of {names[0]} against {names[1]}", "–", change(row))
@@ -44,7 +45,8 @@ def _against(reference: pd.DataFrame, candidate: pd.DataFrame, margin: float) ->
 
 
 def _told(reference: pd.DataFrame, candidate: pd.DataFrame, margin: float) -> str:
-    row = directed(log_ratios(reference, candidate)["log_ratio"], margin)
+    pairs = log_ratios(reference, candidate)
+    row = directed(pairs["log_ratio"], margin, stops=pairs["stops"])
     return f"{_name(candidate)} against {_name(reference)}: {change(row)} of time ({told(row, 'faster')})"
 
 

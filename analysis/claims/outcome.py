@@ -86,14 +86,23 @@ def no_records(experiment: str, missing: str = "") -> Outcome:
 
 
 def directed(
-    log_ratios: ArrayLike, margin: float = MARGIN, *, once: bool = False, biases: ArrayLike | None = None
+    log_ratios: ArrayLike,
+    margin: float = MARGIN,
+    *,
+    once: bool = False,
+    biases: ArrayLike | None = None,
+    stops: ArrayLike | None = None,
 ) -> dict[str, Any]:
     """Return the row of `judge_one` with its `margin`, and the p-values of the ratio being less than 1 and
     more than 1, by however little: `any_faster` and `any_slower`.
     """
-    level = judge_one(log_ratios, 0.0, once=once, biases=biases)
+    level = judge_one(log_ratios, 0.0, once=once, biases=biases, stops=stops)
     any_change = {"any_faster": level["not_slower"], "any_slower": level["not_faster"]}
-    return {**judge_one(log_ratios, margin, once=once, biases=biases), "margin": margin, **any_change}
+    return {
+        **judge_one(log_ratios, margin, once=once, biases=biases, stops=stops),
+        "margin": margin,
+        **any_change,
+    }
 
 
 def judged(

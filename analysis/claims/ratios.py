@@ -89,4 +89,4 @@ def _tested(
 
 def _judged(against: pd.DataFrame, chosen: pd.DataFrame, x: float, margin: float) -> dict[str, Any]:
     pairs = log_ratios(against[against["x"] == x], chosen[chosen["x"] == x])
-    return directed(pairs["log_ratio"], margin, biases=pairs["bias"])
+    return directed(pairs["log_ratio"], margin, biases=pairs["bias"], stops=pairs["stops"])

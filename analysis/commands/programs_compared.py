@@ -81,13 +81,15 @@ def _effects(times: pd.DataFrame, by: Stated, contrasts: Any) -> list[dict[str, 
     """
     if not contrasts:
         return []
-    logs = np.log(times.pivot_table("steps_seconds", ["block", "session"], "series")).dropna()
+    of_block = ["block", "session"]
+    logs = np.log(times.pivot_table("steps_seconds", of_block, "series")).dropna()
+    stops = times.groupby(of_block)["stops"].mean().loc[logs.index]
     rows = []
     for one in contrasts:
         weights = pd.Series(one["weights"], dtype=float)
         if set(weights.index) <= set(logs.columns):
             sums = logs[weights.index].to_numpy() @ weights.to_numpy()
-            rows.append({"series": one["name"], "x": 0, **judge_one(sums, by.margin, by.error)})
+            rows.append({"series": one["name"], "x": 0, **judge_one(sums, by.margin, by.error, stops=stops)})
     table = pd.DataFrame(rows)
     return [_row(row) for row in corrected(table, by.error).to_dict("records")] if rows else []
 

@@ -56,9 +56,9 @@ def pair_drawing(
     figure, axes = new_figure(2.3, columns=2 + (theirs is not None) + work, widths=_widths(theirs, work))
     # Of several scenes of a sweep, one value a block.
     pairs = log_ratios(both[1], both[0], match=("x",)).groupby(PAIR, as_index=False, sort=False)
-    pairs = pairs[["log_ratio", "bias"]].mean()
+    pairs = pairs[["log_ratio", "bias", "stops"]].mean()
     if row is None:
-        row = judge_one(pairs["log_ratio"], by.margin, by.error, biases=pairs["bias"])
+        row = judge_one(pairs["log_ratio"], by.margin, by.error, biases=pairs["bias"], stops=pairs["stops"])
     runs = data.published.experiment(sides.experiment)
     each = [np.exp(pairs["log_ratio"].to_numpy()), _published_ratios(runs, sides)]
     ratio_panel(axes[0], row, theirs, sides.names, by.margin, each)
