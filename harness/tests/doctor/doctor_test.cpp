@@ -203,7 +203,8 @@ TEST(Noise, OfNeighboursIsThatOfStretchesOfALength) {
     EXPECT_EQ(found[0].difference, 0);
     EXPECT_EQ(found[3].seconds, 0.01);
     EXPECT_NEAR(found[3].difference, std::log(1.1) / 0.6745, 1e-9);
-    const Noise noise{.neighbours = found};
+    Noise noise;
+    noise.neighbours = found;
     EXPECT_NE(noise_figure(noise).find("   10 ms               14.13 %                       1.413 %   ####"),
               std::string::npos)
         << noise_figure(noise);
