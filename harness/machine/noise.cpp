@@ -1,6 +1,7 @@
 #include "harness/machine/noise.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -89,7 +90,7 @@ std::vector<Neighbours> neighbours(const std::vector<double>& durations) {
     constexpr std::size_t fewest = 16;
     constexpr double of_normal = 0.6745; ///< standard deviations within which half of all values lie
     std::vector<Neighbours> found;
-    for (const std::size_t length : {1, 2, 5, 10, 20, 50, 100, 200}) {
+    for (const std::size_t length : std::to_array<std::size_t>({1, 2, 5, 10, 20, 50, 100, 200})) {
         std::vector<double> logs;
         for (std::size_t at = 0; at + length <= durations.size(); at += length) {
             const auto begin = durations.begin() + static_cast<std::ptrdiff_t>(at);
