@@ -384,7 +384,7 @@ def provenance() -> dict[str, Any]:
         "commit": None,
         "dirty": None,
         "diff_sha256": None,
-        "binary_sha256": sha256(sys.argv[0]),
+        "binary_sha256": sha256(__file__),
         "slurm": slurm or None,
     }
 

@@ -352,7 +352,7 @@ CASES = (
     ),
     Case(
         ENDS, "a signal that Slurm sends ahead of its limit", "the result is told and written",
-        ("--export-csv", "x", "./short", "./long"), ("./long against ./short",), code=140, left=("x",),
+        ("--export-csv", "x", "./short", "./long"), ("long against short",), code=140, left=("x",),
         files=_WORKS, through='"$@" & sleep 6; kill -USR2 $!; wait $!', time="60s",
     ),
     Case(

@@ -49,7 +49,7 @@ def test_a_filter_picks_cases(benchmarks: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["--filter", "gone"], 'carom: bench_new: --filter: found "gone", which no case matches'),
+        (["--filter", "gone"], 'carom: ./bench_new: --filter: found "gone", which no case matches'),
         (["--filter", "nothing"], 'found "nothing", which no case matches'),
     ],
 )

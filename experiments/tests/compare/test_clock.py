@@ -54,7 +54,7 @@ def test_a_verdict_without_waiting_says_so_and_tells_that_of_wall_time(folder: P
     assert told["differences"][0]["ratio"] == pytest.approx(2, rel=0.5)
     assert told["differences_by_wall"][0]["name"] == "more"
     assert ", waiting for a processor left out" in done.stdout
-    assert "With what the commands waited for it: ./more +" in done.stdout
+    assert "With what the commands waited for it: more +" in done.stdout
 
 
 @needs_the_program

@@ -267,7 +267,7 @@ PROGRAMS = {
         run=("sh", "run.sh"),
     ),
     "a program of the user's own checkout on PATH": Case(
-        f"{SLOWER} mkdir bin && cp prog.in bin/bench && chmod +x bin/bench",
+        f"{SLOWER} mkdir bin && cp prog.in bin/bench && chmod +x bin/bench && commit bench",
         1,
         ("found bench, of your own checkout: both commits would use it",),
         run=("bench",),

@@ -151,8 +151,10 @@ def test_a_hundred_million_discs_that_do_not_fit_are_refused_before_they_are_rea
     done = carom("run", scene, 2, *options, preexec_fn=within(4 << 30))
     assert done.returncode == 1
     (line,) = done.stderr.splitlines()
-    assert line.startswith("carom: out of memory: found 3.")
-    assert re.search(r" GiB free, expected at least [12][0-9.]+ GiB for ", line)
+    # Of the four, the bytes of the file are taken already.
+    assert re.match(
+        r"carom: out of memory: found [23][0-9.]+ GiB free, expected at least [12][0-9.]+ GiB", line
+    )
     assert line.endswith(words)
 
 
