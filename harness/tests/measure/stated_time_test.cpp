@@ -85,6 +85,14 @@ TEST(StatedTime, HasTheUnitThatStandsBehindItOrWithIt) {
               "time: found '12.5 ms total', expected a positive number");
 }
 
+TEST(StatedTime, IsNotWhatABlankSeparatesFromItsThousands) {
+    EXPECT_EQ(said("took 1 234 ms\n", "([0-9]+) ms"), "time: found '234' within a longer number in 'took 1 "
+                                                      "234 ms', expected a pattern that takes all of it");
+    EXPECT_DOUBLE_EQ(seconds("run 1 234 ms", " ([0-9]+) ms"), 0.234) << "the pattern knows the blank";
+    EXPECT_DOUBLE_EQ(seconds("run 1 23 ms", "([0-9]+) ms"), 0.023);
+    EXPECT_DOUBLE_EQ(seconds("0.5 234 ms", "([0-9]+) ms"), 0.234);
+}
+
 TEST(StatedTime, IsNoAmountOfSomethingElse) {
     for (const char* unit : {"MB/s", "GB", "B", "%", "KiB", "Hz", "ks"}) {
         EXPECT_EQ(said(std::string("12 ") + unit + "\n", "([0-9]+)", 1),
