@@ -352,8 +352,9 @@ CASES = (
     ),
     Case(
         ENDS, "a signal that Slurm sends ahead of its limit", "the result is told and written",
-        ("--export-csv", "x", "./short", "./long"), ("long against short",), code=140, left=("x",),
-        files=_WORKS, through='"$@" & sleep 6; kill -USR2 $!; wait $!', time="60s",
+        ("--export-csv", "x", "--margin", "0.01%", "-n", "a", "-n", "b", "./short", "./short"),
+        ("  a   ", "  b   "), code=140, left=("x",), files=_WORKS,
+        through='"$@" & sleep 6; kill -USR2 $!; wait $!', time="60s",
     ),
     Case(
         ENDS, "standard output is closed", "said, and what was asked for is written",
