@@ -45,9 +45,10 @@ def require_place(what: str, path: Path) -> None:
         raise InputError(f"{what}: found {path}, which is a link to itself, expected a file") from error
     if path.exists() and not os.access(path, os.W_OK):
         raise InputError(f"{what}: found {path}, expected a file that you may write")
-    require_room_for_folder(what, folder)
-    there = next(one for one in (folder, *folder.parents) if one.exists())
-    if not os.access(there, os.W_OK | os.X_OK):
+    require_text(what, folder)
+    if not folder.is_dir():
+        raise InputError(f"{what}: found {path}, expected a file in a folder that is there")
+    if not os.access(folder, os.W_OK | os.X_OK):
         raise InputError(f"{what}: found {path}, expected a file in a folder that you may write into")
 
 

@@ -55,7 +55,7 @@ def verdict_in_short(row: Mapping[str, Any]) -> str:
     known = _known_in_short(effect) if effect is not None else ""
     if isfinite(row["needed"]):
         more = count(int(row["needed"]) - row["blocks"], "more block")
-        return f"{known or 'not decided'}: about {more}"
+        return f"{known}; {more} may decide" if known else f"not decided: about {more}"
     return known or "not decided: not in sight"
 
 

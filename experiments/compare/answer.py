@@ -63,8 +63,6 @@ class Answer:
     looked_at: int = 0
     clock: str = WALL
     """Which time is judged (`support.vocabulary`)."""
-    by_wall: tuple[Difference, ...] = ()
-    """All differences of the time that passes, where that is not judged."""
 
     def without(self, left_out: Collection[str]) -> "Answer":
         """What it says of all others than these commands, or numbers of cases."""
@@ -123,8 +121,7 @@ def ask(analysis: Coprocess, many: int = 1, clock: str = WALL) -> Answer:
     )
     places = tuple(Place(one["series"], one["first"], one["last"], one["bracket"]) for one in told["places"])
     blocks = max((one.blocks for one in rows), default=0)
-    by_wall = ask(analysis, many).commands if clock != WALL else ()
-    return Answer(rows, controls, places, effects, told["next"], blocks, clock, by_wall)
+    return Answer(rows, controls, places, effects, told["next"], blocks, clock)
 
 
 def draw(analysis: Coprocess) -> Path:

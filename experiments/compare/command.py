@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from experiments.compare import exports
-from experiments.compare.answer import Answer, draw
+from experiments.compare.answer import Answer, Difference, ask, draw
 from experiments.compare.blocks import Blocks, codes_said, keep_addresses, shell_seconds
 from experiments.compare.course import Course, Line
 from experiments.compare.earlier import Earlier
@@ -29,7 +29,7 @@ from experiments.support.places import BUILDS, analysis
 from experiments.support.process import Coprocess
 from experiments.support.vanishing import marked, vanishing_folder
 from support.errors import InputError
-from support.vocabulary import AGAIN, ASKED
+from support.vocabulary import AGAIN, ASKED, WALL
 
 COMMAND_FAILED, WITHDRAWN = 2, 5
 
@@ -73,7 +73,10 @@ def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[i
         with Line(asked.quiet) as line:
             line.show(lambda: "making ready")
             stopped = course.run(judge, earlier, line)
-        found = course.found(_remarks(course))
+        by_wall: tuple[Difference, ...] = ()
+        if course.answer.clock != WALL:
+            by_wall = ask(judge, asked.many).without(course.left_out).commands
+        found = course.found(by_wall, _remarks(course, by_wall))
         said = result(found)
         try:
             # First what is kept: the terminal may be gone.
@@ -110,10 +113,10 @@ def _write_down(asked: Asked, store: Store) -> None:
     store.keep_note(ASKED, {"cases": asked.cases, "contrasts": told})
 
 
-def _remarks(course: Course) -> tuple[str, ...]:
+def _remarks(course: Course, by_wall: Sequence[Difference]) -> tuple[str, ...]:
     """What is to be known of how it was measured."""
     asked, busy = course.asked, course.blocks.others.remark()
-    remarks = [] if busy is None else [f"{busy}. {hindered(course.answer)}"]
+    remarks = [] if busy is None else [f"{busy}. {hindered(by_wall)}"]
     if asked.rounds:
         often = zip(asked.commands, asked.rounds, strict=True)
         told = ", ".join(f"{one.name} {number}" for one, number in often)

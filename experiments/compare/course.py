@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 
-from experiments.compare.answer import Answer, ask
+from experiments.compare.answer import Answer, Difference, ask
 from experiments.compare.blocks import Blocks, Key
 from experiments.compare.clock import clock_of
 from experiments.compare.earlier import Earlier, How
@@ -79,7 +79,7 @@ class Course:
         """How it is measured, for a later call that goes on."""
         return How(self.asked.rounds, self.asked.turns, tuple(self.left_out))
 
-    def found(self, remarks: tuple[str, ...]) -> Found:
+    def found(self, by_wall: tuple[Difference, ...], remarks: tuple[str, ...]) -> Found:
         """What has come of it."""
         return Found(
             asked=self.asked,
@@ -92,6 +92,7 @@ class Course:
             machine=self._around.machine.name,
             others=self.blocks.others.busy(),
             looks=tuple(self._looks),
+            by_wall=by_wall,
             remarks=remarks,
         )
 

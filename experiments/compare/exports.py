@@ -13,6 +13,7 @@ from experiments.compare.commands import Compared
 from experiments.compare.found import Found
 from experiments.compare.pages import markdown, page, title
 from experiments.plan.executable import found as file_of
+from experiments.plan.executable import is_file
 from support.command_line import print_lines
 from support.errors import InputError
 from support.files import descriptor_of, require_place, write_out
@@ -31,18 +32,25 @@ def require_places(
         require_place(option, path)
     seen: dict[object, str] = {}
     for option, path in {**places, **({"--append": earlier} if earlier else {})}.items():
-        place = descriptor_of(path) or path.resolve()
+        place = _place(path)
         if place in seen:
             raise InputError(f"{option}: found {path}, which {seen[place]} names too, expected another file")
         seen[place] = option
     for one in commands:
         words = [part for word in one.words for part in (word, *word.split())]
         for word in words:
-            file = file_of(word.strip("'\""), one.folder).resolve()
-            if file in seen:
+            file = file_of(word.strip("'\""), one.folder)
+            used = _place(file)
+            if used in seen:
                 raise InputError(
-                    f"{seen[file]}: found {word}, which {one.called} uses, expected another file"
+                    f"{seen[used]}: found {word}, which {one.called} uses, expected another file"
                 )
+
+
+def _place(path: Path) -> object:
+    """What tells a file from others, whatever name it has."""
+    there = path.stat() if is_file(path) else None
+    return descriptor_of(path) or ((there.st_dev, there.st_ino) if there is not None else path.resolve())
 
 
 def write(found: Found, said: list[str], first: str, draw: Callable[[], Path]) -> None:
@@ -93,7 +101,7 @@ def _json(found: Found) -> str:
         "blocks_before": found.before,
         "commands": [{"name": one.name, "line": one.line, "words": one.words} for one in asked.commands],
         "differences": [asdict(one) for one in answer.commands],
-        "differences_by_wall": [asdict(one) for one in answer.by_wall],
+        "differences_by_wall": [asdict(one) for one in found.by_wall],
         "controls": [asdict(one) for one in answer.controls],
         "places": [asdict(one) for one in answer.places],
         "effects": [asdict(one) for one in answer.effects],

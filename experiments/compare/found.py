@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from experiments.compare.answer import Answer
+from experiments.compare.answer import Answer, Difference
 from experiments.compare.blocks import Key, Runs
 from experiments.compare.options import Asked
 
@@ -37,5 +37,7 @@ class Found:
     others: float | None = None
     """How many processors other programs kept busy meanwhile, None where the system does not tell."""
     looks: tuple[Look, ...] = ()
+    by_wall: tuple[Difference, ...] = ()
+    """All differences of all time that passes, where that is not judged."""
     remarks: tuple[str, ...] = field(default=())
     """Lines on how it was measured."""

@@ -111,6 +111,12 @@ def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], refere
     for one in commands:
         if one.time_from is not None:
             require_one_group("--time-from", one.time_from)
+    exports = {kind: places[0] for kind in EXPORTS if (places := _places(options, kind))}
+    has_lists = getattr(options, "list", []) or getattr(options, "range", [])
+    for option, file in {**exports, "append": getattr(options, "append", None)}.items():
+        if has_lists and file is not None and named_in([str(file)]):
+            told = "append" if option == "append" else f"export-{option}"
+            raise InputError(f"--{told}: found {file}, expected one file for all commands")
     setup, cleanup = (_once(getattr(options, what), commands, f"--{what}") for what in ("setup", "cleanup"))
     return Asked(
         commands=commands,
@@ -128,7 +134,7 @@ def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], refere
         fixed_layout=options.fixed_layout,
         setup=setup,
         cleanup=cleanup,
-        exports={kind: places[0] for kind in EXPORTS if (places := _places(options, kind))},
+        exports=exports,
         quiet=options.quiet,
     )
 
@@ -138,13 +144,6 @@ def _places(options: argparse.Namespace, kind: str) -> list[Path]:
     files: list[Path] = getattr(options, f"export_{kind}")
     if len(files) > 1:
         raise InputError(f"--export-{kind}: found {files[0]} and {files[1]}, expected one file")
-    for option, file in (
-        (f"--export-{kind}", files[0] if files else None),
-        ("--append", getattr(options, "append", None)),
-    ):
-        has_lists = getattr(options, "list", []) or getattr(options, "range", [])
-        if file is not None and has_lists and named_in([str(file)]):
-            raise InputError(f"{option}: found {file}, expected one file for all commands")
     return files
 
 
@@ -186,7 +185,7 @@ def _parser() -> argparse.ArgumentParser:
     told = "the same for numbers from FIRST to LAST, a STEP apart (default: 1)"
     add(*RANGE, action="append", default=[], metavar="NAME FIRST LAST [STEP]", help=told)
     told = "go on with what earlier calls measured, and keep all in this file"
-    add("--append", type=Path, metavar="FILE", help=told)
+    add("--append", type=values.file, metavar="FILE", help=told)
     add_measuring(parser)
     return parser
 
@@ -227,5 +226,5 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
     for kind in EXPORTS:
         words, told = [f"--export-{kind}"], f"also write the result as {kind}"
         words += ["--html"] if kind == "html" else []
-        add(*words, type=Path, action="append", default=[], metavar="FILE", help=told)
+        add(*words, type=values.file, action="append", default=[], metavar="FILE", help=told)
     add("-q", "--quiet", action="store_true", help="print the result alone")

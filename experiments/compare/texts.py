@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from experiments.compare.answer import Answer, Difference, Place
+from experiments.compare.answer import Difference, Place
 from experiments.compare.blocks import Runs
 from experiments.compare.counts import counted, percent
 from experiments.compare.found import Found
@@ -88,12 +88,13 @@ def row(one: Difference, found: Found) -> list[str]:
     return [asked.cases[one.case] + whose, " → ".join(times), change(one), said]
 
 
-def hindered(answer: Answer) -> str:
-    """What a busy machine means for a result."""
-    if answer.clock == WALL:
+def hindered(by_wall: Sequence[Difference]) -> str:
+    """What a busy machine means for a result, with the differences of all time where that is not judged."""
+    if not by_wall:
         return "Times are longer then, and verdicts rarer: repeat it on a quiet machine"
-    by_wall = "; ".join(f"{one.name} {change(one)}" for one in answer.by_wall)
-    return f"With what the commands waited for it: {by_wall}"
+    return (
+        f"With what the commands waited for it: {'; '.join(f'{one.name} {change(one)}' for one in by_wall)}"
+    )
 
 
 def effects(found: Found) -> list[str]:

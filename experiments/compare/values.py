@@ -3,6 +3,7 @@
 import argparse
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 _SECONDS_OF = {"ms": 1e-3, "s": 1.0, "m": 60.0, "min": 60.0, "h": 3600.0}
 _MOST_DIGITS = 6
@@ -16,6 +17,13 @@ def _typed(convert: Callable[[str], float], expected: str, text: str) -> float:
         return convert(text)
     except (ValueError, KeyError) as error:
         raise argparse.ArgumentTypeError(f"found {text}, expected {expected}") from error
+
+
+def file(text: str) -> Path:
+    """A place for a file."""
+    if text.endswith("/"):
+        raise argparse.ArgumentTypeError(f"found {text}, which is no name of a file, expected one")
+    return Path(text)
 
 
 def fraction(text: str) -> float:

@@ -160,7 +160,10 @@ class Session:
             self._until -= REST_SHARE * max(0.0, whole - time.monotonic())
         verdicts = self._settle()
         self._until = whole
-        for experiment in sorted(rest, key=self._schedule.least_seconds):
+        # A block tells at least what a claim is about.
+        for experiment in sorted(
+            rest, key=lambda one: (not one.question.claim, self._schedule.least_seconds(one))
+        ):
             if self._schedule.least_seconds(experiment) <= self._time_left():
                 self._first_blocks([experiment], 0)
                 self._measure([experiment])

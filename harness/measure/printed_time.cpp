@@ -171,14 +171,20 @@ Group group_of(const std::string& line, const std::smatch& match) {
     throw InputError("time: found '" + on_one_line(found) + "'" + expected);
 }
 
-/// Whether a number of three digits has one to three before a blank in front of it, which may be its
-/// thousands, and the pattern has no blank of its own there.
-bool may_have_thousands(const std::string& before, const std::string& number, const std::string& pattern) {
+/// Whether blanks may separate the thousands of a number, of which the group takes a part: three digits behind
+/// one to three, or one to three before three. Not where the pattern has a blank of its own there.
+bool may_have_thousands(const Group& group, const std::string& number, const std::string& pattern) {
     static const std::regex thousands("(?:^|[^0-9.,])[1-9][0-9]{0,2} $");
     static const std::regex three_digits("[0-9]{3}(?:[.,][0-9]+)?");
     static const std::regex blank_before_group("(?: |\\\\s)[+*]?\\(");
-    return std::regex_search(before, thousands) && std::regex_match(number, three_digits) &&
-           !std::regex_search(pattern, blank_before_group);
+    static const std::regex one_to_three("[1-9][0-9]{0,2}");
+    static const std::regex three_more(" [0-9]{3}(?![0-9])");
+    static const std::regex blank_behind_group("\\)(?: |\\\\s)");
+    return (std::regex_search(group.before, thousands) && std::regex_match(number, three_digits) &&
+            !std::regex_search(pattern, blank_before_group)) ||
+           (std::regex_match(number, one_to_three) &&
+            std::regex_search(group.behind, three_more, at_its_beginning) &&
+            !std::regex_search(pattern, blank_behind_group));
 }
 
 /// Whether what the group takes is only a part of a longer number, or of a longer time. `behind` is what may
@@ -191,7 +197,7 @@ bool is_cut(const Group& group, const Reading& read, const std::string& behind, 
     return read.number.size() > group.text.size() ||
            (ends_there && std::regex_search(behind, goes_on, at_its_beginning)) ||
            (std::regex_search(group.before, has_begun) && !says(pattern, group.before.back(), true)) ||
-           may_have_thousands(group.before, read.number, pattern) ||
+           may_have_thousands(group, read.number, pattern) ||
            (read.unit.value_or(1) >= 1 && has_larger_units(group.before, read.number));
 }
 

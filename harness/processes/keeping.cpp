@@ -117,6 +117,9 @@ class Keeping {
         close(pipes_.go);
         while (read(pipes_.begun, &nothing, 1) < 0 && errno == EINTR) {
         }
+        if (group_ != nullptr) {
+            waited_before_ = group_->waited_seconds().value_or(0);
+        }
     }
 
     void wait() {
@@ -239,6 +242,7 @@ class Keeping {
                 {"inherited_kilobytes", program_ > 0 ? beginning_->inherited_kilobytes : 0},
                 {"counted", counted_},
                 {"began_at", program_ > 0 ? beginning_->at : 0.0},
+                {"waited_before", waited_before_},
                 {"ended_at", ended_at_},
                 {"seconds_left_behind", program_has_ended_ ? ended_at_ - program_ended_at_ : 0.0},
                 {"output", printed_json(output_)},
@@ -261,6 +265,7 @@ class Keeping {
     bool has_ended_ = false; ///< it and all that it started
     double program_ended_at_ = 0;
     double ended_at_ = 0;
+    double waited_before_ = 0; ///< for a processor, before it became the program
     double user_seconds_ = 0;
     double system_seconds_ = 0;
     long most_kilobytes_ = 0;

@@ -154,7 +154,9 @@ void Process::take_report(double slice_began) {
             end_.user_seconds = cpu->user;
             end_.system_seconds = cpu->system;
         }
-        end_.waited_seconds = group->waited_seconds();
+        if (const auto waited = group->waited_seconds()) {
+            end_.waited_seconds = std::max(0.0, *waited - report["waited_before"].get<double>());
+        }
         if (const auto memory = group->peak_memory()) {
             end_.peak_memory_bytes = memory;
             end_.memory_of = "all of its processes together, with the files that they hold in memory";

@@ -108,6 +108,27 @@ CASES = (
         code=2, files={"a": "echo took 12 MB/s\n", "b": "echo took 13 MB/s\n"},
     ),
     Case(
+        PRINTED, "thousands behind a blank", "one line that says what stands there",
+        ("--time-from", "took ([0-9]+)", "--unit", "s", "./a", "./b"),
+        ("found '1' within a longer number in 'took 1 234 ms'",), code=2,
+        files=_prints("1 234 ms", "1 234 ms"),
+    ),
+    Case(
+        WRITTEN, "an export into a folder that is not there", "refused before anything is measured",
+        ("--export-csv", "nowhere/x", "true", "ls"),
+        ("--export-csv: found nowhere/x, expected a file in a folder that is there",), code=1,
+        not_left=("nowhere",),
+    ),
+    Case(
+        WRITTEN, "an export that ends with a slash", "refused", ("--export-csv", "nowhere/", "true", "ls"),
+        ("--export-csv: found nowhere/, which is no name of a file",), code=1, not_left=("nowhere",),
+    ),
+    Case(
+        WRITTEN, "two exports to two names of one file", "refused",
+        ("--export-csv", "one", "--export-json", "other", "true", "ls"), ("expected another file",), code=1,
+        setup="touch one; ln one other",
+    ),
+    Case(
         LISTS, "--append with a placeholder", "refused: it is one file for all commands",
         ("-L", "x", "1,2", "--append", "a-{x}", "sleep 0.0{x}"),
         ("--append: found a-{x}, expected one file for all commands",), code=1, not_left=("a-{x}",),
