@@ -83,6 +83,25 @@ def narrow(times: pd.DataFrame, *keys: str, value: str = "steps_seconds") -> pd.
     return times[[column for column in dict.fromkeys(needed) if column in times]]
 
 
+def block_curves(processes: pd.DataFrame) -> pd.DataFrame:
+    """Return ln(seconds) of each block (rows, by `PAIR`, in the order of time) at each x (columns), NaN where
+    a block lacks an x.
+
+    Where those of a block took turns, each turn is compared with the mean of its round first, and a point is
+    Huber's location of what is left, above that of the rounds: a burst of noise spoils a round or two.
+    """
+    table = _per_block(narrow(processes, "x"), ["x", *PAIR], "steps_seconds").sort_values([*PAIR, "x"])
+    ln = table.groupby(PAIR)["logs"].transform(lambda logs: _curve(list(logs)))
+    return table.assign(ln=ln).pivot(index=PAIR, columns="x", values="ln")
+
+
+def _curve(logs: list[Floats]) -> list[float]:
+    if len({len(one) for one in logs}) > 1:
+        return [float(np.log(np.median(np.exp(one)))) for one in logs]
+    rounds = np.stack(logs).mean(axis=0)
+    return [location(one - rounds) + location(rounds) for one in logs]
+
+
 def ratios_of(
     processes: pd.DataFrame, column: str, reference: object, candidate: object, match: tuple[str, ...] = ()
 ) -> pd.DataFrame:

@@ -12,7 +12,7 @@ import pandas as pd
 from analysis.statistics.breaks import break_point
 from analysis.statistics.intervals import FEWEST, centre, measure
 from analysis.statistics.looks import ERROR, last_look, seen
-from analysis.statistics.pairs import PAIR, ratios_of
+from analysis.statistics.pairs import block_curves, ratios_of
 from analysis.statistics.simultaneous import Curves
 from analysis.statistics.verdicts import MARGIN, judge_one, two_sided, verdict_row
 from analysis.support.values import Floats, Interval
@@ -89,7 +89,7 @@ def linearity(processes: pd.DataFrame, within: tuple[float, float] = LINEAR_WITH
     within the bounds, `not linear` if outside, else `inconclusive`, as from fewer than `FEWEST` blocks; NaN
     with fewer than four x.
     """
-    curves = processes.pivot_table(index=PAIR, columns="x", values="steps_seconds", aggfunc="median").dropna()
+    curves = np.exp(block_curves(processes).dropna())
     x = curves.columns.to_numpy(dtype=float)
     if len(x) < 4 or len(curves) == 0:
         return Linearity(Interval(np.nan, -np.inf, np.inf), len(curves), "inconclusive", 1.0)
@@ -111,17 +111,17 @@ def minimum(processes: pd.DataFrame, margin: float = MARGIN) -> Minimum:
     one of these is true, and one that is not is said in at most 5 % of studies. What is not established is
     `inconclusive`, and anything from fewer than `FEWEST` whole blocks `too few blocks`.
     """
-    table = processes.pivot_table(index=PAIR, columns="x", values="steps_seconds", aggfunc="median")
+    table = block_curves(processes)
     whole, x = table.dropna(), table.columns.to_numpy(dtype=float)
     whole = whole.iloc[: last_look(len(whole))]
     rows = whole if len(whole) else table.median().to_frame().T
-    curves = Curves(np.log(rows.to_numpy(dtype=float)))
+    curves = Curves(rows.to_numpy(dtype=float))
     verdict, p = curves.shape(np.log1p(margin)) if len(whole) >= FEWEST else (TOO_FEW_BLOCKS, 1.0)
     if len(whole) >= FEWEST and p > ERROR:
         verdict = "inconclusive"
     ends = (curves.interval_above_lowest(end) for end in (0, len(x) - 1))
     fall, rise = (verdict_row(end, len(whole), p, verdict) for end in ends)
-    return Minimum(break_point(x, whole.to_numpy()), float(x[curves.lowest]), fall, rise, verdict, p)
+    return Minimum(break_point(x, np.exp(whole.to_numpy())), float(x[curves.lowest]), fall, rise, verdict, p)
 
 
 def _block_exponents(processes: pd.DataFrame) -> Floats:
@@ -129,15 +129,12 @@ def _block_exponents(processes: pd.DataFrame) -> Floats:
 
     The slope of a part of the range is another one wherever the curve is not straight.
     """
-    every = processes["x"].nunique()
-    if (processes["x"] <= 0).any() or every < 2:
+    curves = block_curves(processes).dropna()
+    x = curves.columns.to_numpy(dtype=float)
+    if (x <= 0).any() or len(x) < 2 or curves.empty:
         return np.empty(0)
-    slopes = [
-        float(np.polyfit(np.log(block["x"]), np.log(block["steps_seconds"]), 1)[0])
-        for _, block in processes.groupby(PAIR)
-        if block["x"].nunique() == every
-    ]
-    return np.array(slopes)
+    slopes: Floats = np.polyfit(np.log(x), curves.to_numpy().T, 1)[0]
+    return slopes
 
 
 def _offset_exponents(x: Floats, curves: Floats) -> Floats:

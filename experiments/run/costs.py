@@ -82,7 +82,8 @@ class Costs:
     def fixed(self, point: Point) -> float:
         """What a process of a point takes without its timed runs."""
         if measured := self._measured.get(point.id):
-            spent = statistics.median(max(0.0, seconds - sum(runs)) for seconds, runs in measured)
+            # The least counts, since a first process comes with its check.
+            spent = min(max(0.0, seconds - sum(runs)) for seconds, runs in measured)
             return spent + self._beside_of(point)
         return max(0.0, self.point(point) - point.repetitions * self.run(point))
 
@@ -105,9 +106,13 @@ class Costs:
         """Generating a scene."""
         return 2 * _reading(scene)
 
+    def has_measured(self, point: Point) -> bool:
+        """Whether a process of it has ended."""
+        return point.id in self._measured
+
     def knows(self, point: Point) -> bool:
         """Whether it was measured, or its variant probed."""
-        return point.id in self._measured or probe_key(point) in self._probes
+        return self.has_measured(point) or probe_key(point) in self._probes
 
     def learn_group(self, points: Sequence[Point], ended: Sequence[ProcessResult], seconds: float) -> None:
         """Processes of a block of an experiment ended, measured in so many seconds in all."""

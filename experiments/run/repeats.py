@@ -14,6 +14,9 @@ some hundred rounds on."""
 MOST_RUNS = 30
 """In a process: more would tell of one process alone."""
 
+FIRST_RUNS = 3
+"""At most in a first block, before which what a process takes besides is a guess."""
+
 MOST_SECONDS = 3.0
 """Of the runs of a process, unless one lasts longer: a study looks at its time between processes."""
 
@@ -31,4 +34,5 @@ def process_runs(group: Sequence[Point], costs: Costs) -> int:
     known = all(map(costs.knows, group))
     if len(group) < 2 or group[0].verb == PROCESS or group[0].kind == COUNTS or not known:
         return 1
-    return choose_runs(sum(map(costs.fixed, group)), sum(map(costs.run, group)))
+    runs = choose_runs(sum(map(costs.fixed, group)), sum(map(costs.run, group)))
+    return runs if all(map(costs.has_measured, group)) else min(runs, FIRST_RUNS)

@@ -43,7 +43,7 @@ def missed_now(studies: Floats, truth: float = 0.0) -> float:
 def test_blocks_that_depend_on_each_other(correlation: float) -> None:
     """The promise is for up to 0.3; beyond, it errs more often, as the page of the method says."""
     values = dependent(np.random.default_rng(1), correlation, STUDIES, LAST)
-    assert missed_now(values) <= {0.4: 0.075, 0.6: 0.1}.get(correlation, ERROR)
+    assert missed_now(values) <= {0.4: 0.075, 0.6: 0.15}.get(correlation, ERROR)
     assert missed(former, values) > {0.0: 0.0, 0.2: 0.06, 0.4: 0.17, 0.6: 0.36}[correlation]
 
 
