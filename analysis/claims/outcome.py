@@ -92,14 +92,15 @@ def directed(
     once: bool = False,
     biases: ArrayLike | None = None,
     stops: ArrayLike | None = None,
+    error: float = ERROR,
 ) -> dict[str, Any]:
     """Return the row of `judge_one` with its `margin`, and the p-values of the ratio being less than 1 and
     more than 1, by however little: `any_faster` and `any_slower`.
     """
-    level = judge_one(log_ratios, 0.0, once=once, biases=biases, stops=stops)
+    level = judge_one(log_ratios, 0.0, error, once=once, biases=biases, stops=stops)
     any_change = {"any_faster": level["not_slower"], "any_slower": level["not_faster"]}
     return {
-        **judge_one(log_ratios, margin, once=once, biases=biases, stops=stops),
+        **judge_one(log_ratios, margin, error, once=once, biases=biases, stops=stops),
         "margin": margin,
         **any_change,
     }

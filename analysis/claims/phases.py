@@ -9,10 +9,12 @@ import pandas as pd
 from analysis.claims.effects import effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.outcome import Compared, Outcome, directed, judged, no_records
+from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import PAIR
 from analysis.support.wording import count, number, share
 
 VARIANTS = ["published", "self_contained_off"]
+P_VALUES = ("p", "not_faster", "not_slower", "not_equivalent", "any_faster", "any_slower")
 
 
 def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str) -> Outcome:
@@ -48,19 +50,21 @@ def _judged(
     """Return the verdict on the ratio of resolving to the rest, of which shares of a step it is, and the
     share in short.
 
-    Where the later resolves are more than half already they are what is judged, since what is done early
-    only adds: theirs is a share within one process, and so the surer one.
+    Two ratios are judged, each with half of the error: that of the later resolves, a share within one
+    process, and that of all of them. Since what is done early only adds, the claim holds where either is more
+    than half, and is told by the later ones if they are enough.
     """
     whole = with_early.sum(axis=1)
     resolved_early = with_early[early] - without[early]
     late, resolving = with_early[phase], with_early[phase] + resolved_early
     parts = pd.DataFrame({"late": late, early: with_early[early], "early": resolved_early, "all": resolving})
     part = parts.div(whole, axis=0).median().map(share)
-    row = directed(np.log(late / (whole - late)))
-    if row["ratio"] > 1 and row["verdict"] != "equivalent":
+    rows = [directed(np.log(one / (whole - one)), error=ERROR / 2) for one in (late, resolving)]
+    late_row, row = ({**one, **{key: 2 * one[key] for key in one if key in P_VALUES}} for one in rows)
+    if late_row["verdict"] == "slower":
         of = f"{part['late']} of a step in {phase} alone, without what is done early in {early}"
-        return row, of, f"{part['late']} without early resolves"
+        return late_row, of, f"{part['late']} without early resolves"
     of = (
         f"{part['all']} of a step: {part['late']} in {phase} and {part['early']} early, of the {part[early]} "
     )
-    return directed(np.log(resolving / (whole - resolving))), f"{of}of {early}", str(part["all"])
+    return row, f"{of}of {early}", str(part["all"])

@@ -66,6 +66,8 @@ class Series:
     find_chunk: int | None = None
     resolve_chunk: int | None = None
     optional: bool = False
+    paper_only: bool = False
+    """Left out at quick scale."""
     apart: bool = False
     """In a process of its own, also where the others of the question take turns."""
     replicated: tuple[float, ...] = ()

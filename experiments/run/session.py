@@ -24,7 +24,7 @@ REPORT_LIMIT = 600.0
 DECIDING_SHARE = 0.25
 """The part of a scale's time that what is open gets for certain."""
 
-REST_SHARE = 0.1
+REST_SHARE = 0.05
 """The part of the time that is kept for what decides nothing."""
 
 CONTROL_SHARE = 0.05
