@@ -13,25 +13,25 @@ each other:
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from analysis.claims.outcome import FAILS, HOLDS, HOLDS_BY_LESS, OPEN, Outcome, Verdict
+from analysis.claims.outcome import FAILS, HOLDS, IN_DIRECTION, OPEN, Outcome, Verdict
 from analysis.statistics.looks import ERROR
 from analysis.statistics.verdicts import holm
 from analysis.support.wording import count, number
 
-ALONE = {HOLDS: "hold", HOLDS_BY_LESS: "hold by less than the margin", FAILS: "not hold"}
-IN_ORDER = (FAILS, OPEN, HOLDS_BY_LESS, HOLDS)
+ALONE = {HOLDS: "hold", IN_DIRECTION: "hold in direction", FAILS: "not hold"}
+IN_ORDER = (FAILS, OPEN, IN_DIRECTION, HOLDS)
 """What a claim comes to is the first of these that one of its parts comes to."""
 
 
 def both(outcomes: Sequence[Outcome]) -> Outcome:
-    """Join the outcomes of a claim's parts: it holds if all do, by less than the margin if one does so, fails
-    if one does, and is open otherwise.
+    """Join the outcomes of a claim's parts: it holds if all do, in direction if one does so, fails if one
+    does, and is open otherwise.
     """
     parts = _corrected(outcomes, [FAILS], "part")
     verdicts = [outcome.verdict for outcome in parts]
     verdict = next((one for one in IN_ORDER if one in verdicts), HOLDS)
     # That a claim holds, by whatever, rests on all of its parts.
-    decisive = [one for one in parts if one.verdict == verdict or verdict == HOLDS_BY_LESS]
+    decisive = [one for one in parts if one.verdict == verdict or verdict == IN_DIRECTION]
     p = [outcome.p for outcome in decisive if outcome.p is not None]
     return Outcome(
         verdict,
@@ -43,7 +43,15 @@ def both(outcomes: Sequence[Outcome]) -> Outcome:
         blocks=_blocks(decisive, verdict),
         effects=tuple(effect for outcome in outcomes for effect in outcome.effects),
         against=_against(parts) if verdict == OPEN else None,
+        direction=_direction(parts) if verdict == HOLDS else None,
     )
+
+
+def _direction(parts: Sequence[Outcome]) -> float | None:
+    """Return the p-value of all parts' holding in direction at least; None if that is nothing else."""
+    if all(one.direction is None for one in parts):
+        return None
+    return max((one.p or 0.0) if one.direction is None else one.direction for one in parts)
 
 
 def _blocks(decisive: Sequence[Outcome], verdict: Verdict) -> int:
@@ -61,8 +69,17 @@ def _against(parts: Sequence[Outcome]) -> float | None:
 
 
 def corrected(claims: Sequence[Outcome]) -> list[Outcome]:
-    """Return the outcomes of the claims of one report, open where their verdict no longer stands."""
-    return _corrected(claims, list(ALONE), "claim")
+    """Return the outcomes of the claims of one report, open where their verdict no longer stands. What holds
+    alone, and not among all, may still hold in direction.
+    """
+    found = _corrected(claims, list(ALONE), "claim")
+    weaker = [
+        replace(one, verdict=IN_DIRECTION, p=one.direction)
+        if one.verdict == HOLDS and after.verdict == OPEN and one.direction is not None
+        else one
+        for one, after in zip(claims, found, strict=True)
+    ]
+    return _corrected(weaker, list(ALONE), "claim")
 
 
 def _corrected(outcomes: Sequence[Outcome], said: Collection[Verdict], noun: str) -> list[Outcome]:

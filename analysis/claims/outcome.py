@@ -21,20 +21,20 @@ class Verdict(StrEnum):
     """
 
     HOLDS = "holds"
-    HOLDS_BY_LESS = "holds by less than the margin"
+    IN_DIRECTION = "holds in direction"
     FAILS = "does not hold"
     HOLDS_ELSEWHERE = "holds elsewhere than claimed"
-    HOLDS_BY_LESS_ELSEWHERE = "holds by less than the margin elsewhere than claimed"
+    IN_DIRECTION_ELSEWHERE = "holds in direction elsewhere than claimed"
     FAILS_ELSEWHERE = "does not hold elsewhere than claimed"
     OPEN = "cannot be decided here"
     OTHER_SCALE = "cannot be decided at this scale"
 
 
 HOLDS, FAILS, OPEN = Verdict.HOLDS, Verdict.FAILS, Verdict.OPEN
-HOLDS_BY_LESS = Verdict.HOLDS_BY_LESS
+IN_DIRECTION = Verdict.IN_DIRECTION
 ELSEWHERE = {
     HOLDS: Verdict.HOLDS_ELSEWHERE,
-    HOLDS_BY_LESS: Verdict.HOLDS_BY_LESS_ELSEWHERE,
+    IN_DIRECTION: Verdict.IN_DIRECTION_ELSEWHERE,
     FAILS: Verdict.FAILS_ELSEWHERE,
 }
 """A verdict, and what is left of it where the claim was made on other threads or at another scale."""
@@ -74,6 +74,8 @@ class Outcome:
     missing: bool = False
     p: float | None = None
     against: float | None = None
+    direction: float | None = None
+    """Of a claim that holds, the p-value of its holding in direction, where that is something else."""
     blocks: int = 0
     effects: tuple[Effect, ...] = ()
     """What it is about as numbers."""
@@ -117,10 +119,10 @@ def judged(
     """Return what a verdict with its `p`, from so many `blocks` (or another unit), says of a claim that
     expects one; `unsettled` is why it is open where they are enough and do not decide.
 
-    That one choice is faster, or slower, holds by less than the margin where the interval of a row of
-    `directed` lies wholly on that side of 0 and has no part beyond the margin. Else a claim does not hold
-    where the interval has no part in what was expected, whether or not it tells the other verdicts from each
-    other. A row without the p-value of that, e.g. `not_faster`, fails by another verdict.
+    That one choice is faster, or slower, holds in direction where the interval of a row of `directed` lies
+    wholly on that side of 0, but not beyond the margin. Else a claim does not hold where the interval has no
+    part in what was expected, whether or not it tells the other verdicts from each other. A row without the
+    p-value of that, e.g. `not_faster`, fails by another verdict.
     """
     outcome = Outcome(OPEN, measured, figures=figures, blocks=row["blocks"])
     if row["blocks"] < FEWEST:
@@ -128,9 +130,9 @@ def judged(
         return replace(outcome, why=why)
     against = row.get(denial(expected))
     if row["verdict"] == expected:
-        return replace(outcome, verdict=HOLDS, p=row["p"])
-    if _is_by_less(row, expected):
-        return replace(outcome, verdict=HOLDS_BY_LESS, p=max(against or 0.0, row[f"any_{expected}"]))
+        return replace(outcome, verdict=HOLDS, p=row["p"], direction=row.get(f"any_{expected}"))
+    if _is_in_direction(row, expected):
+        return replace(outcome, verdict=IN_DIRECTION, p=row[f"any_{expected}"])
     if against is not None and against <= ERROR:
         return replace(outcome, verdict=FAILS, p=against)
     if row["verdict"] != "inconclusive":
@@ -140,11 +142,13 @@ def judged(
 
 def told(row: Mapping[str, Any], expected: str) -> str:
     """Return the verdict of a row in words, with what it denies where it tells no more, e.g. `faster`, `not
-    faster` or `faster, but by less than 2 %`.
+    faster`, `faster, but by less than 2 %` or `faster, unknown whether by 2 %`.
     """
-    if _is_by_less(row, expected):
-        return f"{expected}, but by less than {100 * row['margin']:g} %"
-    if row["verdict"] == "inconclusive" and row.get(denial(expected), 1.0) <= ERROR:
+    is_denied = row.get(denial(expected), 1.0) <= ERROR
+    if row["verdict"] != expected and _is_in_direction(row, expected):
+        how = "but by less than" if is_denied else "unknown whether by"
+        return f"{expected}, {how} {100 * row['margin']:g} %"
+    if row["verdict"] == "inconclusive" and is_denied:
         return denial(expected).replace("_", " ")
     return str(row["verdict"])
 
@@ -154,9 +158,8 @@ def denial(expected: str) -> str:
     return f"not_{expected}"
 
 
-def _is_by_less(row: Mapping[str, Any], expected: str) -> bool:
-    p = (row.get(denial(expected), 1.0), row.get(f"any_{expected}", 1.0))
-    return row["blocks"] >= FEWEST and max(p) <= ERROR
+def _is_in_direction(row: Mapping[str, Any], expected: str) -> bool:
+    return row["blocks"] >= FEWEST and row.get(f"any_{expected}", 1.0) <= ERROR
 
 
 def _short(row: Mapping[str, Any], expected: str) -> str:

@@ -52,19 +52,21 @@ def _judged(
 
     Two ratios are judged, each with half of the error: that of the later resolves, a share within one
     process, and that of all of them. Since what is done early only adds, the claim holds where either is more
-    than half, and is told by the later ones if they are enough.
+    than half: the surer one is told.
     """
     whole = with_early.sum(axis=1)
     resolved_early = with_early[early] - without[early]
     late, resolving = with_early[phase], with_early[phase] + resolved_early
     parts = pd.DataFrame({"late": late, early: with_early[early], "early": resolved_early, "all": resolving})
     part = parts.div(whole, axis=0).median().map(share)
-    rows = [directed(np.log(one / (whole - one)), error=ERROR / 2) for one in (late, resolving)]
-    late_row, row = ({**one, **{key: 2 * one[key] for key in one if key in P_VALUES}} for one in rows)
-    if late_row["verdict"] == "slower":
+    late_row, row = (_with_half_of_the_error(np.log(one / (whole - one))) for one in (late, resolving))
+    if late_row["any_slower"] < row["any_slower"]:
         of = f"{part['late']} of a step in {phase} alone, without what is done early in {early}"
         return late_row, of, f"{part['late']} without early resolves"
-    of = (
-        f"{part['all']} of a step: {part['late']} in {phase} and {part['early']} early, of the {part[early]} "
-    )
-    return row, f"{of}of {early}", str(part["all"])
+    of = f"{part['all']} of a step: {part['late']} in {phase} and {part['early']} early, of the {part[early]}"
+    return row, f"{of} of {early}", str(part["all"])
+
+
+def _with_half_of_the_error(log_ratios: pd.Series) -> dict[str, Any]:
+    row = directed(log_ratios, error=ERROR / 2)
+    return {key: 2 * value if key in P_VALUES else value for key, value in row.items()}

@@ -1,8 +1,8 @@
 """Claims that one choice is faster than, or as fast as, another.
 
 One rule for ties: where the interval has no part in faster by more than the margin, the claim does not hold,
-be the two equivalent or the other one faster. But where the interval lies wholly below 0 it holds, by less
-than the margin: that is ours, and no source of a claim stated it.
+be the two equivalent or the other one faster. But where the interval lies wholly below 0 it holds in
+direction, by however little: the margin is ours, and no source of a claim stated it.
 """
 
 from collections.abc import Sequence

@@ -6,11 +6,11 @@ from typing import Any
 
 from analysis.claims.effects import Effect
 from analysis.claims.missing import DECIDED
-from analysis.claims.outcome import ELSEWHERE, FAILS, HOLDS, HOLDS_BY_LESS, Verdict
+from analysis.claims.outcome import ELSEWHERE, FAILS, HOLDS, IN_DIRECTION, Verdict
 from analysis.statistics.intervals import FEWEST
 from analysis.support.wording import NO_BREAK, count, number
 
-MARKS = {HOLDS: "✓", HOLDS_BY_LESS: "✓", FAILS: "✗"}
+MARKS = {HOLDS: "✓", IN_DIRECTION: "✓", FAILS: "✗"}
 UNDECIDED, UNMEASURED = "?", "–"
 TOO_FEW_BLOCKS = "too few blocks for an interval"
 _ON_THE_MARGIN = 0.005
@@ -31,9 +31,9 @@ def mark(row: Mapping[str, Any]) -> str:
 
 
 def colour_of(row: Mapping[str, Any]) -> str:
-    """Return what a verdict is drawn as, wherever it was reached: `holds`, `by_less`, `fails` or `open`."""
+    """Return what a verdict is drawn as, wherever it was reached: holds, in_direction, fails or open."""
     plain = {elsewhere: one for one, elsewhere in ELSEWHERE.items()}.get(row["verdict"], row["verdict"])
-    return {HOLDS: "holds", HOLDS_BY_LESS: "by_less", FAILS: "fails"}.get(plain, "open")
+    return {HOLDS: "holds", IN_DIRECTION: "in_direction", FAILS: "fails"}.get(plain, "open")
 
 
 def verdict_in_short(row: Mapping[str, Any]) -> str:

@@ -28,7 +28,7 @@ def told(name: str, table: pd.DataFrame, *, verbose: bool = False) -> Iterator[s
 def _line(row: dict[str, Any]) -> str:
     effect = first_effect(row)
     measured = change_in_short(effect).partition(" (")[0] if effect else ""
-    line = f"{mark(row):>3} {row['id']:25} {measured:23} {verdict_in_short(row)}".translate(_NO_BREAK)
+    line = f"{mark(row):>3} {row['id']:25} {measured:22} {verdict_in_short(row)}".translate(_NO_BREAK)
     return line if len(line) <= WIDTH else f"{line[: WIDTH - 1]}…"
 
 

@@ -35,7 +35,12 @@ from analysis.records.reading import load
 from analysis.records.studies import split
 
 NAME = "claims"
-LOOK = {"holds": (BLUE, "o"), "by_less": (SKY, "o"), "fails": (VERMILLION, "s"), "open": ("#b4b4b4", "o")}
+LOOK = {
+    "holds": (BLUE, "o"),
+    "in_direction": (SKY, "o"),
+    "fails": (VERMILLION, "s"),
+    "open": ("#b4b4b4", "o"),
+}
 """The colour and the mark of what a verdict says; of one that is open the mark is hollow."""
 PUBLISHED_LOOK: Any = {"markerfacecolor": "none", "markersize": 4.6, "markeredgewidth": 0.8}
 PALE_INK = "#6e6e6e"
@@ -226,7 +231,7 @@ def _key(figure: Figure, layout: Layout) -> None:
     published = Line2D([], [], color=INK, marker="D", linestyle="", **PUBLISHED_LOOK)
     entries: list[tuple[Any, str]] = [
         (point("holds"), "measured, 95 % interval: holds"),
-        (point("by_less"), "holds, by less than the margin"),
+        (point("in_direction"), "holds in direction, maybe by little"),
         (point("fails"), "does not hold"),
         (point("open", "white"), "not decided"),
         (published, "published"),

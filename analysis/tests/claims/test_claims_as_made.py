@@ -21,13 +21,13 @@ from analysis.tests.synthetic_study import study
     [
         (20, 1.0, HOLDS, "holds"),
         (20, 1.2, FAILS, "does not hold"),
-        (20, 1.04, Verdict.HOLDS_BY_LESS, "holds by less than the margin"),
+        (20, 1.04, Verdict.IN_DIRECTION, "holds in direction"),
         (2, 1.0, Verdict.HOLDS_ELSEWHERE, "holds at 2 threads (claimed at 20)"),
         (
             2,
             1.04,
-            Verdict.HOLDS_BY_LESS_ELSEWHERE,
-            "holds by less than the margin at 2 threads (claimed at 20)",
+            Verdict.IN_DIRECTION_ELSEWHERE,
+            "holds in direction at 2 threads (claimed at 20)",
         ),
         (2, 1.2, Verdict.FAILS_ELSEWHERE, "does not hold at 2 threads (claimed at 20)"),
         (1, 1.2, Verdict.FAILS_ELSEWHERE, "does not hold at 1 thread (claimed at 20)"),
@@ -71,7 +71,7 @@ def test_a_claim_is_judged_by_the_margin_of_its_question(tmp_path: Path) -> None
     for record in records:
         record["tags"]["margin"] = 0.1
     row = row_of(tmp_path, records, "four_boxes")
-    assert row["verdict"] == Verdict.HOLDS_BY_LESS
+    assert row["verdict"] == Verdict.IN_DIRECTION
     assert row["measured"].endswith("(faster, but by less than 10 %)")
 
 
@@ -83,7 +83,7 @@ def test_a_claim_is_judged_by_the_margin_of_its_question(tmp_path: Path) -> None
     [
         (20, 1.0, Verdict.HOLDS_ELSEWHERE, "holds at quick scale"),
         (20, 1.2, Verdict.FAILS_ELSEWHERE, "does not hold at quick scale"),
-        (20, 1.04, Verdict.HOLDS_BY_LESS_ELSEWHERE, "holds by less than the margin at quick scale"),
+        (20, 1.04, Verdict.IN_DIRECTION_ELSEWHERE, "holds in direction at quick scale"),
         (2, 1.0, Verdict.HOLDS_ELSEWHERE, "holds at quick scale, at 2 threads (claimed at 20)"),
     ],
 )

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from analysis import claims
-from analysis.claims.outcome import FAILS, HOLDS, HOLDS_BY_LESS, OPEN, Verdict
+from analysis.claims.outcome import FAILS, HOLDS, IN_DIRECTION, OPEN, Verdict
 from analysis.records import published
 from analysis.tests.claims.judging import Records, figures, row_of
 from analysis.tests.synthetic import Machine, Point, bench, write
@@ -31,7 +31,7 @@ def schedules(seconds: dict[tuple[str, int], float]) -> Records:
     [
         ((0.75, 0.80, 0.90), HOLDS, ""),
         ((0.72, 0.80, 0.90), HOLDS, ""),
-        ((0.73, 0.73, 0.73), HOLDS_BY_LESS, ""),
+        ((0.73, 0.73, 0.73), IN_DIRECTION, ""),
         ((0.725, 0.725, 0.725), FAILS, "does not matter which is chosen"),
         ((0.65, 0.80, 0.90), FAILS, "dynamic 10"),
     ],

@@ -12,7 +12,7 @@ from analysis.claims.missing import is_open, needed
 from analysis.claims.outcome import (
     FAILS,
     HOLDS,
-    HOLDS_BY_LESS,
+    IN_DIRECTION,
     OPEN,
     Outcome,
     Verdict,
@@ -129,7 +129,7 @@ WITHIN = 0.001 * np.array([4, -3, 2, -4, 3, -2, 1, -1, 0])
     ("centre", "verdict", "said"),
     [
         (-0.04, HOLDS, "faster"),
-        (-0.01, HOLDS_BY_LESS, "faster, but by less than 2 %"),
+        (-0.01, IN_DIRECTION, "faster, but by less than 2 %"),
         (0.0, FAILS, "equivalent"),
         (0.01, FAILS, "equivalent"),
         (0.04, FAILS, "slower"),
@@ -154,29 +154,31 @@ def test_the_interval_that_is_shown_is_the_one_that_tells_less_from_nothing() ->
     for centre in np.linspace(-0.03, 0.01, 80):
         row = directed(generator.normal(centre, 0.006, 9))
         outcome = judged(row, "faster", "")
-        by_less = row["low"] > 1 / 1.02 and row["high"] < 1
-        assert (outcome.verdict == HOLDS_BY_LESS) == by_less
-        assert (outcome.verdict == FAILS) == (row["low"] > 1 / 1.02 and not by_less)
+        in_direction = 1 / 1.02 < row["high"] < 1
+        assert (outcome.verdict == IN_DIRECTION) == in_direction
+        assert (outcome.verdict == FAILS) == (row["low"] > 1 / 1.02 and not in_direction)
         assert (outcome.verdict == HOLDS) == (row["high"] < 1 / 1.02)
         seen.add(outcome.verdict)
-    assert seen == {HOLDS, HOLDS_BY_LESS, FAILS, OPEN}
+    assert seen == {HOLDS, IN_DIRECTION, FAILS, OPEN}
 
 
 def test_less_than_the_margin_is_that_of_the_question() -> None:
     row = directed(-0.03 + WITHIN, 0.05)
     assert (judged(row, "faster", "").verdict, told(row, "faster")) == (
-        HOLDS_BY_LESS,
+        IN_DIRECTION,
         "faster, but by less than 5 %",
     )
 
 
-def test_parts_that_hold_by_less_make_a_claim_that_does_and_it_is_corrected() -> None:
-    by_less, whole = (judged(directed(centre + WITHIN), "faster", "") for centre in (-0.01, -0.04))
-    joined = both([whole, by_less])
-    assert (joined.verdict, joined.p) == (HOLDS_BY_LESS, max(whole.p or 0, by_less.p or 0))
-    assert both([by_less, refuted(0.001)]).verdict == FAILS
-    assert both([by_less, Outcome(OPEN)]).verdict == OPEN
-    weak = replace(by_less, p=0.04)
+def test_parts_that_hold_in_direction_make_a_claim_that_does_and_it_is_corrected() -> None:
+    in_direction, whole = (judged(directed(centre + WITHIN), "faster", "") for centre in (-0.01, -0.04))
+    joined = both([whole, in_direction])
+    assert (joined.verdict, joined.p) == (IN_DIRECTION, max(whole.p or 0, in_direction.p or 0))
+    assert both([in_direction, refuted(0.001)]).verdict == FAILS
+    assert both([in_direction, Outcome(OPEN)]).verdict == OPEN
+    almost = replace(whole, p=0.04)
+    assert corrected([almost, *[held(0.001)] * 3, *[Outcome(OPEN, p=1.0)] * 3])[0].verdict == IN_DIRECTION
+    weak = replace(in_direction, p=0.04)
     among = corrected([weak, *[held(0.001)] * 3, *[Outcome(OPEN, p=1.0)] * 3])[0]
     assert among.verdict == OPEN
-    assert "alone it would hold by less than the margin" in among.why
+    assert "alone it would hold in direction" in among.why

@@ -69,7 +69,7 @@ def test_claims_are_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert any(
         re.fullmatch(r"\(✓\) four_boxes +−4.\d % \[−\S+, −\S+\] +holds at 2 threads", line) for line in lines
     )
-    assert "  – radius                                            not measured" in lines
+    assert "  – radius                                           not measured" in lines
 
 
 def test_all_that_is_known_of_a_claim_is_below_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -108,7 +108,7 @@ def test_the_forecast_grows_with_the_family_and_ends_on_the_border() -> None:
     assert blocks_to_decide(100.0, 6) > MOST_BLOCKS, "on the border nothing is in sight"
 
 
-def test_a_claim_that_holds_by_less_than_the_margin_is_settled_and_says_so(tmp_path: Path) -> None:
+def test_a_claim_that_holds_in_direction_than_the_margin_is_settled_and_says_so(tmp_path: Path) -> None:
     records = study(["neighbourhood"], blocks=21, noise=QUIET, threads=20)
     for record in records:
         wobble = 1 + 0.002 * (record["tags"]["block"] % 3 - 1)
@@ -118,7 +118,7 @@ def test_a_claim_that_holds_by_less_than_the_margin_is_settled_and_says_so(tmp_p
     answer = open_questions(tmp_path)
     assert answer["settled"] == ["neighbourhood"]
     said = str(answer["said"]["four_boxes"]).replace("\u00a0", " ")
-    assert said.startswith("holds by less than the margin: ")
+    assert said.startswith("holds in direction: ")
     assert said.endswith("(faster, but by less than 2 %)")
 
 
