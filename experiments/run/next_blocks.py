@@ -38,16 +38,14 @@ def next_blocks(waiting: Sequence[Waiting], seconds_left: float, least_seconds: 
     """The questions to be brought to their next looks before anything is looked at again, with the blocks
     that each of them lacks; none if there is time for none.
 
-    First looks come first, the cheapest before the others, as far as there is time. Then what is settled at
-    the least expense, as far as it fits in a share of the time left. A look is worth while from
-    `least_seconds` on.
+    First looks come first, the cheapest before the others, then what is settled at the least expense, as far
+    as it fits in a share of the time left. A look is worth while from `least_seconds` on.
     """
     most = min(seconds_left, max(least_seconds, min(SHARE * seconds_left, MOST_SECONDS)))
     chosen: dict[str, int] = {}
     used = 0.0
     for one in sorted(waiting, key=lambda one: (not one.is_first, one.seconds_to_settle)):
-        fits = used + one.seconds_to_look <= (most if chosen and not one.is_first else seconds_left)
-        if fits:
+        if used + one.seconds_to_look <= (most if chosen else seconds_left):
             chosen[one.name] = one.lacking
             used += one.seconds_to_look
     return chosen

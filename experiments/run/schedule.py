@@ -96,13 +96,13 @@ class Schedule:
             found = verdicts.open.get(one.name)
             if found is None or self._given_up[one.name] or one.name == CONTROL:
                 continue
-            lacking = found.next - self.given[one.name]
-            if lacking <= 0 and self.is_complete(one):
+            lacking = len(self.blocks_of(one).lacking) + max(0, found.next - self.given[one.name])
+            if not lacking:
                 continue
             block = sum(self._seconds_each(one).values())
             spent = found.needed - one.question.blocks.minimum
             is_first = found.blocks < FIRST_LOOK
-            yield Waiting(one.name, max(1, lacking), block, block * spent, is_first)
+            yield Waiting(one.name, lacking, block, block * spent, is_first)
 
     def runs(self, group: Sequence[Point]) -> int:
         """How many timed runs a process of these points makes, by what is known of their times so far."""

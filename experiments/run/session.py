@@ -57,8 +57,8 @@ def run(settings: Settings) -> int:
 
 
 class Session:
-    """One invocation: the least number of blocks of every experiment, the control in between; then whatever
-    settles what is open; then the rest of the time shared out.
+    """One invocation: the first block of every experiment, the control in between; then whatever settles what
+    is open; then the least number of blocks of all, and the rest of the time shared out.
     """
 
     def __init__(
@@ -110,7 +110,8 @@ class Session:
         self._keep_time_to_decide()
         deciding = [one for one in self._incomplete if self._may_decide(one)] if looks else self._incomplete
         begun = self._first_blocks(deciding, FIRST_LOOK if looks else 0)
-        self._measure([one for one in begun if one.question.blocks.wanted > 1])
+        if not looks:
+            self._measure([one for one in begun if one.question.blocks.wanted > 1])
         if settings.builds:
             self._study.begin(time.monotonic() - self._began)
             return self._failed()
