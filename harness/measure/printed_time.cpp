@@ -192,7 +192,7 @@ bool may_have_thousands(const Group& group, const std::string& number, const std
 bool is_cut(const Group& group, const Reading& read, const std::string& behind, const std::string& pattern) {
     static const std::regex has_begun("(?:[0-9](?:[eE][-+]?|" + between_digits +
                                       ")?|(?:^|[^A-Za-z.])(?:[-.]|\xE2\x88\x92))$");
-    static const std::regex goes_on("(?:" + between_digits + "|-|[eE][-+]?)?[0-9]");
+    static const std::regex goes_on("(?:" + between_digits + "|:|-|[eE][-+]?)?[0-9]");
     const bool ends_there = read.number.size() == group.text.size();
     return read.number.size() > group.text.size() ||
            (ends_there && std::regex_search(behind, goes_on, at_its_beginning)) ||
