@@ -79,7 +79,12 @@ def corrected(claims: Sequence[Outcome]) -> list[Outcome]:
         else one
         for one, after in zip(claims, found, strict=True)
     ]
-    return _corrected(weaker, list(ALONE), "claim")
+    # The others keep what they came to: whoever picks the better of two corrections errs more often.
+    retried = _corrected(weaker, list(ALONE), "claim")
+    return [
+        again if one.verdict == HOLDS and after.verdict == OPEN else after
+        for one, after, again in zip(claims, found, retried, strict=True)
+    ]
 
 
 def _corrected(outcomes: Sequence[Outcome], said: Collection[Verdict], noun: str) -> list[Outcome]:

@@ -60,7 +60,9 @@ def _judged(
     parts = pd.DataFrame({"late": late, early: with_early[early], "early": resolved_early, "all": resolving})
     part = parts.div(whole, axis=0).median().map(share)
     late_row, row = (_with_half_of_the_error(np.log(one / (whole - one))) for one in (late, resolving))
-    if late_row["any_slower"] < row["any_slower"]:
+    # Later ones of less than half refute nothing.
+    is_surer = row["verdict"] != "slower" and late_row["any_slower"] <= min(ERROR, row["any_slower"])
+    if late_row["verdict"] == "slower" or is_surer:
         of = f"{part['late']} of a step in {phase} alone, without what is done early in {early}"
         return late_row, of, f"{part['late']} without early resolves"
     of = f"{part['all']} of a step: {part['late']} in {phase} and {part['early']} early, of the {part[early]}"

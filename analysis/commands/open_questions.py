@@ -13,7 +13,7 @@ from analysis.derived.comparisons import differences, reference, stated
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
-from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
+from analysis.statistics.forecast import blocks_to_decide
 from analysis.statistics.looks import ERROR, next_look
 from analysis.support.wording import change
 
@@ -28,6 +28,11 @@ OPTIMISM = 12
 off: the square of the 3.5 standard errors that a look at one of a dozen claims asks for.
 """
 
+PATIENCE = 32
+"""Blocks up to which it is given that benefit. What still seems to lie on a margin then takes time from what
+does not.
+"""
+
 
 def open_questions(results: Path, remembered: claims.Tested | None = None) -> dict[str, Any]:
     """Return `open`: experiment -> the `blocks` it has, the `next` number at which to look again, and those
@@ -35,8 +40,8 @@ def open_questions(results: Path, remembered: claims.Tested | None = None) -> di
     nothing is; `said`: name -> what was decided.
 
     Of the first study in the folder. What is not in sight, as measured, is given the benefit of a standard
-    error (`OPTIMISM`), up to `MOST_BLOCKS`; beyond, it is neither open nor settled. What is `remembered` of
-    an earlier look at the folder is not tested again.
+    error (`OPTIMISM`), up to `PATIENCE` blocks; beyond, it is neither open nor settled. What is `remembered`
+    of an earlier look at the folder is not tested again.
     """
     studies = split(load(results))
     found: dict[str, Any] = {"open": {}, "settled": [], "said": {}}
@@ -50,7 +55,7 @@ def open_questions(results: Path, remembered: claims.Tested | None = None) -> di
     experiments = dict.fromkeys(experiment for experiment, _, _ in items)
     for experiment in experiments:
         own = [
-            (OPTIMISM * blocks if math.isinf(needed) and OPTIMISM * blocks <= MOST_BLOCKS else needed, blocks)
+            (OPTIMISM * blocks if math.isinf(needed) and blocks <= PATIENCE else needed, blocks)
             for name, blocks, needed in items
             if name == experiment
         ]

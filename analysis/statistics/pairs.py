@@ -97,7 +97,7 @@ def block_curves(processes: pd.DataFrame) -> pd.DataFrame:
 
 def _curve(logs: list[Floats]) -> list[float]:
     if len({len(one) for one in logs}) > 1:
-        return [float(np.log(np.median(np.exp(one)))) for one in logs]
+        return list(map(_middle, logs))
     rounds = np.stack(logs).mean(axis=0)
     return [location(one - rounds) + location(rounds) for one in logs]
 
@@ -154,7 +154,11 @@ def _of_replicates(logs: pd.Series) -> Floats:
 def _block_ratio(reference: Floats, candidate: Floats) -> float:
     if len(reference) == len(candidate):
         return location(candidate - reference)
-    return float(np.log(np.median(np.exp(candidate)) / np.median(np.exp(reference))))
+    return _middle(candidate) - _middle(reference)
+
+
+def _middle(logs: Floats) -> float:
+    return float(np.log(np.median(np.exp(logs))))
 
 
 def rounds_of(value: str) -> str:

@@ -38,6 +38,9 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int) 
             found = word if word == str(path) else f"{word}, which is {path}"
             told = "written by the builds: both commits would use what was built last"
             raise InputError(f"found {found}, {told}; expected a path inside the checkout, such as ./prog")
+    named = next((word for word, _ in sorted(of_head) if word.startswith("/")), None)
+    if named and not any(path.is_relative_to(trees) for _, path in of_head):
+        warn(f"carom: both commits use {named}, and nothing that the command names lies in the checkout")
 
 
 def require_two_programs(words: Sequence[str], base: Tree, head: Tree) -> None:

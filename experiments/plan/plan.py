@@ -101,9 +101,7 @@ def _with_replicates(points: Sequence[Point], question: Question) -> Iterator[Po
 
 
 def _left_out(series: Series, scene: NamedScene, around: Surroundings) -> bool:
-    """Whether the series does not run the scene, or may be missing and its program is,
-    or that it has no part in the scale.
-    """
+    """Whether the series does not run the scene or at the scale, or may be missing and its program is."""
     if (scene.series and series.name not in scene.series) or (series.paper_only and around.scale.divisor > 1):
         return True
     program = around.programs.get(series.program)

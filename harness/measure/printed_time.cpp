@@ -222,7 +222,10 @@ double seconds_of(const Group& group, const std::string& pattern, std::optional<
     }
     static const std::regex of_something_else("[ \t]*(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\\b|[kMG]?Hz|[kM]s\\b)");
     std::smatch other;
-    if (!read.unit && std::regex_search(behind, other, of_something_else, at_its_beginning)) {
+    const bool goes_on_in_pattern = !behind.empty() && pattern.find(")" + behind.substr(0, 1)) != std::string::npos;
+    static const std::regex letter("([A-Za-z])(?![A-Za-z])");
+    if (!read.unit && (std::regex_search(behind, other, of_something_else, at_its_beginning) ||
+                       (!goes_on_in_pattern && std::regex_search(behind, other, letter, at_its_beginning)))) {
         refuse(group.text, " with the unit '" + other[1].str() + "', expected a time");
     }
     if (!unit) {

@@ -180,6 +180,18 @@ def test_a_machine_of_two_speeds_does_not_hide_what_each_process_tells(tmp_path:
     assert "the ratio to all the rest is 1.50 [1.50, 1.50]" in row["measured"]
 
 
+def test_later_resolves_of_about_half_refute_nothing(tmp_path: Path) -> None:
+    records = profiled(0.4, 0.5, 0.3)
+    for record in records:
+        odd = record["tags"]["block"] % 2
+        for phase in record["profile"]["phases"]:
+            if phase["phase"] == "resolve":
+                phase["wall_seconds"] += 0.002 * odd - 0.0005
+            elif phase["phase"] == "find" and record["axes"]["variant"] == "self_contained_off":
+                phase["wall_seconds"] = 0.75 if odd else 0.25
+    assert row_of(tmp_path, records, "resolve_dominates")["verdict"] == OPEN
+
+
 def test_early_resolves_are_not_guessed(tmp_path: Path) -> None:
     records = [one for one in profiled(0.3, 0.6, 0.3) if one["axes"]["variant"] != "self_contained_off"]
     row = row_of(tmp_path, records, "resolve_dominates")

@@ -178,6 +178,8 @@ def test_parts_that_hold_in_direction_make_a_claim_that_does_and_it_is_corrected
     assert both([in_direction, Outcome(OPEN)]).verdict == OPEN
     almost = replace(whole, p=0.04)
     assert corrected([almost, *[held(0.001)] * 3, *[Outcome(OPEN, p=1.0)] * 3])[0].verdict == IN_DIRECTION
+    beside = corrected([almost, replace(held(0.001), p=0.03), Outcome(OPEN, p=1.0)])
+    assert [one.verdict for one in beside] == [IN_DIRECTION, OPEN, OPEN], "what stands beside gains nothing"
     weak = replace(in_direction, p=0.04)
     among = corrected([weak, *[held(0.001)] * 3, *[Outcome(OPEN, p=1.0)] * 3])[0]
     assert among.verdict == OPEN

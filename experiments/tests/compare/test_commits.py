@@ -242,6 +242,12 @@ PROGRAMS = {
     "installed": Case(
         SLOWER, 1, (f"found HERE/fixed/prog, {SHARED}",), build=INSTALL, run=("HERE/fixed/prog",)
     ),
+    "outside, and nothing of the checkout": Case(
+        f"{SLOWER} cp prog.in HERE/outside && chmod +x HERE/outside",
+        0,
+        ("both commits use HERE/outside, and nothing that the command names lies in the checkout", PASSED),
+        run=("HERE/outside",),
+    ),
     "installed, one commit": Case(START, 0, (PASSED,), build=INSTALL, run=("HERE/fixed/prog",)),
     "installed on PATH": Case(
         SLOWER,
