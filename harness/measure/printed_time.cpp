@@ -171,8 +171,8 @@ Group group_of(const std::string& line, const std::smatch& match) {
     throw InputError("time: found '" + on_one_line(found) + "'" + expected);
 }
 
-/// Whether blanks may separate the thousands of a number, of which the group takes a part: three digits behind
-/// one to three, or one to three before three. Not where the pattern has a blank of its own there.
+/// Whether blanks may separate the thousands of a number, of which the group takes a part: three digits
+/// behind one to three, or one to three before three. Not where the pattern has a blank of its own there.
 bool may_have_thousands(const Group& group, const std::string& number, const std::string& pattern) {
     static const std::regex thousands("(?:^|[^0-9.,])[1-9][0-9]{0,2} $");
     static const std::regex three_digits("[0-9]{3}(?:[.,][0-9]+)?");
@@ -222,7 +222,8 @@ double seconds_of(const Group& group, const std::string& pattern, std::optional<
     }
     static const std::regex of_something_else("[ \t]*(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\\b|[kMG]?Hz|[kM]s\\b)");
     std::smatch other;
-    const bool goes_on_in_pattern = !behind.empty() && pattern.find(")" + behind.substr(0, 1)) != std::string::npos;
+    const bool goes_on_in_pattern =
+        !behind.empty() && pattern.find(")" + behind.substr(0, 1)) != std::string::npos;
     static const std::regex letter("([A-Za-z])(?![A-Za-z])");
     if (!read.unit && (std::regex_search(behind, other, of_something_else, at_its_beginning) ||
                        (!goes_on_in_pattern && std::regex_search(behind, other, letter, at_its_beginning)))) {
