@@ -157,6 +157,7 @@ struct Group {
     std::string before;
     std::string text; ///< without blanks at its ends
     std::string behind;
+    bool ends_match = false; ///< the pattern does not say what follows
 };
 
 Group group_of(const std::string& line, const std::smatch& match) {
@@ -164,7 +165,8 @@ Group group_of(const std::string& line, const std::smatch& match) {
     const std::string text = match[1];
     const std::size_t first = std::min(text.find_first_not_of(" \t"), text.size());
     const std::size_t length = text.find_last_not_of(" \t") + 1 - (first < text.size() ? first : 0);
-    return {line.substr(0, begin + first), text.substr(first, length), line.substr(begin + first + length)};
+    return {line.substr(0, begin + first), text.substr(first, length), line.substr(begin + first + length),
+            match[1].second == match[0].second};
 }
 
 [[noreturn]] void refuse(const std::string& found, const std::string& expected) {
@@ -220,13 +222,11 @@ double seconds_of(const Group& group, const std::string& pattern, std::optional<
     if ((read.rest.size() > behind.size() && !is_point) || !(seconds > 0) || !std::isfinite(seconds)) {
         refuse(group.text, ", expected a positive number");
     }
-    static const std::regex of_something_else("[ \t]*(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\\b|[kMG]?Hz|[kM]s\\b)");
+    static const std::regex other_unit("[ \t]*(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\\b|[kMG]?Hz|[kMG]s\\b)");
+    static const std::regex letters("([A-Za-z]{1,3})(?![A-Za-z])"); // no word, as in 0:03.5elapsed
     std::smatch other;
-    const bool goes_on_in_pattern =
-        !behind.empty() && pattern.find(")" + behind.substr(0, 1)) != std::string::npos;
-    static const std::regex letter("([A-Za-z])(?![A-Za-z])");
-    if (!read.unit && (std::regex_search(behind, other, of_something_else, at_its_beginning) ||
-                       (!goes_on_in_pattern && std::regex_search(behind, other, letter, at_its_beginning)))) {
+    if (!read.unit && (std::regex_search(behind, other, other_unit, at_its_beginning) ||
+                       (group.ends_match && std::regex_search(behind, other, letters, at_its_beginning)))) {
         refuse(group.text, " with the unit '" + other[1].str() + "', expected a time");
     }
     if (!unit) {

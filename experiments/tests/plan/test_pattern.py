@@ -141,6 +141,8 @@ def test_the_program_finds_what_python_finds(tmp_path: Path, seed: int) -> None:
             assert f"matches {len(matches)} " in reason, (pattern, line)
         elif (expected := _number(group)) is None:
             assert "found '" in reason or group != group.strip(), (pattern, line)
+        elif _has_letters_behind(matches[0], line.encode()):
+            assert "with the unit" in reason or "within a longer number" in reason, (pattern, line)
         elif not _is_cut(matches[0], line.encode()) or not reason:
             assert record["repetitions"][0]["steps_seconds"] == pytest.approx(expected), (pattern, line)
         else:
@@ -158,6 +160,12 @@ def _is_cut(found: re.Match[bytes], line: bytes) -> bool:
     """Whether a number may go on where the group ends, or may have begun before it."""
     before, after = line[: found.start(1)], line[found.end(1) :]
     return bool(re.match(rb"[0-9.,:'_eE+-]", after) or re.search(rb"[0-9.,:'_+-]$", before))
+
+
+def _has_letters_behind(found: re.Match[bytes], line: bytes) -> bool:
+    """Whether letters follow the number at once, of which the pattern says nothing: an unknown unit."""
+    short = re.match(rb"[A-Za-z]{1,3}(?![A-Za-z])", line[found.end() :])
+    return found.end() == found.end(1) and short is not None
 
 
 def _number(text: bytes) -> float | None:

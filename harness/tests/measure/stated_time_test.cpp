@@ -92,6 +92,7 @@ TEST(StatedTime, IsNotWhatABlankSeparatesFromItsThousands) {
               "time: found '1' within a longer number in 'took 1 234 ms', expected a pattern that takes all "
               "of it");
     EXPECT_EQ(said("took 5m\n", "took ([0-9]+)"), "time: found '5' with the unit 'm', expected a time");
+    EXPECT_EQ(said("took 5kms\n", "took ([0-9]+)"), "time: found '5' with the unit 'kms', expected a time");
     EXPECT_DOUBLE_EQ(time_in_output("took 5ticks\n", "took ([0-9]+)ticks", 1).seconds, 5)
         << "as the pattern says";
     EXPECT_NE(said("took 1:02.5 s\n", "took ([0-9.]+)"), "") << "minutes before a colon";
