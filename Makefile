@@ -25,7 +25,7 @@ limits := $${BUDGET:+--budget "$$BUDGET"} $${UNTIL:+"--until-$$UNTIL"}
 # What may be given, with what holds if it is not: `make help` prints these lines.
 #: Settings, given as NAME=VALUE behind the verb; in brackets what holds without:
 #:   STUDY=      questions out of QUESTIONS, between commas (all)
-#:   SCALE=      paper or quick, a tenth of the discs and half of the steps (paper)
+#:   SCALE=      paper or quick, a tenth of the discs (paper)
 #:   SITE=       where it runs: a name in experiments/sites, or a file *.toml (local)
 #:   QUESTIONS=  folder of questions of your own (experiments/questions)
 #:   RESULTS=    folder of records, figures and report (results)

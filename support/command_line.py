@@ -45,6 +45,9 @@ def print_lines(lines: Iterable[str], stream: TextIO | None) -> None:
         raise InputError("standard output: is closed, expected a place for the result")
     try:
         print(*lines, sep="\n", file=stream, flush=True)
+    except BrokenPipeError as error:
+        _forget(stream)
+        raise InputError("standard output: its reader is gone, expected a place for the result") from error
     except OSError as error:
         _forget(stream)
         raise OSError(error.errno, error.strerror, "standard output") from error

@@ -12,7 +12,7 @@ from analysis.claims.counts import fewer_wasted_attempts
 from analysis.claims.curves import falls_then_rises, grows, linear, spike_then_linear
 from analysis.claims.entry import Claim, Evidence, load
 from analysis.claims.machines import clock
-from analysis.claims.outcome import ELSEWHERE, OPEN, Compared, Outcome, Verdict
+from analysis.claims.outcome import ELSEWHERE, FAILS, OPEN, Compared, Outcome, Verdict
 from analysis.claims.phases import phase_dominates
 from analysis.claims.ratios import pair
 from analysis.claims.scaling import scaling
@@ -112,7 +112,7 @@ def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[st
         "claimed_threads": () if claim.published.threads is None else (claim.published.threads,),
         "experiments": list(claim.experiments),
         "tested_threads": tested,
-        "said": _said(outcome.verdict, claim, tested, study.scale),
+        "said": _said(outcome, claim, tested, study.scale),
         **asdict(replace(outcome, figures=(), effects=())),
         "name": claim.name,
         "effects": outcome.effects,
@@ -151,13 +151,18 @@ def _with_failures(outcome: Outcome, claim: Claim, study: Study) -> Outcome:
     return _because(outcome, f"{count(len(failed), 'process')} failed and left no time")
 
 
-def _said(verdict: Verdict, claim: Claim, tested: tuple[int, ...], scale: str) -> str:
+def _said(outcome: Outcome, claim: Claim, tested: tuple[int, ...], scale: str) -> str:
+    """What refutes a difference as large as the margin alone says so: a smaller one may be there."""
+    verdict = outcome.verdict
     if verdict == Verdict.OTHER_SCALE:
         return f"cannot be decided at {scale} scale"
     plain = {elsewhere: plain for plain, elsewhere in ELSEWHERE.items()}.get(verdict)
     if plain is None:
         return str(verdict)
     at_scale = "" if scale in claim.scales else f" at {scale} scale"
+    found = [one for one in outcome.effects if one.has_interval]
+    if plain == FAILS and found and all(one.here.low < 1 < one.here.high for one in found):
+        at_scale = f" by {100 * (found[0].within[1] - 1):g} %{at_scale}"
     if _on_its_threads(claim, tested):
         return f"{plain}{at_scale}"
     comma = "," if at_scale else ""

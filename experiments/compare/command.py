@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import signal
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -76,7 +77,7 @@ def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[i
         by_wall: tuple[Difference, ...] = ()
         if course.answer.clock != WALL:
             by_wall = ask(judge, asked.many).without(course.left_out).commands
-        found = course.found(by_wall, _remarks(course, by_wall))
+        found = course.found(by_wall, (*_remarks(course, by_wall), *_stopped_by(stopped)))
         said = result(found)
         try:
             # First what is kept: the terminal may be gone.
@@ -104,6 +105,10 @@ def _exit_code(blocks: Blocks, found: Found, stopped: int | None) -> int:
     if stopped is not None:
         return 128 + stopped
     return COMMAND_FAILED if blocks.failed else WITHDRAWN if found.answer.is_withdrawn else 0
+
+
+def _stopped_by(number: int | None) -> tuple[str, ...]:
+    return () if number is None else (f"stopped by {signal.Signals(number).name} before it was done",)
 
 
 def _write_down(asked: Asked, store: Store) -> None:

@@ -133,7 +133,9 @@ def _written(options: argparse.Namespace, split: Sequence[Sequence[str]]) -> lis
             found.setdefault(key, _Written(text, words, (*of_line, *levels), dict(levels), at))
     for name in combined[0]:
         if not any(name in one.values for one in found.values()):
-            raise InputError(f"found values for {name}, expected {{{name}}} in a command")
+            others = sorted(named_in(lines) - set(combined[0]))
+            beside = f" and no values for {{{others[0]}}}" if others else ""
+            raise InputError(f"found values for {name}{beside}, expected {{{name}}} in a command")
     for one in found.values():
         if not split:
             require_filled(one.line, one.line)
@@ -295,7 +297,9 @@ def _environment(
         is_of_one = bool(colon) and name in names
         variable = _ASSIGNMENT.fullmatch(rest if is_of_one else setting)
         if variable is None:
+            is_no_name = colon and _ASSIGNMENT.fullmatch(rest)
             told = "expected VARIABLE=VALUE or NAME:VARIABLE=VALUE"
+            told = f"expected one of {', '.join(names)} before the colon" if is_no_name else told
             raise InputError(f"--env: found {quoted(setting)}, {told}")
         if not is_of_one or name == own:
             found[variable[1]] = variable[2]
@@ -307,6 +311,7 @@ def _with_input(words: tuple[str, ...], asked: Path | None, values: Mapping[str,
     if asked is None:
         return words
     file = Path(fill(str(asked), values))
-    if not file.is_file():
-        raise InputError(f"--input: found {file}, expected a file that is there")
+    if not (file.is_file() or file.is_char_device()):
+        no_folder = ", no folder" if file.is_dir() else ""
+        raise InputError(f"--input: found {file}, expected a file that is there{no_folder}")
     return ("sh", "-c", f'exec "$@" < {shlex.quote(str(file.absolute()))}', "sh", *words)

@@ -75,7 +75,8 @@ def combinations(asked: Sequence[str], most: int) -> list[dict[str, str]]:
             raise InputError(f"{option}: found {quoted(name)}, {expected}")
         if name in values:
             raise InputError(f"{option}: found {name} twice, expected one list or range of each name")
-        values[name] = _listed(words[0]) if option in LIST else _range(f"{option} {name}", words, most)
+        what = f"{option} {name}"
+        values[name] = _listed(what, words[0]) if option in LIST else _range(what, words, most)
     number = 1
     for name, of_list in values.items():
         number *= len(of_list)
@@ -84,9 +85,14 @@ def combinations(asked: Sequence[str], most: int) -> list[dict[str, str]]:
     return [dict(zip(values, one, strict=True)) for one in itertools.product(*values.values())]
 
 
-def _listed(text: str) -> list[str]:
-    """What stands between commas; `\\,` is a comma."""
-    return [one.replace("\\,", ",") for one in re.split(r"(?<!\\),", text)]
+def _listed(what: str, text: str) -> list[str]:
+    """What stands between commas; `\\,` is a comma. Raises InputError for none, or one that comes twice."""
+    values = [one.replace("\\,", ",") for one in re.split(r"(?<!\\),", text)]
+    twice = next((one for one in values if values.count(one) > 1), None)
+    if twice is not None or values == [""]:
+        found = "no value" if twice is None else f"{quoted(twice)} twice"
+        raise InputError(f"{what}: found {found}, expected values between commas, each once")
+    return values
 
 
 def _range(what: str, words: Sequence[str], most: int) -> list[str]:

@@ -14,13 +14,12 @@ from support.vocabulary import COUNTS
 class Scale:
     """How large the scenes are, which of a question's values are taken, and how long it all may last.
 
-    `divisor` divides discs and area, `steps_divisor` the steps, `blocks_divisor` the least number of blocks;
-    the budget covers the report too, which takes about `report_seconds`.
+    `divisor` divides discs and area, `blocks_divisor` the least number of blocks; the budget covers the
+    report too, which takes about `report_seconds`.
     """
 
     name: str
     divisor: int
-    steps_divisor: int
     blocks_divisor: int
     budget_seconds: float
     report_seconds: float
@@ -55,15 +54,12 @@ class Scale:
 
     def _scene(self, scene: AnyScene) -> AnyScene:
         """A hard case has one size only."""
-        if not isinstance(scene, Scene):
-            return scene
-        return replace(scene.shrunk(self.divisor), steps=max(1, scene.steps // self.steps_divisor))
+        return scene.shrunk(self.divisor) if isinstance(scene, Scene) else scene
 
 
 _PAPER = Scale(
     "paper",
     divisor=1,
-    steps_divisor=1,
     blocks_divisor=1,
     budget_seconds=45 * 60,
     report_seconds=40.0,
@@ -71,7 +67,6 @@ _PAPER = Scale(
 _QUICK = Scale(
     "quick",
     divisor=10,
-    steps_divisor=2,
     blocks_divisor=4,
     budget_seconds=150.0,
     report_seconds=15.0,

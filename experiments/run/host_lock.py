@@ -80,9 +80,11 @@ class Waits:
             if not self.is_said:
                 warn(f"carom: waits for another measurement (process {holder or 'not known'})")
                 self.is_said = True
-            line.recv(1)
+            try:
+                line.recv(1)
+            finally:  # a signal may end it
+                self.seconds += time.monotonic() - began
         time.sleep(_AGAIN)
-        self.seconds += time.monotonic() - began
 
 
 def _ancestors() -> Iterator[int]:

@@ -33,7 +33,7 @@ CONTROL_SHARE = 0.05
 MEASURED_A_LOOK = 4.0
 """The least time measured between two looks, in those that the look took."""
 
-REPORT_PAUSE, REPORT_SHARE = 300.0, 0.02
+REPORT_PAUSE, REPORT_SHARE = 600.0, 0.02
 """Least seconds between two reports of what is there, and the most of the time that they may take."""
 
 

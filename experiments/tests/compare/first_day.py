@@ -82,6 +82,8 @@ CASES = (
     _refused("an infinite number", "inf ms", "time-from", _TOOK),
     _refused("a comma that may be either", "1,234 ms", "1,234"),
     _refused("a part of a number", "1.5e3 ms", "1.5", ("--time-from", "took ([0-9.]+)")),
+    _refused("a word behind the number", "5 parsecs", "at most a unit", ("--time-from", "took (.*)")),
+    _refused("letters that are no unit", "5kms", "with the unit 'kms'", ("--time-from", "took ([0-9]+)")),
     _refused("two matches in one line", "1 ms took 2 ms", "2"),
     Case(
         TIMED, "a script that prints the table of a Google Benchmark",
@@ -394,5 +396,10 @@ CASES = (
     Case(
         ENDS, "a reader that goes", "what was asked for is written", ("--export-csv", "x", "true", "ls"),
         left=("x",), through='"$@" | head -n 1 > first', code=0,
+    ),
+    Case(
+        ENDS, "a reader that is gone before the result", "said, and what was asked for is written",
+        ("--export-csv", "x", "true", "ls"), ("standard output: its reader is gone",), code=1, left=("x",),
+        through='mkfifo gone; (exec < gone) & "$@" > gone', time="3s",
     ),
 )  # fmt: skip

@@ -200,6 +200,11 @@ def test_what_comes_once_has_the_values_of_all() -> None:
             "-P n: found 1 99999999999, which makes 99999999999 commands; expected 100 at most",
         ),
         (["--input", "/not/there", "a", "b"], "--input: found /not/there, expected a file"),
+        (["--input", ".", "a", "b"], "--input: found ., expected a file that is there, no folder"),
+        (["-L", "x", "1,2,1", "a {x}"], '-L x: found "1" twice, expected values between commas'),
+        (["-L", "x", "", "a {x}"], "-L x: found no value, expected values between commas"),
+        (["-L", "x", "1,2", "a {y}"], "found values for x and no values for {y}, expected {x}"),
+        (["--env", "c:V=1", "a", "b"], 'found "c:V=1", expected one of a, b before the colon'),
     ],
 )
 def test_what_is_wrong_is_said_in_a_line(arguments: list[str], told: str) -> None:
