@@ -190,10 +190,9 @@ def seconds_of_rounds(record: Record) -> Floats:
 def _lost_by_turns(record: Record) -> float:
     """Return the share of a process's time, NaN where it is not known."""
     turns = record.get("turns") or {}
-    if "returning_seconds" not in turns:
+    if "steps" not in turns:
         return math.nan
-    steps, rounds = record["scene"]["steps"], turns["rounds"]
-    found = excess(turns["seconds"], turns["returning_seconds"], steps, rounds)
+    found = excess(turns["seconds"], turns["returning_seconds"], turns["steps"], turns["rounds"])
     return float(found.share) if found else math.nan
 
 

@@ -63,9 +63,10 @@ def judge_one(
     there are was settled before the first of them, and each has a seed of its own: they are looked at once,
     the whole of the error is this look's, and none depends on the one before. `biases`: by how much each log
     ratio is too great because of how it was measured, NaN where not known. Where half of them are known, and
-    their middle is more than two of its standard errors from 0, the verdict has to stand with and without it,
-    and the interval reaches over both. `stops`: how often a run of the programs was stopped; where some
-    blocks have far more, the ratio is that of no stops at all (see `stopping`).
+    the middle of the means of each two is more than two of its standard errors from 0, the verdict has to
+    stand with and without it, and the interval reaches over both: turns of every second block begin at other
+    steps, so that unlike steps leave the mean of two. `stops`: how often a run of the programs was stopped;
+    where some blocks have far more, the ratio is that of no stops at all (see `stopping`).
     """
     values = np.asarray(log_ratios, dtype=float)
     values = values if once else seen(values)
@@ -76,9 +77,10 @@ def judge_one(
     known = np.empty(0) if biases is None else np.asarray(biases, dtype=float)[: len(values)]
     known = known[~np.isnan(known)]
     row = _judged(values, margin, error, once)
-    if not 0 < len(values) <= 2 * known.size or not _is_sure(known):
+    of_two = known[: known.size // 2 * 2].reshape(-1, 2).mean(axis=1)
+    if not 0 < len(values) <= 2 * known.size or not _is_sure(of_two):
         return row
-    return _both(row, _judged(values - np.median(known), margin, error, once))
+    return _both(row, _judged(values - np.median(of_two), margin, error, once))
 
 
 def _is_sure(biases: Floats) -> bool:

@@ -269,10 +269,11 @@ def _path(scene: SceneFile | None) -> Path:
 
 
 def seed_of(task: Task) -> int:
-    """Of the order of turns: another one for every block and every seed of the study. It fits into 32 bits,
-    which any reader of JSON holds.
+    """Of the order of turns: another one for every block and every seed of the study, odd in every second
+    block, which begins with half a turn. It fits into 32 bits, which any reader of JSON holds.
     """
-    return int(digest(f"turns {task.experiment.order_seed} {task.block}")[:8], 16)
+    drawn = int(digest(f"turns {task.experiment.order_seed} {task.block}")[:8], 16)
+    return drawn // 2 * 2 + task.block % 2
 
 
 def is_drawn(point: Point, block: int) -> bool:

@@ -47,7 +47,7 @@ TurnTime RunInParts::advance(int steps) {
     }
     go_on_to(end);
     stopwatch_.stop();
-    return {.seconds = stopwatch_.wall_seconds() - before, .returning_seconds = returning};
+    return {.steps = steps, .seconds = stopwatch_.wall_seconds() - before, .returning_seconds = returning};
 }
 
 void RunInParts::go_on_to(int end) {

@@ -21,10 +21,15 @@ std::vector<std::vector<TurnTime>> take_turns(std::span<Contender* const> conten
     std::vector<std::vector<TurnTime>> turns(contenders.size());
     std::vector<std::size_t> order(contenders.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto steps_until = [&plan](const Contender& one, int rounds_done) {
-        return static_cast<int>(std::int64_t{one.steps()} * rounds_done / plan.rounds);
-    };
+    const bool may_halve = std::ranges::all_of(
+        contenders, [&plan](const Contender* one) { return one->steps() >= 2 * plan.rounds; });
     for (int run = 0; run < plan.runs; ++run) {
+        const bool begins_with_half = may_halve && (plan.seed + static_cast<std::uint64_t>(run)) % 2 == 1;
+        const auto steps_until = [&plan, begins_with_half](const Contender& one, int rounds_done) {
+            const bool is_within = rounds_done > 0 && rounds_done < plan.rounds;
+            const int halves = 2 * rounds_done - (begins_with_half && is_within ? 1 : 0);
+            return static_cast<int>(std::int64_t{one.steps()} * halves / (2 * plan.rounds));
+        };
         for (Contender* const one : contenders) {
             one->start();
         }

@@ -9,6 +9,7 @@ namespace carom {
 
 /// What a turn took.
 struct TurnTime {
+    int steps = 0;
     double seconds = 0; ///< that count
 
     /// Those of its first step, which finds the caches as the contender before has left them; empty if the
@@ -48,6 +49,10 @@ int count_rounds(std::span<const double> expected_seconds, int fewest_steps, dou
 /// one after the other (paired benchmarking; for pairs of processes: Bulej and others, Duet benchmarking,
 /// ICPE 2020). A turn begins with the caches as the contender before has left them. When all have come to
 /// their last step, all start again together, as often as there are runs.
+///
+/// Where turns are of two steps or more, every second run, and the first one of every odd seed, begins with
+/// half a turn: a step that is the first of its turn here is none there. What first steps lose is then no
+/// matter of which steps have more work.
 ///
 /// Returns, for each contender, each of its turns, run by run.
 std::vector<std::vector<TurnTime>> take_turns(std::span<Contender* const> contenders, const TurnsPlan& plan);

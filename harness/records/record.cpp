@@ -47,15 +47,18 @@ Json turns_json(const std::optional<Turns>& turns) {
     if (!turns) {
         return nullptr;
     }
+    Json steps = Json::array();
     Json seconds = Json::array();
     Json returning_seconds = Json::array();
     for (const TurnTime& turn : turns->turns) {
+        steps.push_back(turn.steps);
         seconds.push_back(turn.seconds);
         returning_seconds.push_back(or_null(turn.returning_seconds));
     }
     return {{"contenders", turns->contenders},
             {"seed", turns->plan.seed},
             {"rounds", turns->plan.rounds},
+            {"steps", steps},
             {"seconds", seconds},
             {"returning_seconds", returning_seconds}};
 }
