@@ -229,7 +229,7 @@ def test_a_hard_case_has_one_size(workplace: Workplace) -> None:
     question = load_question(workplace.question("errors", ERRORS))
     quick = plan(question, surroundings(workplace, "quick")).points
     assert {point.scene_name: point.scene.arguments[:4] for point in quick} == {
-        "dilute": ("10", "316", "5", "5"),
+        "dilute": ("10", "316", "5", "10"),
         "cradle": ("--case", "cradle"),
     }
 

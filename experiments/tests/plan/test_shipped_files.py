@@ -141,10 +141,10 @@ def test_early_resolves_are_measured_beside_the_profile_of_the_published_variant
 @pytest.mark.parametrize(
     ("name", "steps", "published"),
     [
-        ("threads", 50, ("100000", "10000", "16", "2", "5")),
-        ("grid_length", 25, ("100000", "100000", "15", "2", "5")),
-        ("radius", 100, ("10000", "10000", "50", "2", "5")),
-        ("max_velocity", 25, ("100000", "10000", "15", "1", "50")),
+        ("threads", 25, ("100000", "10000", "16", "2", "5")),
+        ("grid_length", 12, ("100000", "100000", "15", "2", "5")),
+        ("radius", 50, ("10000", "10000", "50", "2", "5")),
+        ("max_velocity", 12, ("100000", "10000", "15", "1", "50")),
     ],
 )
 def test_scenes_are_the_published_ones_for_some_of_their_steps(
@@ -159,7 +159,7 @@ def test_quick_scenes_are_a_tenth_of_the_size() -> None:
     quick, paper = (generated(planned("neighbourhood", scale).points[0]) for scale in ("quick", "paper"))
     assert quick.particles * 10 == paper.particles
     assert quick.area_fraction == pytest.approx(paper.area_fraction, rel=1e-3)
-    assert (quick.radius, quick.steps) == (paper.radius, paper.steps // 2)
+    assert (quick.radius, quick.steps) == (paper.radius, paper.steps)
 
 
 def test_density_runs_from_a_tenth_to_nine_tenths() -> None:
