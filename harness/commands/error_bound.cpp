@@ -102,7 +102,7 @@ std::optional<Chosen> choose_method(const Scene& scene, const ErrorBound& bound,
     }
     require_exact_run(scene, bound);
     const std::string option = option_text(bound);
-    Trial trial = try_methods(scene, options.tuning, bound.measure, bound.below, costs_of_machine());
+    Trial trial = try_methods(scene, options.tuning, bound.measure, bound.below);
     const auto cheapest = cheapest_below(trial.tried, bound.below, scene.steps);
     if (!cheapest) {
         const Tried& best = most_exact(trial.tried);

@@ -88,9 +88,7 @@ Json doctor_json(const Findings& findings) {
             {"tools", tools},
             {"slurm",
              {{"version", text_or_null(findings.slurm_version)}, {"job", text_or_null(findings.slurm_job)}}},
-            {"noise", noise_json(findings.noise)},
-            {"costs_file", findings.costs_file},
-            {"costs", findings.costs ? costs_json(*findings.costs) : Json(nullptr)}};
+            {"noise", noise_json(findings.noise)}};
 }
 
 } // namespace carom

@@ -6,7 +6,6 @@
 #include "harness/doctor/findings.hpp"
 #include "harness/support/format.hpp"
 #include "harness/support/text.hpp"
-#include "variants/event_driven_variant.hpp"
 
 namespace carom {
 namespace {
@@ -148,21 +147,6 @@ std::string noise_line(const Noise& noise) {
                              (noise.steal ? format("%.1f %%", 100 * *noise.steal) : "not told"));
 }
 
-std::string costs_line(const Findings& findings) {
-    if (!findings.costs) {
-        return line("costs", "of work are not measured yet: `run --error-below` does it at its first call");
-    }
-    const auto event = findings.costs->costs.find(std::string(event_driven().name));
-    const std::string collision =
-        event == findings.costs->costs.end()
-            ? ""
-            : format("; an exact collision takes %.2g us among %.0f discs, %.2g us among %.0f",
-                     1e6 * event->second.front().seconds.collisions, event->second.front().discs,
-                     1e6 * event->second.back().seconds.collisions, event->second.back().discs);
-    return line("costs", "of work, by which `run --error-below` chooses: " + findings.costs_file + collision +
-                             "; measured anew once that file is removed");
-}
-
 } // namespace
 
 std::string noise_figure(const Noise& noise) {
@@ -184,7 +168,7 @@ std::string doctor_text(const Findings& findings) {
     return machine_lines(findings.machine, findings.memory_available_bytes) +
            topology_lines(findings.machine.cpu_model, findings.topology) + processor_lines(findings) +
            openmp_lines(findings.openmp) + counter_lines(findings) + software_lines(findings) +
-           noise_line(findings.noise) + costs_line(findings);
+           noise_line(findings.noise);
 }
 
 } // namespace carom

@@ -73,9 +73,7 @@ Findings examine_machine(double noise_seconds) {
                       {"perf", "linux-perf", version_line("perf")}},
             .slurm_version = version_line("srun"),
             .slurm_job = slurm_variables(),
-            .noise = noise,
-            .costs_file = costs_file().string(),
-            .costs = kept_costs()};
+            .noise = noise};
 }
 
 } // namespace carom

@@ -8,7 +8,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/accuracy/costs.hpp"
 #include "harness/counters/access.hpp"
 #include "harness/counters/counters.hpp"
 #include "harness/machine/machine.hpp"
@@ -49,8 +48,6 @@ struct Findings {
     std::string slurm_version;                    ///< empty if srun is not on PATH
     std::map<std::string, std::string> slurm_job; ///< its variables
     Noise noise;
-    std::string costs_file;     ///< where the costs of work on this machine are kept
-    std::optional<Costs> costs; ///< those that are
 };
 
 /// Looks at the machine, and for so many seconds at its noise. Nothing of it is changed.

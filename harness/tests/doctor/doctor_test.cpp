@@ -119,18 +119,6 @@ TEST(Doctor, WhatTheSystemTellsIsShown) {
     EXPECT_EQ(json["slurm"]["job"], (Json{{"SLURM_JOB_ID", "4711"}}));
 }
 
-TEST(Doctor, TheCostsOfWorkAreShownOnceTheyAreKnown) {
-    Findings found = findings();
-    found.costs.reset();
-    EXPECT_PRED_FORMAT2(testing::IsSubstring, "of work are not measured yet", unwrapped(found));
-    EXPECT_TRUE(doctor_json(found)["costs"].is_null());
-    found.costs = typical_costs();
-    found.costs_file = "a/place";
-    EXPECT_PRED_FORMAT2(testing::IsSubstring, "a/place; an exact collision takes 0.3 us among 2000 discs",
-                        unwrapped(found));
-    EXPECT_EQ(doctor_json(found)["costs"], costs_json(typical_costs()));
-}
-
 TEST(Doctor, ALimitOfProcessorsIsShownWithTheThreadsThatFollow) {
     Findings found = findings();
     Machine& machine = found.machine;
