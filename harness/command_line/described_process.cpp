@@ -4,8 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include <unistd.h>
-
 #include "harness/measure/stated_time.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/errors.hpp"
@@ -20,13 +18,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::vector<std::string> environment_with(const std::map<std::string, std::string>& more) {
-    std::vector<std::string> variables;
-    for (char** variable = environ; *variable != nullptr; ++variable) {
-        const std::string text = *variable;
-        if (!more.contains(text.substr(0, text.find('=')))) {
-            variables.push_back(text);
-        }
-    }
+    std::vector<std::string> variables = own_environment();
+    std::erase_if(variables, [&more](const std::string& variable) {
+        return more.contains(variable.substr(0, variable.find('=')));
+    });
     for (const auto& [name, value] : more) {
         variables.push_back(name);
         variables.back() += '=' + value;
@@ -34,26 +29,17 @@ std::vector<std::string> environment_with(const std::map<std::string, std::strin
     return variables;
 }
 
-// What a value of each type is called.
-const char* kind(const std::string& /*value*/) { return "a text"; }
-const char* kind(bool /*value*/) { return "true or false"; }
-const char* kind(int /*value*/) { return "a whole number"; }
-const char* kind(double /*value*/) { return "a number"; }
-const char* kind(const std::vector<int>& /*value*/) { return "a list of whole numbers"; }
-const char* kind(const std::vector<std::string>& /*value*/) { return "a list of texts"; }
-const char* kind(const std::map<std::string, std::string>& /*value*/) { return "an object of texts"; }
-
 /// Takes the value of a key. Throws InputError.
 template <class Value> void require(const Json& process, const char* key, Value& value) {
     const auto found = process.find(key);
     if (found == process.end()) {
-        throw InputError(std::string(key) + ": found none, expected " + kind(value));
+        throw InputError(std::string(key) + ": found none, expected one");
     }
     try {
         found->get_to(value);
     } catch (const Json::exception&) {
-        throw InputError(std::string(key) + ": found " + in_quotes(json_text(*found, -1)) + ", expected " +
-                         kind(value));
+        throw InputError(std::string(key) + ": found " + in_quotes(json_text(*found, -1)) +
+                         ", expected another kind of value");
     }
 }
 

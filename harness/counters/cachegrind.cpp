@@ -100,9 +100,7 @@ class SimulatedRun {
                               std::to_string(tuning.sweep_limit),
                               "--tolerance",
                               tuning.tolerance == Tolerance::relative ? "relative" : "published"},
-                    .folder = "",
-                    .most_seconds = without_limit,
-                    .pattern = ""},
+                    .most_seconds = without_limit},
                    KeptBy::subreaper) {
         write_text(folder_.file("scene.in"), scene_text(scene));
         process_.begin();

@@ -28,11 +28,11 @@ struct Measurement {
     CheckScope scope = CheckScope::last_step;
     int warm_ups = 0;
     double parse_seconds = 0;
-    std::vector<std::string> tags;        ///< KEY=VALUE
-    std::vector<Run> repetitions;         ///< all of them, in the order they ran; only the last has its discs
-    std::optional<std::string> violation; ///< of the first run that failed its check
-    std::optional<Turns> turns;           ///< empty if it had its process for itself
-    std::optional<double> own_seconds;    ///< of a process of several: those spent on this one
+    std::vector<std::string> tags = {}; ///< KEY=VALUE
+    std::vector<Run> repetitions = {};  ///< all of them, in the order they ran; only the last has its discs
+    std::optional<std::string> violation = {}; ///< of the first run that failed its check
+    std::optional<Turns> turns = {};           ///< empty if it had its process for itself
+    std::optional<double> own_seconds = {};    ///< of a process of several: those spent on this one
 
     /// Adds a run from the scene's initial state, as all are: it must end in the same bits as the one before,
     /// after the same work.

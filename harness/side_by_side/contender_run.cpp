@@ -118,8 +118,7 @@ std::string ContenderRun::run_beside(const std::string& what, const std::vector<
                                  .folder = folder_,
                                  .environment = contender_.command.environment,
                                  .most_seconds = contender_.command.most_seconds,
-                                 .most_seconds_behind = 2,
-                                 .pattern = ""};
+                                 .most_seconds_behind = 2};
     const std::string why = why_failed(command, run_undisturbed(command), {0});
     return why.empty() ? "" : what + ": " + why;
 }

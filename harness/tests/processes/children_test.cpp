@@ -23,9 +23,7 @@ class IgnoredChildren {
     void (*before_)(int);
 };
 
-ProcessEnd run_of(const std::vector<std::string>& words) {
-    return run_undisturbed({.words = words, .folder = "", .pattern = ""});
-}
+ProcessEnd run_of(const std::vector<std::string>& words) { return run_undisturbed({.words = words}); }
 
 TEST(RunUndisturbed, FindsAProgramOnPathAndTellsHowItEnded) {
     EXPECT_TRUE(run_of({"true"}).succeeded());
