@@ -37,6 +37,12 @@ struct Measurement {
     /// Adds a run from the scene's initial state, as all are: it must end in the same bits as the one before,
     /// after the same work.
     void add(Run run);
+
+    /// A run from the scene's initial state, in a simulation of its own, of which these steps are checked.
+    Run run_alone(CheckScope checked, Stopwatch stopwatch = {}) const;
+
+    /// Scene and variant, for a message.
+    std::string name() const { return scene_name + ", variant " + std::string(variant.name); }
 };
 
 } // namespace carom
