@@ -1,10 +1,10 @@
 #pragma once
 
-#include "harness/accuracy/error_measures.hpp"
+#include <nlohmann/json.hpp>
 
 namespace carom {
 
-/// Prints every error measure, a line each; what is not known says so.
-void print_errors(const ErrorMeasures& errors);
+/// Prints every error measure (`error_measures_json`), a line each; what is not known says so.
+void print_errors(const nlohmann::ordered_json& errors);
 
 } // namespace carom
