@@ -53,9 +53,10 @@ void print_table() {
     }
 }
 
-/// Held by every variant, and tested of each. The sequential orders resolve on one thread; in the parallel ones
-/// no two iterations of a loop touch one disc (the proof is in kernels/sweep.hpp), and the lists of overlaps do
-/// not depend on who finds them. Every operation is one of IEEE 754's, in an order that the source fixes.
+/// Held by every variant, and tested of each. The sequential orders resolve on one thread; in the parallel
+/// ones no two iterations of a loop touch one disc (the proof is in kernels/sweep.hpp), and the lists of
+/// overlaps do not depend on who finds them. Every operation is one of IEEE 754's, in an order that the
+/// source fixes.
 void print_promises() {
     std::printf("\nThe final state is the same, to the last bit,\n"
                 "  for any number of threads, any schedule and any chunk: all of them\n"

@@ -79,13 +79,6 @@ TEST_F(CheckCommand, GivesTheVerdictOfAFailureAsJsonAndInALine) {
     EXPECT_EQ(failed.error, "carom: " + jammed + ", variant published, " + reason + "\n");
 }
 
-TEST_F(CheckCommand, ReadsTheSceneFromStandardInput) {
-    const std::string scene = directory.write("scene.in", scene_text(tests::corner()));
-    const ProgramResult result = run_carom({"check", "-"}, {}, "", scene);
-    EXPECT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_TRUE(result.output.starts_with("passed: standard input, variant published, ")) << result.output;
-}
-
 TEST_F(CheckCommand, NamesTheSubstepOfTheViolation) {
     // Two substeps of a half bring the disc to x = r.
     const std::string wedged = directory.write("wedged.in", "1\n2\n1\n9\n0 0.5 1 0.5 0\n");

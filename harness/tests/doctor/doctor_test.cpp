@@ -181,14 +181,6 @@ TEST(Noise, OfOneSpinIsNone) {
     EXPECT_EQ(noise.max_over_median, 1);
 }
 
-TEST(Noise, IsMeasuredOnThisMachine) {
-    const Noise noise = measure_noise(0.05);
-    EXPECT_GT(noise.spins, 0);
-    EXPECT_GT(noise.median_seconds, 0);
-    EXPECT_GE(noise.p95_over_median, 1);
-    EXPECT_GE(noise.max_over_median, noise.p95_over_median);
-}
-
 TEST(Noise, StolenTimeIsTheEighthFieldOfTheFirstLine) {
     const auto time = parse_cpu_time("cpu  10 20 30 40 50 60 70 80 5 6");
     ASSERT_TRUE(time);
