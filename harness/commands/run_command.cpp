@@ -44,33 +44,33 @@ struct RunOptions {
 
 using Json = nlohmann::ordered_json;
 
-/// How a measure stands on a terminal.
-struct ShownError {
+/// A number that a terminal shows, by its key in JSON.
+struct Figure {
     const char* key;
-    const char* what;
+    const char* label;
     const char* unit;
 };
 
 constexpr std::array shown_errors{
-    ShownError{"momentum_drift", "momentum that no wall explains", " of the sum of |v|"},
-    ShownError{"penetration_worst", "worst penetration", " r"},
-    ShownError{"penetration_mean", "mean penetration", " r"},
-    ShownError{"unresolved_pairs", "left colliding", ""},
-    ShownError{"collision_rate", "collisions", " a disc and unit of time"},
-    ShownError{"collision_rate_reference", "  of the reference", ""},
-    ShownError{"pressure", "pressure", ""},
-    ShownError{"pressure_reference", "  of the reference", ""},
-    ShownError{"speed_distance", "distance of the speeds", " (Kolmogorov-Smirnov)"},
-    ShownError{"time_to_tenth_radius", "0.1 r from the reference after", " units of time"}};
+    Figure{"momentum_drift", "momentum that no wall explains", " of the sum of |v|"},
+    Figure{"penetration_worst", "worst penetration", " r"},
+    Figure{"penetration_mean", "mean penetration", " r"},
+    Figure{"unresolved_pairs", "left colliding", ""},
+    Figure{"collision_rate", "collisions", " a disc and unit of time"},
+    Figure{"collision_rate_reference", "  of the reference", ""},
+    Figure{"pressure", "pressure", ""},
+    Figure{"pressure_reference", "  of the reference", ""},
+    Figure{"speed_distance", "distance of the speeds", " (Kolmogorov-Smirnov)"},
+    Figure{"time_to_tenth_radius", "0.1 r from the reference after", " units of time"}};
 
 /// Prints every error measure (`error_measures_json`), a line each; what is not known says so.
 void print_errors(const nlohmann::ordered_json& errors) {
-    for (const auto& [key, what, unit] : shown_errors) {
+    for (const auto& [key, label, unit] : shown_errors) {
         const auto& value = errors[key];
         if (value.is_number() && std::isfinite(value.get<double>())) {
-            std::printf("  %-33s %12.6g%s\n", what, value.get<double>(), unit);
+            std::printf("  %-33s %12.6g%s\n", label, value.get<double>(), unit);
         } else {
-            std::printf("  %-33s    not known\n", what);
+            std::printf("  %-33s    not known\n", label);
         }
     }
     for (const auto& at : errors["trajectory"]) {
@@ -88,13 +88,6 @@ void print_errors(const nlohmann::ordered_json& errors) {
 struct Seconds {
     double reading = 0;    ///< the scene's file
     double setting_up = 0; ///< the state of the simulation
-};
-
-/// A number of a summary that a terminal shows.
-struct Figure {
-    const char* key;
-    const char* label;
-    const char* unit;
 };
 
 constexpr std::array shown_figures{Figure{"reading_seconds", "reading", " s"},
