@@ -20,8 +20,8 @@ struct Trial {
 
 /// Tries the methods for the scene until the cheapest of them with an error below `bound` is known: each
 /// variant until its error is below the bound or it costs more than one that is. Each runs on the threads and
-/// with the tolerance of `tuning`. No clock decides anything: what a method costs is its work, counted, at the
-/// costs of costs.hpp, so that the same scene and bound choose the same on any machine and number of threads.
+/// with the tolerance of `tuning`. No clock decides anything: what a method costs is its work, counted, at
+/// the costs of costs.hpp, so that the same scene and bound choose the same on any machine and any threads.
 ///
 /// Errors are against the event-driven simulation, as in error_measures.hpp: in double, its own in long
 /// double. A scene of more than `largest_trial` discs is tried on the busiest of its pieces of that size. The

@@ -32,9 +32,7 @@ class ExactSteps final : public CollisionChecker {
     ExactSteps(const Scene& scene, int substeps) : paths_(scene), substeps_(substeps) {}
 
     CollisionLog<double>& log() override { return paths_; }
-
     std::optional<std::string> violation_so_far() const override { return paths_.violation(); }
-
     std::optional<std::string> step(const std::vector<Disc>& /*before*/,
                                     const std::vector<Disc>& after) override {
         ++steps_;
@@ -51,9 +49,8 @@ class ExactSteps final : public CollisionChecker {
 struct ContactRules {
     Walls walls;
     double dt;
-    double
-        way_back; ///< how far back discs that move into each other are followed: this step and the one before
-    double near;  ///< discs within twice this at the end of their free flight are looked at
+    double way_back; ///< how far back discs that move into each other are followed, in this step and before
+    double near;     ///< discs within twice this at the end of their free flight are looked at
     Tolerance tolerance;
 
     double epsilon() const { return walls.rounding.epsilon(); }
