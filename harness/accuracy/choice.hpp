@@ -34,7 +34,7 @@ struct Tried {
     Method method;
     double error = 0;        ///< as measured in the trial
     double margin = 0;       ///< by which the error of the run may be larger
-    double setting_up = 0;   ///< seconds, for the whole scene, by the costs of the machine
+    double setting_up = 0;   ///< seconds, for the whole scene, by costs.hpp
     double unit_seconds = 0; ///< of a unit of time of the whole scene, likewise
 
     double largest_error() const { return error + margin; }

@@ -1,35 +1,33 @@
 #include "harness/accuracy/costs.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "kernels/grid.hpp"
 
 namespace carom {
 namespace {
 
-/// Seconds at a size between two.
-double between(const UnitCosts& small, const UnitCosts& large, double discs, const Work& work) {
-    const auto sum = [&](const Work& each) {
-        return each.placed * work.placed + each.moved * work.moved + each.near * work.near +
-               each.collisions * work.collisions;
-    };
-    if (large.discs <= small.discs) {
-        return sum(large.seconds);
-    }
-    const double share =
-        std::clamp(std::log(discs / small.discs) / std::log(large.discs / small.discs), 0.0, 1.0);
-    return (1 - share) * sum(small.seconds) + share * sum(large.seconds);
-}
+/// What a unit of each kind of work takes in a scene of so many discs.
+struct UnitCosts {
+    double discs;
+    Work nanoseconds;
 
-double seconds_by(const std::vector<UnitCosts>& sizes, double discs, const Work& work) {
-    const auto larger = std::ranges::find_if(sizes, [&](const UnitCosts& one) { return one.discs >= discs; });
-    if (larger == sizes.end()) {
-        return between(sizes.back(), sizes.back(), discs, work);
+    double seconds(const Work& work) const {
+        return 1e-9 * (nanoseconds.placed * work.placed + nanoseconds.moved * work.moved +
+                       nanoseconds.near * work.near + nanoseconds.collisions * work.collisions);
     }
-    return between(larger == sizes.begin() ? *larger : *(larger - 1), *larger, discs, work);
+};
+
+/// As measured on one machine: small scenes in a cache, and large ones.
+std::vector<UnitCosts> costs_of(const Variant& variant) {
+    if (variant.engine == Engine::event_driven) {
+        return {{2'000, {100, 120, 0, 300}}, {40'000, {150, 150, 0, 380}}, {400'000, {400, 240, 50, 600}}};
+    }
+    const double collision = variant.policies.impact == Impact::at_contact ? 75 : 20;
+    return {{40'000, {3, 0, 3.5, collision}}, {400'000, {13, 10, 4, 2 * collision}}};
 }
 
 } // namespace
@@ -46,15 +44,15 @@ Work operator*(double times, const Work& work) {
     return {times * work.placed, times * work.moved, times * work.near, times * work.collisions};
 }
 
-double Costs::seconds(const Variant& variant, double discs, const Work& work) const {
-    if (const auto found = costs.find(std::string(variant.name)); found != costs.end()) {
-        return seconds_by(found->second, discs, work);
+double seconds_of(const Variant& variant, double discs, const Work& work) {
+    const std::vector<UnitCosts> sizes = costs_of(variant);
+    const auto larger = std::ranges::find_if(sizes, [&](const UnitCosts& one) { return one.discs >= discs; });
+    if (larger == sizes.begin() || larger == sizes.end()) {
+        return (larger == sizes.end() ? sizes.back() : sizes.front()).seconds(work);
     }
-    double dearest = 0;
-    for (const auto& [name, sizes] : costs) {
-        dearest = std::max(dearest, seconds_by(sizes, discs, work));
-    }
-    return dearest;
+    const UnitCosts& smaller = *(larger - 1);
+    const double share = std::log(discs / smaller.discs) / std::log(larger->discs / smaller.discs);
+    return (1 - share) * smaller.seconds(work) + share * larger->seconds(work);
 }
 
 Work work_of_step(const Variant& variant, const Scene& scene) {
@@ -81,21 +79,6 @@ Work work_of_events(const Scene& scene) {
         flown += std::abs(disc.vx) + std::abs(disc.vy);
     }
     return {.moved = flown / cell, .near = count};
-}
-
-nlohmann::ordered_json costs_json(const Costs& costs) {
-    auto variants = nlohmann::ordered_json::object();
-    for (const auto& [name, sizes] : costs.costs) {
-        auto& rows = variants[name] = nlohmann::ordered_json::array();
-        for (const UnitCosts& one : sizes) {
-            rows.push_back({{"discs", one.discs},
-                            {"placed", one.seconds.placed},
-                            {"moved", one.seconds.moved},
-                            {"near", one.seconds.near},
-                            {"collisions", one.seconds.collisions}});
-        }
-    }
-    return {{"machine", costs.machine}, {"seconds", variants}};
 }
 
 } // namespace carom

@@ -21,7 +21,6 @@ struct TrialCase {
     const Tuning& tuning;
     Measure measure;
     double bound;
-    const Costs& costs;
     Scene piece;                 ///< what runs: the scene itself, or a piece of it
     double whole_over_piece = 1; ///< of squared errors (harness/scenes/piece.hpp)
 
@@ -39,11 +38,11 @@ struct TrialCase {
 
     /// Seconds of that work on the piece.
     double seconds(const Method& method, const Work& work) const {
-        return costs.seconds(*method.variant, static_cast<double>(piece.discs.size()), work);
+        return seconds_of(*method.variant, static_cast<double>(piece.discs.size()), work);
     }
     /// Seconds of as much for each disc of the scene.
     double seconds_of_scene(const Method& method, const Work& work) const {
-        return costs.seconds(*method.variant, static_cast<double>(scene.discs.size()), times_larger() * work);
+        return seconds_of(*method.variant, static_cast<double>(scene.discs.size()), times_larger() * work);
     }
     Work placed() const { return {.placed = static_cast<double>(piece.discs.size())}; }
 };

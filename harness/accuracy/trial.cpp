@@ -36,7 +36,7 @@ Work exact_work(const Scene& scene, double collisions) {
 
 /// What a trial runs: the scene where it is small, or all of its run costs little, so that nothing of it is
 /// left open; else a piece.
-Piece scene_of_trial(const Scene& scene, Measure measure, const Costs& costs) {
+Piece scene_of_trial(const Scene& scene, Measure measure) {
     Piece found = busiest_piece(scene, largest_trial(measure));
     const Scene& piece = found.scene;
     if (measure == Measure::path || piece.discs.size() == scene.discs.size()) {
@@ -48,7 +48,7 @@ Piece scene_of_trial(const Scene& scene, Measure measure, const Costs& costs) {
     const Work work =
         discs / static_cast<double>(piece.discs.size()) *
         exact_work(piece, static_cast<double>(simulation.pair_collisions() + simulation.wall_collisions()));
-    return costs.seconds(event_driven(), discs, work) * scene.steps <= seconds_of_one ? Piece{.scene = scene}
+    return seconds_of(event_driven(), discs, work) * scene.steps <= seconds_of_one ? Piece{.scene = scene}
                                                                                       : found;
 }
 
@@ -203,15 +203,13 @@ class Trials {
 
 } // namespace
 
-Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound,
-                  const Costs& costs) {
+Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound) {
     const double start = process_seconds();
-    Piece piece = scene_of_trial(scene, measure, costs);
+    Piece piece = scene_of_trial(scene, measure);
     const TrialCase given{.scene = scene,
                           .tuning = tuning,
                           .measure = measure,
                           .bound = bound,
-                          .costs = costs,
                           .piece = std::move(piece.scene),
                           .whole_over_piece = piece.whole_over_piece};
     Trials trials(given);

@@ -32,7 +32,7 @@ class CollisionChecker {
 
 /// The one for a variant's run from a scene's start, or null if its collisions happen at the steps' ends:
 /// then states tell all (checker.hpp). For Engine::event_driven it is a PathChecker, whose steps are those of
-/// `tuning` in time; for Impact::at_contact a ContactChecker.
+/// `tuning` in time; for Impact::at_contact one that goes through the collisions of each step.
 std::unique_ptr<CollisionChecker> collision_checker(const Scene& scene, const Variant& variant,
                                                     const Tuning& tuning);
 

@@ -12,7 +12,7 @@
 namespace carom {
 
 /// Names discs that a collision tells of and that are not there, of `count`; or nothing.
-template <class Real> std::optional<std::string> unknown_discs(const Collision<Real>& collision, int count) {
+inline std::optional<std::string> unknown_discs(const Collision<double>& collision, int count) {
     const auto is_disc = [count](int disc) { return disc >= 0 && disc < count; };
     if (is_disc(collision.first) && is_disc(collision.second)) {
         return std::nullopt;
@@ -21,12 +21,9 @@ template <class Real> std::optional<std::string> unknown_discs(const Collision<R
 }
 
 /// What two discs of those velocities do wrong, and what a collision gives them.
-template <class Real>
-std::string told_velocities(const Collision<Real>& collision, const BasicDisc<Real>& one,
-                            const BasicDisc<Real>& two, const char* what) {
-    const auto velocity = [](const BasicDisc<Real>& disc) {
-        return format("(%.17g, %.17g)", static_cast<double>(disc.vx), static_cast<double>(disc.vy));
-    };
+inline std::string told_velocities(const Collision<double>& collision, const Disc& one, const Disc& two,
+                                   const char* what) {
+    const auto velocity = [](const Disc& disc) { return format("(%.17g, %.17g)", disc.vx, disc.vy); };
     return format("discs %d and %d, of velocities %s and %s, %s: they get %s and %s", collision.first,
                   collision.second, velocity(one).c_str(), velocity(two).c_str(), what,
                   velocity(collision.first_after).c_str(), velocity(collision.second_after).c_str());
@@ -37,29 +34,28 @@ std::string told_velocities(const Collision<Real>& collision, const BasicDisc<Re
 /// `d` is the second seen from the first, to 16 roundings of their speeds, and to `direction` of these, by
 /// which that line is uncertain. Centres that coincide have none: whatever they exchange is wrong, unless
 /// they `may_coincide`.
-template <class Real>
-std::optional<std::string> wrong_velocities(const Collision<Real>& collision, const BasicDisc<Real>& one,
-                                            const BasicDisc<Real>& two, const BasicDisc<Real>& d,
-                                            Real epsilon, Real direction, bool may_coincide) {
-    const BasicDisc<Real>& one_after = collision.first_after;
-    const BasicDisc<Real>& two_after = collision.second_after;
+inline std::optional<std::string> wrong_velocities(const Collision<double>& collision, const Disc& one,
+                                                   const Disc& two, const Disc& d, double epsilon,
+                                                   double direction, bool may_coincide) {
+    const Disc& one_after = collision.first_after;
+    const Disc& two_after = collision.second_after;
     const auto wrong = [&](const char* what) { return told_velocities(collision, one, two, what); };
-    const Real speeds = speed_of(one) + speed_of(two);
-    const Real roundings = 16 * epsilon * speeds;
+    const double speeds = speed_of(one) + speed_of(two);
+    const double roundings = 16 * epsilon * speeds;
     if (!(std::hypot(one_after.vx + two_after.vx - one.vx - two.vx,
                      one_after.vy + two_after.vy - one.vy - two.vy) <= roundings)) {
         return wrong("do not keep their momentum");
     }
-    const auto squares = [](const BasicDisc<Real>& first, const BasicDisc<Real>& second) {
+    const auto squares = [](const Disc& first, const Disc& second) {
         return first.vx * first.vx + first.vy * first.vy + second.vx * second.vx + second.vy * second.vy;
     };
     if (!(std::abs(squares(one_after, two_after) - squares(one, two)) <= roundings * speeds)) {
         return wrong("do not keep their energy");
     }
-    const Real distance = distance_of(d);
-    const Real exchanged = parting_of(d) / distance;
-    const Real off = std::hypot(one.vx + exchanged * (d.x / distance) - one_after.vx,
-                                one.vy + exchanged * (d.y / distance) - one_after.vy);
+    const double distance = distance_of(d);
+    const double exchanged = parting_of(d) / distance;
+    const double off = std::hypot(one.vx + exchanged * (d.x / distance) - one_after.vx,
+                                  one.vy + exchanged * (d.y / distance) - one_after.vy);
     if (!(may_coincide && distance == 0) && !(off <= roundings + speeds * direction)) {
         return wrong("do not exchange what they have along the line of centres");
     }

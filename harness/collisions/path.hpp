@@ -9,17 +9,17 @@
 namespace carom {
 
 /// The straight path of a disc since its last collision, as the list of collisions tells it.
-template <class Real> struct Path {
-    BasicDisc<Real> start;
-    Real time = 0; ///< at which the disc is at its start
+struct Path {
+    Disc start;
+    double time = 0; ///< at which the disc is at its start
 
-    BasicDisc<Real> at(Real now) const {
-        const Real elapsed = now - time;
+    Disc at(double now) const {
+        const double elapsed = now - time;
         return {start.x + start.vx * elapsed, start.y + start.vy * elapsed, start.vx, start.vy};
     }
 
     /// How far the disc flies along x and along y, added.
-    Real length(Real now) const { return (std::abs(start.vx) + std::abs(start.vy)) * (now - time); }
+    double length(double now) const { return (std::abs(start.vx) + std::abs(start.vy)) * (now - time); }
 };
 
 /// How far rounding may put an event-driven simulation from the paths that it tells, in lengths.
@@ -34,28 +34,28 @@ template <class Real> struct Path {
 /// c = 0 with c = |d|^2 - (2r)^2, in which |d|^2 is rounded by an epsilon of itself or two. However near to
 /// zero the root's discriminant is, that is the same as discs met at a |d|^2 wrong by so much: at a distance
 /// wrong by |d|^2 / 4r of it, d being from where the later of both paths begins.
-template <class Real> class PathRounding {
+class PathRounding {
   public:
-    PathRounding(Real side, Real radius, Real discs)
+    PathRounding(double side, double radius, double discs)
         : side_(side), radius_(radius), cells_(2 * (std::sqrt(discs + 1) + 1)) {}
 
-    Real place(const Path<Real>& path, Real now) const {
-        const Real length = path.length(now);
-        const Real moves = 64 + std::min(cells_, length / (2 * radius_));
+    double place(const Path& path, double now) const {
+        const double length = path.length(now);
+        const double moves = 64 + std::min(cells_, length / (2 * radius_));
         return 2 * epsilon * moves * (std::abs(path.start.x) + std::abs(path.start.y) + length);
     }
 
     /// Of two discs whose later path begins when they are `distance` apart, or of one and a wall.
-    Real gap(Real speed, Real now, Real distance) const {
+    double gap(double speed, double now, double distance) const {
         return 8 * epsilon * (speed * now + side_ + distance * (distance / radius_));
     }
 
-    static constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
+    static constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
   private:
-    Real side_;
-    Real radius_;
-    Real cells_;
+    double side_;
+    double radius_;
+    double cells_;
 };
 
 } // namespace carom

@@ -13,26 +13,21 @@ namespace {
 /// Of so many pieces, and some for each disc, memory is not short; then they are searched.
 constexpr std::size_t many_pieces = 65'536;
 
-template <class Real> bool is_finite(const BasicDisc<Real>& disc) {
-    return std::isfinite(disc.x + disc.y + disc.vx + disc.vy);
-}
+bool is_finite(const Disc& disc) { return std::isfinite(disc.x + disc.y + disc.vx + disc.vy); }
 
-template <class Real> std::string at_time(Real time) {
-    return format(" at time %.17g", static_cast<double>(time));
-}
+std::string at_time(double time) { return format(" at time %.17g", time); }
 
 } // namespace
 
-template <class Real>
-PathChecker<Real>::PathChecker(const Scene& scene)
-    : side_(static_cast<Real>(scene.side)), radius_(static_cast<Real>(scene.radius)),
-      rounding_(side_, radius_, static_cast<Real>(scene.discs.size())), search_(scene, rounding_) {
+PathChecker::PathChecker(const Scene& scene)
+    : side_(scene.side), radius_(scene.radius),
+      rounding_(side_, radius_, static_cast<double>(scene.discs.size())), search_(scene, rounding_) {
     for (const Disc& disc : scene.discs) {
-        paths_.push_back({disc_cast<Real>(disc), 0});
+        paths_.push_back({disc, 0});
     }
 }
 
-template <class Real> void PathChecker<Real>::collided(const Collision<Real>& collision) {
+void PathChecker::collided(const Collision<double>& collision) {
     if (violation_) {
         return;
     }
@@ -51,14 +46,12 @@ template <class Real> void PathChecker<Real>::collided(const Collision<Real>& co
     }
 }
 
-template <class Real>
-std::optional<std::string> PathChecker<Real>::violation_of(const Collision<Real>& collision) {
+std::optional<std::string> PathChecker::violation_of(const Collision<double>& collision) {
     if (auto violation = unknown_discs(collision, static_cast<int>(paths_.size()))) {
         return violation;
     }
     if (!(collision.time >= now_)) {
-        return format("a collision of time %.17g is told after one of time %.17g",
-                      static_cast<double>(collision.time), static_cast<double>(now_));
+        return format("a collision of time %.17g is told after one of time %.17g", collision.time, now_);
     }
     for (const auto& [disc, after] : {std::pair{collision.first, collision.first_after},
                                       std::pair{collision.second, collision.second_after}}) {
@@ -73,10 +66,9 @@ std::optional<std::string> PathChecker<Real>::violation_of(const Collision<Real>
 }
 
 /// Is a disc said to be where its path does not lead?
-template <class Real>
-std::optional<std::string> PathChecker<Real>::off_path(int disc, const BasicDisc<Real>& place, Real time) {
-    const BasicDisc<Real> there = path(disc).at(time);
-    const Real allowed = rounding_.place(path(disc), time);
+std::optional<std::string> PathChecker::off_path(int disc, const Disc& place, double time) {
+    const Disc there = path(disc).at(time);
+    const double allowed = rounding_.place(path(disc), time);
     if (is_finite(place) && std::max(std::abs(place.x - there.x), std::abs(place.y - there.y)) <= allowed) {
         return std::nullopt;
     }
@@ -85,94 +77,84 @@ std::optional<std::string> PathChecker<Real>::off_path(int disc, const BasicDisc
            at_time(time);
 }
 
-template <class Real>
-std::optional<std::string> PathChecker<Real>::wrong_pair(const Collision<Real>& collision) {
-    const Path<Real>& first = path(collision.first);
-    const Path<Real>& second = path(collision.second);
-    const Real time = collision.time;
-    const Real later = std::max(first.time, second.time);
-    const Real distance_then = distance_of(seen_from(first.at(later), second.at(later)));
-    const BasicDisc<Real> d = seen_from(first.at(time), second.at(time));
-    const Real distance = distance_of(d);
-    const Real place = rounding_.place(first, time) + rounding_.place(second, time);
-    const Real allowed = place + rounding_.gap(speed_of(d), time, distance_then);
-    const Real gap = distance - 2 * radius_;
+std::optional<std::string> PathChecker::wrong_pair(const Collision<double>& collision) {
+    const Path& first = path(collision.first);
+    const Path& second = path(collision.second);
+    const double time = collision.time;
+    const double later = std::max(first.time, second.time);
+    const double distance_then = distance_of(seen_from(first.at(later), second.at(later)));
+    const Disc d = seen_from(first.at(time), second.at(time));
+    const double distance = distance_of(d);
+    const double place = rounding_.place(first, time) + rounding_.place(second, time);
+    const double allowed = place + rounding_.gap(speed_of(d), time, distance_then);
+    const double gap = distance - 2 * radius_;
     const auto who = [&] { return format("discs %d and %d", collision.first, collision.second); };
     if (!(gap <= allowed)) {
-        return who() + format(" collide while they are %.3g apart", static_cast<double>(gap)) + at_time(time);
+        return who() + format(" collide while they are %.3g apart", gap) + at_time(time);
     }
-    const Real nearer = std::min(2 * radius_, distance_then) - distance;
+    const double nearer = std::min(2 * radius_, distance_then) - distance;
     if (!(nearer <= allowed)) {
-        return who() + format(" collide when they are %.3g too near", static_cast<double>(nearer)) +
-               at_time(time);
+        return who() + format(" collide when they are %.3g too near", nearer) + at_time(time);
     }
     // Within the gap allowed of the nearest that a grazing pair comes, it may be seen to part a little.
-    const Real most_parting = speed_of(d) * (std::sqrt(2 * (distance + radius_) * allowed) + allowed);
+    const double most_parting = speed_of(d) * (std::sqrt(2 * (distance + radius_) * allowed) + allowed);
     if (!(parting_of(d) <= most_parting)) {
-        return who() +
-               format(" collide while they part at %.3g", static_cast<double>(parting_of(d) / distance)) +
-               at_time(time);
+        return who() + format(" collide while they part at %.3g", parting_of(d) / distance) + at_time(time);
     }
-    Found violation = wrong_velocities(collision, first.start, second.start, d, PathRounding<Real>::epsilon,
+    Found violation = wrong_velocities(collision, first.start, second.start, d, PathRounding::epsilon,
                                        4 * (place / distance), true);
     return violation ? *violation + at_time(time) : violation;
 }
 
 /// How far a disc is beyond the wall that it flies to, along one axis.
-template <class Real> Real PathChecker<Real>::beyond(Real position, Real velocity) const {
+double PathChecker::beyond(double position, double velocity) const {
     return velocity < 0 ? radius_ - position : position - (side_ - radius_);
 }
 
-template <class Real>
-std::optional<std::string> PathChecker<Real>::wrong_wall(const Collision<Real>& collision) {
-    const Path<Real>& flown = path(collision.first);
-    const BasicDisc<Real> before = flown.at(collision.time);
-    const BasicDisc<Real>& after = collision.first_after;
+std::optional<std::string> PathChecker::wrong_wall(const Collision<double>& collision) {
+    const Path& flown = path(collision.first);
+    const Disc before = flown.at(collision.time);
+    const Disc& after = collision.first_after;
     const bool in_x = after.vx == -before.vx && after.vy == before.vy && before.vx != 0;
     const bool in_y = after.vy == -before.vy && after.vx == before.vx && before.vy != 0;
     const auto who = [&] {
-        return format("disc %d, of velocity (%.17g, %.17g),", collision.first, static_cast<double>(before.vx),
-                      static_cast<double>(before.vy));
+        return format("disc %d, of velocity (%.17g, %.17g),", collision.first, before.vx, before.vy);
     };
     if (!in_x && !in_y) {
-        return who() +
-               format(" is given (%.17g, %.17g) by a wall", static_cast<double>(after.vx),
-                      static_cast<double>(after.vy)) +
+        return who() + format(" is given (%.17g, %.17g) by a wall", after.vx, after.vy) +
                at_time(collision.time);
     }
-    const Real depth = in_x ? beyond(before.x, before.vx) : beyond(before.y, before.vy);
-    const Real speed = std::abs(in_x ? before.vx : before.vy);
-    const Real allowed =
+    const double depth = in_x ? beyond(before.x, before.vx) : beyond(before.y, before.vy);
+    const double speed = std::abs(in_x ? before.vx : before.vy);
+    const double allowed =
         rounding_.place(flown, collision.time) + rounding_.gap(speed, collision.time, radius_);
     if (!(depth >= -allowed)) { // behind it no farther than it was: beyond_wall
-        return who() + format(" is turned %.3g before a wall", static_cast<double>(-depth)) +
-               at_time(collision.time);
+        return who() + format(" is turned %.3g before a wall", -depth) + at_time(collision.time);
     }
     return std::nullopt;
 }
 
 /// Has a disc flown farther beyond a wall than it was when its path began?
-template <class Real> std::optional<std::string> PathChecker<Real>::beyond_wall(int disc, Real time) {
-    const Path<Real>& flown = path(disc);
-    const BasicDisc<Real> now = flown.at(time);
+std::optional<std::string> PathChecker::beyond_wall(int disc, double time) {
+    const Path& flown = path(disc);
+    const Disc now = flown.at(time);
     if (std::min(now.x, now.y) >= radius_ && std::max(now.x, now.y) <= side_ - radius_) {
         return std::nullopt;
     }
-    const Real place = rounding_.place(flown, time);
-    const auto deeper = [&](Real before, Real after, Real velocity) {
-        return beyond(after, velocity) - std::max(beyond(before, velocity), Real{0}) -
+    const double place = rounding_.place(flown, time);
+    const auto deeper = [&](double before, double after, double velocity) {
+        return beyond(after, velocity) - std::max(beyond(before, velocity), 0.0) -
                (place + rounding_.gap(std::abs(velocity), time, radius_));
     };
-    const Real depth = std::max(deeper(flown.start.x, now.x, now.vx), deeper(flown.start.y, now.y, now.vy));
+    const double depth = std::max(deeper(flown.start.x, now.x, now.vx), deeper(flown.start.y, now.y, now.vy));
     if (depth <= 0) {
         return std::nullopt;
     }
-    return format("disc %d is %.3g beyond a wall, which did not turn it,", disc, static_cast<double>(depth)) +
-           at_time(time);
+    return format("disc %d is %.3g beyond a wall, which did not turn it,", disc, depth) + at_time(time);
 }
 
-template <class Real> void PathChecker<Real>::end_path(int disc, Real time, const BasicDisc<Real>& after) {
-    const Real begin = std::max(path(disc).time, searched_);
+void PathChecker::end_path(int disc, double time, const Disc& after) {
+    const double begin = std::max(path(disc).time, searched_);
     if (begin < time) {
         pieces_.push_back({static_cast<std::size_t>(disc), path(disc), begin, time});
     }
@@ -180,9 +162,9 @@ template <class Real> void PathChecker<Real>::end_path(int disc, Real time, cons
 }
 
 /// Looks at all pieces of paths up to that time that have not been looked at.
-template <class Real> std::optional<std::string> PathChecker<Real>::search(Real time) {
+std::optional<std::string> PathChecker::search(double time) {
     for (std::size_t i = 0; i < paths_.size(); ++i) {
-        const Real begin = std::max(paths_[i].time, searched_);
+        const double begin = std::max(paths_[i].time, searched_);
         if (begin < time) {
             pieces_.push_back({i, paths_[i], begin, time});
         }
@@ -190,9 +172,7 @@ template <class Real> std::optional<std::string> PathChecker<Real>::search(Real 
     return search_.too_near(std::exchange(pieces_, {}), std::exchange(searched_, time), time);
 }
 
-template <class Real>
-std::optional<std::string> PathChecker<Real>::violation_at(Real time,
-                                                           const std::vector<BasicDisc<Real>>& discs) {
+std::optional<std::string> PathChecker::violation_at(double time, const std::vector<Disc>& discs) {
     if (violation_) {
         return violation_;
     }
@@ -200,7 +180,7 @@ std::optional<std::string> PathChecker<Real>::violation_at(Real time,
         return format("%zu discs became %zu", paths_.size(), discs.size());
     }
     if (!(time >= now_)) {
-        return format("a collision of time %.17g is told before that time", static_cast<double>(now_));
+        return format("a collision of time %.17g is told before that time", now_);
     }
     now_ = time;
     for (std::size_t i = 0; i < discs.size(); ++i) {
@@ -210,8 +190,7 @@ std::optional<std::string> PathChecker<Real>::violation_at(Real time,
         }
         if (discs[i].vx != paths_[i].start.vx || discs[i].vy != paths_[i].start.vy) {
             return format("disc %d is at %s, and its last collision left it (%.17g, %.17g),", disc,
-                          state_text(discs[i]).c_str(), static_cast<double>(paths_[i].start.vx),
-                          static_cast<double>(paths_[i].start.vy)) +
+                          state_text(discs[i]).c_str(), paths_[i].start.vx, paths_[i].start.vy) +
                    at_time(time);
         }
         if (auto violation = beyond_wall(disc, time)) {
@@ -221,7 +200,5 @@ std::optional<std::string> PathChecker<Real>::violation_at(Real time,
     violation_ = search(time);
     return violation_;
 }
-
-template class PathChecker<double>;
 
 } // namespace carom

@@ -27,14 +27,14 @@ namespace carom {
 /// are let go. Centres nearer than rounding can tell have no normal, and may do either.
 ///
 /// What rounding allows stands in path.hpp.
-template <class Real> class PathChecker final : public CollisionLog<Real> {
+class PathChecker final : public CollisionLog<double> {
   public:
     explicit PathChecker(const Scene& scene);
 
-    void collided(const Collision<Real>& collision) override;
+    void collided(const Collision<double>& collision) override;
 
     /// The first that was wrong up to that time, or of the state that the simulation then is in; or nothing.
-    std::optional<std::string> violation_at(Real time, const std::vector<BasicDisc<Real>>& discs);
+    std::optional<std::string> violation_at(double time, const std::vector<Disc>& discs);
 
     /// The first that was wrong so far.
     const std::optional<std::string>& violation() const { return violation_; }
@@ -46,24 +46,24 @@ template <class Real> class PathChecker final : public CollisionLog<Real> {
   private:
     using Found = std::optional<std::string>;
 
-    Path<Real>& path(int disc) { return paths_[static_cast<std::size_t>(disc)]; }
-    Found violation_of(const Collision<Real>& collision);
-    Found off_path(int disc, const BasicDisc<Real>& place, Real time);
-    Found wrong_pair(const Collision<Real>& collision);
-    Found wrong_wall(const Collision<Real>& collision);
-    Found beyond_wall(int disc, Real time);
-    Real beyond(Real position, Real velocity) const;
-    void end_path(int disc, Real time, const BasicDisc<Real>& after);
-    Found search(Real time);
+    Path& path(int disc) { return paths_[static_cast<std::size_t>(disc)]; }
+    Found violation_of(const Collision<double>& collision);
+    Found off_path(int disc, const Disc& place, double time);
+    Found wrong_pair(const Collision<double>& collision);
+    Found wrong_wall(const Collision<double>& collision);
+    Found beyond_wall(int disc, double time);
+    double beyond(double position, double velocity) const;
+    void end_path(int disc, double time, const Disc& after);
+    Found search(double time);
 
-    Real side_;
-    Real radius_;
-    PathRounding<Real> rounding_;
-    PathSearch<Real> search_;
-    std::vector<Path<Real>> paths_;
-    std::vector<Piece<Real>> pieces_; ///< since the last search
-    Real searched_ = 0;               ///< up to when
-    Real now_ = 0;
+    double side_;
+    double radius_;
+    PathRounding rounding_;
+    PathSearch search_;
+    std::vector<Path> paths_;
+    std::vector<PathPiece> pieces_; ///< since the last search
+    double searched_ = 0;           ///< up to when
+    double now_ = 0;
     Found violation_;
     std::int64_t pair_collisions_ = 0;
     std::int64_t wall_collisions_ = 0;

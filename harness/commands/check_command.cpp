@@ -44,8 +44,7 @@ Verdict check_file(const CheckOptions& options, const Scene& scene, const Varian
     const Rounding rounding = rounding_of(variant.policies);
     const Checker checker(scene.side, scene.radius, 1, tuning.tolerance, rounding, variant.policies.impact,
                           variant.engine);
-    TrajectoryFile file(options.trajectory, scene.discs.size());
-    CheckedTrajectory checked = check_trajectory(scene, file, checker, rounding);
+    CheckedTrajectory checked = check_trajectory(scene, options.trajectory, checker, rounding);
     return {options.trajectory, std::move(checked.discs), std::move(checked.violation), "states"};
 }
 

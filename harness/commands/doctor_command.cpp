@@ -3,6 +3,7 @@
 
 #include "harness/commands/commands.hpp"
 #include "harness/doctor/findings.hpp"
+#include "harness/machine/provenance.hpp"
 #include "harness/support/json.hpp"
 
 namespace carom {
@@ -31,8 +32,8 @@ void add_doctor_command(CLI::App& program) {
             return;
         }
         constexpr double noise_seconds = 2;
-        const Findings findings = examine_machine(noise_seconds);
-        std::cout << (*json ? json_text(doctor_json(findings), 2) + "\n" : doctor_text(findings));
+        const auto findings = examine_machine(noise_seconds);
+        std::cout << (*json ? json_text(findings, 2) + "\n" : doctor_text(findings));
     });
 }
 

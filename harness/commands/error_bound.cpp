@@ -27,15 +27,11 @@ struct MeasureText {
 };
 
 constexpr std::array measure_texts{
-    MeasureText{.measure = Measure::path,
-                .word = "path",
-                .meaning = "RMS distance to the exact paths after one unit of time, in radii"},
-    MeasureText{.measure = Measure::collision_rate,
-                .word = "collision_rate",
-                .meaning = "relative error of the collision rate of the whole run"},
-    MeasureText{.measure = Measure::pressure,
-                .word = "pressure",
-                .meaning = "relative error of the pressure on the walls over the whole run"},
+    MeasureText{Measure::path, "path", "RMS distance to the exact paths after one unit of time, in radii"},
+    MeasureText{Measure::collision_rate, "collision_rate",
+                "relative error of the collision rate of the whole run"},
+    MeasureText{Measure::pressure, "pressure",
+                "relative error of the pressure on the walls over the whole run"},
 };
 
 std::string option_text(const ErrorBound& bound) {
@@ -102,7 +98,7 @@ std::optional<Chosen> choose_method(const Scene& scene, const ErrorBound& bound,
     }
     require_exact_run(scene, bound);
     const std::string option = option_text(bound);
-    Trial trial = try_methods(scene, options.tuning, bound.measure, bound.below, costs_of_machine());
+    Trial trial = try_methods(scene, options.tuning, bound.measure, bound.below);
     const auto cheapest = cheapest_below(trial.tried, bound.below, scene.steps);
     if (!cheapest) {
         const Tried& best = most_exact(trial.tried);

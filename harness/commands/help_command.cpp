@@ -1,15 +1,119 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <string_view>
 
-#include "harness/command_line/completion.hpp"
+#include <CLI/CLI.hpp>
+
 #include "harness/command_line/help.hpp"
-#include "harness/command_line/man_page.hpp"
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
 
 namespace carom {
 namespace {
+
+/// Prints the verbs and options that the help on standard input tells of.
+constexpr const char* reading_help = R"script(_carom_words() {
+    "$@" --help 2>/dev/null | awk '
+        /^ *-/ { for (i = 1; i <= 3; ++i) if (match($i, /^--[a-z][a-z-]*/)) print substr($i, 1, RLENGTH) }
+        /^  (  )?[a-z][a-z_-]*  / { print $1 }'
+}
+)script";
+
+constexpr const char* for_bash = R"script(
+_carom() {
+    local command=("$1") candidates
+    ((COMP_CWORD > 1)) && command+=("${COMP_WORDS[1]}")
+    ((COMP_CWORD > 2)) && [[ ${COMP_WORDS[1]} == study ]] && command+=("${COMP_WORDS[2]}")
+    if [[ $3 == --variant ]]; then
+        candidates="auto fastest $("$1" list --names 2>/dev/null)"
+    else
+        candidates=$(_carom_words "${command[@]}")
+    fi
+    mapfile -t COMPREPLY < <(compgen -W "$candidates" -- "$2")
+}
+complete -o default -F _carom carom
+)script";
+
+constexpr const char* for_zsh = R"script(
+_carom() {
+    local -a command=($words[1])
+    ((CURRENT > 2)) && command+=($words[2])
+    ((CURRENT > 3)) && [[ $words[2] == study ]] && command+=($words[3])
+    if [[ $words[CURRENT-1] == --variant ]]; then
+        compadd -- auto fastest ${(f)"$($words[1] list --names 2>/dev/null)"}
+    else
+        compadd -- ${(f)"$(_carom_words $command)"}
+        _files
+    fi
+}
+if [[ $funcstack[1] == _carom ]]; then
+    _carom "$@"
+else
+    compdef _carom carom
+fi
+)script";
+
+/// The script with which a shell, `bash` or `zsh`, completes a command line of this program. It reads what
+/// can follow from the help of the verb at hand, so that both always agree.
+std::string completion(const std::string& shell) {
+    return shell == "bash" ? std::string(reading_help) + for_bash
+                           : "#compdef carom\n" + std::string(reading_help) + for_zsh;
+}
+
+/// A text as roff takes it: nothing in it is a request.
+std::string escaped(std::string_view text) {
+    std::string roff;
+    for (const char letter : text) {
+        if (letter == '\\') {
+            roff += "\\e";
+        } else if (letter == '-') {
+            roff += "\\-";
+        } else {
+            if ((letter == '.' || letter == '\'') && (roff.empty() || roff.back() == '\n')) {
+                roff += "\\&";
+            }
+            roff += letter;
+        }
+    }
+    return roff;
+}
+
+std::string entry(const std::string& typed, const std::string& told) {
+    return ".TP\n.B " + escaped(typed) + "\n" + escaped(told) + "\n";
+}
+
+std::string verb_section(const CLI::App& verb) {
+    const std::string name = "carom " + verb.get_name();
+    std::string text = ".SS " + escaped(name) + "\n" + escaped(verb.get_description()) + ".\n.PP\n" +
+                       escaped(Help().make_usage(&verb, name));
+    for (const CLI::Option* argument :
+         verb.get_options([](const auto* one) { return one->get_positional(); })) {
+        text += entry(typed_form(*argument, true), told_of(*argument));
+    }
+    for (const CLI::Option* option : verb.get_options([](const auto* one) { return one->nonpositional(); })) {
+        text += entry(typed_form(*option, false), told_of(*option));
+    }
+    return text;
+}
+
+/// The page of the program for man(7), made of the same text as its help: what it does, its verbs by group,
+/// and of each verb its arguments and options.
+std::string man_page(const CLI::App& program, const std::string& version) {
+    std::string text = ".TH CAROM 1 \"\" \"carom " + escaped(version) + "\"\n.SH NAME\ncarom \\- " +
+                       escaped(program.get_description()) +
+                       "\n.SH SYNOPSIS\n.B carom\nVERB [OPTIONS]\n.SH VERBS\n";
+    std::string details = ".SH EACH VERB\n";
+    for (const char* group : {groups::measure, groups::simulate, groups::study, groups::machine}) {
+        text += ".SS " + escaped(group) + "\n";
+        const auto is_in_group = [&](const CLI::App* verb) { return verb->get_group() == group; };
+        for (const CLI::App* verb : program.get_subcommands(is_in_group)) {
+            text += entry(verb->get_name(), verb->get_description());
+            details += verb_section(*verb);
+        }
+    }
+    return text + details + ".SH EXIT STATUS\n" + escaped(program.get_footer()) + "\n";
+}
 
 struct HelpOptions {
     std::string verb;

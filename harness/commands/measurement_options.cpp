@@ -59,11 +59,7 @@ Measurement measurement_of(const LoadedScene& loaded, const Variant& variant, co
             .scope = options.scope,
             .warm_ups = options.warm_ups,
             .parse_seconds = loaded.parse_seconds,
-            .tags = options.tags,
-            .repetitions = {},
-            .violation = {},
-            .turns = {},
-            .own_seconds = {}};
+            .tags = options.tags};
 }
 
 } // namespace carom

@@ -36,21 +36,13 @@ struct ProfileOptions {
     int simulated_steps = 5;
 };
 
-/// A run that passed its check, or CheckError.
-Run passed(Run run, const Measurement& measurement) {
+/// A run without a probe. Throws CheckError if it fails its check.
+Run bare_run(const Measurement& measurement, CheckScope scope, Stopwatch stopwatch = {}) {
+    Run run = measurement.run_alone(scope, std::move(stopwatch));
     if (run.violation) {
-        throw CheckError(measurement.scene_name + ", variant " + std::string(measurement.variant.name) +
-                         ", " + *run.violation);
+        throw CheckError(measurement.name() + ", " + *run.violation);
     }
     return run;
-}
-
-/// Runs the scene without a probe. Throws CheckError if it fails its check.
-Run bare_run(const Measurement& measurement, CheckScope scope, Stopwatch stopwatch = {}) {
-    const auto simulation = measurement.variant.simulate(measurement.scene, measurement.tuning);
-    return passed(run_scene(measurement.scene, *simulation, measurement.tuning, {scope, measurement.variant},
-                            nullptr, std::move(stopwatch)),
-                  measurement);
 }
 
 /// The profiled run; the same to the last bit as the bare one, or CheckError.
@@ -102,7 +94,7 @@ void profile(const ProfileOptions& options) {
         bare_run(measurement, CheckScope::nothing);
     }
     if (options.measurement.scope == CheckScope::every_step) {
-        passed(checked_run(measurement.scene, variant, measurement.tuning), measurement);
+        bare_run(measurement, CheckScope::every_step);
     }
     const Run bare = bare_run(measurement, CheckScope::last_step);
     Profiler profiler(variant.policies, measurement.tuning,
@@ -113,7 +105,7 @@ void profile(const ProfileOptions& options) {
                          .cost = run.steps_seconds / bare.steps_seconds,
                          .sweeps = run.work.sweeps,
                          .counters = all_counters(options, measurement)};
-    suspensions.require_none(measurement.scene_name + ", variant " + std::string(variant.name));
+    suspensions.require_none(measurement.name());
     print_profile(result, measurement);
     if (!options.timeline.empty()) {
         write_timeline(options.timeline, profiler,

@@ -51,7 +51,7 @@ nlohmann::ordered_json counts_json(const ExactSimulation<double, Log>& reference
 /// Writes what `reference` is at the asked time, which `checker` has followed if there is one.
 template <class Log>
 void simulate(const ReferenceOptions& options, const Scene& scene, ExactSimulation<double, Log> reference,
-              PathChecker<double>* checker) {
+              PathChecker* checker) {
     const double start = kinetic_energy(reference.discs());
     const bool ended = reference.advance(options.time);
     const auto wrong = checker ? checker->violation_at(reference.time(), reference.discs()) : std::nullopt;
@@ -79,7 +79,7 @@ void reference(const ReferenceOptions& options) {
         simulate(options, scene, ExactSimulation<double>(scene, options.threads), nullptr);
         return;
     }
-    PathChecker<double> checker(scene);
+    PathChecker checker(scene);
     CollisionLog<double>& told = checker;
     simulate(options, scene, ExactSimulation<double, CollisionLog<double>&>(scene, options.threads, told),
              &checker);

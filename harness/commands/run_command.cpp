@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -12,7 +14,6 @@
 #include <unistd.h>
 
 #include "harness/accuracy/error_measures.hpp"
-#include "harness/accuracy/errors_text.hpp"
 #include "harness/commands/commands.hpp"
 #include "harness/commands/error_bound.hpp"
 #include "harness/commands/simulation_options.hpp"
@@ -41,126 +42,138 @@ struct RunOptions {
     bool json = false;
 };
 
-/// Where the wall time of the process goes.
-struct Seconds {
-    double reading = 0;    ///< the scene's file
-    double setting_up = 0; ///< the state of the simulation
-    double steps = 0;
-    double process = 0; ///< from before main until all that is to be printed of it is known
+using Json = nlohmann::ordered_json;
 
-    double rest() const { return process - reading - setting_up - steps; }
-};
-
-/// A number that is told of a run.
+/// A number that a terminal shows, by its key in JSON.
 struct Figure {
-    const char* key;   ///< in JSON
-    const char* label; ///< on a terminal; null: it does not stand there
-    double value;
+    const char* key;
+    const char* label;
     const char* unit;
 };
 
-/// What a run did.
-struct Summary {
-    const SimulationOptions& options;
-    const Scene& scene;
-    const Variant& variant;
-    int threads_asked;  ///< or taken for granted; there may be fewer
-    std::int64_t steps; ///< of dt = 1/substeps; what is told by the step and by the second is of these
-    std::vector<Figure> figures;        ///< of time, and by the second and by the step
-    std::optional<double> energy_drift; ///< empty if nothing moves at the start
-    int discs_outside;
-    std::string state_hash; ///< empty if it is not to be printed: it takes its time
+constexpr std::array shown_errors{
+    Figure{"momentum_drift", "momentum that no wall explains", " of the sum of |v|"},
+    Figure{"penetration_worst", "worst penetration", " r"},
+    Figure{"penetration_mean", "mean penetration", " r"},
+    Figure{"unresolved_pairs", "left colliding", ""},
+    Figure{"collision_rate", "collisions", " a disc and unit of time"},
+    Figure{"collision_rate_reference", "  of the reference", ""},
+    Figure{"pressure", "pressure", ""},
+    Figure{"pressure_reference", "  of the reference", ""},
+    Figure{"speed_distance", "distance of the speeds", " (Kolmogorov-Smirnov)"},
+    Figure{"time_to_tenth_radius", "0.1 r from the reference after", " units of time"}};
+
+/// Prints every error measure (`error_measures_json`), a line each; what is not known says so.
+void print_errors(const nlohmann::ordered_json& errors) {
+    for (const auto& [key, label, unit] : shown_errors) {
+        const auto& value = errors[key];
+        if (value.is_number() && std::isfinite(value.get<double>())) {
+            std::printf("  %-33s %12.6g%s\n", label, value.get<double>(), unit);
+        } else {
+            std::printf("  %-33s    not known\n", label);
+        }
+    }
+    for (const auto& at : errors["trajectory"]) {
+        std::printf("  distance after %6d units of time %13.6g r (root mean square)\n", at["time"].get<int>(),
+                    at["rms_distance"].is_null() ? std::nan("") : at["rms_distance"].get<double>());
+    }
+    for (const char* reason : {"pressure_reason", "reference_reason"}) {
+        if (!errors[reason].is_null()) {
+            std::printf("  %s\n", errors[reason].get<std::string>().c_str());
+        }
+    }
+}
+
+/// Wall time of the process before its first step.
+struct Seconds {
+    double reading = 0;    ///< the scene's file
+    double setting_up = 0; ///< the state of the simulation
 };
 
-std::vector<Figure> figures_of(const Seconds& seconds, const Tally& work, double steps, double discs) {
+constexpr std::array shown_figures{Figure{"reading_seconds", "reading", " s"},
+                                   Figure{"setting_up_seconds", "setting up", " s"},
+                                   Figure{"steps_seconds", "steps", " s"},
+                                   Figure{"process_seconds", "whole process", " s"},
+                                   Figure{"steps_per_second", "steps/s", ""},
+                                   Figure{"disc_steps_per_second", "disc-steps/s", ""},
+                                   Figure{"overlaps_per_step", "overlaps", " a step"},
+                                   Figure{"pair_resolves_per_step", "pair resolves", " a step"},
+                                   Figure{"wall_resolves_per_step", "wall resolves", " a step"},
+                                   Figure{"sweeps_per_step", "sweeps", " a step"}};
+
+/// What a run did. `threads_asked` are those asked for, or taken for granted; there may be fewer. Steps are
+/// of dt = 1/substeps where they are told by the step or by the second. Of the process is told what it took
+/// until all that is to be printed of it is known.
+Json summary_json(const RunOptions& options, int threads_asked, const Scene& scene, const Variant& variant,
+                  const Run& run, const Seconds& seconds) {
+    const Tuning& tuning = options.simulation.tuning;
+    const std::int64_t simulated = std::int64_t{scene.steps} * tuning.substeps;
+    const auto steps = static_cast<double>(simulated);
     const auto per_step = [steps](std::int64_t total) {
         return steps > 0 ? static_cast<double>(total) / steps : 0;
     };
-    const auto per_second = [&](double total) { return seconds.steps > 0 ? total / seconds.steps : 0; };
-    return {{"reading_seconds", "reading", seconds.reading, " s"},
-            {"setting_up_seconds", "setting up", seconds.setting_up, " s"},
-            {"steps_seconds", "steps", seconds.steps, " s"},
-            {"rest_seconds", nullptr, seconds.rest(), ""},
-            {"process_seconds", "whole process", seconds.process, " s"},
-            {"steps_per_second", "steps/s", per_second(steps), ""},
-            {"disc_steps_per_second", "disc-steps/s", per_second(steps * discs), ""},
-            {"overlaps_per_step", "overlaps", per_step(work.overlaps), " a step"},
-            {"pair_resolves_per_step", "pair resolves", per_step(work.pair_resolves), " a step"},
-            {"wall_resolves_per_step", "wall resolves", per_step(work.wall_resolves), " a step"},
-            {"pair_attempts_per_step", nullptr, per_step(work.pair_attempts), ""},
-            {"sweeps_per_step", "sweeps", per_step(work.sweeps), " a step"}};
-}
-
-Summary summarise(const RunOptions& options, int threads_asked, const Scene& scene, const Variant& variant,
-                  const Run& run, Seconds seconds) {
-    Summary summary{.options = options.simulation,
-                    .scene = scene,
-                    .variant = variant,
-                    .threads_asked = threads_asked,
-                    .steps = std::int64_t{scene.steps} * options.simulation.tuning.substeps,
-                    .figures = {},
-                    .energy_drift = energy_drift(scene, run.discs),
-                    .discs_outside = discs_outside(scene, run.discs),
-                    .state_hash = options.json ? state_hash(run.discs) : ""};
-    seconds.steps = run.steps_seconds;
-    seconds.process = process_seconds();
-    summary.figures = figures_of(seconds, run.work, static_cast<double>(summary.steps),
-                                 static_cast<double>(scene.discs.size()));
-    return summary;
-}
-
-nlohmann::ordered_json summary_json(const Summary& summary) {
-    const Tuning& tuning = summary.options.tuning;
-    nlohmann::ordered_json json{{"scene", shown_name(summary.options.scene)},
-                                {"variant", summary.variant.name},
-                                {"policies", policies_json(summary.variant.policies, summary.variant.engine)},
-                                {"threads", tuning.threads},
-                                {"threads_asked", summary.threads_asked},
-                                {"substeps", tuning.substeps},
-                                {"particles", summary.scene.discs.size()},
-                                {"steps", summary.scene.steps},
-                                {"steps_simulated", summary.steps}};
-    for (const Figure& figure : summary.figures) {
-        json[figure.key] = figure.value;
-    }
-    json["energy_drift"] = or_null(summary.energy_drift);
-    json["discs_outside"] = summary.discs_outside;
-    json["state_hash"] = summary.state_hash;
-    return json;
+    const auto per_second = [&run](double total) {
+        return run.steps_seconds > 0 ? total / run.steps_seconds : 0;
+    };
+    const auto drift = energy_drift(scene, run.discs);
+    const int outside = discs_outside(scene, run.discs);
+    const std::string hash = options.json ? state_hash(run.discs) : ""; // it takes its time
+    const double process = process_seconds();
+    return {{"scene", shown_name(options.simulation.scene)},
+            {"variant", variant.name},
+            {"policies", policies_json(variant.policies, variant.engine)},
+            {"threads", tuning.threads},
+            {"threads_asked", threads_asked},
+            {"substeps", tuning.substeps},
+            {"particles", scene.discs.size()},
+            {"steps", scene.steps},
+            {"steps_simulated", simulated},
+            {"reading_seconds", seconds.reading},
+            {"setting_up_seconds", seconds.setting_up},
+            {"steps_seconds", run.steps_seconds},
+            {"rest_seconds", process - seconds.reading - seconds.setting_up - run.steps_seconds},
+            {"process_seconds", process},
+            {"steps_per_second", per_second(steps)},
+            {"disc_steps_per_second", per_second(steps * static_cast<double>(scene.discs.size()))},
+            {"overlaps_per_step", per_step(run.work.overlaps)},
+            {"pair_resolves_per_step", per_step(run.work.pair_resolves)},
+            {"wall_resolves_per_step", per_step(run.work.wall_resolves)},
+            {"pair_attempts_per_step", per_step(run.work.pair_attempts)},
+            {"sweeps_per_step", per_step(run.work.sweeps)},
+            {"energy_drift", or_null(drift)},
+            {"discs_outside", outside},
+            {"state_hash", hash}};
 }
 
 /// "60 steps", or "60 units of time in 480 steps"; without steps "60 units of time".
-std::string steps_text(const Summary& summary) {
-    const std::string units = counted(summary.scene.steps, "unit") + " of time";
-    if (summary.variant.engine == Engine::event_driven) {
+std::string steps_text(const Json& summary, Engine engine) {
+    const std::string units = counted(summary["steps"].get<int>(), "unit") + " of time";
+    if (engine == Engine::event_driven) {
         return units;
     }
-    const std::string steps = counted(summary.steps, "step");
-    return summary.options.tuning.substeps == 1 ? steps : units + " in " + steps;
+    const std::string steps = counted(summary["steps_simulated"].get<std::int64_t>(), "step");
+    return summary["substeps"] == 1 ? steps : units + " in " + steps;
 }
 
 /// "2 threads", or "1 thread (of 2)".
-std::string threads_text(const Summary& summary) {
-    const bool fewer = summary.options.tuning.threads < summary.threads_asked;
-    return counted(summary.options.tuning.threads, "thread") +
-           (fewer ? " (of " + number_text(summary.threads_asked) + ")" : "");
+std::string threads_text(int threads, int asked) {
+    return counted(threads, "thread") + (threads < asked ? " (of " + number_text(asked) + ")" : "");
 }
 
-void print_summary(const Summary& summary) {
-    std::printf("%s: %s, %s, variant %s, %s\n", shown_name(summary.options.scene).c_str(),
-                counted(summary.scene.discs.size(), "disc").c_str(), steps_text(summary).c_str(),
-                std::string(summary.variant.name).c_str(), threads_text(summary).c_str());
-    for (const Figure& figure : summary.figures) {
-        if (figure.label != nullptr) {
-            std::printf("  %-15s %12.6g%s\n", figure.label, figure.value, figure.unit);
-        }
+void print_summary(const Json& summary, Engine engine) {
+    std::printf("%s: %s, %s, variant %s, %s\n", summary["scene"].get<std::string>().c_str(),
+                counted(summary["particles"].get<std::size_t>(), "disc").c_str(),
+                steps_text(summary, engine).c_str(), summary["variant"].get<std::string>().c_str(),
+                threads_text(summary["threads"], summary["threads_asked"]).c_str());
+    for (const auto& [key, label, unit] : shown_figures) {
+        std::printf("  %-15s %12.6g%s\n", label, summary[key].get<double>(), unit);
     }
-    if (summary.energy_drift) {
-        std::printf("  energy drift    %12.3g relative\n", *summary.energy_drift);
-    } else {
+    if (summary["energy_drift"].is_null()) {
         std::printf("  energy drift     not defined: nothing moves at the start\n");
+    } else {
+        std::printf("  energy drift    %12.3g relative\n", summary["energy_drift"].get<double>());
     }
-    std::printf("  discs outside   %12d\n", summary.discs_outside);
+    std::printf("  discs outside   %12d\n", summary["discs_outside"].get<int>());
 }
 
 std::string trajectory_lines(int step, const std::vector<Disc>& discs) {
@@ -226,27 +239,26 @@ void run(RunOptions options) {
         options.simulation.threads_withheld = 0;
     }
     const Run result = simulate(options, scene, variant, seconds);
-    const Summary summary = summarise(options, asked, scene, variant, result, seconds);
-    std::optional<ErrorMeasures> errors;
+    auto summary = summary_json(options, asked, scene, variant, result, seconds);
+    Json errors;
     if (options.errors) {
-        errors = measure_errors(scene, variant, options.simulation.tuning);
+        errors = error_measures_json(measure_errors(scene, variant, options.simulation.tuning));
     }
     if (options.json) {
-        auto json = summary_json(summary);
         if (chosen) {
-            json["choice"] = choice_json(*chosen);
+            summary["choice"] = choice_json(*chosen);
         }
-        if (errors) {
-            json["errors"] = error_measures_json(*errors);
+        if (options.errors) {
+            summary["errors"] = errors;
         }
-        std::cout << json_text(json, 2) << '\n';
+        std::cout << json_text(summary, 2) << '\n';
     } else {
         if (chosen) {
             print_choice(*chosen);
         }
-        print_summary(summary);
-        if (errors) {
-            print_errors(*errors);
+        print_summary(summary, variant.engine);
+        if (options.errors) {
+            print_errors(errors);
         }
     }
     note_crowding(options.simulation.tuning.threads);

@@ -117,8 +117,7 @@ TurnsPlan compete(std::deque<VariantContender>& contenders, const TurnsOptions& 
 void keep(const Measurement& measurement, const std::string& record, std::optional<std::string>& failure) {
     write_record(record, record_json(measurement));
     if (measurement.violation && !failure) {
-        failure = measurement.scene_name + ", variant " + std::string(measurement.variant.name) + ": " +
-                  *measurement.violation;
+        failure = measurement.name() + ": " + *measurement.violation;
     }
 }
 
@@ -148,16 +147,6 @@ std::optional<std::string> take_turns(const std::vector<ContenderOptions>& said,
     return failure;
 }
 
-/// Its one run, from cold.
-Run counted_run(const Measurement& measurement) {
-    if (measurement.scope == CheckScope::every_step) {
-        return checked_run(measurement.scene, measurement.variant, measurement.tuning);
-    }
-    const auto simulation = measurement.variant.simulate(measurement.scene, measurement.tuning);
-    return run_scene(measurement.scene, *simulation, measurement.tuning,
-                     Check(CheckScope::last_step, measurement.variant));
-}
-
 /// One after the other, each gone before the next begins.
 std::optional<std::string> count(const std::vector<ContenderOptions>& said) {
     std::optional<LoadedScene> scene;
@@ -173,10 +162,9 @@ std::optional<std::string> count(const std::vector<ContenderOptions>& said) {
         }
         Measurement measurement = measurement_of(*scene, one);
         measurement.warm_ups = 0;
-        measurement.add(counted_run(measurement));
+        measurement.add(measurement.run_alone(measurement.scope));
         measurement.own_seconds = process_seconds() - start;
-        suspensions.require_none(measurement.scene_name + ", variant " +
-                                 std::string(measurement.variant.name));
+        suspensions.require_none(measurement.name());
         keep(measurement, one.measurement.record, failure);
     }
     return failure;

@@ -1,33 +1,25 @@
 #include "harness/counters/access.hpp"
 
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 
 #include <linux/perf_event.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include "harness/machine/machine.hpp"
+#include "harness/processes/event_counts.hpp"
 #include "harness/support/text.hpp"
 
 namespace carom {
 namespace {
 
 /// errno of opening the event for the calling thread, or 0.
-int try_opening(std::uint32_t type, std::uint64_t event, bool in_kernel) {
-    perf_event_attr attributes{};
-    attributes.size = sizeof attributes;
-    attributes.type = type;
-    attributes.config = event;
-    attributes.disabled = 1;
-    attributes.exclude_kernel = !in_kernel;
-    attributes.exclude_hv = 1;
-    const long descriptor = syscall(SYS_perf_event_open, &attributes, 0, -1, -1, PERF_FLAG_FD_CLOEXEC);
+int try_opening(const CountedEvent& event, bool in_kernel) {
+    const int descriptor = open_event(event, 0, in_kernel);
     if (descriptor < 0) {
         return errno;
     }
-    close(static_cast<int>(descriptor));
+    close(descriptor);
     return 0;
 }
 
@@ -57,9 +49,10 @@ Explanation explain_error(const PerfAccess& access, int error, int most_paranoid
 
 PerfAccess read_perf_access() {
     PerfAccess access;
-    access.hardware_error = try_opening(PERF_TYPE_HARDWARE, PERF_COUNT_HW_CPU_CYCLES, false);
-    access.software_error = try_opening(PERF_TYPE_SOFTWARE, PERF_COUNT_SW_PAGE_FAULTS, false);
-    access.kernel_error = try_opening(PERF_TYPE_SOFTWARE, PERF_COUNT_SW_PAGE_FAULTS, true);
+    access.hardware_error = try_opening({"cycles", PERF_TYPE_HARDWARE, PERF_COUNT_HW_CPU_CYCLES}, false);
+    const CountedEvent page_faults{"page_faults", PERF_TYPE_SOFTWARE, PERF_COUNT_SW_PAGE_FAULTS};
+    access.software_error = try_opening(page_faults, false);
+    access.kernel_error = try_opening(page_faults, true);
     if (const auto line = first_line("/proc/sys/kernel/perf_event_paranoid")) {
         access.paranoid = parse_number<int>(*line);
     }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include "harness/support/errors.hpp"
 #include "harness/support/input_file.hpp"
 #include "harness/support/output_file.hpp"
+#include "harness/support/temporary_folder.hpp"
 #include "harness/support/text.hpp"
 
 namespace carom {
@@ -25,30 +25,6 @@ class Obstacle : public CounterError {
 
   private:
     Explanation why_;
-};
-
-/// A folder for temporary files, gone with all that is in it when this is.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "carom-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) {
-            throw InputError(name +
-                             ": cannot be made, expected a writable folder for temporary files (TMPDIR)");
-        }
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    std::string file(const char* name) const { return (path_ / name).string(); }
-
-  private:
-    std::filesystem::path path_;
 };
 
 void require_success(const ProcessEnd& end) {
@@ -78,33 +54,22 @@ class SimulatedRun {
   public:
     SimulatedRun(const Scene& scene, std::string_view variant, const Tuning& tuning,
                  const std::filesystem::path& program)
-        : process_({.words = {"valgrind",
-                              "--quiet",
-                              "--tool=cachegrind",
-                              "--cache-sim=yes",
-                              "--branch-sim=yes",
-                              "--cachegrind-out-file=" + folder_.file("cachegrind.out"),
-                              program.string(),
-                              "run",
-                              folder_.file("scene.in"),
-                              "1",
-                              "--variant",
-                              std::string(variant),
-                              "--find-chunk",
-                              std::to_string(tuning.find_chunk),
-                              "--resolve-chunk",
-                              std::to_string(tuning.resolve_chunk),
-                              "--substeps",
-                              std::to_string(tuning.substeps),
-                              "--sweep-limit",
-                              std::to_string(tuning.sweep_limit),
-                              "--tolerance",
-                              tuning.tolerance == Tolerance::relative ? "relative" : "published"},
-                    .folder = "",
-                    .most_seconds = without_limit,
-                    .pattern = ""},
-                   KeptBy::subreaper) {
-        write_text(folder_.file("scene.in"), scene_text(scene));
+        : process_(
+              {.words =
+                   {"valgrind",           "--quiet",
+                    "--tool=cachegrind",  "--cache-sim=yes",
+                    "--branch-sim=yes",   "--cachegrind-out-file=" + (folder_ / "cachegrind.out"),
+                    program.string(),     "run",
+                    folder_ / "scene.in", "1",
+                    "--variant",          std::string(variant),
+                    "--find-chunk",       std::to_string(tuning.find_chunk),
+                    "--resolve-chunk",    std::to_string(tuning.resolve_chunk),
+                    "--substeps",         std::to_string(tuning.substeps),
+                    "--sweep-limit",      std::to_string(tuning.sweep_limit),
+                    "--tolerance",        tuning.tolerance == Tolerance::relative ? "relative" : "published"},
+               .most_seconds = without_limit},
+              KeptBy::subreaper) {
+        write_text(folder_ / "scene.in", scene_text(scene));
         process_.begin();
     }
 
@@ -113,7 +78,7 @@ class SimulatedRun {
         process_.advance(without_limit);
         require_success(process_.end());
         try {
-            return parse_cachegrind(read_file(folder_.file("cachegrind.out")));
+            return parse_cachegrind(read_file(folder_ / "cachegrind.out"));
         } catch (const CounterError& error) {
             throw Obstacle({error.what(), "a valgrind whose output carom reads, such as 3.19"});
         }
@@ -121,7 +86,7 @@ class SimulatedRun {
 
   private:
     static constexpr double without_limit = 1e9;
-    TemporaryFolder folder_;
+    TemporaryFolder folder_{"carom-"};
     Process process_;
 };
 

@@ -1,15 +1,21 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include <CLI/StringTools.hpp>
 
 #include "harness/doctor/findings.hpp"
+#include "harness/machine/provenance.hpp"
 #include "harness/support/format.hpp"
 #include "harness/support/text.hpp"
-#include "variants/event_driven_variant.hpp"
 
 namespace carom {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 /// A label and a text, which goes on under itself where the line is full.
 std::string line(std::string label, const std::string& text) {
@@ -31,136 +37,136 @@ std::string bytes_text(std::int64_t bytes) {
     return format("%.4g %s", amount, unit);
 }
 
-std::string plural(const std::optional<int>& count, const std::string& one) {
-    return count ? counted(*count, one) : one + "s not told";
+std::string text_of(const Json& text) { return text.is_null() ? "not told" : text.get<std::string>(); }
+
+std::string plural(const Json& count, const std::string& one) {
+    return count.is_null() ? one + "s not told" : counted(count.get<int>(), one);
 }
 
-std::string on_or_off(const std::optional<bool>& value) {
-    return !value ? "not told" : *value ? "on" : "off";
+std::string on_or_off(const Json& value) {
+    return value.is_null() ? "not told" : value.get<bool>() ? "on" : "off";
 }
 
-std::string machine_lines(const Machine& machine, const std::optional<std::int64_t>& available) {
-    return line("host", machine.host + ", " + machine.operating_system +
-                            (machine.virtualised ? ", a virtual machine" : "")) +
-           line("memory", bytes_text(machine.memory_bytes) +
-                              (available ? ", " + bytes_text(*available) + " available" : ""));
+std::string machine_lines(const Json& machine) {
+    const Json& available = machine["memory_available_bytes"];
+    return line("host", text_of(machine["host"]) + ", " + text_of(machine["operating_system"]) +
+                            (machine["virtualised"].get<bool>() ? ", a virtual machine" : "")) +
+           line("memory", bytes_text(machine["memory_bytes"]) +
+                              (available.is_null() ? "" : ", " + bytes_text(available) + " available"));
 }
 
-std::string topology_lines(const std::string& cpu_model, const Topology& topology) {
-    const std::string untold = "not told by " + topology.source + "; remedy: build with libhwloc-dev";
+std::string topology_lines(const Json& cpu_model, const Json& topology) {
+    const std::string source = text_of(topology["source"]);
+    const std::string untold = "not told by " + source + "; remedy: build with libhwloc-dev";
     std::string caches;
-    for (const CacheLevel& cache : topology.caches) {
-        caches += std::to_string(cache.count) + " " + cache.name + " of " + bytes_text(cache.bytes) + ", ";
+    for (const Json& cache : topology["caches"]) {
+        caches += number_text(cache["count"].get<int>()) + " " + text_of(cache["name"]) + " of " +
+                  bytes_text(cache["bytes"]) + ", ";
     }
-    return line("CPU", cpu_model + ": " + plural(topology.packages, "package") + ", " +
-                           plural(topology.cores, "core") + ", " +
-                           plural(topology.hardware_threads, "hardware thread") + ", SMT " +
-                           on_or_off(topology.smt())) +
-           line("caches", caches.empty() ? untold : caches + "told by " + topology.source) +
-           line("NUMA", topology.numa_nodes ? plural(topology.numa_nodes, "node") : untold);
+    const Json& nodes = topology["numa_nodes"];
+    return line("CPU", text_of(cpu_model) + ": " + plural(topology["packages"], "package") + ", " +
+                           plural(topology["cores"], "core") + ", " +
+                           plural(topology["hardware_threads"], "hardware thread") + ", SMT " +
+                           on_or_off(topology["smt"])) +
+           line("caches", caches.empty() ? untold : caches + "told by " + source) +
+           line("NUMA", nodes.is_null() ? untold : plural(nodes, "node"));
 }
 
-std::string processor_lines(const Findings& findings) {
-    const Machine& machine = findings.machine;
-    const bool host_decides = !machine.governor && machine.virtualised;
-    const bool is_part = machine.affinity_count < machine.hardware_threads;
+std::string processor_lines(const Json& frequency, const Json& affinity, bool is_virtual) {
+    const bool host_decides = frequency["governor"].is_null() && is_virtual;
+    const bool is_part = affinity["affinity_count"] < affinity["hardware_threads"];
     std::string text =
-        line("frequency", "governor " + machine.governor.value_or("not told") + ", turbo " +
-                              on_or_off(findings.turbo) +
+        line("frequency", "governor " + text_of(frequency["governor"]) + ", turbo " +
+                              on_or_off(frequency["turbo"]) +
                               (host_decides ? "; the host of this virtual machine decides" : "")) +
-        line("affinity", counted(machine.affinity_count, "CPU") + ": " + machine.affinity +
-                             (is_part ? ", of " + counted(machine.hardware_threads, "hardware thread") : ""));
-    if (const auto quota = machine.cpu_quota) {
+        line("affinity",
+             plural(affinity["affinity_count"], "CPU") + ": " + text_of(affinity["affinity"]) +
+                 (is_part ? ", of " + plural(affinity["hardware_threads"], "hardware thread") : ""));
+    if (const Json& quota = affinity["cpu_quota"]; !quota.is_null()) {
         text +=
             line("CPU quota", format("time of %.4g processor%s in all (cgroup); on more threads than that "
                                      "each is halted for a part of the time",
-                                     *quota, *quota == 1 ? "" : "s"));
+                                     quota.get<double>(), quota == 1 ? "" : "s"));
     }
-    if (machine.has_unread_cpu_quota) {
+    if (affinity["has_unread_cpu_quota"].get<bool>()) {
         text += line("CPU quota", "cannot be read: control groups of version 1 grant the processors here");
     }
-    return text +
-           line("threads", "Carom takes " + counted(findings.threads_by_default, "thread") +
-                               " by default, on " + counted(findings.usable_processors, "usable processor"));
+    return text + line("threads", "Carom takes " + plural(affinity["threads_by_default"], "thread") +
+                                      " by default, on " +
+                                      plural(affinity["usable_processors"], "usable processor"));
 }
 
-std::string openmp_lines(const OpenMp& openmp) {
-    const std::string environment = CLI::detail::join(
-        openmp.environment, [](const auto& variable) { return variable.first + "=" + variable.second; }, " ");
-    return line("OpenMP", openmp.runtime + ", version " + std::to_string(openmp.version) + ", " +
-                              counted(openmp.max_threads, "thread") + " by default, dynamic " +
-                              on_or_off(openmp.dynamic) + ", bind " + openmp.proc_bind + ", " +
-                              counted(openmp.places, "place")) +
+std::string openmp_lines(const Json& openmp) {
+    std::string environment;
+    for (const auto& [name, value] : openmp["environment"].items()) {
+        environment += (environment.empty() ? "" : " ") + name + "=" + text_of(value);
+    }
+    return line("OpenMP", text_of(openmp["runtime"]) + ", version " +
+                              number_text(openmp["version"].get<int>()) + ", " +
+                              plural(openmp["max_threads"], "thread") + " by default, dynamic " +
+                              on_or_off(openmp["dynamic"]) + ", bind " + text_of(openmp["proc_bind"]) + ", " +
+                              plural(openmp["places"], "place")) +
            line("", environment.empty() ? "no OMP_*, GOMP_* or KMP_* variable is set" : environment);
 }
 
 /// What is counted, and the events that are missing for one reason together.
-std::string source_lines(const CounterSource& source) {
-    const auto joined = [](const auto& events) { return CLI::detail::join(events, ", "); };
+std::string source_lines(const Json& source) {
+    const std::string name = source["source"];
+    const std::vector<std::string> events = source["events"];
+    const auto joined = [](const auto& all) { return CLI::detail::join(all, ", "); };
     std::string text;
-    if (!source.events.empty()) {
-        const bool by_papi = source.name.starts_with("papi");
-        text = line("", source.name + " counts " +
-                            (by_papi ? joined(source.events) + ", in " + counted(source.runs, "run")
-                                     : counted(source.events.size(), "figure")));
+    if (!events.empty()) {
+        text =
+            line("", name + " counts " +
+                         (name.starts_with("papi") ? joined(events) + ", in " + plural(source["runs"], "run")
+                                                   : counted(events.size(), "figure")));
     }
     nlohmann::ordered_map<std::string, std::vector<std::string>> missing;
-    for (const CounterValue& value : source.missing) {
-        missing[value.reason + "; remedy: " + value.remedy].push_back(value.name);
+    for (const Json& one : source["missing"]) {
+        missing[text_of(one["reason"]) + "; remedy: " + text_of(one["remedy"])].push_back(one["event"]);
     }
-    for (const auto& [why, events] : missing) {
-        text += line("", source.name + " cannot count " + joined(events) + ": " + why);
+    for (const auto& [why, all] : missing) {
+        text += line("", name + " cannot count " + joined(all) + ": " + why);
     }
     return text;
 }
 
-std::string counter_lines(const Findings& findings) {
-    const auto& paranoid = findings.perf.paranoid;
+std::string counter_lines(const Json& perf, const Json& counters) {
+    const Json& paranoid = perf["paranoid"];
     std::string text =
-        line("counters", "PAPI " + findings.papi + "; perf_event_paranoid " +
-                             (paranoid ? std::to_string(*paranoid) : "not told") +
-                             (lacks_pmu(findings.perf) ? "; no performance-monitoring unit (PMU)" : ""));
-    for (const CounterSource& source : findings.counters) {
+        line("counters", "PAPI " + text_of(perf["papi"]) + "; perf_event_paranoid " +
+                             (paranoid.is_null() ? "not told" : number_text(paranoid.get<int>())) +
+                             (perf["pmu"].get<bool>() ? "" : "; no performance-monitoring unit (PMU)"));
+    for (const Json& source : counters) {
         text += source_lines(source);
     }
     return text;
 }
 
-std::string software_lines(const Findings& findings) {
+std::string software_lines(const Json& tools, const Json& slurm) {
     std::string text = line("program", "built by " + build_text());
-    for (const auto& [name, package, version] : findings.tools) {
-        text += line(name, version.empty() ? "not on PATH; remedy: install the package " + package : version);
+    for (const auto& [name, version] : tools.items()) {
+        const std::string package = name == "clang++" ? "clang" : name == "perf" ? "linux-perf" : name;
+        text += line(name, version.is_null() ? "not on PATH; remedy: install the package " + package
+                                             : text_of(version));
     }
-    const std::string& slurm = findings.slurm_version;
-    const auto& job = findings.slurm_job;
-    const auto id = job.find("SLURM_JOB_ID");
-    const bool is_named = id != job.end();
-    return text + line("Slurm", (slurm.empty() ? "srun not on PATH" : slurm) +
-                                    (job.empty() ? ", not inside a job"
-                                                 : ", inside job " + (is_named ? id->second : "not named")));
+    const Json& job = slurm["job"];
+    return text +
+           line("Slurm",
+                (slurm["version"].is_null() ? "srun not on PATH" : text_of(slurm["version"])) +
+                    (job.is_null() ? ", not inside a job"
+                                   : ", inside job " + job.value("SLURM_JOB_ID", std::string("not named"))));
 }
 
-std::string noise_line(const Noise& noise) {
-    return line("noise", format("%d equal spins of %.3g ms: 95 %% within %.3f, the slowest %.2f times the "
-                                "median; steal time ",
-                                noise.spins, 1e3 * noise.median_seconds, noise.p95_over_median,
-                                noise.max_over_median) +
-                             (noise.steal ? format("%.1f %%", 100 * *noise.steal) : "not told"));
-}
-
-std::string costs_line(const Findings& findings) {
-    if (!findings.costs) {
-        return line("costs", "of work are not measured yet: `run --error-below` does it at its first call");
-    }
-    const auto event = findings.costs->costs.find(std::string(event_driven().name));
-    const std::string collision =
-        event == findings.costs->costs.end()
-            ? ""
-            : format("; an exact collision takes %.2g us among %.0f discs, %.2g us among %.0f",
-                     1e6 * event->second.front().seconds.collisions, event->second.front().discs,
-                     1e6 * event->second.back().seconds.collisions, event->second.back().discs);
-    return line("costs", "of work, by which `run --error-below` chooses: " + findings.costs_file + collision +
-                             "; measured anew once that file is removed");
+std::string noise_line(const Json& noise) {
+    const Json& steal = noise["steal"];
+    return line(
+        "noise",
+        format("%d equal spins of %.3g ms: 95 %% within %.3f, the slowest %.2f times the median; steal "
+               "time ",
+               noise["spins"].get<int>(), 1e3 * noise["median_seconds"].get<double>(),
+               noise["p95_over_median"].get<double>(), noise["max_over_median"].get<double>()) +
+            (steal.is_null() ? "not told" : format("%.1f %%", 100 * steal.get<double>())));
 }
 
 } // namespace
@@ -180,11 +186,12 @@ std::string noise_figure(const Noise& noise) {
     return text;
 }
 
-std::string doctor_text(const Findings& findings) {
-    return machine_lines(findings.machine, findings.memory_available_bytes) +
-           topology_lines(findings.machine.cpu_model, findings.topology) + processor_lines(findings) +
-           openmp_lines(findings.openmp) + counter_lines(findings) + software_lines(findings) +
-           noise_line(findings.noise) + costs_line(findings);
+std::string doctor_text(const Json& findings) {
+    const Json& machine = findings["machine"];
+    return machine_lines(machine) + topology_lines(machine["cpu_model"], findings["topology"]) +
+           processor_lines(findings["frequency"], findings["affinity"], machine["virtualised"]) +
+           openmp_lines(findings["openmp"]) + counter_lines(findings["perf_events"], findings["counters"]) +
+           software_lines(findings["tools"], findings["slurm"]) + noise_line(findings["noise"]);
 }
 
 } // namespace carom

@@ -1,18 +1,28 @@
 #include "harness/doctor/findings.hpp"
 
-#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "harness/counters/access.hpp"
 #include "harness/counters/cachegrind.hpp"
 #include "harness/counters/cachegrind_output.hpp"
+#include "harness/counters/counters.hpp"
 #include "harness/counters/papi.hpp"
 #include "harness/counters/rusage.hpp"
+#include "harness/machine/machine.hpp"
+#include "harness/machine/provenance.hpp"
 #include "harness/machine/threads.hpp"
+#include "harness/machine/topology.hpp"
 #include "harness/processes/process.hpp"
 #include "harness/support/free_memory.hpp"
+#include "harness/support/json.hpp"
 #include "harness/support/silence.hpp"
 
 namespace carom {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 std::optional<bool> read_turbo() {
     const auto off = first_line("/sys/devices/system/cpu/intel_pstate/no_turbo");
@@ -20,62 +30,122 @@ std::optional<bool> read_turbo() {
     return off ? std::optional(*off == "0") : on ? std::optional(*on == "1") : std::nullopt;
 }
 
-std::vector<CounterSource> counter_sources() {
-    std::vector<CounterSource> sources{{.name = "papi-hardware"},
-                                       {.name = "papi-software"},
-                                       {.name = "rusage", .events = rusage_events(), .runs = 1},
-                                       {.name = "cachegrind"}};
-    const auto named = [&sources](const std::string& name) -> CounterSource& {
-        return *std::ranges::find(sources, name, &CounterSource::name);
-    };
-    const CounterPlan plan = plan_counters({});
+Json topology_json(const Topology& topology) {
+    Json caches = Json::array();
+    for (const CacheLevel& cache : topology.caches) {
+        caches.push_back({{"name", cache.name},
+                          {"bytes", cache.bytes},
+                          {"count", cache.count},
+                          {"hardware_threads", cache.hardware_threads}});
+    }
+    return {{"source", topology.source},
+            {"packages", or_null(topology.packages)},
+            {"cores", or_null(topology.cores)},
+            {"hardware_threads", topology.hardware_threads},
+            {"smt", or_null(topology.smt())},
+            {"numa_nodes", or_null(topology.numa_nodes)},
+            {"caches", caches}};
+}
+
+/// A source of counters: the events that it counts, in how many runs, and those that it cannot count and why.
+Json source_json(const std::string& name, const std::vector<std::string>& events, int runs) {
+    return {{"source", name}, {"events", events}, {"runs", runs}, {"missing", Json::array()}};
+}
+
+Json papi_json(const std::string& name, const CounterPlan& plan) {
+    std::vector<std::string> events;
+    int runs = 0;
     for (const CounterGroup& group : plan.groups) {
-        CounterSource& source = named(group.source);
-        ++source.runs;
-        source.events.insert(source.events.end(), group.events.begin(), group.events.end());
-    }
-    for (const CounterValue& value : plan.missing) {
-        named(value.source).missing.push_back(value);
-    }
-    CounterSource& simulated = named("cachegrind");
-    simulated.runs = valgrind_version().empty() ? 0 : 1;
-    const auto [reason, remedy] = no_valgrind();
-    for (const SimulatedName& name : simulated_counts()) {
-        const std::string event(name.counter);
-        if (simulated.runs > 0) {
-            simulated.events.push_back(event);
-        } else {
-            simulated.missing.push_back({event, {}, {}, simulated.name, reason, remedy});
+        if (group.source == name) {
+            ++runs;
+            events.insert(events.end(), group.events.begin(), group.events.end());
         }
     }
-    return sources;
+    Json source = source_json(name, events, runs);
+    for (const CounterValue& value : plan.missing) {
+        if (value.source == name) {
+            source["missing"].push_back(
+                {{"event", value.name}, {"reason", value.reason}, {"remedy", value.remedy}});
+        }
+    }
+    return source;
+}
+
+Json cachegrind_json() {
+    const bool is_there = !valgrind_version().empty();
+    const auto [reason, remedy] = no_valgrind();
+    Json source = source_json("cachegrind", {}, is_there ? 1 : 0);
+    for (const SimulatedName& name : simulated_counts()) {
+        if (is_there) {
+            source["events"].push_back(name.counter);
+        } else {
+            source["missing"].push_back({{"event", name.counter}, {"reason", reason}, {"remedy", remedy}});
+        }
+    }
+    return source;
+}
+
+Json counters_json() {
+    const CounterPlan plan = plan_counters({});
+    return {papi_json("papi-hardware", plan), papi_json("papi-software", plan),
+            source_json("rusage", rusage_events(), 1), cachegrind_json()};
+}
+
+Json noise_json(const Noise& noise) {
+    Json neighbours = Json::array();
+    for (const Neighbours& one : noise.neighbours) {
+        neighbours.push_back({{"seconds", one.seconds}, {"difference", one.difference}});
+    }
+    return {{"spins", noise.spins},
+            {"median_seconds", noise.median_seconds},
+            {"p95_over_median", noise.p95_over_median},
+            {"max_over_median", noise.max_over_median},
+            {"steal", or_null(noise.steal)},
+            {"neighbours", neighbours}};
+}
+
+Json tools_json() {
+    Json tools = Json::object();
+    for (const char* name : {"g++", "clang++", "valgrind", "perf"}) {
+        tools[name] = text_or_null(version_line(name));
+    }
+    return tools;
 }
 
 } // namespace
 
-Findings examine_machine(double noise_seconds) {
+Json examine_machine(double noise_seconds) {
     const Silence silence;
     // Noise comes first: what follows starts programs, which may still be at work.
     const Noise noise = measure_noise(noise_seconds);
-    return {.machine = read_machine(),
-            .memory_available_bytes = available_memory(),
-            .topology = read_topology(),
-            .turbo = read_turbo(),
-            .usable_processors = usable_processors(),
-            .threads_by_default = default_threads(),
-            .openmp = read_openmp(),
-            .papi = papi_version(),
-            .perf = read_perf_access(),
-            .counters = counter_sources(),
-            .tools = {{"g++", "g++", version_line("g++")},
-                      {"clang++", "clang", version_line("clang++")},
-                      {"valgrind", "valgrind", version_line("valgrind")},
-                      {"perf", "linux-perf", version_line("perf")}},
-            .slurm_version = version_line("srun"),
-            .slurm_job = slurm_variables(),
-            .noise = noise,
-            .costs_file = costs_file().string(),
-            .costs = kept_costs()};
+    const Machine machine = read_machine();
+    const PerfAccess perf = read_perf_access();
+    return {{"machine",
+             {{"host", machine.host},
+              {"operating_system", machine.operating_system},
+              {"cpu_model", machine.cpu_model},
+              {"virtualised", machine.virtualised},
+              {"memory_bytes", machine.memory_bytes},
+              {"memory_available_bytes", or_null(available_memory())}}},
+            {"topology", topology_json(read_topology())},
+            {"frequency", {{"governor", or_null(machine.governor)}, {"turbo", or_null(read_turbo())}}},
+            {"affinity",
+             {{"affinity", machine.affinity},
+              {"affinity_count", machine.affinity_count},
+              {"hardware_threads", machine.hardware_threads},
+              {"cpu_quota", or_null(machine.cpu_quota)},
+              {"has_unread_cpu_quota", machine.has_unread_cpu_quota},
+              {"usable_processors", usable_processors()},
+              {"threads_by_default", default_threads()}}},
+            {"openmp", openmp_json(read_openmp())},
+            {"perf_events",
+             {{"papi", papi_version()}, {"paranoid", or_null(perf.paranoid)}, {"pmu", !lacks_pmu(perf)}}},
+            {"counters", counters_json()},
+            {"program", build_json()},
+            {"tools", tools_json()},
+            {"slurm",
+             {{"version", text_or_null(version_line("srun"))}, {"job", text_or_null(slurm_variables())}}},
+            {"noise", noise_json(noise)}};
 }
 
 } // namespace carom

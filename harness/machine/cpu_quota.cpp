@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/machine/machine.hpp"
+#include "harness/support/own_cgroup.hpp"
 #include "harness/support/text.hpp"
 
 namespace carom {
@@ -60,16 +61,6 @@ std::vector<CgroupMount> cgroup_mounts(const fs::path& root) {
         }
     }
     return mounts;
-}
-
-std::optional<fs::path> own_cgroup(const fs::path& root) {
-    std::ifstream file(root / "proc/self/cgroup");
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with("0::")) {
-            return line.substr(3);
-        }
-    }
-    return std::nullopt;
 }
 
 namespace {

@@ -15,9 +15,6 @@ struct CgroupMount {
 /// All of them, of version 2, as proc/self/mountinfo below `root` tells.
 std::vector<CgroupMount> cgroup_mounts(const std::filesystem::path& root = "/");
 
-/// The path of this process's group; empty if it is in none.
-std::optional<std::filesystem::path> own_cgroup(const std::filesystem::path& root);
-
 /// How many processors' time the control groups of this process let it use, such as 1.5: the least that its
 /// own group and those around it allow, as far as it sees them. Empty where none limits it. A container or a
 /// service has such a limit (`docker run --cpus`, CPUQuota= of systemd); the processors that it sees are all

@@ -117,21 +117,6 @@ std::optional<std::string> first_line(const std::string& path) {
     return line;
 }
 
-std::map<std::string, std::string>
-environment_with_prefixes(std::initializer_list<std::string_view> prefixes) {
-    std::map<std::string, std::string> found;
-    for (char** entry = environ; *entry != nullptr; ++entry) {
-        const std::string_view text = *entry;
-        const auto equals = text.find('=');
-        const bool wanted =
-            std::ranges::any_of(prefixes, [&](auto prefix) { return text.starts_with(prefix); });
-        if (wanted && equals != std::string_view::npos) {
-            found.emplace(text.substr(0, equals), text.substr(equals + 1));
-        }
-    }
-    return found;
-}
-
 Machine read_machine() {
     Machine machine;
     utsname kernel{};

@@ -29,8 +29,4 @@ Machine read_machine();
 /// The first line of a file of the system, or nothing if it cannot be read.
 std::optional<std::string> first_line(const std::string& path);
 
-/// The environment variables whose names start with one of the prefixes.
-std::map<std::string, std::string>
-environment_with_prefixes(std::initializer_list<std::string_view> prefixes);
-
 } // namespace carom

@@ -81,9 +81,7 @@ Noise spread(std::vector<double> durations) {
     return {.spins = static_cast<int>(durations.size()),
             .median_seconds = median,
             .p95_over_median = quantile(0.95) / median,
-            .max_over_median = durations.back() / median,
-            .steal = {},
-            .neighbours = {}};
+            .max_over_median = durations.back() / median};
 }
 
 std::vector<Neighbours> neighbours(const std::vector<double>& durations) {

@@ -18,8 +18,9 @@ struct Noise {
     double median_seconds = 0;  ///< of one spin
     double p95_over_median = 0; ///< 95th percentile over median
     double max_over_median = 0;
-    std::optional<double> steal; ///< share of all CPUs' time that the host gave to others; empty if not told
-    std::vector<Neighbours> neighbours; ///< by the length of a stretch, as far as there are enough of it
+    std::optional<double> steal =
+        {}; ///< share of all CPUs' time that the host gave to others; empty if not told
+    std::vector<Neighbours> neighbours = {}; ///< by the length of a stretch, as far as there are enough of it
 };
 
 /// The differences of neighbours among these durations, each of about a millisecond, in their order: joined

@@ -18,11 +18,11 @@ struct CacheLevel {
 /// The machine's shape, as far as it could be found out.
 struct Topology {
     std::string source; ///< who tells: hwloc, or the operating system
-    std::optional<int> packages;
-    std::optional<int> cores;
+    std::optional<int> packages = {};
+    std::optional<int> cores = {};
     int hardware_threads = 1;
-    std::optional<int> numa_nodes;
-    std::vector<CacheLevel> caches; ///< from the first level on; empty if nobody tells
+    std::optional<int> numa_nodes = {};
+    std::vector<CacheLevel> caches = {}; ///< from the first level on; empty if nobody tells
 
     /// Has a core several hardware threads? Empty if nobody tells.
     std::optional<bool> smt() const {

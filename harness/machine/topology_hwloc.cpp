@@ -60,8 +60,7 @@ Topology read_topology() {
                       .packages = hwloc.count(HWLOC_OBJ_PACKAGE),
                       .cores = hwloc.count(HWLOC_OBJ_CORE),
                       .hardware_threads = hwloc.count(HWLOC_OBJ_PU).value_or(1),
-                      .numa_nodes = hwloc.count(HWLOC_OBJ_NUMANODE),
-                      .caches = {}};
+                      .numa_nodes = hwloc.count(HWLOC_OBJ_NUMANODE)};
     const std::array<std::pair<const char*, hwloc_obj_type_t>, 5> caches{{{"L1d", HWLOC_OBJ_L1CACHE},
                                                                           {"L1i", HWLOC_OBJ_L1ICACHE},
                                                                           {"L2", HWLOC_OBJ_L2CACHE},

@@ -8,11 +8,8 @@ namespace carom {
 Topology read_topology() {
     const Machine machine = read_machine();
     return {.source = "the operating system",
-            .packages = {},
             .cores = machine.cores,
-            .hardware_threads = machine.hardware_threads,
-            .numa_nodes = {},
-            .caches = {}};
+            .hardware_threads = machine.hardware_threads};
 }
 
 } // namespace carom

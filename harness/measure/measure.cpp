@@ -141,13 +141,12 @@ Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, 
     return run.finish();
 }
 
-Run checked_run(const Scene& scene, const Variant& variant, const Tuning& tuning, const OnStep& on_step,
-                Stopwatch stopwatch) {
+Run checked_run(const Scene& scene, const Variant& variant, const Tuning& tuning, const OnStep& on_step) {
     const auto collisions = collision_checker(scene, variant, tuning);
     const auto simulation = collisions ? variant.simulate_logged(scene, tuning, collisions->log())
                                        : variant.simulate(scene, tuning);
-    return run_scene(scene, *simulation, tuning, {CheckScope::every_step, variant, collisions.get()}, on_step,
-                     std::move(stopwatch));
+    return run_scene(scene, *simulation, tuning, {CheckScope::every_step, variant, collisions.get()},
+                     on_step);
 }
 
 std::string state_hash(const std::vector<Disc>& discs) {

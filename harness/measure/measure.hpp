@@ -97,7 +97,7 @@ Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, 
 /// A whole run of a variant of which every step is checked: by its collisions, where the variant tells them
 /// (`simulate_logged`), else by the states at its ends.
 Run checked_run(const Scene& scene, const Variant& variant, const Tuning& tuning,
-                const OnStep& on_step = nullptr, Stopwatch stopwatch = {});
+                const OnStep& on_step = nullptr);
 
 /// FNV-1a (Fowler, Noll, Vo) over the bits of all positions and velocities, as 16 hexadecimal digits.
 std::string state_hash(const std::vector<Disc>& discs);

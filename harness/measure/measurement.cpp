@@ -28,4 +28,12 @@ void Measurement::add(Run run) {
     repetitions.push_back(std::move(run));
 }
 
+Run Measurement::run_alone(CheckScope checked, Stopwatch stopwatch) const {
+    if (checked == CheckScope::every_step) {
+        return checked_run(scene, variant, tuning);
+    }
+    const auto simulation = variant.simulate(scene, tuning);
+    return run_scene(scene, *simulation, tuning, {checked, variant}, nullptr, std::move(stopwatch));
+}
+
 } // namespace carom

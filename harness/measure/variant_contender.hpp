@@ -2,10 +2,14 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/measure/measurement.hpp"
 #include "harness/measure/turns.hpp"
+#include "harness/measure/warm_up.hpp"
+#include "harness/support/process_clock.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {
@@ -18,19 +22,53 @@ class VariantContender final : public Contender {
     explicit VariantContender(Measurement measurement) : measurement_(std::move(measurement)) {}
 
     /// Runs what a process runs untimed. Returns the seconds that the whole run may be expected to take.
-    double prepare();
+    double prepare() {
+        const double start = process_seconds();
+        simulation_ = measurement_.variant.simulate(measurement_.scene, measurement_.tuning);
+        const double seconds = warm_up(measurement_, *simulation_) * steps();
+        measurement_.own_seconds = measurement_.parse_seconds + process_seconds() - start;
+        return seconds;
+    }
 
     int steps() const override { return measurement_.scene.steps; }
-    void start() override;
-    TurnTime advance(int steps) override;
+    void start() override {
+        const double start = process_seconds();
+        end_run();
+        if (!measurement_.violation) {
+            simulation_->restart(measurement_.scene);
+            const CheckScope scope = ++runs_ == 1 ? CheckScope::last_step : CheckScope::nothing;
+            run_.emplace(measurement_.scene, *simulation_, measurement_.tuning,
+                         Check(scope, measurement_.variant));
+        }
+        *measurement_.own_seconds += process_seconds() - start;
+    }
+
+    TurnTime advance(int steps) override { return run_ ? run_->advance(steps) : TurnTime{}; }
 
     /// Ends the last run. A violation is told with the run that has it, if there were several.
-    void finish(Turns turns);
+    void finish(Turns turns) {
+        end_run();
+        simulation_.reset();
+        if (runs_ == 0) {
+            return;
+        }
+        if (measurement_.violation && turns.plan.runs > 1) {
+            measurement_.violation = "run " + std::to_string(runs_) + " of " +
+                                     std::to_string(turns.plan.runs) + ": " + *measurement_.violation;
+        }
+        measurement_.turns = std::move(turns);
+    }
 
     const Measurement& measurement() const { return measurement_; }
 
   private:
-    void end_run();
+    void end_run() {
+        if (run_) {
+            measurement_.add(run_->finish());
+            *measurement_.own_seconds += measurement_.repetitions.back().steps_seconds;
+            run_.reset();
+        }
+    }
 
     Measurement measurement_;
     std::unique_ptr<Simulation> simulation_;

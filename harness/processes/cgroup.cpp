@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "harness/machine/cpu_quota.hpp"
+#include "harness/support/own_cgroup.hpp"
 #include "harness/support/process_clock.hpp"
 #include "harness/support/text.hpp"
 

@@ -7,9 +7,7 @@
 #include <unistd.h>
 
 namespace carom {
-namespace {
-
-int open_event(const CountedEvent& event, pid_t process) {
+int open_event(const CountedEvent& event, pid_t process, bool in_kernel) {
     perf_event_attr attributes{};
     attributes.size = sizeof attributes;
     attributes.type = event.type;
@@ -17,7 +15,7 @@ int open_event(const CountedEvent& event, pid_t process) {
     attributes.disabled = 1;
     attributes.inherit = 1;
     attributes.enable_on_exec = 1;
-    attributes.exclude_kernel = 1;
+    attributes.exclude_kernel = !in_kernel;
     attributes.exclude_hv = 1;
     attributes.read_format = PERF_FORMAT_TOTAL_TIME_ENABLED | PERF_FORMAT_TOTAL_TIME_RUNNING;
     constexpr int any_processor = -1;
@@ -25,8 +23,6 @@ int open_event(const CountedEvent& event, pid_t process) {
     return static_cast<int>(
         syscall(SYS_perf_event_open, &attributes, process, any_processor, no_group, PERF_FLAG_FD_CLOEXEC));
 }
-
-} // namespace
 
 const std::vector<CountedEvent>& hardware_events() {
     static const std::vector<CountedEvent> events{

@@ -16,6 +16,10 @@ struct CountedEvent {
     unsigned long long config;
 };
 
+/// Opens it for a process, to be counted in user mode, or in the kernel as well, from the moment at which it
+/// becomes another program on, with all that it starts. Returns a descriptor, or -1 and errno says why.
+int open_event(const CountedEvent& event, pid_t process, bool in_kernel = false);
+
 /// Instructions, cycles, cache misses and wrong guesses of branches, in user mode.
 const std::vector<CountedEvent>& hardware_events();
 

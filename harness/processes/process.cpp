@@ -41,14 +41,6 @@ void set_memory(ProcessEnd& end, const nlohmann::ordered_json& report) {
 
 } // namespace
 
-std::vector<std::string> own_environment() {
-    std::vector<std::string> variables;
-    for (char** variable = environ; *variable != nullptr; ++variable) {
-        variables.emplace_back(*variable);
-    }
-    return variables;
-}
-
 Process::Process(ProcessCommand command, KeptBy kept_by)
     : command_(std::move(command)), tree_(make_tree(kept_by)),
       keeper_(std::make_unique<Keeper>(command_, tree_->group())) {
@@ -171,7 +163,7 @@ ProcessEnd run_undisturbed(const ProcessCommand& command, KeptBy kept_by) {
 }
 
 std::string version_line(const std::string& program) {
-    const ProcessCommand command{.words = {program, "--version"}, .folder = "", .pattern = ".*"};
+    const ProcessCommand command{.words = {program, "--version"}, .pattern = ".*"};
     const ProcessEnd end = run_undisturbed(command, KeptBy::subreaper);
     return end.succeeded() && !end.output.matched.empty() ? end.output.matched.front() : "";
 }

@@ -3,19 +3,19 @@
 #include <string>
 #include <vector>
 
-namespace carom {
+#include "harness/support/environment.hpp"
 
-/// NAME=VALUE, all that this process sees.
-std::vector<std::string> own_environment();
+namespace carom {
 
 /// A program to be run as it is: no shell sees its words.
 struct ProcessCommand {
     std::vector<std::string> words; ///< the program, with a slash or to be found on PATH; its arguments
-    std::string folder;             ///< that it runs in; empty: this process's own
+    std::string folder = {};        ///< that it runs in; empty: this process's own
     std::vector<std::string> environment = own_environment(); ///< NAME=VALUE, all that it sees
     double most_seconds = 600;        ///< of its own running time; what takes longer is killed
     double most_seconds_behind = 1e9; ///< that what it started may go on after its own end
-    std::string pattern; ///< lines of its standard output that this ECMAScript expression matches are kept
+    /// Lines of its standard output that this ECMAScript expression matches are kept.
+    std::string pattern = {};
 };
 
 } // namespace carom

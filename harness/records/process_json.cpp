@@ -17,23 +17,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json openmp_variables(const std::vector<std::string>& environment) {
-    Json variables = Json::object();
-    for (const std::string& variable : environment) {
-        for (const std::string_view prefix : {"OMP_", "GOMP_", "KMP_"}) {
-            if (variable.starts_with(prefix)) {
-                const auto equals = variable.find('=');
-                variables[variable.substr(0, equals)] = variable.substr(equals + 1);
-            }
-        }
-    }
-    return variables;
-}
-
 Json provenance_of(const ProcessMeasurement& measurement) {
     Json provenance = provenance_json(measurement.its.threads);
     provenance.merge_patch(measurement.its.build);
-    provenance["openmp"]["environment"] = openmp_variables(measurement.its.contender.command.environment);
+    provenance["openmp"]["environment"] =
+        variables_with_prefixes(measurement.its.contender.command.environment, {"OMP_", "GOMP_", "KMP_"});
     provenance["binary_sha256"] = measurement.sources.hash();
     return provenance;
 }

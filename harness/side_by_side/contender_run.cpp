@@ -1,11 +1,7 @@
 #include "harness/side_by_side/contender_run.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <system_error>
 
 #include "harness/support/errors.hpp"
 #include "harness/support/format.hpp"
@@ -17,15 +13,6 @@ namespace {
 /// Some programs end at once where nobody can type, or read what they draw.
 constexpr const char* without_a_word =
     " without a word; it had no terminal: its standard input is empty, its outputs are pipes";
-
-std::string new_folder() {
-    std::string name =
-        (std::filesystem::temp_directory_path() / "carom-run-XXXXXX").lexically_normal().string();
-    if (mkdtemp(name.data()) == nullptr) {
-        throw InputError(name + ": cannot be made: " + std::strerror(errno));
-    }
-    return name;
-}
 
 std::string name_of_signal(int signal) {
     const char* const name = sigabbrev_np(signal);
@@ -76,8 +63,11 @@ int exit_code_of_failure(const ProcessEnd& end) {
     return end.not_started.empty() ? std::max(end.exit_code, 1) : 127;
 }
 
-ContenderRun::ContenderRun(const ProgramContender& contender) : contender_(contender) {
-    folder_ = contender.fresh_folder ? new_folder() : contender.command.folder;
+ContenderRun::ContenderRun(const ProgramContender& contender)
+    : contender_(contender), folder_(contender.command.folder) {
+    if (contender.fresh_folder) {
+        folder_ = fresh_.emplace("carom-run-").path();
+    }
     failure_ = run_beside("prepare", contender.prepare);
     if (failure_.empty()) {
         ProcessCommand command = contender.command;
@@ -103,10 +93,7 @@ std::string ContenderRun::conclude() {
         failure_ = contender_.failure(process_->end());
     }
     const std::string not_concluded = run_beside("conclude", contender_.conclude);
-    if (contender_.fresh_folder) {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
+    fresh_.reset();
     return failure_.empty() ? not_concluded : failure_;
 }
 
@@ -118,8 +105,7 @@ std::string ContenderRun::run_beside(const std::string& what, const std::vector<
                                  .folder = folder_,
                                  .environment = contender_.command.environment,
                                  .most_seconds = contender_.command.most_seconds,
-                                 .most_seconds_behind = 2,
-                                 .pattern = ""};
+                                 .most_seconds_behind = 2};
     const std::string why = why_failed(command, run_undisturbed(command), {0});
     return why.empty() ? "" : what + ": " + why;
 }

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/processes/process.hpp"
 #include "harness/side_by_side/program_contender.hpp"
+#include "harness/support/temporary_folder.hpp"
 
 namespace carom {
 
@@ -34,6 +36,7 @@ class ContenderRun {
 
     const ProgramContender& contender_;
     std::string folder_;
+    std::optional<TemporaryFolder> fresh_; ///< its own folder, if it has one
     std::string failure_;
     bool is_concluded_ = false;
     std::unique_ptr<Process> process_;

@@ -8,6 +8,7 @@
 
 #include "harness/support/errors.hpp"
 #include "harness/support/format.hpp"
+#include "harness/support/own_cgroup.hpp"
 
 namespace carom {
 namespace {
@@ -29,17 +30,6 @@ std::optional<std::int64_t> number_in(const fs::path& path) {
     return file >> number ? std::optional(number) : std::nullopt;
 }
 
-/// This process's control group of version 2: "0::" and its path.
-fs::path memory_cgroup(const fs::path& root) {
-    std::ifstream file(root / "proc/self/cgroup");
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with("0::")) {
-            return fs::path(line.substr(3)).relative_path();
-        }
-    }
-    return {};
-}
-
 /// What a group holds of files, which is given up when memory is short.
 std::int64_t bytes_of_files(const fs::path& group) {
     std::ifstream file(group / "memory.stat");
@@ -54,7 +44,7 @@ std::int64_t bytes_of_files(const fs::path& group) {
 std::optional<std::int64_t> left_by_cgroups(const fs::path& root) {
     std::optional<std::int64_t> least;
     const fs::path top = root / "sys/fs/cgroup";
-    for (fs::path own = memory_cgroup(root);; own = own.parent_path()) {
+    for (fs::path own = own_cgroup(root).value_or("").relative_path();; own = own.parent_path()) {
         const auto most = number_in(top / own / "memory.max"); // "max" is no number
         const auto now = number_in(top / own / "memory.current");
         if (most && now) {

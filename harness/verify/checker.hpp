@@ -68,10 +68,10 @@ class Checker {
 std::optional<std::string> not_finite(const Disc& disc, std::size_t i);
 
 /// Total kinetic energy, for unit mass: the sum of (vx^2 + vy^2) / 2.
-template <class Real = double> Real kinetic_energy(const std::vector<BasicDisc<Real>>& discs) {
-    Real sum = 0;
-    for (const BasicDisc<Real>& disc : discs) {
-        sum += Real{0.5} * (disc.vx * disc.vx + disc.vy * disc.vy);
+inline double kinetic_energy(const std::vector<Disc>& discs) {
+    double sum = 0;
+    for (const Disc& disc : discs) {
+        sum += 0.5 * (disc.vx * disc.vx + disc.vy * disc.vy);
     }
     return sum;
 }

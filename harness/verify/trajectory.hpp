@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "harness/scenes/trajectory_file.hpp"
 #include "harness/verify/checker.hpp"
 #include "harness/verify/rounding.hpp"
 #include "kernels/scene.hpp"
@@ -22,7 +21,7 @@ struct CheckedTrajectory {
 /// of the precision that the discs are kept in.
 ///
 /// Throws InputError for a file that is no trajectory of the scene from its first state to its last.
-CheckedTrajectory check_trajectory(const Scene& scene, TrajectoryFile& file, const Checker& checker,
+CheckedTrajectory check_trajectory(const Scene& scene, const std::string& path, const Checker& checker,
                                    const Rounding& rounding);
 
 } // namespace carom

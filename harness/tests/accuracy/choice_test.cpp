@@ -143,7 +143,7 @@ TEST_P(KeptPromise, OnScenesNotSeenBefore) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         const Scene scene = unseen(seed);
         for (const double bound : {0.1, 0.01, 1e-9}) {
-            const Trial trial = try_methods(scene, {}, GetParam(), bound, typical_costs());
+            const Trial trial = try_methods(scene, {}, GetParam(), bound);
             const auto choice = cheapest_below(trial.tried, bound, scene.steps);
             ASSERT_TRUE(choice) << seed << ": the event-driven simulation reaches " << bound;
             const Method method = choice->method;
@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(TryMethods, KeptPromise,
 
 TEST(TryMethods, TriesNothingThatCostsMoreThanWhatReachesTheBound) {
     const Scene scene = unseen(3);
-    const Trial trial = try_methods(scene, {}, Measure::path, 0.5, typical_costs());
+    const Trial trial = try_methods(scene, {}, Measure::path, 0.5);
     EXPECT_EQ(trial.tried.front().method.variant, &event_driven());
     for (const Tried& one : trial.tried) {
         EXPECT_EQ(one.method.substeps, 1) << one.method.variant->name << ": the first step is good enough";
@@ -179,7 +179,7 @@ TEST(TryMethods, TriesNothingThatCostsMoreThanWhatReachesTheBound) {
 TEST(TryMethods, TriesFewSubstepsOfAllBeforeManyOfOne) {
     const Scene scene = unseen(1);
     const double out_of_reach = 1e-300;
-    const Trial trial = try_methods(scene, {}, Measure::path, out_of_reach, typical_costs());
+    const Trial trial = try_methods(scene, {}, Measure::path, out_of_reach);
     std::vector<int> substeps;
     for (const Tried& one : trial.tried) {
         substeps.push_back(one.method.substeps);
@@ -199,7 +199,7 @@ TEST(TryMethods, TriesAllOfALargeSceneWhoseRunCostsLittle) {
                                   .seed = 7,
                                   .placement = Placement::random,
                                   .isotropic = true});
-    const Trial trial = try_methods(scene, {}, Measure::collision_rate, 0.5, typical_costs());
+    const Trial trial = try_methods(scene, {}, Measure::collision_rate, 0.5);
     EXPECT_TRUE(trial.whole_scene);
     EXPECT_EQ(trial.units_of_time, 8);
     for (const Tried& one : trial.tried) {

@@ -60,7 +60,7 @@ TEST(TryMethods, PromisesNoErrorThatAPieceCannotTell) {
                                       .placement = Placement::random,
                                       .isotropic = true});
         const Method at_contact = methods_for(scene)[1];
-        const Trial trial = try_methods(scene, {}, Measure::path, 1e-9, typical_costs());
+        const Trial trial = try_methods(scene, {}, Measure::path, 1e-9);
         ASSERT_FALSE(trial.whole_scene);
         const auto tried = std::ranges::find(trial.tried, at_contact, &Tried::method);
         ASSERT_NE(tried, trial.tried.end());
@@ -161,7 +161,7 @@ TEST(BusiestPiece, TellsWhereOthersAddMoreADisc) {
 
 TEST(TryMethods, PromisesWhatHoldsWhereDiscsAreFast) {
     const Scene scene = slow_and_fast();
-    const Trial trial = try_methods(scene, {}, Measure::path, 0.05, typical_costs());
+    const Trial trial = try_methods(scene, {}, Measure::path, 0.05);
     ASSERT_FALSE(trial.whole_scene);
     const auto choice = cheapest_below(trial.tried, 0.05, scene.steps);
     ASSERT_TRUE(choice);

@@ -49,9 +49,9 @@ std::vector<Collision<double>> told_of_pair() {
 
 /// What the checker says of a list, and of a state at the end that follows from it.
 std::string said_of(const std::vector<Collision<double>>& told, double time = 9) {
-    PathChecker<double> checker(pair);
+    PathChecker checker(pair);
     // One more: a collision with a disc that is not there may be told.
-    std::vector<Path<double>> paths{{pair.discs[0], 0}, {pair.discs[1], 0}, {}};
+    std::vector<Path> paths{{pair.discs[0], 0}, {pair.discs[1], 0}, {}};
     for (const Collision<double>& one : told) {
         checker.collided(one);
         paths[static_cast<std::size_t>(one.first)] = {one.first_after, one.time};
@@ -90,7 +90,7 @@ TEST(PathChecker, CatchesWhatIsPlanted) {
 }
 
 TEST(PathChecker, CatchesACollisionOfADiscThatIsNotThere) {
-    PathChecker<double> checker(pair);
+    PathChecker checker(pair);
     auto told = told_of_pair()[0];
     told.second = 2;
     checker.collided(told);
@@ -108,7 +108,7 @@ TEST(PathChecker, CatchesACollisionBeforeTheDiscsMeetOrAfter) {
 }
 
 TEST(PathChecker, CatchesAStateThatIsNotWhereThePathsLead) {
-    PathChecker<double> checker(pair);
+    PathChecker checker(pair);
     EXPECT_EQ(checker.violation_at(0.5, {{9.5, 10, 1, 0}, {12, 10, 0, 0}}), std::nullopt);
     EXPECT_PRED_FORMAT2(testing::IsSubstring, "its path leads to",
                         checker.violation_at(0.75, {{9.75, 10.001, 1, 0}, {12, 10, 0, 0}}).value_or(""));

@@ -15,7 +15,7 @@ namespace carom::tests {
 struct ExactRun {
     static constexpr const char* given_up = "given up";
 
-    PathChecker<double> checker;
+    PathChecker checker;
     EventDriven<double, CollisionLog<double>&> simulation;
 
     explicit ExactRun(const Scene& scene) : checker(scene), simulation(scene, checker) {}

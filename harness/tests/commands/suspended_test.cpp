@@ -30,7 +30,7 @@ class Suspended : public testing::Test {
             done
             wait $child)";
         words.insert(words.begin(), {"sh", "-c", script, CAROM_PROGRAM});
-        return run_undisturbed({.words = words, .folder = "", .pattern = ""});
+        return run_undisturbed({.words = words});
     }
 
     tests::TemporaryDirectory directory;

@@ -1,6 +1,4 @@
-#include <cstdlib>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,35 +6,13 @@
 
 #include "harness/counters/cachegrind.hpp"
 #include "harness/counters/cachegrind_output.hpp"
+#include "harness/scenes/scene_file.hpp"
 #include "harness/tests/counters/simulated_scene.hpp"
+#include "harness/tests/program.hpp"
 #include "harness/tests/temporary_directory.hpp"
 
 namespace carom {
 namespace {
-
-/// An environment variable that has its old value back afterwards.
-class Setting {
-  public:
-    Setting(const char* name, const std::string& value) : name_(name) {
-        if (const char* old = std::getenv(name)) {
-            old_ = old;
-        }
-        setenv(name, value.c_str(), 1);
-    }
-    ~Setting() {
-        if (old_) {
-            setenv(name_, old_->c_str(), 1);
-        } else {
-            unsetenv(name_);
-        }
-    }
-    Setting(const Setting&) = delete;
-    Setting& operator=(const Setting&) = delete;
-
-  private:
-    const char* name_;
-    std::optional<std::string> old_;
-};
 
 /// The reason that all counts have for having no value.
 std::string only_reason(const std::vector<CounterValue>& rows) {
@@ -78,18 +54,25 @@ TEST_F(SimulatedCounters, AnInstructionThatValgrindDoesNotKnowIsTheReason) {
     EXPECT_NE(reason.find("does not know an instruction of this program"), std::string::npos) << reason;
 }
 
+/// What `carom profile` prints of a step under valgrind, in an environment with this setting.
+std::string profiled_with(const std::string& setting) {
+    const tests::TemporaryDirectory directory;
+    const std::string scene = directory.write("scene.in", scene_text(tests::simulated_scene()));
+    return tests::run_carom({"profile", scene, "1", "--simulated", "--simulated-steps", "1"}, {setting})
+        .output;
+}
+
 TEST_F(SimulatedCounters, LeaveNoFilesBehind) {
     const tests::TemporaryDirectory directory;
-    const Setting temporary("TMPDIR", directory / "");
-    tests::simulate("published", 1);
+    const std::string output = profiled_with("TMPDIR=" + (directory / ""));
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "l1_read_misses", output);
     EXPECT_TRUE(directory.empty());
 }
 
 TEST(SimulatedCountersWithoutValgrind, SayThatItIsMissing) {
     const tests::TemporaryDirectory directory;
-    const Setting path("PATH", directory / "");
-    EXPECT_EQ(only_reason(simulate_counters(tests::simulated_scene(), "published", {}, 1, CAROM_PROGRAM)),
-              "valgrind is not on PATH");
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "because cachegrind: valgrind is not on PATH",
+                        profiled_with("PATH=" + (directory / "")));
 }
 
 } // namespace

@@ -1,17 +1,16 @@
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "harness/measure/measure.hpp"
 #include "harness/measure/profiler.hpp"
 #include "harness/measure/timeline.hpp"
 #include "harness/scenes/generate.hpp"
 #include "harness/support/input_file.hpp"
+#include "harness/tests/temporary_directory.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {
@@ -31,12 +30,9 @@ nlohmann::json timeline_of(int threads, bool chunks, std::int64_t& sweeps) {
     Profiler profiler(variant.policies, tuning, {.spans = true, .chunks = chunks});
     const auto simulation = variant.simulate_observed(scene, tuning, profiler);
     sweeps = run_scene(scene, *simulation, tuning, CheckScope::nothing).work.sweeps;
-    const auto path =
-        std::filesystem::temp_directory_path() / ("carom_timeline_" + std::to_string(getpid()) + ".json");
-    write_timeline(path.string(), profiler, "a \"title\"");
-    auto json = nlohmann::json::parse(read_file(path));
-    std::filesystem::remove(path);
-    return json;
+    const tests::TemporaryDirectory directory;
+    write_timeline(directory / "timeline", profiler, "a \"title\"");
+    return nlohmann::json::parse(read_file(directory / "timeline"));
 }
 
 std::map<int, std::vector<nlohmann::json>> tracks_of(const nlohmann::json& timeline) {

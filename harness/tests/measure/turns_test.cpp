@@ -117,18 +117,12 @@ TEST(Turns, AreAsLongAsAskedButNoShorterThanAStep) {
 
 Measurement measurement_of(const Scene& scene, const char* variant,
                            CheckScope scope = CheckScope::last_step) {
-    Measurement measurement{.scene = scene,
-                            .scene_name = "scene.in",
-                            .scene_sha256 = {},
-                            .variant = *find_variant(variant),
-                            .tuning = {},
-                            .tags = {},
-                            .repetitions = {},
-                            .violation = {},
-                            .turns = {},
-                            .own_seconds = {}};
-    measurement.scope = scope;
-    return measurement;
+    return {.scene = scene,
+            .scene_name = "scene.in",
+            .scene_sha256 = {},
+            .variant = *find_variant(variant),
+            .tuning = {},
+            .scope = scope};
 }
 
 carom::Run run_to(const std::vector<Disc>& discs) {

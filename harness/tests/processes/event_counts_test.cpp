@@ -53,8 +53,7 @@ TEST(EventCounts, AreOfTheProgramWithAllThatItStarts) {
 }
 
 TEST(EventCounts, TellWhatTheSystemKeepsOfEachProcess) {
-    const ProcessCommand command{
-        .words = {"/bin/sh", "-c", "sleep 0.01; /bin/true"}, .folder = "", .pattern = ""};
+    const ProcessCommand command{.words = {"/bin/sh", "-c", "sleep 0.01; /bin/true"}};
     const ProcessEnd end = run_undisturbed(command);
     EXPECT_GT(end.counted.at("minor_page_faults"), 0);
     EXPECT_GT(end.counted.at("voluntary_context_switches"), 0);

@@ -58,10 +58,8 @@ TEST(Process, ThatRunsAsAnotherUserIsLeftAndNamed) {
     chmod(becomes_root.c_str(), 04755);
     chmod((directory / "").c_str(), 0755);
     const ProcessCommand command{.words = {becomes_root, "--reuid=0", "sleep", "5"},
-                                 .folder = "",
                                  .environment = {"PATH=/usr/bin:/bin"},
-                                 .most_seconds = 0.4,
-                                 .pattern = ""};
+                                 .most_seconds = 0.4};
     EXPECT_EQ(told_by_an_ordinary_user(command), "it could not be ended: sleep runs as another user");
 }
 

@@ -21,14 +21,11 @@ namespace carom {
 namespace {
 
 ProcessCommand shell(const std::string& script) {
-    return {.words = {"/bin/sh", "-c", script},
-            .folder = "",
-            .environment = {"PATH=/usr/sbin:/usr/bin:/sbin:/bin"},
-            .pattern = ""};
+    return {.words = {"/bin/sh", "-c", script}, .environment = {"PATH=/usr/sbin:/usr/bin:/sbin:/bin"}};
 }
 
 ProcessCommand words(const std::vector<std::string>& its) {
-    return {.words = its, .folder = "", .environment = {"PATH=/usr/bin:/bin"}, .pattern = ""};
+    return {.words = its, .environment = {"PATH=/usr/bin:/bin"}};
 }
 
 /// Works for a while without a pause.
@@ -89,8 +86,7 @@ TEST_P(ProcessKept, GetsItsWordsAsTheyAreAndNothingElse) {
     const tests::TemporaryDirectory directory;
     const ProcessEnd there = run({.words = {"sh", "-c", "pwd; echo $MINE; read line || echo nothing"},
                                   .folder = directory / "",
-                                  .environment = {"MINE=yes"},
-                                  .pattern = ""});
+                                  .environment = {"MINE=yes"}});
     EXPECT_EQ(there.output.end, (directory / "").substr(0, (directory / "").size() - 1) + "\nyes\nnothing\n");
 }
 

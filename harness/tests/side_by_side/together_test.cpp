@@ -16,11 +16,8 @@ namespace {
 
 ProgramContender contender(const std::vector<std::string>& words) {
     ProgramContender one;
-    one.command = {.words = words,
-                   .folder = "",
-                   .environment = {std::string("PATH=") + std::getenv("PATH")},
-                   .most_seconds = 60,
-                   .pattern = ""};
+    one.command = {
+        .words = words, .environment = {std::string("PATH=") + std::getenv("PATH")}, .most_seconds = 60};
     one.failure = [command = one.command](const ProcessEnd& end) { return why_failed(command, end, {0}); };
     return one;
 }

@@ -5,10 +5,10 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "harness/support/errors.hpp"
 #include "harness/support/free_memory.hpp"
+#include "harness/tests/temporary_directory.hpp"
 
 namespace carom {
 namespace {
@@ -18,15 +18,13 @@ namespace fs = std::filesystem;
 /// A root with a few files of its own.
 class FreeMemory : public testing::Test {
   protected:
-    FreeMemory() : root_(fs::path(testing::TempDir()) / ("free_memory_" + std::to_string(getpid()))) {}
-    ~FreeMemory() override { fs::remove_all(root_); }
-
     void write(const std::string& path, const std::string& text) const {
         fs::create_directories((root_ / path).parent_path());
         std::ofstream(root_ / path) << text;
     }
 
-    fs::path root_;
+    tests::TemporaryDirectory directory_;
+    const fs::path root_ = directory_.path();
 };
 
 TEST_F(FreeMemory, IsUnknownWhereNobodyTells) {

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "harness/measure/measure.hpp"
-#include "harness/verify/determinism.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "variants/registry.hpp"
 #include "variants/tests/each_variant.hpp"
@@ -31,9 +30,6 @@ std::string final_hash(const Variant& variant, const Tuning& tuning) {
 class PromisedVariant : public testing::TestWithParam<Variant> {};
 
 TEST_P(PromisedVariant, EndsInOneStateOverThreadsAndChunks) {
-    if (!promised(GetParam().policies).threads) {
-        GTEST_SKIP() << "not promised";
-    }
     const carom::Run expected = run(GetParam(), {.threads = 1});
     ASSERT_GT(expected.work.pair_resolves, 400);
     for (const int threads : {1, 2, 3, 5, 8, 16}) {
@@ -61,9 +57,6 @@ TEST(PromisedVariants, EndInOneStateOverSchedules) {
     std::vector<std::pair<const Variant*, std::string>> firsts;
     int compared = 0;
     for (const Variant& variant : variants()) {
-        if (!promised(variant.policies).threads) {
-            continue;
-        }
         const std::string found = final_hash(variant, {.threads = 3});
         const auto first = std::ranges::find_if(firsts, [&variant](const auto& other) {
             return without_schedules(other.first->policies) == without_schedules(variant.policies);
