@@ -4,6 +4,7 @@ them; and the sequential orders, with the published times on the same axis.
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -11,14 +12,15 @@ from matplotlib.figure import Figure
 
 from analysis.derived.comparisons import USUAL, Stated, differences, reference, stated
 from analysis.figures.captions import differing, opening, time_axis
-from analysis.figures.curves import bounded, difference, dots, faint_dots, margin_band
-from analysis.figures.labels import name_rows, note
+from analysis.figures.curves import dots, forest
+from analysis.figures.hover import Told, point
+from analysis.figures.labels import name_rows
 from analysis.figures.league import league
 from analysis.figures.pairs import Sides, pair_drawing
-from analysis.figures.style import INK, Data, Drawing, Look, looks, new_figure
+from analysis.figures.style import INK, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.statistics.bootstrap import summarise
 from analysis.support.values import Row
-from analysis.support.wording import exact
+from analysis.support.wording import exact, number
 
 
 def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -30,7 +32,7 @@ def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
     table = differences(times, against)
     ranked = league(data.study, experiment)
     tables = [ranked] if ranked else []
-    table["name"] = [f"{_label(row, table)} against {against}" for row in table.to_dict("records")]
+    table = named(table, against)
     names = sorted(times["series"].unique(), key=lambda name: name == against)
     if len(names) == 2 and times["x"].nunique() == 1:
         sides = Sides(experiment, names[0], names[1], subject, (names[0], names[1]))
@@ -60,8 +62,7 @@ def sequential_orders(data: Data) -> Drawing | None:
             " Lighter: the published medians with self-contained resolves, moved as one so that track is "
             "level."
         )
-    names = [f"{series} against {against}" for series in table["series"]]
-    return Drawing(figure, caption, table.assign(name=names))
+    return Drawing(figure, caption, named(table, against))
 
 
 def _published_orders(data: Data, table: pd.DataFrame, against: str) -> dict[str, float]:
@@ -90,6 +91,11 @@ def _against(
     return figure
 
 
+def named(table: pd.DataFrame, against: str) -> pd.DataFrame:
+    """Return the differences with what the report is to call each, its `name`."""
+    return table.assign(name=[f"{_label(row, table)} against {against}" for row in table.to_dict("records")])
+
+
 def differences_sentence(table: pd.DataFrame, against: str, by: Stated = USUAL) -> str:
     """Say every difference with its verdict, and the margin and error if they are the question's own."""
     said = differing((_label(row, table) for row in table.to_dict("records")), table)
@@ -111,15 +117,20 @@ def _differences(
     axes: Axes, table: pd.DataFrame, rows: pd.DataFrame, margin: float, shown: Mapping[str, Look],
     published: Mapping[str, float],
 ) -> None:  # fmt: skip
-    """Draw every difference with the interval that decides at the height of its row in the other panel."""
-    margin_band(axes, margin)
+    """Draw every difference with the interval that decides at the height of its row in the other panel, and
+    the published ones, lighter, below them.
+    """
     heights = {(row.series, row.x): height for height, row in enumerate(rows.itertuples())}
+    drawn = []
     for row in table.to_dict("records"):
-        height, look = heights[row["series"], row["x"]], shown[row["series"]]
-        at = difference(axes, row, height, _label(row, table), look.colour, 2.0, marker=look.marker)
-        note(axes, row["verdict"], (at, height), (0, 6), ha="center", fontsize=7, color=INK)
-    known = {name: height for (name, _), height in heights.items()}
-    faint_dots(axes, [(known[name], 100 * (one - 1)) for name, one in published.items()], INK)
-    bounded(axes, margin)
+        look, at = shown[row["series"]], heights[row["series"], row["x"]]
+        told = {"name": _label(row, table), "said": row["verdict"], "at": at}
+        drawn.append({**row, **told, "colour": look.colour, "mark": look.marker})
+    forest(axes, drawn, margin)
+    for (name, _), height in heights.items():
+        if name in published:
+            change = 100 * (published[name] - 1)
+            faint: Any = {"color": lighten(INK), "markersize": 4, "zorder": 1}
+            point(axes, change, height - 0.2, "o", Told("published", number(change)), **faint)
     name_rows(axes, list(rows["name"]))
     axes.set_ylim(-0.5, len(rows) - 0.3)

@@ -95,12 +95,6 @@ def note(axes: Axes, text: str, at: tuple[float, float], by: tuple[float, float]
     axes.annotate(text, at, xytext=by, textcoords="offset points", **look)
 
 
-def label_row(axes: Axes, text: str, height: float, above: float, colour: str, size: float = 7) -> None:
-    """Write what a row shows above it, in the middle of the axes."""
-    beside: Any = {"xycoords": ("axes fraction", "data"), "ha": "center"}
-    note(axes, text, (0.5, height), (0, above), color=colour, fontsize=size, **beside)
-
-
 def plain_ticks(axis: Axis, values: Sequence[float] | None = None) -> None:
     """Write the ticks as plain numbers, thousands grouped, also on a logarithmic axis."""
     if values is not None:

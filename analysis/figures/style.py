@@ -159,9 +159,14 @@ def new_figure(
     height: float, columns: int = 1, widths: Sequence[float] | None = None
 ) -> tuple[Figure, list[Axes]]:
     """Return a figure of the common width with a row of axes."""
+    figure, grid = new_grid(height, 1, columns, width_ratios=widths)
+    return figure, list(grid[0])
+
+
+def new_grid(height: float, lines: int, columns: int = 1, **more: Any) -> tuple[Figure, Any]:  # noqa: ANN401
+    """Return a figure of the common width with lines of axes; `more` is for `Figure.subplots`."""
     figure = Figure(figsize=(WIDTH, height))
-    axes = figure.subplots(1, columns, squeeze=False, gridspec_kw={"width_ratios": widths or [1] * columns})
-    return figure, list(axes[0])
+    return figure, figure.subplots(lines, columns, squeeze=False, **more)
 
 
 def partial(data: Data, experiment: str) -> str | None:

@@ -15,21 +15,9 @@ from matplotlib.patches import Patch, Rectangle
 from analysis import claims
 from analysis.claims.effects import Effect
 from analysis.claims.summary import colour_of, mark
+from analysis.figures.curves import arrow, span
 from analysis.figures.studies import prefix_of
-from analysis.figures.style import (
-    BAND,
-    BLUE,
-    FAINT,
-    INK,
-    SKY,
-    VERMILLION,
-    WIDTH,
-    Data,
-    Drawing,
-    lighten,
-    save,
-    styled,
-)
+from analysis.figures.style import BAND, BLUE, FAINT, INK, SKY, VERMILLION, WIDTH, Data, Drawing, lighten, save, styled
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import split
@@ -90,14 +78,8 @@ def all_claims(table: pd.DataFrame, layout: Layout = WIDE) -> Drawing | None:
     figure = Figure(figsize=(layout.width, height + ABOVE + layout.below))
     figure.set_layout_engine("none")
     whole = figure.get_figheight()
-    axes = figure.add_axes(
-        (
-            layout.left / layout.width,
-            layout.below / whole,
-            1 - (layout.left + RIGHT) / layout.width,
-            height / whole,
-        )
-    )
+    width = 1 - (layout.left + RIGHT) / layout.width
+    axes = figure.add_axes((layout.left / layout.width, layout.below / whole, width, height / whole))
     _axis(axes, rows, layout, height)
     top = 0.0
     for row in rows:
@@ -151,44 +133,22 @@ def _claim(axes: Axes, row: Mapping[Any, Any], top: float, layout: Layout) -> No
         axes.axhline(top + layout.gap / 2, color=BAND, linewidth=0.5, zorder=0)
     for number, effect in enumerate(row["effects"]):
         height = first + number * layout.row
-        ends = [_per_cent(end) for end in effect.within]
-        axes.add_patch(
-            Rectangle(
-                (ends[0], height - layout.row / 2),
-                ends[1] - ends[0],
-                layout.row,
-                color=BAND,
-                linewidth=0,
-                zorder=0,
-            )
-        )
+        low, high = map(_per_cent, effect.within)
+        corner = low, height - layout.row / 2
+        axes.add_patch(Rectangle(corner, high - low, layout.row, color=BAND, linewidth=0, zorder=0))
         if len(row["effects"]) > 1 or effect.is_exponent or layout.is_narrow:
-            axes.text(
-                -0.02,
-                height,
-                effect.what,
-                transform=place,
-                size=size - 1,
-                color=PALE_INK,
-                ha="right",
-                va="center",
-            )
+            beside: Any = {"transform": place, "size": size - 1, "color": PALE_INK, "va": "center"}
+            axes.text(-0.02, height, effect.what, ha="right", **beside)
         _effect(axes, effect, height, look)
 
 
 def _effect(axes: Axes, effect: Effect, height: float, look: str) -> None:
     colour, shape = LOOK[look]
     if effect.has_interval:
-        ends = [_per_cent(end) for end in effect.here[1:]]
-        shown = [_inside(axes, end) for end in ends]
-        axes.plot(shown, [height, height], color=colour, linewidth=2.2, solid_capstyle="butt", zorder=2)
-        for end in ends:
-            _arrow(axes, end, height, colour)
+        span(axes, *map(_per_cent, effect.here[1:]), height, colour, 2.2)
     if effect.is_measured:
         face = "white" if look == "open" else colour
-        _mark(
-            axes, shape, effect.here.estimate, height, colour, markerfacecolor=face, markersize=4.2, zorder=4
-        )
+        _mark(axes, shape, effect.here.estimate, height, colour, mfc=face, markersize=4.2, zorder=4)
     if isfinite(effect.published):
         ink = lighten(INK, 0.5) if look == "open" else INK
         _mark(axes, "D", effect.published, height, ink, **PUBLISHED_LOOK, zorder=5)
@@ -196,22 +156,8 @@ def _effect(axes: Axes, effect: Effect, height: float, look: str) -> None:
 
 def _mark(axes: Axes, shape: str, ratio: float, height: float, colour: str, **look: Any) -> None:  # noqa: ANN401
     value = _per_cent(ratio)
-    if not _arrow(axes, value, height, colour):
+    if not arrow(axes, value, height, colour):
         axes.plot(value, height, shape, color=colour, clip_on=False, **look)
-
-
-def _inside(axes: Axes, value: float) -> float:
-    low, high = axes.get_xlim()
-    return min(max(value, low), high)
-
-
-def _arrow(axes: Axes, value: float, height: float, colour: str) -> bool:
-    """Draw an arrow at the end of the axis if a value lies beyond it; tell whether it does."""
-    shown = _inside(axes, value)
-    if shown != value:
-        shape = ">" if value > shown else "<"
-        axes.plot(shown, height, shape, color=colour, markersize=4.5, clip_on=False, zorder=6)
-    return shown != value
 
 
 def _link(figure: Figure, name: str, place: tuple[float, float]) -> None:
@@ -222,21 +168,18 @@ def _link(figure: Figure, name: str, place: tuple[float, float]) -> None:
 
 
 def _key(figure: Figure, layout: Layout) -> None:
-    def point(look: str, face: str | None = None) -> Line2D:
+    texts = {
+        "holds": "measured, 95 % interval: holds", "in_direction": "holds in direction, maybe by little",
+        "fails": "does not hold", "open": "not decided",
+    }  # fmt: skip
+    entries: list[tuple[Any, str]] = []
+    for look, text in texts.items():
         colour, shape = LOOK[look]
-        return Line2D(
-            [], [], color=colour, marker=shape, markersize=4.2, linewidth=2.2, markerfacecolor=face or colour
-        )
-
+        face = "white" if look == "open" else colour
+        drawn = Line2D([], [], color=colour, marker=shape, markersize=4.2, linewidth=2.2, mfc=face)
+        entries.append((drawn, text))
     published = Line2D([], [], color=INK, marker="D", linestyle="", **PUBLISHED_LOOK)
-    entries: list[tuple[Any, str]] = [
-        (point("holds"), "measured, 95 % interval: holds"),
-        (point("in_direction"), "holds in direction, maybe by little"),
-        (point("fails"), "does not hold"),
-        (point("open", "white"), "not decided"),
-        (published, "published"),
-        (Patch(color=BAND), "no difference that matters"),
-    ]
+    entries += [(published, "published"), (Patch(color=BAND), "no difference that matters")]
     figure.legend(
         *zip(*entries, strict=True), loc="lower left", ncols=2 if layout.is_narrow else 3, fontsize=6,
         frameon=False, handlelength=2.2, columnspacing=1.2, labelspacing=0.3, borderaxespad=0.2,
