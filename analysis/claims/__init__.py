@@ -12,7 +12,7 @@ from analysis.claims.counts import fewer_wasted_attempts
 from analysis.claims.curves import falls_then_rises, grows, linear, spike_then_linear
 from analysis.claims.entry import Claim, Evidence, load
 from analysis.claims.machines import clock
-from analysis.claims.outcome import ELSEWHERE, FAILS, OPEN, Compared, Outcome, Verdict
+from analysis.claims.outcome import ELSEWHERE, FAILS, OPEN, PLAIN, Compared, Outcome, Verdict
 from analysis.claims.phases import phase_dominates
 from analysis.claims.ratios import pair
 from analysis.claims.scaling import scaling
@@ -156,9 +156,9 @@ def _said(outcome: Outcome, claim: Claim, tested: tuple[int, ...], scale: str) -
     verdict = outcome.verdict
     if verdict == Verdict.OTHER_SCALE:
         return f"cannot be decided at {scale} scale"
-    plain = {elsewhere: plain for plain, elsewhere in ELSEWHERE.items()}.get(verdict)
-    if plain is None:
+    if verdict not in PLAIN:
         return str(verdict)
+    plain = PLAIN[verdict]
     at_scale = "" if scale in claim.scales else f" at {scale} scale"
     found = [one for one in outcome.effects if one.has_interval]
     if plain == FAILS and found and all(one.here.low < 1 < one.here.high for one in found):

@@ -145,7 +145,7 @@ def _claim(axes: Axes, row: Mapping[Any, Any], top: float, layout: Layout) -> No
 def _effect(axes: Axes, effect: Effect, height: float, look: str) -> None:
     colour, shape = LOOK[look]
     if effect.has_interval:
-        span(axes, *map(_per_cent, effect.here[1:]), height, colour, 2.2)
+        span(axes, _per_cent(effect.here.low), _per_cent(effect.here.high), height, colour, 2.2)
     if effect.is_measured:
         face = "white" if look == "open" else colour
         _mark(axes, shape, effect.here.estimate, height, colour, mfc=face, markersize=4.2, zorder=4)
