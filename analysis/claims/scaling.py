@@ -1,7 +1,6 @@
 """The claim about threads: what the curve does up to the cores, to the hardware threads, and beyond."""
 
 from dataclasses import dataclass, replace
-from itertools import zip_longest
 from math import nan
 from typing import Any
 
@@ -99,7 +98,8 @@ def _beside(
     size = evidence.published.machines.set_index("machine").loc[machine]
     theirs = _stretches(curve, int(size["cores"]), int(size["hardware_threads"]), MARGIN)
     figures, effects = [], []
-    for their, our in zip_longest(theirs, ours):
+    for number, their in enumerate(theirs):
+        our = ours[number] if ours else None
         published = their.judge(curve) if their.start < their.end else None
         row = our.judge(processes) if our is not None and our.start < our.end else None
         figures.append(Compared(f"time {their.what}", _said(their, published), _said(our, row)))

@@ -23,8 +23,7 @@ from analysis.report.parts import contents, inline, parts
 from analysis.statistics.levels import in_order, levels, shifting
 from analysis.statistics.looks import ERROR
 from analysis.statistics.noise import needed_said, process_noise, warning
-from analysis.statistics.pairs import log_ratios
-from analysis.statistics.verdicts import MARGIN, judge_one
+from analysis.statistics.verdicts import MARGIN
 from analysis.support.wording import blocks, change, count, number, share
 from support.vocabulary import CONTROL
 
@@ -181,11 +180,11 @@ def _settled(table: pd.DataFrame, drawn: Sequence[Drawn]) -> set[str]:
 
 def control_sentence(study: Study) -> str:
     """Say what came of the control, the same variant measured under two labels."""
-    processes = study.times_of(CONTROL)
-    sides = [part for _, part in processes.groupby("label")]
-    if len(sides) != 2:
+    verdict, row = first_screen.control_of(study)
+    if not verdict:
         return "The control (one variant, two labels) was not measured: nothing vouches for the rest."
-    return f"{_control_verdict(study, processes, sides)}{_speeds(processes)}"
+    processes = study.times_of(CONTROL)
+    return f"{_control_verdict(study, processes, verdict, row)}{_speeds(processes)}"
 
 
 def _speeds(processes: pd.DataFrame) -> str:
@@ -209,26 +208,25 @@ def _speeds(processes: pd.DataFrame) -> str:
     )
 
 
-def _control_verdict(study: Study, processes: pd.DataFrame, sides: Sequence[pd.DataFrame]) -> str:
-    row = judge_one(log_ratios(*sides)["log_ratio"])
+def _control_verdict(study: Study, processes: pd.DataFrame, verdict: str, row: dict[str, Any]) -> str:
     sessions, beside = study.times["session"].nunique(), processes["session"].nunique()
     over = "the whole run" if beside == sessions else f"{beside} of {count(sessions, 'session')}"
     said = f"one variant, measured under two labels over {over}, differs by {change(row)} ({blocks(row)})"
-    if row["verdict"] == "equivalent" and not row["low"] <= 1 <= row["high"]:
+    if verdict == "off":
         return (
             f"The control is off: {said}. That is within the margin, but its interval leaves out 0, as it "
             "does by chance in at most 5 % of studies. Only the label differs: this is a fault of the "
             "machine or of the method, and a difference as small says nothing."
         )
-    if row["verdict"] == "equivalent":
+    if verdict == "equivalent":
         return f"The control came out equivalent, as it must: {said}."
-    if row["verdict"] == "inconclusive":
+    if verdict == "inconclusive":
         return (
             f"The control is inconclusive: {said}. Differences of a few per cent cannot be told apart here."
         )
     return (
-        f"The control FAILED: {said} and was judged {row['verdict']}. Only the label differs, so do not "
-        "trust the verdicts below: measure again on a quiet machine."
+        f"The control FAILED: {said} and was judged {verdict}. Only the label differs, so do not trust the "
+        "verdicts below: measure again on a quiet machine."
     )
 
 
