@@ -1,5 +1,6 @@
 """The look that all figures share, and what a figure function returns."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -114,6 +115,12 @@ class Data:
     studies: Sequence[Study]
     published: Published
     folder: Path
+
+    @property
+    def prefix(self) -> str:
+        """What the names of the study's files begin with: nothing of the first one."""
+        name = re.sub(r"[^a-z0-9]+", "-", self.study.name.lower()).strip("-")
+        return "" if self.study is self.studies[0] else f"{name}-"
 
 
 @dataclass(frozen=True)

@@ -16,11 +16,9 @@ from analysis import claims
 from analysis.claims.effects import Effect
 from analysis.claims.summary import colour_of, mark
 from analysis.figures.curves import arrow, span
-from analysis.figures.studies import prefix_of
+from analysis.figures.studies import data_of
 from analysis.figures.style import BAND, BLUE, FAINT, INK, SKY, VERMILLION, WIDTH, Data, Drawing, lighten, save, styled
-from analysis.records import published
 from analysis.records.reading import load
-from analysis.records.studies import split
 
 NAME = "claims"
 LOOK = {
@@ -198,9 +196,7 @@ def _caption(rows: Sequence[Mapping[Any, Any]]) -> str:
     )
 
 
-def draw(
-    data: Data, prefix: str = "", table: pd.DataFrame | None = None, *, pdf: bool = False
-) -> tuple[str, list[Path]]:
+def draw(data: Data, table: pd.DataFrame | None = None, *, pdf: bool = False) -> tuple[str, list[Path]]:
     """Write the figure into the folder of figures, wide and narrow as SVG, wide as `pdf` as well if wanted.
 
     The claims are evaluated unless their `table` is given. Return the figure's caption and files, none where
@@ -210,7 +206,7 @@ def draw(
         table = claims.evaluate(data.study, data.studies, data.published, claims.load(data.folder))
     files: list[Path] = []
     caption = ""
-    for name, layout in ((f"{prefix}{NAME}", WIDE), (f"{prefix}{NAME}-narrow", NARROW)):
+    for name, layout in ((f"{data.prefix}{NAME}", WIDE), (f"{data.prefix}{NAME}-narrow", NARROW)):
         with styled(name):
             drawing = all_claims(table, layout)
         if drawing is None:
@@ -225,8 +221,6 @@ def draw_all_claims(results: Path) -> list[Path]:
 
     What cannot be read is told by whoever draws the other figures of the folder.
     """
-    studies = split(load(results, lambda _: None))
-    times = published.load()
-    pairs = [(Data(study, studies, times, results), prefix_of(study, studies)) for study in studies]
-    drawn = [draw(data, prefix, pdf=True)[1] for data, prefix in pairs]
+    records = load(results, lambda _: None)
+    drawn = [draw(data, pdf=True)[1] for data in data_of(results, records)]
     return [files[0] for files in drawn if files]

@@ -12,12 +12,11 @@ from markupsafe import Markup
 from analysis import claims
 from analysis.claims import missing, summary
 from analysis.claims.entry import CLAIMS_FILE, questions_folder
-from analysis.figures import Drawn, titles
-from analysis.figures.studies import draw_study, prefix_of
+from analysis.figures import Drawn, draw, titles
+from analysis.figures.studies import data_of
 from analysis.figures.style import Data
-from analysis.records import published
 from analysis.records.reading import Records
-from analysis.records.studies import Study, split
+from analysis.records.studies import Study
 from analysis.report import all_claims, first_screen, graphs, provenance
 from analysis.report.parts import contents, inline, parts
 from analysis.statistics.levels import in_order, levels, shifting
@@ -35,9 +34,8 @@ def content(records: Records, results: Path, asked: Sequence[str] = ()) -> dict[
 
     Questions that were `asked` by name lead; without any, all of them were.
     """
-    studies = split(records)
     own = (results / CLAIMS_FILE.name).exists()
-    found = [_study(study, studies, results, asked) for study in studies]
+    found = [_study(data, asked) for data in data_of(results, records)]
     # A study that has what was asked comes before one that has not.
     found.sort(key=lambda study: bool(asked) and not study["asked"])
     for position, study in enumerate(found, start=1):
@@ -65,15 +63,15 @@ def content(records: Records, results: Path, asked: Sequence[str] = ()) -> dict[
     }
 
 
-def _study(study: Study, studies: Sequence[Study], results: Path, asked: Collection[str]) -> dict[str, Any]:
-    drawn = draw_study(study, studies, results)
-    table = claims.evaluate(study, studies, published.load(), claims.load(results))
+def _study(data: Data, asked: Collection[str]) -> dict[str, Any]:
+    study, is_first = data.study, data.study is data.studies[0]
+    drawn = list(draw(data))
+    table = claims.evaluate(study, data.studies, data.published, claims.load(data.folder))
+    told = table if is_first else table[~table["missing"]]
     rows = table.to_dict("records")
     shown = parts(study, drawn, rows)
     places = {part.experiment: (part.anchor, part.title) for part in shown}
-    prefix = prefix_of(study, studies)
-    anchors = _anchors(rows, places, prefix)
-    data = Data(study, studies, published.load(), results)
+    anchors = _anchors(rows, places, data.prefix)
     noise, settled = process_noise(study.times), _settled(table, drawn)
     return {
         "name": study.name,
@@ -86,13 +84,13 @@ def _study(study: Study, studies: Sequence[Study], results: Path, asked: Collect
         "noise": [_noise_row(row, settled) for row in noise.to_dict("records")],
         "checks": provenance.checks(study),
         "partners": provenance.partners(study),
-        "states": missing.tally(table if study is studies[0] else table[~table["missing"]]),
+        "states": missing.tally(told),
         **_claims(table, places, asked),
-        "prefix": prefix,
+        "prefix": data.prefix,
         "said": first_screen.sentences(study, rows, drawn, anchors),
-        "figure": _all_claims(all_claims.draw(data, prefix, table), rows, anchors, prefix),
-        "beside": first_screen.beside(study, table, is_first=study is studies[0]),
-        "without_records": list(table.loc[table["missing"], "id"]) if study is studies[0] else [],
+        "figure": _all_claims(all_claims.draw(data, table), rows, anchors, data.prefix),
+        "beside": first_screen.beside(study, missing.tally(told)),
+        "without_records": list(told.loc[told["missing"], "id"]),
     }
 
 

@@ -4,9 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import pandas as pd
-
-from analysis.claims import missing
 from analysis.claims.missing import DECIDED
 from analysis.claims.summary import (
     UNDECIDED,
@@ -111,9 +108,8 @@ def _open(rows: Sequence[Mapping[str, Any]]) -> list[Said]:
     return [Said(UNDECIDED, "not decided", "open", text)]
 
 
-def beside(study: Study, table: pd.DataFrame, *, is_first: bool) -> list[tuple[str, str]]:
-    """Return machine, time, control and the share decided, as names and values."""
-    states = missing.tally(table if is_first else table[~table["missing"]])
+def beside(study: Study, states: Mapping[str, int]) -> list[tuple[str, str]]:
+    """Return machine, time, control and the share decided, as names and values; `states` as of `tally`."""
     claims = sum(states.values())
     rest = ", ".join(f"{amount} {state}" for state, amount in list(states.items())[1:] if amount)
     decided = f"{states['decided']} of {count(claims, 'claim')}{rest and f'; {rest}'}"

@@ -14,11 +14,16 @@ from analysis.tests.synthetic import write
 Records = list[dict[str, Any]]
 
 
+def verdicts_of(folder: Path) -> pd.DataFrame:
+    """Return a row a claim, by its id, of the first study in a folder."""
+    studies = split(load(folder))
+    return claims.evaluate(studies[0], studies, published.load()).set_index("id")
+
+
 def row_of(folder: Path, records: Records, claim: str) -> pd.Series:
     """Return the claim's row, of the records and of what the folder has already."""
     write(folder, records)
-    studies = split(load(folder))
-    return claims.evaluate(studies[0], studies, published.load()).set_index("id").loc[claim]
+    return verdicts_of(folder).loc[claim]
 
 
 def slowed(records: Records, factor: float, **tags: object) -> Records:

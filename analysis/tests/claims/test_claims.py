@@ -13,6 +13,7 @@ from analysis.figures.style import Data
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import split
+from analysis.tests.claims.judging import row_of, verdicts_of
 from analysis.tests.synthetic import Machine, write
 from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
@@ -23,11 +24,6 @@ IDS = [
     "self_contained_checkered", "self_contained_sequential", "find_schedule", "resolve_schedule",
     "row_schedule", "row", "reverse", "compiler", "resolve_dominates",
 ]  # fmt: skip
-
-
-def verdicts_of(folder: Path) -> pd.DataFrame:
-    studies = split(load(folder))
-    return claims.evaluate(studies[0], studies, published.load()).set_index("id")
 
 
 def test_every_published_claim_has_its_row_and_its_verdict(data: Data) -> None:
@@ -117,8 +113,7 @@ def test_a_schedule_claim_falls_when_another_is_faster(
         if (record["tags"]["series"], record["tags"]["x"]) == ("dynamic", 10):
             for repetition in record["repetitions"]:
                 repetition["steps_seconds"] *= 0.736 / 0.79 * faster
-    write(tmp_path, records)
-    row = verdicts_of(tmp_path).loc["find_schedule"]
+    row = row_of(tmp_path, records, "find_schedule")
     assert row["verdict"] == verdict
     assert said in row["why"]
 
@@ -179,7 +174,6 @@ def test_a_ratio_claim_needs_both_sides_at_the_same_x(tmp_path: Path) -> None:
         for record in study(["row"], blocks=8, noise=QUIET)
         if (record["tags"]["x"] > 50_000) == (record["tags"]["series"] == "row")
     ]
-    write(tmp_path, records)
-    row = verdicts_of(tmp_path).loc["row"]
+    row = row_of(tmp_path, records, "row")
     assert row["verdict"] == OPEN
     assert "of row and checkered at the same particles" in row["why"]

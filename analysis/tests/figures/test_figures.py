@@ -12,17 +12,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis import claims, figures
+from analysis import figures
 from analysis.figures import FIGURES, Entry
 from analysis.figures.labels import label_ends, spread
 from analysis.figures.layout import lay_out
 from analysis.figures.pairs import ratio_panel
-from analysis.figures.studies import draw_all
+from analysis.figures.studies import data_of, draw_all
 from analysis.figures.style import Data, new_figure, styled
 from analysis.figures.sweeps import level_of
-from analysis.records import published
-from analysis.records.reading import load
-from analysis.records.studies import split
+from analysis.tests.claims.judging import verdicts_of
 from analysis.tests.synthetic import Machine, write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
@@ -83,8 +81,7 @@ def data_of_part(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str
     def read(experiment: str, kept: str) -> Data:
         folder = tmp_path_factory.mktemp(experiment)
         write(folder, part(study([experiment], blocks=3, noise=Noise(), seed=3), kept))
-        studies = split(load(folder))
-        return Data(studies[0], studies, published.load(), folder)
+        return data_of(folder)[0]
 
     return read
 
@@ -201,11 +198,8 @@ def test_a_figure_and_the_claim_about_it_tell_one_ratio(tmp_path: Path) -> None:
         one["turns"] = {"contenders": 2, "seed": 1, "rounds": 8, "seconds": seconds}
         write(tmp_path, [one])
     (drawn,) = draw_all(tmp_path, ["neighbourhood"])
-    studies = split(load(tmp_path))
-    table = claims.evaluate(studies[0], studies, published.load(), claims.load(tmp_path)).set_index("id")
-    ratio = (
-        str(table.loc["four_boxes", "measured"]).removeprefix("four against nine: ").partition(" of time")[0]
-    )
+    measured = str(verdicts_of(tmp_path).loc["four_boxes", "measured"])
+    ratio = measured.removeprefix("four against nine: ").partition(" of time")[0]
     assert f"{ratio} against nine boxes" in drawn.caption
 
 
