@@ -237,18 +237,6 @@ def test_several_machines_are_in_one_machine_figure(tmp_path: Path) -> None:
     assert "bench-2: Example CPU" in caption
 
 
-@pytest.mark.parametrize("speed", [0.1, 10.0])
-def test_the_order_that_others_are_compared_with_does_not_depend_on_the_times(
-    tmp_path: Path, speed: float
-) -> None:
-    fast = study(["sequential_orders"], blocks=4, speed=speed)
-    slow = study(["sequential_orders"], blocks=4)
-    write(tmp_path, [one for one in fast if one["tags"]["series"] == "once"])
-    write(tmp_path, [one for one in slow if one["tags"]["series"] != "once"])
-    (drawn,) = draw_all(tmp_path)
-    assert "Against once: repeat" in drawn.caption
-
-
 def test_labels_are_moved_apart_as_little_as_needed() -> None:
     assert spread([0, 100, 200], 9) == [0, 100, 200]
     assert spread([50, 50], 10) == [45, 55]

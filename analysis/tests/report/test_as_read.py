@@ -157,7 +157,3 @@ def test_the_commands_to_repeat_it_name_the_questions_and_the_scale(tmp_path: Pa
     write(tmp_path, study(["steps", "control"], blocks=2, scale="quick"))
     write(tmp_path, [failure("compiler", "clang++", "is not built", scale="quick")])
     assert "make experiments STUDY=compiler,steps SCALE=quick\n" in report.render(tmp_path)
-
-
-def test_the_whole_study_is_repeated_without_a_name(page: str) -> None:
-    assert "make experiments SCALE=paper\n" in page
