@@ -22,12 +22,12 @@ from analysis.records.reading import load
 
 NAME = "claims"
 LOOK = {
-    "holds": (BLUE, "o"),
-    "in_direction": (SKY, "o"),
-    "fails": (VERMILLION, "s"),
-    "open": ("#b4b4b4", "o"),
+    "holds": (BLUE, "o", "measured, 95 % interval: holds"),
+    "in_direction": (SKY, "o", "holds in direction, maybe by little"),
+    "fails": (VERMILLION, "s", "does not hold"),
+    "open": ("#b4b4b4", "o", "not decided"),
 }
-"""The colour and the mark of what a verdict says; of one that is open the mark is hollow."""
+"""The colour and the mark of what a verdict says, and what the key says of it; of one that is open the mark is hollow."""
 PUBLISHED_LOOK: Any = {"markerfacecolor": "none", "markersize": 4.6, "markeredgewidth": 0.8}
 PALE_INK = "#6e6e6e"
 """Of the names of what is open: pale, and still to be read."""
@@ -51,13 +51,14 @@ class Layout:
     below: float
     ticks: Sequence[int]
     is_narrow: bool
-    letters: float = 7
 
 
 WIDE = Layout(WIDTH, 3.55, 0.125, 0.05, 0.62, TICKS, is_narrow=False)
 NARROW = Layout(3.2, 1.24, 0.14, 0.2, 0.74, FEWER_TICKS, is_narrow=True)
 ABOVE, RIGHT = 0.2, 0.12
 """Inches beside the axes."""
+LETTERS = 7
+"""The size of names, in points."""
 SCALES = {
     True: "change of time, %",
     False: f"change of time, % (linear up to {LINEAR} %, logarithmic beyond)",
@@ -116,12 +117,11 @@ def _claim(axes: Axes, row: Mapping[Any, Any], top: float, layout: Layout) -> No
     """Draw the rows of a claim below `top`, with its name and those of its effects."""
     look = colour_of(row)
     ink = {"open": PALE_INK, "fails": VERMILLION}.get(look, INK)
-    size = layout.letters
     first = top + layout.gap + layout.row / 2
     name = f"{mark(row)} {row['name']}"
     place = axes.get_yaxis_transform()
     in_figure = -layout.left / (layout.width - layout.left - RIGHT)
-    look_of_name: Any = {"transform": place, "size": size, "color": ink, "va": "center"}
+    look_of_name: Any = {"transform": place, "size": LETTERS, "color": ink, "va": "center"}
     if layout.is_narrow:
         # On white, since the line of no difference runs below it.
         look_of_name["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
@@ -135,13 +135,13 @@ def _claim(axes: Axes, row: Mapping[Any, Any], top: float, layout: Layout) -> No
         corner = low, height - layout.row / 2
         axes.add_patch(Rectangle(corner, high - low, layout.row, color=BAND, linewidth=0, zorder=0))
         if len(row["effects"]) > 1 or effect.is_exponent or layout.is_narrow:
-            beside: Any = {"transform": place, "size": size - 1, "color": PALE_INK, "va": "center"}
+            beside: Any = {"transform": place, "size": LETTERS - 1, "color": PALE_INK, "va": "center"}
             axes.text(-0.02, height, effect.what, ha="right", **beside)
         _effect(axes, effect, height, look)
 
 
 def _effect(axes: Axes, effect: Effect, height: float, look: str) -> None:
-    colour, shape = LOOK[look]
+    colour, shape, _ = LOOK[look]
     if effect.has_interval:
         span(axes, _per_cent(effect.here.low), _per_cent(effect.here.high), height, colour, 2.2)
     if effect.is_measured:
@@ -166,13 +166,8 @@ def _link(figure: Figure, name: str, place: tuple[float, float]) -> None:
 
 
 def _key(figure: Figure, layout: Layout) -> None:
-    texts = {
-        "holds": "measured, 95 % interval: holds", "in_direction": "holds in direction, maybe by little",
-        "fails": "does not hold", "open": "not decided",
-    }  # fmt: skip
     entries: list[tuple[Any, str]] = []
-    for look, text in texts.items():
-        colour, shape = LOOK[look]
+    for look, (colour, shape, text) in LOOK.items():
         face = "white" if look == "open" else colour
         drawn = Line2D([], [], color=colour, marker=shape, markersize=4.2, linewidth=2.2, mfc=face)
         entries.append((drawn, text))
