@@ -44,12 +44,6 @@ def measured(folder: Path) -> Study:
     return split(load(folder))[0]
 
 
-def records_in(path: Path) -> Any:  # noqa: ANN401
-    path.mkdir()
-    write(path, records())
-    return load(path)
-
-
 def drawing(study: Study, key: str, folder: Path) -> Drawing:
     drawn = draw(Data(study, [study], published.load(), folder), NAME, "Speed against error", BY_KEY[key])
     assert drawn is not None
@@ -273,7 +267,9 @@ def test_the_event_driven_simulation_is_on_the_front_without_steps(tmp_path: Pat
     assert "event-driven" not in set(accuracy.orders(table)["series"])
 
 
-def test_the_caption_says_what_the_error_of_the_exact_simulation_is_against(tmp_path: Path) -> None:
+def test_the_caption_says_what_the_error_of_the_exact_simulation_is_against(
+    tmp_path: Path, measured: Study
+) -> None:
     stepped = records()
     write(tmp_path, [*stepped, *exact_ones(stepped, 3.0)])
     drawn = drawing(split(load(tmp_path))[0], "path", tmp_path)
@@ -281,7 +277,7 @@ def test_the_caption_says_what_the_error_of_the_exact_simulation_is_against(tmp_
     assert "against the same in long double" in drawn.caption
     (advice,) = (table for table in drawn.tables if "cheapest" in table.title)
     assert "event-driven: " in advice.rows[-1][1].text
-    assert "long double" not in drawing(split(records_in(tmp_path / "else"))[0], "path", tmp_path).caption
+    assert "long double" not in drawing(measured, "path", tmp_path).caption
 
 
 def test_numbers_read_well() -> None:
