@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from analysis.claims.entry import evidence_of
 from analysis.figures import Drawn, draw, titles
 from analysis.figures.style import Data
-from analysis.records import published
 from analysis.records.reading import Records, load
-from analysis.records.studies import split
 from support.errors import InputError
 
 
@@ -15,8 +14,8 @@ def data_of(results: Path, records: Records | None = None) -> list[Data]:
     """Return what the figures of each study of a results folder may draw from, the one to show first at the
     front; its `records` are read if they are not given.
     """
-    studies = split(load(results) if records is None else records)
-    return [Data(study, studies, published.load(), results) for study in studies]
+    found = evidence_of(load(results) if records is None else records)
+    return [Data(one.study, one.studies, one.published, results) for one in found]
 
 
 def draw_all(results: Path, wanted: Sequence[str] = (), *, pdf: bool = False) -> list[Drawn]:

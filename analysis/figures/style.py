@@ -14,11 +14,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 
+from analysis.claims.entry import Evidence
 from analysis.figures.hover import identify, with_titles
 from analysis.figures.layout import lay_out
 from analysis.records.plans import planned_runs
-from analysis.records.published import Published
-from analysis.records.studies import Study
 from analysis.support.values import Table
 from support.files import replacing
 
@@ -94,12 +93,9 @@ SETTINGS: Any = {
 
 
 @dataclass(frozen=True)
-class Data:
+class Data(Evidence):
     """What a figure may draw from: the study shown, all studies, the published one, the results folder."""
 
-    study: Study
-    studies: Sequence[Study]
-    published: Published
     folder: Path
 
     @property

@@ -198,7 +198,7 @@ def draw(data: Data, table: pd.DataFrame | None = None, *, pdf: bool = False) ->
     there is nothing to draw.
     """
     if table is None:
-        table = claims.evaluate(data.study, data.studies, data.published, claims.load(data.folder))
+        table = claims.evaluate(data, claims.load(data.folder))
     files: list[Path] = []
     caption = ""
     for name, layout in ((f"{data.prefix}{NAME}", WIDE), (f"{data.prefix}{NAME}-narrow", NARROW)):

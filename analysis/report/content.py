@@ -66,7 +66,7 @@ def content(records: Records, results: Path, asked: Sequence[str] = ()) -> dict[
 def _study(data: Data, asked: Collection[str]) -> dict[str, Any]:
     study, is_first = data.study, data.study is data.studies[0]
     drawn = list(draw(data))
-    table = claims.evaluate(study, data.studies, data.published, claims.load(data.folder))
+    table = claims.evaluate(data, claims.load(data.folder))
     told = table if is_first else table[~table["missing"]]
     rows = table.to_dict("records")
     shown = parts(study, drawn, rows)

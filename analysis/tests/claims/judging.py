@@ -6,9 +6,7 @@ from typing import Any
 import pandas as pd
 
 from analysis import claims
-from analysis.records import published
 from analysis.records.reading import load
-from analysis.records.studies import split
 from analysis.tests.synthetic import write
 
 Records = list[dict[str, Any]]
@@ -16,8 +14,7 @@ Records = list[dict[str, Any]]
 
 def verdicts_of(folder: Path) -> pd.DataFrame:
     """Return a row a claim, by its id, of the first study in a folder."""
-    studies = split(load(folder))
-    return claims.evaluate(studies[0], studies, published.load()).set_index("id")
+    return claims.evaluate(claims.evidence_of(load(folder))[0]).set_index("id")
 
 
 def row_of(folder: Path, records: Records, claim: str) -> pd.Series:

@@ -10,7 +10,6 @@ from analysis import claims
 from analysis.claims import missing
 from analysis.claims.outcome import FAILS, HOLDS, OPEN, Verdict
 from analysis.figures.style import Data
-from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import split
 from analysis.tests.claims.judging import row_of, slowed, verdicts_of
@@ -27,7 +26,7 @@ IDS = [
 
 
 def test_every_published_claim_has_its_row_and_its_verdict(data: Data) -> None:
-    table = claims.evaluate(data.study, data.studies, data.published).set_index("id")
+    table = claims.evaluate(data).set_index("id")
     assert list(table.index) == IDS
     verdicts = table["verdict"].drop("machine")
     without_threads = [one.id for one in claims.load() if one.published.threads is None]
@@ -38,7 +37,7 @@ def test_every_published_claim_has_its_row_and_its_verdict(data: Data) -> None:
 
 
 def test_one_machine_cannot_decide_about_machines(data: Data) -> None:
-    row = claims.evaluate(data.study, data.studies, data.published).set_index("id").loc["machine"]
+    row = claims.evaluate(data).set_index("id").loc["machine"]
     assert row["verdict"] == OPEN
     assert "only one is present" in row["why"]
 
@@ -126,11 +125,10 @@ def test_a_machine_speaks_with_the_records_of_the_revision_that_is_judged(tmp_pa
     ):
         folder = tmp_path / "records" / f"{machine.host}{machine.commit[0]}"
         write(folder, study(["machine"], machine=machine, noise=QUIET, speed=speed, threads=16))
-    studies = split(load(tmp_path))
     verdicts = {}
-    for one in studies:
-        table = claims.evaluate(one, studies, published.load()).set_index("id")
-        verdicts[one.machine[0], one.revision[0]] = table.loc["machine", "verdict"]
+    for one in claims.evidence_of(load(tmp_path)):
+        table = claims.evaluate(one).set_index("id")
+        verdicts[one.study.machine[0], one.study.revision[0]] = table.loc["machine", "verdict"]
     assert (verdicts["a", "0"], verdicts["a", "1"]) == (FAILS, HOLDS)
 
 

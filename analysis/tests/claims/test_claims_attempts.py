@@ -7,9 +7,7 @@ import pytest
 
 from analysis import claims
 from analysis.claims.outcome import FAILS, HOLDS, OPEN
-from analysis.records import published
 from analysis.records.reading import load
-from analysis.records.studies import split
 from analysis.tests.claims.judging import row_of
 from analysis.tests.synthetic import Machine, Point, bench
 
@@ -72,9 +70,9 @@ def test_seeds_that_disagree_decide_nothing(tmp_path: Path) -> None:
 
 def test_attempts_that_were_not_counted_are_no_zero(tmp_path: Path) -> None:
     reverse(tmp_path, FEWER)
-    studies = split(load(tmp_path))
-    studies[0].runs["pair_attempts"] = float("nan")  # as it is of whole processes
-    row = claims.evaluate(studies[0], studies, published.load()).set_index("id").loc["reverse"]
+    [evidence] = claims.evidence_of(load(tmp_path))
+    evidence.study.runs["pair_attempts"] = float("nan")  # as it is of whole processes
+    row = claims.evaluate(evidence).set_index("id").loc["reverse"]
     assert row["verdict"] == OPEN
     assert "not counted" in row["why"]
 

@@ -132,7 +132,7 @@ def test_every_question_with_a_figure_has_words() -> None:
 @pytest.mark.parametrize("layout", [WIDE, NARROW])
 def test_a_missing_interval_does_not_stretch_the_axis(refuted: Path, layout: Layout) -> None:
     data = data_of(refuted)[0]
-    table = claims.evaluate(data.study, data.studies, data.published)
+    table = claims.evaluate(data)
     plain = all_claims(table, layout)
     assert plain is not None
     wide = Effect("x", Interval(0.9, 1e-9, 1e9), 0.95)
@@ -181,7 +181,7 @@ def test_effects_agree_with_the_verdicts(tmp_path: Path) -> None:
     names = ["neighbourhood", "self_contained_checkered", "compiler", "row"]
     write(tmp_path, study(names, blocks=21, noise=Noise(process=0.004, repetition=0, burst_rate=0)))
     data = data_of(tmp_path)[0]
-    table = claims.evaluate(data.study, data.studies, data.published)
+    table = claims.evaluate(data)
     for row in table[~table["missing"]].itertuples():
         (effect,) = row.effects
         assert effect.has_interval
