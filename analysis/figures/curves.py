@@ -38,7 +38,9 @@ def curve(
         marker=look.marker, linestyle=look.dashes, elinewidth=1.1, zorder=3,
     )  # fmt: skip
     records = rows.to_dict("records")
-    tell(drawn, [Told(str(row.get("series", "")), exact(row["x"]), interval_of(row, value)) for row in records])
+    tell(
+        drawn, [Told(str(row.get("series", "")), exact(row["x"]), interval_of(row, value)) for row in records]
+    )
 
 
 def curves(

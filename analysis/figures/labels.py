@@ -107,7 +107,7 @@ def plain_ticks(axis: Axis, values: Sequence[float] | None = None) -> None:
 def percent_ticks(axis: Axis) -> None:
     """Put whole changes in per cent on an axis of ratios. Call it when its limits are settled."""
     low, high = (100 * (end - 1) for end in axis.get_view_interval())
-    ticks = MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+    ticks = np.asarray(MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high))
     axis.set_major_locator(FixedLocator(list(1 + ticks / 100)))
     said = FuncFormatter(lambda value, _: exact(round(100 * (value - 1), 6)).replace("-", "−"))
     axis.set_major_formatter(said)

@@ -131,7 +131,9 @@ def _times(
         own = runs[runs["name"] == name].sort_values("x")
         lighter = look._replace(colour=lighten(look.colour)) if published else look
         told = f"{name}, published" if published else name
-        points = [Told(told, exact(one), number(other)) for one, other in zip(own["x"], own[value], strict=True)]
+        points = [
+            Told(told, exact(one), number(other)) for one, other in zip(own["x"], own[value], strict=True)
+        ]
         size = 2.5 if len(own) <= MANY else 1.2
         line(axes, own["x"], own[value], lighter, points, markersize=size, linewidth=0.8)
         ink = lighten(look.colour, 0.35) if published else look.colour

@@ -172,7 +172,9 @@ def _greatest(series: str, speed_ups: pd.DataFrame, named: bool, cores: int) -> 
 
 
 def _sentences(study: Study, published: bool) -> str:
-    theirs = " Lighter: the published series, relative to its own single thread (10 cores, 20 hardware threads)."
+    theirs = (
+        " Lighter: the published series, relative to its own single thread (10 cores, 20 hardware threads)."
+    )
     return (
         f" The machine has {study.cores or 'an unknown number of'} cores and {study.hardware_threads} "
         f"hardware threads (dotted).{theirs if published else ''}"

@@ -47,7 +47,8 @@ _THINGS: Mapping[str, int] = {
     name: look
     for look, names in enumerate(
         [
-            ("published", "checkered", "four", "four boxes", "on", "A", "guided", "g++ with libomp", "forward"),
+            ("published", "checkered", "four", "four boxes", "on", "A", "guided", "forward",
+             "g++ with libomp"),
             ("row", "nine", "nine boxes", "off", "self_contained_off", "A-again", "A again", "dynamic",
              "clang++ with libomp", "reverse"),
             ("fastest", "sorted", "track", "static"),

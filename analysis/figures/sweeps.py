@@ -16,7 +16,18 @@ from analysis.figures.comparisons import differences_sentence, named
 from analysis.figures.curves import curve, curves, line, published_curve, ratio_axis, ratio_curve
 from analysis.figures.hover import Told
 from analysis.figures.labels import from_zero, label_ends, logarithmic_ticks, plain_ticks
-from analysis.figures.style import BLUE, FAINT, GREEN, Data, Drawing, Look, lighten, looks, new_figure, new_grid
+from analysis.figures.style import (
+    BLUE,
+    FAINT,
+    GREEN,
+    Data,
+    Drawing,
+    Look,
+    lighten,
+    looks,
+    new_figure,
+    new_grid,
+)
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, ratios_of
 from analysis.statistics.verdicts import error_of_picked, judge_one

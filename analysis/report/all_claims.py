@@ -17,7 +17,20 @@ from analysis.claims.effects import Effect
 from analysis.claims.summary import colour_of, mark
 from analysis.figures.curves import arrow, span
 from analysis.figures.studies import data_of
-from analysis.figures.style import BAND, BLUE, FAINT, INK, SKY, VERMILLION, WIDTH, Data, Drawing, lighten, save, styled
+from analysis.figures.style import (
+    BAND,
+    BLUE,
+    FAINT,
+    INK,
+    SKY,
+    VERMILLION,
+    WIDTH,
+    Data,
+    Drawing,
+    lighten,
+    save,
+    styled,
+)
 from analysis.records.reading import load
 
 NAME = "claims"
@@ -27,7 +40,7 @@ LOOK = {
     "fails": (VERMILLION, "s", "does not hold"),
     "open": ("#b4b4b4", "o", "not decided"),
 }
-"""The colour and the mark of what a verdict says, and what the key says of it; of one that is open the mark is hollow."""
+"""The colour and the mark of a verdict, and what the key says of it; of one that is open the mark is hollow."""
 PUBLISHED_LOOK: Any = {"markerfacecolor": "none", "markersize": 4.6, "markeredgewidth": 0.8}
 PALE_INK = "#6e6e6e"
 """Of the names of what is open: pale, and still to be read."""
