@@ -125,7 +125,7 @@ def arrow(axes: Axes, value: float, at: float, colour: str, *, upright: bool = F
     shown = min(max(value, low), high)
     if shown != value:
         marks, place = ("v^", (at, shown)) if upright else ("<>", (shown, at))
-        axes.plot(*place, marks[value > shown], color=colour, markersize=4, clip_on=False, zorder=6)
+        axes.plot(*place, marks[int(value > shown)], color=colour, markersize=4, clip_on=False, zorder=6)
     return shown != value
 
 

@@ -40,7 +40,7 @@ LOOK = {
     "fails": (VERMILLION, "s", "does not hold"),
     "open": ("#b4b4b4", "o", "not decided"),
 }
-"""The colour and the mark of a verdict, and what the key says of it; of one that is open the mark is hollow."""
+"""Colour and mark of a verdict, and what the key says of it; of one that is open the mark is hollow."""
 PUBLISHED_LOOK: Any = {"markerfacecolor": "none", "markersize": 4.6, "markeredgewidth": 0.8}
 PALE_INK = "#6e6e6e"
 """Of the names of what is open: pale, and still to be read."""
