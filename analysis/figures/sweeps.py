@@ -11,8 +11,7 @@ from matplotlib.figure import Figure
 
 from analysis.derived.comparisons import PUBLISHED, differences, differences_from, reference, stated
 from analysis.derived.ladder import per_disc_step, speed_up
-from analysis.figures.captions import growth_sentence, minimum_sentence, opening, time_axis
-from analysis.figures.comparisons import differences_sentence, named
+from analysis.figures.captions import differing, growth_sentence, minimum_sentence, opening, time_axis
 from analysis.figures.curves import curve, curves, line, published_curve, ratio_axis, ratio_curve
 from analysis.figures.hover import Told
 from analysis.figures.labels import from_zero, label_ends, logarithmic_ticks, plain_ticks
@@ -181,15 +180,18 @@ def row(data: Data) -> Drawing | None:
     from_zero(above)
     against = reference(times)
     table = differences(times, against)
+    sizes = [f"{exact(x)} discs" for x in table["x"]]
+    said = differing(sizes, table)
     caption = (
         opening(times, "Alternate rows against the checkered pattern, over scene size at one density")
-        + differences_sentence(table, against)
+        + f" Time of row against {against}: {said} (Holm-corrected)."
         + against_reference(below, times, shown)
         + " The published study states that row wins on large scenes, without a number."
     )
     for axes in (above, below):
         plain_ticks(axes.xaxis)
-    return Drawing(figure, caption, named(table, against))
+    names = [f"{name} against {against}, {size}" for name, size in zip(table["series"], sizes, strict=True)]
+    return Drawing(figure, caption, table.assign(name=names))
 
 
 def grid_length(data: Data) -> Drawing | None:
