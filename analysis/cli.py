@@ -145,16 +145,14 @@ def _asked(options: argparse.Namespace) -> list[str]:
 def _claims(options: argparse.Namespace) -> int:
     from analysis import claims
     from analysis.commands.claims_told import told
-    from analysis.records import published
     from analysis.records.reading import load
-    from analysis.records.studies import split
 
-    studies = split(load(options.results))
-    if not studies:
+    found = claims.evidence_of(load(options.results))
+    if not found:
         raise InputError(f"{options.results}: no records yet (they are made by `make experiments`)")
-    for study in studies:
-        table = claims.evaluate(study, studies, published.load(), claims.load(options.results))
-        print(*told(study.name, table, verbose=options.verbose), sep="\n")
+    for one in found:
+        table = claims.evaluate(one, claims.load(options.results))
+        print(*told(one.study.name, table, verbose=options.verbose), sep="\n")
     if not options.verbose:
         print("What was measured, on what, and why it is open: carom claims --verbose")
     return 0

@@ -10,19 +10,18 @@ from analysis.claims import family, missing
 from analysis.claims.compilers import compilers
 from analysis.claims.counts import fewer_wasted_attempts
 from analysis.claims.curves import falls_then_rises, grows, linear, spike_then_linear
-from analysis.claims.entry import Claim, Evidence, load
+from analysis.claims.entry import Claim, Evidence, evidence_of, load
 from analysis.claims.machines import clock
-from analysis.claims.outcome import ELSEWHERE, FAILS, OPEN, Compared, Outcome, Verdict
+from analysis.claims.outcome import ELSEWHERE, FAILS, OPEN, PLAIN, Compared, Outcome, Verdict
 from analysis.claims.phases import phase_dominates
 from analysis.claims.ratios import pair
 from analysis.claims.scaling import scaling
 from analysis.claims.schedules import best_schedule
-from analysis.records.published import Published
 from analysis.records.studies import Study
 from analysis.support.wording import count, listed
 from support.errors import InputError
 
-__all__ = ["TESTS", "Claim", "Tested", "evaluate", "load"]
+__all__ = ["TESTS", "Claim", "Tested", "evaluate", "evidence_of", "load"]
 
 TESTS: dict[str, Callable[..., Outcome]] = {
     test.__name__: test
@@ -43,11 +42,7 @@ Tested = dict[str, tuple[object, Outcome]]
 
 
 def evaluate(
-    study: Study,
-    studies: Sequence[Study],
-    published: Published,
-    claimed: Sequence[Claim] | None = None,
-    remembered: Tested | None = None,
+    evidence: Evidence, claimed: Sequence[Claim] | None = None, remembered: Tested | None = None
 ) -> pd.DataFrame:
     """Return a row a claim, of those that are `claimed`, or of the published ones.
 
@@ -56,14 +51,14 @@ def evaluate(
     on and, where more can settle it, how many are `needed`; `name`, the claim in few words, and its
     `effects`, as published and as measured.
 
-    Everything is judged on the records of `study`, except the claim about machines, which needs all of them.
-    Those that are decided at its scale are corrected for their number (see `family`). Raises InputError
+    Everything is judged on the records of one study, except the claim about machines, which needs all of
+    them. Those that are decided at its scale are corrected for their number (see `family`). Raises InputError
     for a test that there is not.
 
     What was tested is `remembered` for the next time, and not tested again on the same records: whoever
     looks at a growing folder again and again pays for what is new.
     """
-    evidence = Evidence(study, studies, published)
+    study = evidence.study
     before = {} if remembered is None else remembered
     listed_claims = load() if claimed is None else claimed
     tested = [_at_scale(_remembered(evidence, one, before), one, study.scale) for one in listed_claims]
@@ -156,9 +151,9 @@ def _said(outcome: Outcome, claim: Claim, tested: tuple[int, ...], scale: str) -
     verdict = outcome.verdict
     if verdict == Verdict.OTHER_SCALE:
         return f"cannot be decided at {scale} scale"
-    plain = {elsewhere: plain for plain, elsewhere in ELSEWHERE.items()}.get(verdict)
-    if plain is None:
+    if verdict not in PLAIN:
         return str(verdict)
+    plain = PLAIN[verdict]
     at_scale = "" if scale in claim.scales else f" at {scale} scale"
     found = [one for one in outcome.effects if one.has_interval]
     if plain == FAILS and found and all(one.here.low < 1 < one.here.high for one in found):

@@ -1,6 +1,7 @@
 """The claim about compilers, each of which brings an OpenMP runtime of its own."""
 
 from dataclasses import replace
+from typing import Any
 
 import pandas as pd
 
@@ -26,28 +27,23 @@ def compilers(evidence: Evidence, experiment: str, candidate: str, reference: st
     if ours.empty or theirs[shared].empty:
         return no_records(experiment, candidate if ours.empty else CODE_ALONE)
     margin = evidence.margin(experiment)
-    outcome = _against(theirs[shared], ours, margin)
+    row, said = _against(theirs[shared], ours, margin)
+    verdict, names = told(row, "faster"), said.partition(":")[0]
+    measured = f"{said}, {blocks(row)} ({verdict})"
+    outcome = judged(row, "faster", measured, (Compared(f"time of {names}", "–", change(row)),))
+    effect = effect_of(f"{candidate} against {reference}", row, margin=margin)
+    outcome = replace(outcome, why=outcome.why or f"{verdict} with the same runtime", effects=(effect,))
     if theirs[~shared].empty:
         return outcome
-    beside = _told(theirs[shared], theirs[~shared], margin)
-    return replace(outcome, measured=f"{outcome.measured}; the runtime alone: {beside}")
+    runtimes, said = _against(theirs[shared], theirs[~shared], margin)
+    return replace(outcome, measured=f"{measured}; the runtime alone: {said} ({told(runtimes, 'faster')})")
 
 
-def _against(reference: pd.DataFrame, candidate: pd.DataFrame, margin: float) -> Outcome:
+def _against(reference: pd.DataFrame, candidate: pd.DataFrame, margin: float) -> tuple[dict[str, Any], str]:
+    """Return the row of the candidate's time against the reference's, and what it says."""
     pairs = log_ratios(reference, candidate)
     row = directed(pairs["log_ratio"], margin, stops=pairs["stops"])
-    said, names = told(row, "faster"), [_name(candidate), _name(reference)]
-    measured = f"{names[0]} against {names[1]}: {change(row)} of time, {blocks(row)} ({said})"
-    figure = Compared(f"time of {names[0]} against {names[1]}", "–", change(row))
-    outcome = judged(row, "faster", measured, (figure,))
-    effect = effect_of(" against ".join(name.split()[0] for name in names), row, margin=margin)
-    return replace(outcome, why=outcome.why or f"{said} with the same runtime", effects=(effect,))
-
-
-def _told(reference: pd.DataFrame, candidate: pd.DataFrame, margin: float) -> str:
-    pairs = log_ratios(reference, candidate)
-    row = directed(pairs["log_ratio"], margin, stops=pairs["stops"])
-    return f"{_name(candidate)} against {_name(reference)}: {change(row)} of time ({told(row, 'faster')})"
+    return row, f"{_name(candidate)} against {_name(reference)}: {change(row)} of time"
 
 
 def _name(side: pd.DataFrame) -> str:

@@ -46,12 +46,10 @@ def effect_of(
     what: str, row: Mapping[Any, Any] | None, published: float = nan, margin: float = MARGIN
 ) -> Effect:
     """Return the effect of a row of `verdicts.judge`, or of one that was not measured."""
-    here = NOT_MEASURED if row is None else interval_of_row(row)
-    return Effect(what, here, published, (1 / (1 + margin), 1 + margin))
-
-
-def interval_of_row(row: Mapping[Any, Any]) -> Interval:
-    """Return the ratio of a row of `verdicts.judge` with its interval, infinite on both sides if on one."""
+    within = 1 / (1 + margin), 1 + margin
+    if row is None:
+        return Effect(what, NOT_MEASURED, published, within)
     ends = float(row["low"]), float(row["high"])
     known = all(map(isfinite, ends))
-    return Interval(float(row["ratio"]), *(ends if known else (-inf, inf)))
+    # Infinite on both sides if on one.
+    return Effect(what, Interval(float(row["ratio"]), *(ends if known else (-inf, inf))), published, within)

@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from analysis.derived.comparisons import stated
+from analysis.records import published
 from analysis.records.published import Published
-from analysis.records.studies import Study
+from analysis.records.reading import Records
+from analysis.records.studies import Study, split
 from support.errors import InputError
 from support.vocabulary import SCALES
 
@@ -77,6 +79,12 @@ class Evidence:
     def margin(self, experiment: str) -> float:
         """Return the least difference that matters, as the experiment's question states it."""
         return stated(*self.study.of(experiment, "runs")).margin
+
+
+def evidence_of(records: Records) -> list[Evidence]:
+    """Return what the claims may look at in each study of the records, the one to show first at the front."""
+    studies, times = split(records), published.load()
+    return [Evidence(study, studies, times) for study in studies]
 
 
 def load(results: Path | None = None) -> list[Claim]:

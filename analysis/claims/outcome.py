@@ -39,6 +39,8 @@ ELSEWHERE = {
 }
 """A verdict, and what is left of it where the claim was made on other threads or at another scale."""
 
+PLAIN = {elsewhere: plain for plain, elsewhere in ELSEWHERE.items()}
+
 NO_RECORDS = "no records yet"
 SETTLES = {
     "faster": ("faster", "not faster"),
@@ -87,25 +89,13 @@ def no_records(experiment: str, missing: str = "") -> Outcome:
     return Outcome(OPEN, why=f"{NO_RECORDS}{detail} (experiment {experiment!r})", missing=True)
 
 
-def directed(
-    log_ratios: ArrayLike,
-    margin: float = MARGIN,
-    *,
-    once: bool = False,
-    biases: ArrayLike | None = None,
-    stops: ArrayLike | None = None,
-    error: float = ERROR,
-) -> dict[str, Any]:
-    """Return the row of `judge_one` with its `margin`, and the p-values of the ratio being less than 1 and
-    more than 1, by however little: `any_faster` and `any_slower`.
+def directed(log_ratios: ArrayLike, margin: float = MARGIN, **more: Any) -> dict[str, Any]:  # noqa: ANN401
+    """Return the row of `judge_one`, which takes `more`, with its `margin`, and the p-values of the ratio
+    being less than 1 and more than 1, by however little: `any_faster` and `any_slower`.
     """
-    level = judge_one(log_ratios, 0.0, error, once=once, biases=biases, stops=stops)
+    level = judge_one(log_ratios, 0.0, **more)
     any_change = {"any_faster": level["not_slower"], "any_slower": level["not_faster"]}
-    return {
-        **judge_one(log_ratios, margin, error, once=once, biases=biases, stops=stops),
-        "margin": margin,
-        **any_change,
-    }
+    return {**judge_one(log_ratios, margin, **more), "margin": margin, **any_change}
 
 
 def judged(

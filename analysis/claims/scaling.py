@@ -47,7 +47,7 @@ def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_m
     """
     processes = published_processes(evidence.study, experiment)
     if processes.empty:
-        effects = _effects(evidence, experiment, None, None, published_machine)
+        _, effects = _beside(evidence, experiment, [], processes, published_machine)
         return replace(no_records(experiment), effects=effects)
     study = evidence.study
     cores = study.cores or study.hardware_threads
@@ -56,8 +56,7 @@ def scaling(evidence: Evidence, experiment: str, flat_margin: float, published_m
     there = [stretch for stretch in stretches if stretch.start < stretch.end]
     tested = [_judged(stretch, processes, cores) for stretch in there]
     absent = [Outcome(OPEN, why=f"needs {one.needs}") for one in stretches if one not in there]
-    figures = _compared(evidence, experiment, stretches, processes, published_machine)
-    effects = _effects(evidence, experiment, stretches, processes, published_machine)
+    figures, effects = _beside(evidence, experiment, stretches, processes, published_machine)
     return both([*tested, *absent, Outcome(HOLDS, figures=figures, effects=effects)])
 
 
@@ -89,45 +88,27 @@ def _judged(stretch: Stretch, processes: pd.DataFrame, cores: int) -> Outcome:
     return replace(outcome, why=f"from {span} {told(row, stretch.expected)}, expected {stretch.expected}")
 
 
-def _compared(
+def _beside(
     evidence: Evidence, experiment: str, ours: list[Stretch], processes: pd.DataFrame, machine: str
-) -> tuple[Compared, ...]:
-    """Return each stretch's factor of time on the study's machine and on this one."""
-    curve = evidence.published.curve(experiment)
-    theirs = _published_stretches(evidence, experiment, machine)
-
-    def said(stretch: Stretch, one: pd.DataFrame) -> str:
-        if stretch.start >= stretch.end:
-            return "–"
-        return f"{factor(stretch.judge(one)['ratio'])} from {exact(stretch.start)} to {exact(stretch.end)}"
-
-    return tuple(
-        Compared(f"time {their.what}", said(their, curve), said(our, processes))
-        for their, our in zip(theirs, ours, strict=True)
-    )
-
-
-def _published_stretches(evidence: Evidence, experiment: str, machine: str) -> list[Stretch]:
+) -> tuple[tuple[Compared, ...], tuple[Effect, ...]]:
+    """Return the change of time over each stretch on the study's machine and, where it is, on this one: in
+    words, and as effects.
+    """
     curve = evidence.published.curve(experiment)
     size = evidence.published.machines.set_index("machine").loc[machine]
-    return _stretches(curve, int(size["cores"]), int(size["hardware_threads"]), MARGIN)
+    theirs = _stretches(curve, int(size["cores"]), int(size["hardware_threads"]), MARGIN)
+    figures, effects = [], []
+    for number, their in enumerate(theirs):
+        our = ours[number] if ours else None
+        published = their.judge(curve) if their.start < their.end else None
+        row = our.judge(processes) if our is not None and our.start < our.end else None
+        figures.append(Compared(f"time {their.what}", _said(their, published), _said(our, row)))
+        ratio = nan if published is None else float(published["ratio"])
+        effects.append(effect_of(their.what, row, ratio, MARGIN if our is None else our.margin))
+    return tuple(figures), tuple(effects)
 
 
-def _effects(
-    evidence: Evidence,
-    experiment: str,
-    ours: list[Stretch] | None,
-    processes: pd.DataFrame | None,
-    machine: str,
-) -> tuple[Effect, ...]:
-    """Return the change of time over each stretch; one that is not here is not measured."""
-    curve = evidence.published.curve(experiment)
-    found = []
-    for number, their in enumerate(_published_stretches(evidence, experiment, machine)):
-        our = None if ours is None else ours[number]
-        has_it = our is not None and processes is not None and our.start < our.end
-        row = our.judge(processes) if our is not None and processes is not None and has_it else None
-        published = their.judge(curve)["ratio"] if their.start < their.end else nan
-        margin = MARGIN if our is None else our.margin
-        found.append(effect_of(their.what, row, float(published), margin))
-    return tuple(found)
+def _said(stretch: Stretch | None, row: dict[str, Any] | None) -> str:
+    if stretch is None or row is None:
+        return "–"
+    return f"{factor(row['ratio'])} from {exact(stretch.start)} to {exact(stretch.end)}"

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from analysis.claims.alternatives import alternatives
-from analysis.claims.effects import Effect, effect_of
+from analysis.claims.effects import effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
 from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, directed, judged, no_records, told
@@ -16,6 +16,7 @@ from analysis.support.wording import blocks, change, count, exact, number, perce
 
 ONE_THREAD = "on a single thread a schedule shares nothing out: needs 2 hardware threads"
 
+EFFECTS = ("best other", "against the others")
 NOT_BETTER = {
     "equivalent": "equivalent to the others on average: it does not matter which is chosen",
     "slower": "slower than the others on average",
@@ -32,9 +33,10 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     choices, and so it does here. The average is that of the log ratios within each block.
     """
     processes = evidence.study.times_of(experiment)
-    theirs = _published_effects(evidence, experiment, schedule, chunk)
+    best_published, *ratios = _published(evidence, experiment, schedule, chunk)
     if processes.empty:
-        return replace(no_records(experiment), effects=theirs)
+        effects = tuple(effect_of(what, None, ratio) for what, ratio in zip(EFFECTS, ratios, strict=True))
+        return replace(no_records(experiment), effects=effects)
     kind = processes[axis].str.split("_").str[0]
     chosen = processes[(kind == schedule) & (processes["x"] == chunk)]
     others = processes.drop(chosen.index)
@@ -62,33 +64,32 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     fastest = _least(evidence.published.experiment(experiment), "seconds"), _least(medians, "steps_seconds")
     figures = (
         Compared("fastest measured", *fastest),
-        Compared(
-            "best other against the choice",
-            _best_other(evidence, experiment, schedule, chunk),
-            f"{best['name']}: {change(best)}",
-        ),
+        Compared("best other against the choice", best_published, f"{best['name']}: {change(best)}"),
     )
     against = f"against the others on average {change(average)} of time, {blocks(average)}"
     matters = judged(average, "faster", against)
     if matters.verdict == FAILS:
         matters = replace(matters, why=NOT_BETTER[told(average, "faster")])
-    measured_here = zip(theirs, (best, average), strict=True)
-    effects = tuple(effect_of(one.what, row, one.published, margin) for one, row in measured_here)
+    rows = zip(EFFECTS, (best, average), ratios, strict=True)
+    effects = tuple(effect_of(what, row, published, margin) for what, row, published in rows)
     return replace(both([found.outcome(measured), matters]), figures=figures, effects=effects)
 
 
-def _published_effects(
+def _published(
     evidence: Evidence, experiment: str, schedule: str, chunk: int
-) -> tuple[Effect, Effect]:
-    """Return the published best other against the choice, and that against the mean of the others."""
+) -> tuple[str, float, float]:  # fmt: skip
+    """Return the published best other against the choice, in words and as a ratio, and the choice against
+    the mean of the others.
+    """
     times = evidence.published.experiment(experiment)
     chosen = (times["series"] == schedule) & (times["x"] == chunk)
-    logs = np.log(times["seconds"])
-    best = mean = nan
-    if chosen.any() and not chosen.all():
-        choice, others = logs[chosen].iloc[0], logs[~chosen]
-        best, mean = np.exp(others.min() - choice), np.exp(choice - others.mean())
-    return effect_of("best other", None, float(best)), effect_of("against the others", None, float(mean))
+    if not chosen.any() or chosen.all():
+        return "–", nan, nan
+    choice, others = times.loc[chosen, "seconds"].iloc[0], times[~chosen]
+    best = others.loc[others["seconds"].idxmin()]
+    ratio = float(best["seconds"] / choice)
+    average = float(choice / np.exp(np.log(others["seconds"]).mean()))
+    return f"{best['series']} {exact(best['x'])}: {percent(ratio - 1)}", ratio, average
 
 
 def _least(table: pd.DataFrame, value: str) -> str:
@@ -96,15 +97,3 @@ def _least(table: pd.DataFrame, value: str) -> str:
         return "–"
     least = table.loc[table[value].idxmin()]
     return f"{least['series']} {exact(least['x'])}, {number(least[value], 4)} s"
-
-
-def _best_other(evidence: Evidence, experiment: str, schedule: str, chunk: int) -> str:
-    """Return the published best beside the choice, with its change of time."""
-    times = evidence.published.experiment(experiment)
-    chosen = (times["series"] == schedule) & (times["x"] == chunk)
-    if not chosen.any() or chosen.all():
-        return "–"
-    others = times[~chosen]
-    best = others.loc[others["seconds"].idxmin()]
-    ratio = best["seconds"] / times.loc[chosen, "seconds"].iloc[0]
-    return f"{best['series']} {exact(best['x'])}: {percent(ratio - 1)}"

@@ -6,7 +6,7 @@ from typing import Any
 
 from analysis.claims.effects import Effect
 from analysis.claims.missing import DECIDED
-from analysis.claims.outcome import ELSEWHERE, FAILS, HOLDS, IN_DIRECTION, Verdict
+from analysis.claims.outcome import FAILS, HOLDS, IN_DIRECTION, PLAIN, Verdict
 from analysis.statistics.intervals import FEWEST
 from analysis.support.wording import NO_BREAK, count, number
 
@@ -22,17 +22,14 @@ _IN_FULL = 100
 def mark(row: Mapping[str, Any]) -> str:
     """Return the sign of a row's verdict, in brackets if it was reached elsewhere than the claim was made."""
     verdict = row["verdict"]
-    if verdict in MARKS:
-        return MARKS[verdict]
-    plain = {elsewhere: one for one, elsewhere in ELSEWHERE.items()}.get(verdict)
-    if plain is not None:
-        return f"({MARKS[plain]})"
-    return UNMEASURED if row["missing"] else UNDECIDED
+    if verdict in PLAIN:
+        return f"({MARKS[PLAIN[verdict]]})"
+    return MARKS.get(verdict, UNMEASURED if row["missing"] else UNDECIDED)
 
 
 def colour_of(row: Mapping[str, Any]) -> str:
     """Return what a verdict is drawn as, wherever it was reached: holds, in_direction, fails or open."""
-    plain = {elsewhere: one for one, elsewhere in ELSEWHERE.items()}.get(row["verdict"], row["verdict"])
+    plain = PLAIN.get(row["verdict"], row["verdict"])
     return {HOLDS: "holds", IN_DIRECTION: "in_direction", FAILS: "fails"}.get(plain, "open")
 
 

@@ -10,9 +10,8 @@ import pandas as pd
 from analysis import claims
 from analysis.claims.missing import DECIDED
 from analysis.derived.comparisons import differences, reference, stated
-from analysis.records import published
 from analysis.records.reading import load
-from analysis.records.studies import Study, split
+from analysis.records.studies import Study
 from analysis.statistics.forecast import blocks_to_decide
 from analysis.statistics.looks import ERROR, next_look
 from analysis.support.wording import change
@@ -43,15 +42,15 @@ def open_questions(results: Path, remembered: claims.Tested | None = None) -> di
     error (`OPTIMISM`), up to `PATIENCE` blocks; beyond, it is neither open nor settled. What is `remembered`
     of an earlier look at the folder is not tested again.
     """
-    studies = split(load(results))
+    studies = claims.evidence_of(load(results))
     found: dict[str, Any] = {"open": {}, "settled": [], "said": {}}
     if not studies:
         return found
-    table = claims.evaluate(studies[0], studies, published.load(), claims.load(results), remembered)
+    table = claims.evaluate(studies[0], claims.load(results), remembered)
     decided = table[table["verdict"].isin(DECIDED)]
     found["said"] = {row.id: f"{row.said}: {row.measured}" for row in decided.itertuples()}
     claimed = {experiment for claim in claims.load(results) for experiment in claim.experiments}
-    items = [*_claims(table), *_comparisons(studies[0], claimed, found["said"])]
+    items = [*_claims(table), *_comparisons(studies[0].study, claimed, found["said"])]
     experiments = dict.fromkeys(experiment for experiment, _, _ in items)
     for experiment in experiments:
         own = [

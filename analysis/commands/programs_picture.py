@@ -11,9 +11,9 @@ from matplotlib.ticker import MaxNLocator
 
 from analysis.commands.programs_compared import asked, times_of
 from analysis.derived.comparisons import Stated, differences, reference, stated
-from analysis.figures.curves import bounded, difference, margin_band
-from analysis.figures.labels import name_rows, note
-from analysis.figures.style import BAND, FAINT, INK, PALETTE, WIDTH, Drawing, lighten, save, styled
+from analysis.figures.curves import forest
+from analysis.figures.labels import name_rows
+from analysis.figures.style import BAND, FAINT, PALETTE, Drawing, lighten, new_grid, save, styled
 from analysis.statistics.pairs import log_ratios
 from support.errors import InputError
 from support.vocabulary import AGAIN
@@ -51,8 +51,8 @@ def _rows(times: pd.DataFrame, against: str, cases: Sequence[str]) -> pd.DataFra
 def _figure(times: pd.DataFrame, table: pd.DataFrame, against: str, by: Stated) -> Figure:
     is_one_case = times["x"].nunique() == 1
     heights = [0.6 + _ROW * len(table)] + ([_BLOCKS_PANEL] if is_one_case else [])
-    figure = Figure(figsize=(WIDTH, sum(heights)))
-    panels = figure.subplots(len(heights), 1, squeeze=False, gridspec_kw={"height_ratios": heights})[:, 0]
+    figure, grid = new_grid(sum(heights), len(heights), height_ratios=heights)
+    panels = grid[:, 0]
     pairs = _pairs(times, against)
     _intervals(panels[0], table, pairs, by)
     panels[0].set_xlabel(f"change of time against {against}, %; dots: blocks; shaded: the margin")
@@ -75,18 +75,16 @@ def _pairs(times: pd.DataFrame, against: str) -> dict[tuple[str, float], pd.Seri
 def _intervals(
     axes: Axes, table: pd.DataFrame, pairs: dict[tuple[str, float], pd.Series], by: Stated
 ) -> None:
-    margin_band(axes, by.margin)
-    for height, row in enumerate(table.to_dict("records")):
+    rows = table.to_dict("records")
+    for height, row in enumerate(rows):
+        known = row["verdict"] if row["verdict"] != "inconclusive" else "not settled"
+        row |= {"at": height, "mark": "o", "said": "control" if row["is_control"] else known}
         blocks = pairs[row["series"], row["x"]]
-        at = difference(axes, row, height, row["name"], row["colour"], 2.2, zorder=4)
         pale = lighten(row["colour"], 0.6)
         axes.plot(blocks, np.full(len(blocks), height - 0.28), "o", color=pale, markersize=2, zorder=2)
-        known = row["verdict"] if row["verdict"] != "inconclusive" else "not settled"
-        said = "control" if row["is_control"] else known
-        note(axes, said, (at, height), (0, 5), ha="center", fontsize=7, color=INK)
+    forest(axes, rows, by.margin)
     name_rows(axes, list(table["name"]))
     axes.set_ylim(-0.7, len(table) - 0.2)
-    bounded(axes, by.margin)
 
 
 def _blocks(axes: Axes, table: pd.DataFrame, pairs: dict[tuple[str, float], pd.Series], by: Stated) -> None:

@@ -135,7 +135,8 @@ FIGURES = [
           f"{_EARLY} sequential order (track)"),
     _pair("self_contained_repeat", "Self-contained resolves, sequential (repeat)", "on", "off",
           f"{_EARLY} sequential order (repeat)"),
-    _own("sequential_orders", "Sequential orders", comparisons.sequential_orders),
+    _of_kind("sequential_orders", "Sequential orders", comparisons.comparison,
+             "The sequential resolve orders", published=comparisons.published_orders),
     _schedule("schedule_find", "Schedule for finding overlaps", "Schedules for finding overlaps"),
     _schedule("schedule_resolve", "Schedule for the checkered resolve",
               "Schedules for the checkered resolve"),
@@ -176,10 +177,9 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
 """How an experiment without a figure of its own is drawn, given its name and title, by its tag `figure`."""
 
 
-def draw(
-    data: Data, folder: Path, prefix: str = "", wanted: Sequence[str] = (), *, pdf: bool = False
-) -> Iterator[Drawn]:
-    """Draw every figure that the study has records for, or those of the experiments wanted, into the folder.
+def draw(data: Data, wanted: Sequence[str] = (), *, pdf: bool = False) -> Iterator[Drawn]:
+    """Draw every figure that the study has records for, or those of the experiments wanted, into the folder
+    `figures` of its results.
 
     Each is written as SVG, and as `pdf` if wanted, and marked as partial where planned records are missing.
     Several are drawn at once, one on each processor.
@@ -189,12 +189,13 @@ def draw(
     bias_sentence(data.study)  # before there are several processes, of which each would work it out
 
     def drawn(number: int) -> Drawn | None:
-        return _draw(entries[number], data, folder, f"{prefix}{entries[number].name}", pdf=pdf)
+        return _draw(entries[number], data, pdf=pdf)
 
     yield from filter(None, in_parallel(drawn, len(entries)))
 
 
-def _draw(entry: Entry, data: Data, folder: Path, name: str, *, pdf: bool) -> Drawn | None:
+def _draw(entry: Entry, data: Data, *, pdf: bool) -> Drawn | None:
+    name = f"{data.prefix}{entry.name}"
     with styled(name):
         drawing = entry.draw(data)
     if drawing is None:
@@ -204,7 +205,8 @@ def _draw(entry: Entry, data: Data, folder: Path, name: str, *, pdf: bool) -> Dr
     caption = f"{drawing.caption} {missing[0].upper()}{missing[1:]}." if missing else drawing.caption
     if drawing.verdicts is not None and data.study.times_of(entry.experiment)["in_turns"].all():
         caption += bias_sentence(data.study)
-    return Drawn(entry, caption, save(drawing, folder, name, pdf=pdf), drawing.verdicts, drawing.tables)
+    files = save(drawing, data.folder / "figures", name, pdf=pdf)
+    return Drawn(entry, caption, files, drawing.verdicts, drawing.tables)
 
 
 def further(study: Study) -> list[Entry]:

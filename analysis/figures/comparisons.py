@@ -1,36 +1,45 @@
-"""Any number of series against one of them: differences within blocks with a verdict each, and times beside
-them; and the sequential orders, with the published times on the same axis.
+"""Any number of series against one of them: differences within blocks with a verdict each, published ones on
+the same axis, and times beside them.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from analysis.derived.comparisons import USUAL, Stated, differences, reference, stated
 from analysis.figures.captions import differing, opening, time_axis
-from analysis.figures.curves import bounded, difference, dots, faint_dots, margin_band
-from analysis.figures.labels import name_rows, note
+from analysis.figures.curves import dots, forest
+from analysis.figures.hover import Told, point
+from analysis.figures.labels import name_rows
 from analysis.figures.league import league
 from analysis.figures.pairs import Sides, pair_drawing
-from analysis.figures.style import INK, Data, Drawing, Look, looks, new_figure
+from analysis.figures.style import INK, Data, Drawing, lighten, looks, new_figure
 from analysis.statistics.bootstrap import summarise
 from analysis.support.values import Row
-from analysis.support.wording import exact
+from analysis.support.wording import exact, number
+
+PublishedOf = Callable[[Data, pd.DataFrame, str], Mapping[str, float]]
+"""From the table of differences to the published ratios of series to the reference."""
+
+LIGHTER = " Lighter: the published medians with self-contained resolves, moved as one so that track is level."
 
 
-def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
-    """Draw the differences of an experiment's series from its reference, with a table of verdicts."""
+def comparison(
+    data: Data, experiment: str, subject: str, published: PublishedOf | None = None
+) -> Drawing | None:  # fmt: skip
+    """Draw the differences of an experiment's series from its reference, with a table of verdicts, and the
+    `published` ones on the same axis.
+    """
     times = data.study.times_of(experiment)
     if times.empty:
         return None
     against, by = reference(times), stated(times)
-    table = differences(times, against)
+    table = named(differences(times, against), against)
     ranked = league(data.study, experiment)
     tables = [ranked] if ranked else []
-    table["name"] = [f"{_label(row, table)} against {against}" for row in table.to_dict("records")]
     names = sorted(times["series"].unique(), key=lambda name: name == against)
     if len(names) == 2 and times["x"].nunique() == 1:
         sides = Sides(experiment, names[0], names[1], subject, (names[0], names[1]))
@@ -38,34 +47,21 @@ def comparison(data: Data, experiment: str, subject: str) -> Drawing | None:
         return drawing and replace(drawing, verdicts=table, tables=tables)
     summary = summarise(times, ["series", "x"]).iloc[::-1]
     summary["name"] = [_label(row, summary) for row in summary.to_dict("records")]
-    figure = _against(table, summary, against, time_axis(times), by)
+    theirs = published(data, table, against) if published else {}
+    figure, (left, right) = new_figure(0.8 + 0.36 * len(summary), columns=2, widths=[2.1, 1.0])
+    _differences(left, table, summary, by.margin, theirs)
+    left.set_xlabel(f"time against {against}, %")
+    dots(right, summary, "name", INK, named=False)
+    right.set_xlabel(time_axis(times))
     said = differences_sentence(table, against, by)
-    return Drawing(figure, opening(times, subject) + said, table, tables)
+    lighter = LIGHTER if theirs else ""
+    return Drawing(figure, f"{opening(times, subject)}{said}{lighter}", table, tables)
 
 
-def sequential_orders(data: Data) -> Drawing | None:
-    """Draw the sequential resolve orders against one of them, the published ones on the same axis."""
-    times = data.study.times_of("sequential_orders")
-    if times.empty:
-        return None
-    against = reference(times)
-    table = differences(times, against)
-    summary = summarise(times, ["series", "x"]).sort_values("median", ascending=False)
-    summary["name"] = summary["series"]
-    theirs = _published_orders(data, table, against)
-    figure = _against(table, summary, against, "time of the steps, s", USUAL, theirs)
-    caption = opening(times, "The sequential resolve orders") + differences_sentence(table, against)
-    if theirs:
-        caption += (
-            " Lighter: the published medians with self-contained resolves, moved as one so that track is "
-            "level."
-        )
-    names = [f"{series} against {against}" for series in table["series"]]
-    return Drawing(figure, caption, table.assign(name=names))
-
-
-def _published_orders(data: Data, table: pd.DataFrame, against: str) -> dict[str, float]:
-    """Return the published times as ratios, moved as one so that track is level with ours, if it is there."""
+def published_orders(data: Data, table: pd.DataFrame, against: str) -> dict[str, float]:
+    """Return the published times of the sequential orders, with self-contained resolves, as ratios, moved as
+    one so that track is level with ours, if it is there.
+    """
     seconds = {
         name: data.published.experiment(f"self_contained_{name}").query("series == 'on'")["seconds"].median()
         for name in ("track", "repeat")
@@ -76,18 +72,9 @@ def _published_orders(data: Data, table: pd.DataFrame, against: str) -> dict[str
     return {name: level["track"] * one / seconds["track"] for name, one in seconds.items() if name in level}
 
 
-def _against(
-    table: pd.DataFrame, summary: pd.DataFrame, against: str, label: str, by: Stated,
-    published: Mapping[str, float] | None = None,
-) -> Figure:  # fmt: skip
-    """Draw the differences, a row each, and the times beside them, small."""
-    figure, (left, right) = new_figure(0.8 + 0.36 * len(summary), columns=2, widths=[2.1, 1.0])
-    shown = looks([against, *dict.fromkeys(summary["series"])])
-    _differences(left, table, summary, by.margin, shown, published or {})
-    left.set_xlabel(f"time against {against}, %")
-    dots(right, summary, "name", INK, named=False)
-    right.set_xlabel(label)
-    return figure
+def named(table: pd.DataFrame, against: str) -> pd.DataFrame:
+    """Return the differences with what the report is to call each, its `name`."""
+    return table.assign(name=[f"{_label(row, table)} against {against}" for row in table.to_dict("records")])
 
 
 def differences_sentence(table: pd.DataFrame, against: str, by: Stated = USUAL) -> str:
@@ -108,18 +95,22 @@ def _whole(fraction: float) -> str:
 
 
 def _differences(
-    axes: Axes, table: pd.DataFrame, rows: pd.DataFrame, margin: float, shown: Mapping[str, Look],
-    published: Mapping[str, float],
+    axes: Axes, table: pd.DataFrame, rows: pd.DataFrame, margin: float, published: Mapping[str, float]
 ) -> None:  # fmt: skip
-    """Draw every difference with the interval that decides at the height of its row in the other panel."""
-    margin_band(axes, margin)
+    """Draw every difference with the interval that decides at the height of its row in the other panel, and
+    the published ones, lighter, below them.
+    """
     heights = {(row.series, row.x): height for height, row in enumerate(rows.itertuples())}
+    shown, drawn = looks(rows["series"]), []
     for row in table.to_dict("records"):
-        height, look = heights[row["series"], row["x"]], shown[row["series"]]
-        at = difference(axes, row, height, _label(row, table), look.colour, 2.0, marker=look.marker)
-        note(axes, row["verdict"], (at, height), (0, 6), ha="center", fontsize=7, color=INK)
-    known = {name: height for (name, _), height in heights.items()}
-    faint_dots(axes, [(known[name], 100 * (one - 1)) for name, one in published.items()], INK)
-    bounded(axes, margin)
+        look, at = shown[row["series"]], heights[row["series"], row["x"]]
+        told = {"name": _label(row, table), "said": row["verdict"], "at": at}
+        drawn.append({**row, **told, "colour": look.colour, "mark": look.marker})
+    forest(axes, drawn, margin)
+    for (name, _), height in heights.items():
+        if name in published:
+            change = 100 * (published[name] - 1)
+            faint: Any = {"color": lighten(INK), "markersize": 4, "zorder": 1}
+            point(axes, change, height - 0.2, "o", Told("published", number(change)), **faint)
     name_rows(axes, list(rows["name"]))
     axes.set_ylim(-0.5, len(rows) - 0.3)

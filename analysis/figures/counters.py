@@ -1,13 +1,14 @@
 """Quantities derived from counters, a figure a source, since sources are never mixed in one."""
 
+from itertools import zip_longest
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from analysis.derived.counters import QUANTITIES, derived
 from analysis.figures.labels import name_rows, note
-from analysis.figures.style import BLUE, INK, WIDTH, Data, Drawing
+from analysis.figures.style import BLUE, INK, Data, Drawing, new_grid
 from analysis.support.wording import count, number
 
 COLUMNS = 3
@@ -23,12 +24,11 @@ def panels(data: Data, source: str, subject: str) -> Drawing | None:
     quantities = list(dict.fromkeys(rows["quantity"]))
     series = list(dict.fromkeys(counters["series"]))[::-1]
     lines = -(-len(quantities) // COLUMNS)
-    figure = Figure(figsize=(WIDTH, lines * (0.6 + 0.2 * len(series))))
-    grid = figure.subplots(lines, COLUMNS, squeeze=False, sharey=True).ravel()
-    for axes, quantity in zip(grid, quantities, strict=False):
-        _bars(axes, rows[rows["quantity"] == quantity].set_index("series").reindex(series), quantity)
-    for axes in grid[len(quantities) :]:
-        axes.set_visible(False)
+    figure, grid = new_grid(lines * (0.6 + 0.2 * len(series)), lines, COLUMNS, sharey=True)
+    for axes, quantity in zip_longest(grid.ravel(), quantities):
+        axes.set_visible(quantity is not None)
+        if quantity is not None:
+            _bars(axes, rows[rows["quantity"] == quantity].set_index("series").reindex(series), quantity)
     runs = count(int(rows["runs"].max()), "run")
     caption = (
         f"{subject} of profiled runs, {runs} a series, summed over threads: medians, with lines from the "

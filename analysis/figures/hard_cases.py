@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from textwrap import fill
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -9,8 +10,8 @@ from matplotlib.axes import Axes
 
 from analysis.derived import hard_cases as cases
 from analysis.derived.hard_cases import AT_CONTACT, FAILS, HOLDS, LIMIT, UNMEASURED
-from analysis.figures.hover import Told, tell
-from analysis.figures.labels import key
+from analysis.figures.hover import Told, point
+from analysis.figures.labels import key, name_rows
 from analysis.figures.speed_against_error import power_of_ten
 from analysis.figures.style import BLUE, FAINT, INK, VERMILLION, Data, Drawing, new_figure
 from analysis.support.values import Cell, Table, table_of
@@ -58,16 +59,14 @@ def _dots(axes: Axes, table: pd.DataFrame, titles: list[str]) -> None:
         colour = COLOURS.get(row["precision"], INK)
         height = heights[row["title"]] - (0.14 if row["precision"] == "float" else -0.14)
         value = max(row["value"], zero)
-        inside = "white" if row["verdict"] == LIMIT else colour
-        (dot,) = axes.plot(value, height, "o", color=colour, markerfacecolor=inside, markersize=3.5, zorder=3)
+        look: Any = {"color": colour, "mfc": "white" if row["verdict"] == LIMIT else colour, "zorder": 3}
         bound = "" if pd.isna(row["bound"]) else f" (bound {row['bound']:.1e})"
         told = Told(f"{row['case']}, {row['series']}: {row['verdict']}", f"{row['value']:.1e}{bound}")
-        tell(dot, [told])
+        point(axes, value, height, "o", told, markersize=3.5, **look)
         if pd.notna(row["bound"]):
             axes.plot([max(row["bound"], zero)] * 2, [height - 0.14, height + 0.14], color=INK, linewidth=1.1)
     axes.set_xscale("log")
-    axes.set_yticks(list(heights.values()), [title.replace("_", " ") for title in heights])
-    axes.tick_params(axis="y", length=0)
+    name_rows(axes, [title.replace("_", " ") for title in heights], list(heights.values()))
     axes.set_xlabel("what stands to the right of each case; relative where it has no unit")
     powers = range(round(np.log10(zero)) + 1, int(np.floor(np.log10(axes.get_xlim()[1]))) + 1)
     axes.set_xticks([zero, *(10.0**power for power in powers if power % 2 == 0)])

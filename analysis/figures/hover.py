@@ -8,6 +8,7 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -34,6 +35,12 @@ _TOLD: WeakKeyDictionary[Line2D, Sequence[Told]] = WeakKeyDictionary()
 def tell(line: Line2D, points: Iterable[Told]) -> None:
     """Give each point of a line, in their order, the words that it tells in the SVG."""
     _TOLD[line] = list(points)
+
+
+def point(axes: Axes, x: float, y: float, mark: str, told: Told, **look: Any) -> None:  # noqa: ANN401
+    """Draw a point that tells something."""
+    (drawn,) = axes.plot(x, y, mark, **look)
+    tell(drawn, [told])
 
 
 def identify(figure: Figure) -> list[Line2D]:

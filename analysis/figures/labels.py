@@ -95,12 +95,6 @@ def note(axes: Axes, text: str, at: tuple[float, float], by: tuple[float, float]
     axes.annotate(text, at, xytext=by, textcoords="offset points", **look)
 
 
-def label_row(axes: Axes, text: str, height: float, above: float, colour: str, size: float = 7) -> None:
-    """Write what a row shows above it, in the middle of the axes."""
-    beside: Any = {"xycoords": ("axes fraction", "data"), "ha": "center"}
-    note(axes, text, (0.5, height), (0, above), color=colour, fontsize=size, **beside)
-
-
 def plain_ticks(axis: Axis, values: Sequence[float] | None = None) -> None:
     """Write the ticks as plain numbers, thousands grouped, also on a logarithmic axis."""
     if values is not None:
@@ -111,21 +105,12 @@ def plain_ticks(axis: Axis, values: Sequence[float] | None = None) -> None:
 
 
 def percent_ticks(axis: Axis) -> None:
-    """Write the ticks of an axis of ratios as changes in per cent."""
-    axis.set_major_locator(_PercentLocator())
-    axis.set_major_formatter(
-        FuncFormatter(lambda value, _: exact(round(100 * (value - 1), 6)).replace("-", "−"))
-    )
-
-
-class _PercentLocator(MaxNLocator):
-    """Puts ticks at whole changes in per cent."""
-
-    def __init__(self) -> None:
-        super().__init__(nbins=6, steps=[1, 2, 2.5, 5, 10])
-
-    def tick_values(self, vmin: float, vmax: float) -> Any:  # noqa: ANN401
-        return 1 + np.asarray(super().tick_values(100 * (vmin - 1), 100 * (vmax - 1))) / 100
+    """Put whole changes in per cent on an axis of ratios. Call it when its limits are settled."""
+    low, high = (100 * (end - 1) for end in axis.get_view_interval())
+    ticks = np.asarray(MaxNLocator(nbins=6, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high))
+    axis.set_major_locator(FixedLocator(list(1 + ticks / 100)))
+    said = FuncFormatter(lambda value, _: exact(round(100 * (value - 1), 6)).replace("-", "−"))
+    axis.set_major_formatter(said)
 
 
 def logarithmic_ticks(axis: Axis, most: int = 7) -> None:

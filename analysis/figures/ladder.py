@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from analysis.derived.ladder import RUNG, claims, factors, rungs, scene_title, speed_up, tables_of, totals
-from analysis.figures.hover import Told, tell
-from analysis.figures.labels import logarithmic_ticks
-from analysis.figures.style import FAINT, GREEN, INK, VERMILLION, WIDTH, Data, Drawing, lighten
+from analysis.figures.hover import Told, point
+from analysis.figures.labels import logarithmic_ticks, name_rows
+from analysis.figures.style import FAINT, GREEN, INK, VERMILLION, Data, Drawing, lighten, new_grid
 from analysis.statistics.verdicts import MARGIN
 from analysis.support.values import Row, Table, table_of
 from analysis.support.wording import count, interval_of, number, share
@@ -63,13 +63,12 @@ def _panels(scenes: int, rows: int) -> tuple[Figure, list[tuple[Axes, Axes]]]:
     """Return a pair of axes a scene: one for the bars, one for the figures beside them."""
     columns = min(scenes, COLUMNS)
     lines = math.ceil(scenes / columns)
-    figure = Figure(figsize=(WIDTH, lines * (0.85 + ROW_HEIGHT * rows)))
-    ratios = [1.0, 1.3] * columns
-    grid = figure.subplots(lines, 2 * columns, squeeze=False, gridspec_kw={"width_ratios": ratios}).ravel()
-    for axes in grid[2 * scenes :]:
-        axes.set_visible(False)
-    pairs = list(zip(grid[::2], grid[1::2], strict=True))[:scenes]
-    return figure, pairs
+    height = lines * (0.85 + ROW_HEIGHT * rows)
+    figure, grid = new_grid(height, lines, 2 * columns, width_ratios=[1.0, 1.3] * columns)
+    axes = grid.ravel()
+    for unused in axes[2 * scenes :]:
+        unused.set_visible(False)
+    return figure, list(zip(axes[::2], axes[1::2], strict=True))[:scenes]
 
 
 def _bars(axes: Axes, rows: list[Row], names: pd.Series, has_both_ends: bool) -> None:
@@ -84,8 +83,8 @@ def _bars(axes: Axes, rows: list[Row], names: pd.Series, has_both_ends: bool) ->
             left, right = sorted((row["before"], row["nanoseconds"]))
             axes.barh(height, right - left, left=left, color=colour, height=0.55, zorder=2)
         axes.plot([row["low"], row["high"]], [height, height], color=INK, linewidth=1.4, zorder=3)
-        (dot,) = axes.plot(row["nanoseconds"], height, "o", color=INK, markersize=3, zorder=4)
-        tell(dot, [Told(names[row["series_number"]], interval_of(row, "nanoseconds"))])
+        told = Told(names[row["series_number"]], interval_of(row, "nanoseconds"))
+        point(axes, row["nanoseconds"], height, "o", told, color=INK, markersize=3, zorder=4)
     if has_both_ends:
         first, last = rows[0]["nanoseconds"], rows[-1]["nanoseconds"]
         left, width = min(first, last), abs(first - last)
@@ -94,8 +93,7 @@ def _bars(axes: Axes, rows: list[Row], names: pd.Series, has_both_ends: bool) ->
     spec = axes.get_subplotspec()
     labelled = spec is None or spec.is_first_col()
     ticks = [*heights.values(), -len(names)]
-    axes.set_yticks(ticks, [*names, "in all"] if labelled else [""] * len(ticks))
-    axes.tick_params(axis="y", length=0)
+    name_rows(axes, [*names, "in all"] if labelled else [""] * len(ticks), ticks)
     axes.set_xlabel("time per disc and step, ns")
     logarithmic_ticks(axes.xaxis, most=4)
 

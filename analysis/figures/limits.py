@@ -4,25 +4,21 @@ from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from analysis.derived.ladder import named, scene_title
 from analysis.derived.limits import ARITHMETIC, COPY, against_limits
 from analysis.derived.unavoidable import PHASES
-from analysis.figures.hover import Told, tell
+from analysis.figures.hover import Told, point
 from analysis.figures.labels import key, note, plain_ticks
-from analysis.figures.style import BLUE, FAINT, INK, ORANGE, WIDTH, Data, Drawing, lighten
-from analysis.support.values import Row
+from analysis.figures.style import BLUE, FAINT, INK, ORANGE, Data, Drawing, lighten, new_grid
 from analysis.support.wording import count, number, share
 
-LIMITS = {COPY: (BLUE, "<"), ARITHMETIC: (ORANGE, "d")}
-NAMES = {COPY: "least by copying", ARITHMETIC: "least by arithmetic", "wall": "measured"}
-KEY = [
-    ("◂ least by copying", BLUE),
-    ("◆ least by arithmetic", ORANGE),
-    ("● measured, and the least in % of it", INK),
-    ("% of it waiting", FAINT),
-]
+DOTS = {
+    COPY: ("least by copying", "<", "◂", BLUE),
+    ARITHMETIC: ("least by arithmetic", "d", "◆", ORANGE),
+    "wall": ("measured", "o", "●", INK),
+}
+"""What is drawn of a phase, by column: what it is called, its mark, that of the key, and its colour."""
 
 
 def phases_against_limits(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -35,15 +31,16 @@ def phases_against_limits(data: Data, experiment: str, subject: str) -> Drawing 
     series = list(dict.fromkeys(runs.sort_values("series_number")["series"]))
     known = set(zip(table["series"], table["phase"], strict=True))
     rows = [(name, phase) for name in series for phase in PHASES if (name, phase) in known]
-    figure = Figure(figsize=(WIDTH, 1.0 + 0.21 * len(rows) + 0.1 * len(series)))
-    grid = figure.subplots(1, len(scenes), squeeze=False, sharey=True)[0]
+    height = 1.0 + 0.21 * len(rows) + 0.1 * len(series)
+    figure, [grid] = new_grid(height, 1, len(scenes), sharey=True)
     for axes, scene in zip(grid, scenes, strict=True):
         _panel(axes, table[table["scene_name"] == scene], rows)
         axes.set_title(" ", pad=16)
         axes.tick_params(axis="y", length=0)
         note(axes, scene_title(runs, scene), (0, 1), (0, 4), xycoords="axes fraction")
     _names(grid[0], rows)
-    key(grid[0], KEY, raised=16)
+    entries = [(f"{sign} {name}", colour) for name, _, sign, colour in DOTS.values()]
+    key(grid[0], [*entries, ("the least in % of it", INK), ("% of it waiting", FAINT)], raised=16)
     return Drawing(figure, _caption(subject, table, runs))
 
 
@@ -60,10 +57,10 @@ def _panel(axes: Axes, table: pd.DataFrame, rows: list[tuple[str, str]]) -> None
         height = heights[row["series"], row["phase"]]
         ends = [row["least"], row["wall"]]
         axes.plot(ends, [height, height], color=lighten(FAINT), linewidth=2.5, zorder=1)
-        for limit, (colour, marker) in LIMITS.items():
-            if row[limit] > 0:
-                _dot(axes, row, height, limit, marker, colour)
-        _dot(axes, row, height, "wall", "o", INK)
+        for column, (name, mark, _, colour) in DOTS.items():
+            told = Told(f"{row['series']}, {row['phase']}: {name}", number(row[column]))
+            if row[column] > 0:
+                point(axes, row[column], height, mark, told, color=colour, markersize=4, zorder=4)
         waiting = 1 - row["busy"] / row["wall"]
         for right, part, colour in ((5, row["reached"], INK), (38, waiting, FAINT)):
             at = row["wall"], height
@@ -71,11 +68,6 @@ def _panel(axes: Axes, table: pd.DataFrame, rows: list[tuple[str, str]]) -> None
     axes.set_xlim(axes.get_xlim()[0], axes.get_xlim()[1] * 6)
     axes.set_xlabel("time per disc and step, ns")
     plain_ticks(axes.xaxis)
-
-
-def _dot(axes: Axes, row: Row, height: float, column: str, marker: str, colour: str) -> None:
-    (dot,) = axes.plot(row[column], height, marker, color=colour, markersize=4, zorder=4)
-    tell(dot, [Told(f"{row['series']}, {row['phase']}: {NAMES[column]}", number(row[column]))])
 
 
 def _percent(fraction: float) -> str:

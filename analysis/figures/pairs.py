@@ -13,9 +13,9 @@ from matplotlib.ticker import MaxNLocator
 
 from analysis.derived.comparisons import USUAL, Stated
 from analysis.figures.captions import PROCESSES, SCENES, opening, time_axis
-from analysis.figures.curves import bounded, difference, margin_band
-from analysis.figures.hover import Told, tell
-from analysis.figures.labels import label_ends, label_row, name_rows, note, plain_ticks
+from analysis.figures.curves import forest, line
+from analysis.figures.hover import Told
+from analysis.figures.labels import label_ends, name_rows, note, plain_ticks
 from analysis.figures.style import INK, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.statistics.pairs import PAIR, log_ratios
 from analysis.statistics.verdicts import MARGIN, judge_one
@@ -53,7 +53,9 @@ def pair_drawing(
     if work and (times["question_kind"] == COUNTS).all():
         return _of_counts(data, sides)
     theirs = data.published.ratio(sides.experiment, sides.candidate, sides.reference)
-    figure, axes = new_figure(2.3, columns=2 + (theirs is not None) + work, widths=_widths(theirs, work))
+    # The ratio has most of the room.
+    widths = [2.1, 1.0, *([0.9] if theirs else []), *([0.9] if work else [])]
+    figure, axes = new_figure(2.3, len(widths), widths)
     # Of several scenes of a sweep, one value a block.
     pairs = log_ratios(both[1], both[0], match=("x",)).groupby(PAIR, as_index=False, sort=False)
     pairs = pairs[["log_ratio", "bias", "stops"]].mean()
@@ -65,18 +67,15 @@ def pair_drawing(
     shown = _shown(sides)
     _by_block(axes[1], {sides.names[0]: candidate, sides.names[1]: reference}, shown, time_axis(times))
     if theirs:
-        _published_panel(axes[2], runs, sides, shown)
+        axes[2].set(xlabel="repetition", ylabel="time of the process, s", title="published")
+        of_names = dict(zip((sides.candidate, sides.reference), sides.names, strict=True))
+        _times(axes[2], runs.assign(name=runs["series"].map(of_names)), "seconds", shown, published=True)
     if work:
         _work(axes[-1], data, sides)
     dots = SCENES if times["x"].nunique() > 1 else PROCESSES
     said = _sentences(row, theirs, sides, by)
     verdicts = pd.DataFrame([{**row, "name": f"{sides.names[0]} against {sides.names[1]}"}])
     return Drawing(figure, opening(times, sides.subject, dots) + said + lost_by_turns(pairs), verdicts)
-
-
-def _widths(theirs: Mapping[str, Any] | None, work: bool) -> list[float]:
-    """Return how wide the panels are: the ratio has most of the room."""
-    return [2.1, 1.0, *([0.9] if theirs else []), *([0.9] if work else [])]
 
 
 def _shown(sides: Sides) -> dict[str, Look]:
@@ -117,54 +116,34 @@ def _by_block(
     axes: Axes, curves: dict[str, pd.DataFrame], shown: Mapping[str, Look], label: str
 ) -> None:  # fmt: skip
     axes.set(xlabel="block", ylabel=label, title="measured")
-    both = pd.concat(curves)
+    both = pd.concat(curves, names=["name"]).reset_index("name")
     # Nodes number their blocks alike: they stand one after another.
-    both["position"] = 1 + both.groupby(PAIR).ngroup()
+    both["x"] = 1 + both.groupby(PAIR).ngroup()
+    _times(axes, both, "steps_seconds", shown)
+
+
+def _times(
+    axes: Axes, runs: pd.DataFrame, value: str, shown: Mapping[str, Look], *, published: bool = False
+) -> None:
+    """Draw the times of both sides, by `name`, over blocks or repetitions, `x`, small."""
     labels = []
-    for name in curves:
-        ordered = both.loc[name].sort_values("position")
-        _runs(axes, ordered["position"], ordered["steps_seconds"], name, shown[name])
-        labels.append((name, ordered["steps_seconds"].iloc[-1], shown[name].colour))
-    _small(axes, both["position"].max(), labels)
-
-
-def _published_panel(
-    axes: Axes, published: pd.DataFrame, sides: Sides, shown: Mapping[str, Look]
-) -> None:  # fmt: skip
-    axes.set(xlabel="repetition", ylabel="time of the process, s", title="published")
-    labels = []
-    for series, name in zip((sides.candidate, sides.reference), sides.names, strict=True):
-        run = published[published["series"] == series]
-        look = shown[name]._replace(colour=lighten(shown[name].colour))
-        _runs(axes, run["x"], run["seconds"], f"{name}, published", look)
-        labels.append((name, run["seconds"].iloc[-1], lighten(shown[name].colour, 0.35)))
-    _small(axes, published["x"].max(), labels)
-
-
-def _small(axes: Axes, last: float, labels: Sequence[tuple[str, float, str]]) -> None:
-    """Settle the axes of a small panel of times over blocks or repetitions."""
+    for name, look in shown.items():
+        own = runs[runs["name"] == name].sort_values("x")
+        lighter = look._replace(colour=lighten(look.colour)) if published else look
+        told = f"{name}, published" if published else name
+        points = [
+            Told(told, exact(one), number(other)) for one, other in zip(own["x"], own[value], strict=True)
+        ]
+        size = 2.5 if len(own) <= MANY else 1.2
+        line(axes, own["x"], own[value], lighter, points, markersize=size, linewidth=0.8)
+        ink = lighten(look.colour, 0.35) if published else look.colour
+        labels.append((name.replace(" with ", "\nwith "), own[value].iloc[-1], ink))
     axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
     axes.yaxis.set_major_locator(MaxNLocator(5))
     axes.margins(y=0.15)
     # With one block alone the axis would be too short for a whole number.
-    axes.set_xlim(0.5, last + 0.5)
-    label_ends(
-        axes, [(name.replace(" with ", "\nwith "), at, colour) for name, at, colour in labels], size=6.5
-    )
-
-
-def _runs(axes: Axes, x: pd.Series, seconds: pd.Series, name: str, look: Look) -> None:
-    size = 2.5 if len(x) <= MANY else 1.2
-    (line,) = axes.plot(
-        x,
-        seconds,
-        color=look.colour,
-        marker=look.marker,
-        linestyle=look.dashes,
-        markersize=size,
-        linewidth=0.8,
-    )
-    tell(line, [Told(name, exact(one), number(other)) for one, other in zip(x, seconds, strict=True)])
+    axes.set_xlim(0.5, runs["x"].max() + 0.5)
+    label_ends(axes, labels, size=6.5)
 
 
 def ratio_panel(
@@ -174,15 +153,16 @@ def ratio_panel(
     """Draw the ratio as a dot with the interval on which the verdict rests, the published one below it, and
     below either the ratios of `each` of its blocks or runs.
     """
-    margin_band(axes, margin)
     entries = [("measured", ours, INK)] + ([("published", theirs, lighten(INK, 0.4))] if theirs else [])
     heights = [float(len(entries) - place) for place in range(1, len(entries) + 1)]
+    rows = []
     for height, (name, row, colour) in zip(heights, entries, strict=True):
-        is_bare = name == "published" and np.isinf(row["high"])
-        shown = {**row, "low": np.nan, "high": np.nan} if is_bare else row
-        difference(axes, shown, height, name, colour, 2.6, markeredgecolor="white", zorder=4)
-        label_row(axes, change(row), height, 9, colour)
-    bounded(axes, margin)
+        # Three published runs have no interval, which is no fault of theirs.
+        bare = {"low": np.nan, "high": np.nan} if name == "published" and np.isinf(row["high"]) else {}
+        rows.append({**row, **bare, "at": height, "name": name, "colour": colour, "mark": "o", "said": ""})
+        beside: Any = {"xycoords": ("axes fraction", "data"), "ha": "center", "fontsize": 7, "color": colour}
+        note(axes, change(row), (0.5, height), (0, 9), **beside)
+    forest(axes, rows, margin, width=2.6)
     low, high = axes.get_xlim()
     for height, ratios, (_, _, colour) in zip(heights, each, entries, strict=False):
         blocks = 100 * (ratios[(100 * (ratios - 1) > low) & (100 * (ratios - 1) < high)] - 1)

@@ -8,8 +8,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from analysis.figures.captions import differing, opening
-from analysis.figures.curves import curve, published_curve, ratio_band, ratio_curve, reach
-from analysis.figures.labels import SIGNS, from_zero, key, note, percent_ticks, plain_ticks
+from analysis.figures.curves import curve, published_curve, ratio_axis, ratio_curve
+from analysis.figures.labels import SIGNS, from_zero, key, note, plain_ticks
 from analysis.figures.style import BLUE, FAINT, ORANGE, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.figures.sweeps import stacked
 from analysis.records.studies import Study
@@ -88,12 +88,8 @@ def _entries(
         first = times["x"].min()
         seconds = times.query("x == @first")["steps_seconds"].median()
         name = series if len(parts) > 1 else "measured"
-        entries.append(
-            (
-                f"{SIGNS[shown[series].marker]} {name}, {number(seconds)} s on {count(int(first), 'thread')}",
-                shown[series].colour,
-            )
-        )
+        said = f"{name}, {number(seconds)} s on {count(int(first), 'thread')}"
+        entries.append((f"{SIGNS[shown[series].marker]} {said}", shown[series].colour))
     if published:
         entries.append(("● published", lighten(BLUE, 0.4)))
     entries.append(("- - ideal", FAINT))
@@ -111,9 +107,11 @@ def oversubscription(data: Data) -> Drawing | None:
     above.set_ylabel("time of the steps, s")
     from_zero(above)
     reference = times[times["x"] == times.loc[times["x"] <= hardware, "x"].max()]
-    pairs = log_ratios_by_x(reference, times[times["x"] > hardware])
-    table = judge(pairs, ["x"])
-    _against_hardware(below, table, reference)
+    table = judge(log_ratios_by_x(reference, times[times["x"] > hardware]), ["x"])
+    own = pd.DataFrame([{"x": x, "ratio": 1.0} for x in reference["x"].unique()], columns=table.columns)
+    ratios = pd.concat([own, table], ignore_index=True) if len(table) else own
+    ratio_axis(below, ratios, "all hardware threads")
+    ratio_curve(below, ratios, Look(BLUE))
     _thread_axis(below, sorted(times["x"].unique()), times["x"].unique())
     limits(above, data.study, named=True)
     limits(below, data.study, named=False)
@@ -121,18 +119,6 @@ def oversubscription(data: Data) -> Drawing | None:
     caption = opening(times, "Time with more threads than the machine has hardware threads")
     against = f" Against {count(hardware, 'thread')}, as many as there are: {said}." if said else ""
     return Drawing(figure, caption + against)
-
-
-def _against_hardware(axes: Axes, table: pd.DataFrame, reference: pd.DataFrame) -> None:
-    """Draw the ratios to as many threads as the machine has in per cent."""
-    own = pd.DataFrame([{"x": x, "ratio": 1.0} for x in reference["x"].unique()], columns=table.columns)
-    table = pd.concat([own, table], ignore_index=True) if len(table) else own
-    within = reach(table)
-    axes.set_ylim(*within)
-    ratio_band(axes)
-    ratio_curve(axes, table, Look(BLUE), within)
-    percent_ticks(axes.yaxis)
-    axes.set_ylabel("time against\nall hardware threads, %")
 
 
 def limits(axes: Axes, study: Study, named: bool) -> None:
@@ -161,9 +147,9 @@ def _thread_axis(axes: Axes, values: list[float], ticks: Iterable[float] = THREA
 def _published(panels: Sequence[Axes], published: pd.DataFrame) -> None:
     if published.empty:
         return
-    x, seconds = published["x"].to_numpy(), published["seconds"].to_numpy()
-    speed = seconds[0] / seconds
-    for axes, y in zip(panels, (seconds / seconds[0], speed, speed * x[0] / x), strict=True):
+    x, first = published["x"], published["seconds"].iloc[0]
+    speed = first / published["seconds"]
+    for axes, y in zip(panels, (1 / speed, speed, speed * x.iloc[0] / x), strict=True):
         published_curve(axes, x, y, Look(BLUE))
 
 
@@ -186,16 +172,13 @@ def _greatest(series: str, speed_ups: pd.DataFrame, named: bool, cores: int) -> 
 
 
 def _sentences(study: Study, published: bool) -> str:
-    said = (
-        f" The machine has {study.cores or 'an unknown number of'} cores and {study.hardware_threads} "
-        "hardware threads (dotted)."
+    theirs = (
+        " Lighter: the published series, relative to its own single thread (10 cores, 20 hardware threads)."
     )
-    if published:
-        said += (
-            " Lighter: the published series, relative to its own single thread (10 cores, 20 hardware "
-            "threads)."
-        )
-    return said
+    return (
+        f" The machine has {study.cores or 'an unknown number of'} cores and {study.hardware_threads} "
+        f"hardware threads (dotted).{theirs if published else ''}"
+    )
 
 
 def _law_sentence(law: ScalabilityLaw | None) -> str:

@@ -17,7 +17,7 @@ from analysis.figures.captions import opening
 from analysis.figures.hover import Told, tell
 from analysis.figures.labels import HOLLOW_SIGNS, SIGNS, key, label_points, logarithmic_ticks, plain_ticks
 from analysis.figures.layout import when_laid_out
-from analysis.figures.style import FAINT, INK, Data, Drawing, Look, lighten, looks, new_figure
+from analysis.figures.style import FAINT, INK, Data, Drawing, Look, lighten, looks, new_grid
 from analysis.support.values import Cell, Interval, Row, Table, table_of
 from analysis.support.wording import NO_BREAK, exact, interval, number
 
@@ -41,7 +41,7 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     if table.empty or not (table["error"] > 0).any():
         return None
     scenes = dict(list(table.groupby("scene_name", sort=False)))
-    figure, panels = new_figure(3.0, columns=len(scenes))
+    figure, [panels] = new_grid(3.0, 1, len(scenes), sharex=True, sharey=True)
     shown = _looks(table)
     zero = 10 ** np.floor(np.log10(table.loc[table["error"] > 0, "error"].min()) - 1)
     labels: dict[str, list[Label]] = {}
@@ -52,7 +52,7 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
         axes.set(xscale="log", yscale="log")
         corner: Any = {"xycoords": "axes fraction", "ha": "right", "va": "top"}
         axes.annotate(_panel_name(str(scene), part), (1, 1), fontsize=7, color=INK, **corner)
-    _share_limits(panels, (table["error"] <= 0).any(), zero)
+    _settle_limits(panels[0], (table["error"] <= 0).any(), zero)
     panels[0].set_ylabel("time per unit of simulated time, ms")
     figure.supxlabel(measure.label, fontsize=8, color=INK)
     entries = [
@@ -116,24 +116,21 @@ def _panel_name(scene: str, part: pd.DataFrame) -> str:
     return f"{scene}, {fraction}" if scene else fraction
 
 
-def _share_limits(panels: list[Axes], has_zero: bool, zero: float) -> None:
-    """Give all panels the same axes, with errors of exactly 0 at the left edge, so named."""
-    limits = [
-        (min(low for low, _ in ends), max(high for _, high in ends))
-        for ends in ([one.get_xlim() for one in panels], [one.get_ylim() for one in panels])
-    ]
-    powers = range(int(np.ceil(np.log10(limits[0][0]))), int(np.floor(np.log10(limits[0][1]))) + 1)
+def _settle_limits(axes: Axes, has_zero: bool, zero: float) -> None:
+    """Leave room for what is written in the panels, which share their axes; errors of exactly 0 stand at the
+    left edge, so named.
+    """
+    (low, high), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    powers = range(int(np.ceil(np.log10(low))), int(np.floor(np.log10(high))) + 1)
     every = max(1, -(-len(powers) // MOST_POWERS))
     ticks = [10.0**power for power in powers if power % every == 0 and not (has_zero and 10.0**power <= zero)]
-    for axes in panels:
-        axes.set(xlim=(limits[0][0] * 0.7, limits[0][1] * 1.2), ylim=(limits[1][0], limits[1][1] * 1.6))
-        axes.tick_params(labelleft=axes is panels[0])
-        axes.set_xticks([zero, *ticks] if has_zero else ticks)
-        logarithmic_ticks(axes.yaxis)
-        plain_ticks(axes.xaxis)
-        axes.xaxis.set_major_formatter(
-            lambda value, _: "0" if has_zero and value <= zero else power_of_ten(value)
-        )
+    axes.set(xlim=(low * 0.7, high * 1.2), ylim=(bottom, top * 1.6))
+    axes.set_xticks([zero, *ticks] if has_zero else ticks)
+    logarithmic_ticks(axes.yaxis)
+    plain_ticks(axes.xaxis)
+    axes.xaxis.set_major_formatter(
+        lambda value, _: "0" if has_zero and value <= zero else power_of_ten(value)
+    )
 
 
 def power_of_ten(value: float) -> str:

@@ -1,5 +1,6 @@
 """The look that all figures share, and what a figure function returns."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,11 +14,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 
+from analysis.claims.entry import Evidence
 from analysis.figures.hover import identify, with_titles
 from analysis.figures.layout import lay_out
 from analysis.records.plans import planned_runs
-from analysis.records.published import Published
-from analysis.records.studies import Study
 from analysis.support.values import Table
 from support.files import replacing
 
@@ -44,33 +44,20 @@ _LOOKS = [
     Look(SKY, "P", (0, (6, 2))),
 ]
 _THINGS: Mapping[str, int] = {
-    "published": 0,
-    "checkered": 0,
-    "four": 0,
-    "four boxes": 0,
-    "on": 0,
-    "A": 0,
-    "guided": 0,
-    "g++ with libomp": 0,
-    "row": 1,
-    "nine": 1,
-    "nine boxes": 1,
-    "off": 1,
-    "self_contained_off": 1,
-    "A-again": 1,
-    "A again": 1,
-    "dynamic": 1,
-    "clang++ with libomp": 1,
-    "fastest": 2,
-    "sorted": 2,
-    "track": 2,
-    "static": 2,
-    "repeat": 3,
-    "g++ with libgomp": 3,
-    "once": 4,
-    "forward": 0,
-    "reverse": 1,
-}
+    name: look
+    for look, names in enumerate(
+        [
+            ("published", "checkered", "four", "four boxes", "on", "A", "guided", "forward",
+             "g++ with libomp"),
+            ("row", "nine", "nine boxes", "off", "self_contained_off", "A-again", "A again", "dynamic",
+             "clang++ with libomp", "reverse"),
+            ("fastest", "sorted", "track", "static"),
+            ("repeat", "g++ with libgomp"),
+            ("once",),
+        ]
+    )
+    for name in names
+}  # fmt: skip
 """Which look a thing has in all figures; one that is not here gets the first that is left."""
 
 INK, FAINT, BAND = "#222222", "#8a8a8a", "#ececec"
@@ -107,13 +94,16 @@ SETTINGS: Any = {
 
 
 @dataclass(frozen=True)
-class Data:
+class Data(Evidence):
     """What a figure may draw from: the study shown, all studies, the published one, the results folder."""
 
-    study: Study
-    studies: Sequence[Study]
-    published: Published
     folder: Path
+
+    @property
+    def prefix(self) -> str:
+        """What the names of the study's files begin with: nothing of the first one."""
+        name = re.sub(r"[^a-z0-9]+", "-", self.study.name.lower()).strip("-")
+        return "" if self.study is self.studies[0] else f"{name}-"
 
 
 @dataclass(frozen=True)
@@ -159,9 +149,14 @@ def new_figure(
     height: float, columns: int = 1, widths: Sequence[float] | None = None
 ) -> tuple[Figure, list[Axes]]:
     """Return a figure of the common width with a row of axes."""
+    figure, grid = new_grid(height, 1, columns, width_ratios=widths)
+    return figure, list(grid[0])
+
+
+def new_grid(height: float, lines: int, columns: int = 1, **more: Any) -> tuple[Figure, Any]:  # noqa: ANN401
+    """Return a figure of the common width with lines of axes; `more` is for `Figure.subplots`."""
     figure = Figure(figsize=(WIDTH, height))
-    axes = figure.subplots(1, columns, squeeze=False, gridspec_kw={"width_ratios": widths or [1] * columns})
-    return figure, list(axes[0])
+    return figure, figure.subplots(lines, columns, squeeze=False, **more)
 
 
 def partial(data: Data, experiment: str) -> str | None:

@@ -12,32 +12,28 @@ from matplotlib.figure import Figure
 from analysis.derived.comparisons import PUBLISHED, differences, differences_from, reference, stated
 from analysis.derived.ladder import per_disc_step, speed_up
 from analysis.figures.captions import differing, growth_sentence, minimum_sentence, opening, time_axis
-from analysis.figures.curves import curve, curves, published_curve, ratio_band, ratio_curve, reach
-from analysis.figures.hover import Told, tell
-from analysis.figures.labels import from_zero, label_ends, logarithmic_ticks, percent_ticks, plain_ticks
+from analysis.figures.curves import curve, curves, line, published_curve, ratio_axis, ratio_curve
+from analysis.figures.hover import Told
+from analysis.figures.labels import from_zero, label_ends, logarithmic_ticks, plain_ticks
 from analysis.figures.style import (
     BLUE,
     FAINT,
     GREEN,
-    INK,
-    WIDTH,
     Data,
     Drawing,
     Look,
     lighten,
     looks,
     new_figure,
-)  # fmt: skip
+    new_grid,
+)
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import log_ratios, ratios_of
-from analysis.statistics.verdicts import error_of_picked, judge, judge_one
+from analysis.statistics.verdicts import error_of_picked, judge_one
 from analysis.support.wording import exact, interval_of, number
 
 SAME_RANGE = 0.75
 GRID_LENGTH, OVER_GRID_LENGTH = "grid_length", "Time over the side length"
-
-FAR = 1.6
-"""Times the least ratio from which the greatest is shown as a factor, not in per cent."""
 
 
 def density(data: Data) -> Drawing | None:
@@ -51,8 +47,8 @@ def density(data: Data) -> Drawing | None:
     left.set_ylabel("time of the steps, s")
     runs = data.study.runs_of("density")
     resolves = (runs["pair_resolves"] / (runs["particles"] * runs["steps"])).groupby(runs["x"]).median()
-    (line,) = right.plot(resolves.index, resolves, color=GREEN, marker="o")
-    tell(line, [Told("", exact(float(str(x))), number(count)) for x, count in resolves.items()])
+    told = [Told("", exact(float(str(x))), number(count)) for x, count in resolves.items()]
+    line(right, resolves.index.to_series(), resolves, Look(GREEN), told)
     right.set_ylabel("pair resolves per disc and step")
     for axes in (left, right):
         axes.set_xlabel("area fraction of the discs, N π r² / L²")
@@ -74,10 +70,9 @@ def trend(
     times = data.study.times_of(experiment)
     if times.empty:
         return None
-    summary = summarise(times, ["series", "x"])
     shown = looks(sorted(times["series"].unique()))
     figure, (above, below) = stacked(label or times["x_name"].iloc[0].replace("_", " "))
-    ends = curves(above, summary, shown)
+    ends = curves(above, summarise(times, ["series", "x"]), shown)
     above.set_ylabel(time_axis(times))
     from_zero(above)
     plain_ticks(above.xaxis)
@@ -95,23 +90,22 @@ def trend(
 
 def stacked(label: str, height: float = 3.7) -> tuple[Figure, tuple[Axes, Axes]]:
     """Return a figure with the axes of the times above those of the ratios, over the x that `label` names."""
-    figure = Figure(figsize=(WIDTH, height))
-    above, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": [1.0, 1.25]})
+    figure, [[above], [below]] = new_grid(height, 2, sharex=True, height_ratios=[1.0, 1.25])
     below.set_xlabel(label)
     return figure, (above, below)
 
 
 def against_reference(axes: Axes, times: pd.DataFrame, shown: Mapping[str, Look]) -> str:
-    """Draw the ratio of each series to the reference at the same x in per cent; say what it shows."""
+    """Draw the ratio of each series to the reference at the same x; say what it shows."""
     against = reference(times)
-    table, margin = differences(times, against), stated(times).margin
-    within = reach(table, margin)
-    ratio_band(axes, margin)
-    parts = {str(series): part for series, part in table.groupby("series")}
-    for series, part in parts.items():
-        ratio_curve(axes, part, shown[series], within)
-    label_ends(axes, [(name, _last(part), shown[name].colour) for name, part in parts.items()])
-    _relative(axes, within, against)
+    table = differences(times, against)
+    ratio_axis(axes, table, against, stated(times).margin)
+    labels = []
+    for series, part in table.groupby("series"):
+        look = shown[str(series)]
+        ratio_curve(axes, part, look)
+        labels.append((str(series), _last(part), look.colour))
+    label_ends(axes, labels)
     return (
         f" Below: ratios to {against} at the same x, of pairs within blocks, with the intervals that "
         "decide. The margin is shaded."
@@ -121,33 +115,27 @@ def against_reference(axes: Axes, times: pd.DataFrame, shown: Mapping[str, Look]
 def _against_own(axes: Axes, times: pd.DataFrame, published: pd.DataFrame, look: Look) -> str:
     """Draw the ratios of one series to its time at one x, the published ones beside them; say which."""
     at = level_of(times, published)
-    table, margin = differences_from(times, times["x"] == at), stated(times).margin
     own = pd.DataFrame([{"x": at, "ratio": 1.0, "low": 1.0, "high": 1.0}])
-    table = pd.concat([table, own], ignore_index=True)
-    theirs, at_theirs = _published_ratios(published, at)
-    within = reach(pd.concat([table, theirs]), margin)
-    ratio_band(axes, margin)
-    ratio_curve(axes, table, look, within)
-    _relative(axes, within, f"that at {exact(at)}")
+    table = pd.concat([differences_from(times, times["x"] == at), own], ignore_index=True)
+    at_theirs = at if at in set(published["x"]) else float(published["x"].min())
+    theirs = published_ratios(published, published["x"] == at_theirs)
+    ratio_axis(axes, pd.concat([table, theirs]), f"that at {exact(at)}", stated(times).margin)
+    ratio_curve(axes, table, look)
     said = (
         f" Below: ratios to the time at {exact(at)}, of pairs within blocks, with the intervals that decide."
     )
     if theirs.empty:
         return said
-    labels = [
-        ("measured", _last(table), look.colour),
-        ("published", _last(theirs), lighten(look.colour, 0.35)),
-    ]
-    if ranges_agree(times["x"], published["x"]):
-        published_curve(axes, theirs["x"].to_list(), theirs["ratio"].to_list(), look)
-    else:
-        upper = axes.twiny()
-        upper.spines["top"].set_visible(True)
-        upper.tick_params(axis="x", colors=FAINT)
-        published_curve(upper, theirs["x"].to_list(), theirs["ratio"].to_list(), look)
-        plain_ticks(upper.xaxis)
-        upper.set_xlabel("published", color=FAINT, fontsize=7)
-    label_ends(axes, labels)
+    beside = axes
+    if not ranges_agree(times["x"], published["x"]):
+        beside = axes.twiny()
+        beside.spines["top"].set_visible(True)
+        beside.tick_params(axis="x", colors=FAINT)
+        beside.set_xlabel("published", color=FAINT, fontsize=7)
+    published_curve(beside, theirs["x"], theirs["ratio"], look)
+    plain_ticks(beside.xaxis)
+    ends = (("measured", table, look.colour), ("published", theirs, lighten(look.colour, 0.35)))
+    label_ends(axes, [(name, _last(part), colour) for name, part, colour in ends])
     return f"{said} Lighter: the published ratios on the same axis, to the time at {exact(at_theirs)}."
 
 
@@ -166,28 +154,11 @@ def level_of(times: pd.DataFrame, published: pd.DataFrame) -> float:
     return float(times["x"].min())
 
 
-def _published_ratios(published: pd.DataFrame, at: float) -> tuple[pd.DataFrame, float]:
-    """Return the published ratios and the x that they are to: `at`, or else the smallest one."""
-    if published.empty:
-        return pd.DataFrame(columns=["x", "ratio", "low", "high"], dtype=float), at
-    if at not in set(published["x"]):
-        at = float(published["x"].min())
-    level = published.loc[published["x"] == at, "seconds"].iloc[0]
-    return published.assign(ratio=published["seconds"] / level, low=np.nan, high=np.nan), at
-
-
-def _relative(axes: Axes, within: tuple[float, float], against: str) -> None:
-    """Let the vertical axis show ratios: in per cent, or as factors on a logarithmic axis."""
-    if within[1] < FAR * within[0]:
-        axes.set_ylim(*within)
-        percent_ticks(axes.yaxis)
-        axes.set_ylabel(f"time against\n{against}, %")
-        return
-    axes.set_yscale("log", base=2)
-    axes.set_ylim(*within)
-    axes.minorticks_off()
-    logarithmic_ticks(axes.yaxis, most=9)
-    axes.set_ylabel(f"time relative\nto {against}")
+def published_ratios(published: pd.DataFrame, chosen: pd.Series) -> pd.DataFrame:
+    """Return the published times as ratios to the one chosen, without intervals; none where none is."""
+    level = published.loc[chosen, "seconds"]
+    ratio = published["seconds"] / (level.iloc[0] if len(level) else np.nan)
+    return published.assign(ratio=ratio, low=np.nan, high=np.nan).dropna(subset="ratio")
 
 
 def ranges_agree(ours: pd.Series, published: pd.Series) -> bool:
@@ -201,28 +172,25 @@ def row(data: Data) -> Drawing | None:
     times = data.study.times_of("row")
     if times.empty:
         return None
-    scaled = summarise(per_disc_step(times), ["series", "x"], value="nanoseconds")
     shown = looks(sorted(times["series"].unique()))
     figure, (above, below) = stacked("discs")
-    label_ends(above, curves(above, scaled, shown))
+    summary = summarise(per_disc_step(times), ["series", "x"], value="nanoseconds")
+    label_ends(above, curves(above, summary, shown))
     above.set(xscale="log", ylabel="time per disc\nand step, ns")
     from_zero(above)
-    table = judge(ratios_of(times, "order", "checkered", "row", match=("x",)), ["x"])
-    within = reach(table)
-    below.set_ylim(*within)
-    ratio_band(below)
-    ratio_curve(below, table.assign(series="row"), shown.get("row", Look(INK)), within)
-    percent_ticks(below.yaxis)
-    below.set_ylabel("time of row\nagainst checkered, %")
-    for axes in (above, below):
-        plain_ticks(axes.xaxis)
-    said = differing((f"{exact(x)} discs" for x in table["x"]), table)
+    against = reference(times)
+    table = differences(times, against)
+    sizes = [f"{exact(x)} discs" for x in table["x"]]
+    said = differing(sizes, table)
     caption = (
         opening(times, "Alternate rows against the checkered pattern, over scene size at one density")
-        + f" Time of row against checkered: {said} (Holm-corrected, margin shaded). The published study "
-        "states that row wins on large scenes, without a number."
+        + f" Time of row against {against}: {said} (Holm-corrected)."
+        + against_reference(below, times, shown)
+        + " The published study states that row wins on large scenes, without a number."
     )
-    names = [f"row against checkered, {exact(x)} discs" for x in table["x"]]
+    for axes in (above, below):
+        plain_ticks(axes.xaxis)
+    names = [f"{name} against {against}, {size}" for name, size in zip(table["series"], sizes, strict=True)]
     return Drawing(figure, caption, table.assign(name=names))
 
 
@@ -265,7 +233,7 @@ def _published_moved(
     factor = ours["median"].median() / published["seconds"].median()
     moved = published["seconds"] * factor
     look = shown[str(ours["series"].iloc[0])]
-    published_curve(axes, published["x"].to_list(), moved.to_list(), look)
+    published_curve(axes, published["x"], moved, look)
     said = f"as published, {number(published['seconds'].iloc[-1])} s"
     return said, float(moved.iloc[-1]), lighten(look.colour, 0.4)
 

@@ -5,11 +5,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from analysis.figures.labels import key, name_rows, note
 from analysis.figures.phases import PHASE_COLOURS
-from analysis.figures.style import FAINT, INK, WIDTH, Data, Drawing, lighten
+from analysis.figures.style import FAINT, INK, Data, Drawing, lighten, new_grid
 from analysis.records import timelines
 from analysis.support.wording import count, number, scene_in_words, share
 
@@ -31,9 +30,9 @@ def timeline(data: Data) -> Drawing | None:
     steps = [timelines.one_step(one.spans) for one in found]
     longest = 1e3 * max(step["end"].max() for step in steps)
     rows = [int(step["thread"].nunique()) for step in steps]
-    figure = Figure(figsize=(WIDTH, 0.6 + sum(0.45 + 0.22 * count for count in rows)))
-    ratios = {"height_ratios": rows}
-    grid = figure.subplots(len(found), 1, squeeze=False, sharex=True, gridspec_kw=ratios)[:, 0]
+    height = 0.6 + sum(0.45 + 0.22 * count for count in rows)
+    figure, columns = new_grid(height, len(found), sharex=True, height_ratios=rows)
+    grid = columns[:, 0]
     for axes, title, step in zip(grid, titles, steps, strict=True):
         _gantt(axes, step, longest)
         axes.set_title(" ", pad=3)

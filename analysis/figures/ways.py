@@ -3,6 +3,7 @@ either knows them. And programs that are stopped now and then, against the same 
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,7 +12,7 @@ from matplotlib.axes import Axes
 from analysis.derived.pauses import ratios as pause_ratios
 from analysis.derived.ways import APART, TURNS, Comparison, comparisons, overall, said
 from analysis.figures.captions import PROCESSES, opening
-from analysis.figures.hover import Told, tell
+from analysis.figures.hover import Told, point
 from analysis.figures.labels import SIGNS, key, logarithmic_ticks, name_rows
 from analysis.figures.style import BLUE, FAINT, VERMILLION, Data, Drawing, Look, new_figure
 from analysis.support.values import Interval, Table, table_of
@@ -55,10 +56,8 @@ def _interval(axes: Axes, value: Interval, height: float, name: str, look: Look,
     """Draw a log ratio in per cent."""
     estimate, low, high = 100 * (np.exp(value) - 1)
     axes.plot([low, high], [height, height], color=look.colour, linewidth=1.4)
-    (dot,) = axes.plot(
-        estimate, height, look.marker, color=look.colour, mfc=inside or look.colour, markersize=4
-    )
-    tell(dot, [Told(name, said(value))])
+    dot: Any = {"color": look.colour, "mfc": inside or look.colour, "markersize": 4}
+    point(axes, estimate, height, look.marker, Told(name, said(value)), **dot)
 
 
 def _widths(axes: Axes, found: list[Comparison]) -> None:
@@ -66,16 +65,8 @@ def _widths(axes: Axes, found: list[Comparison]) -> None:
     for way, look in LOOKS.items():
         for one in found:
             widths = one.half_widths(way)
-            (line,) = axes.plot(
-                widths["seconds"],
-                100 * widths["half"],
-                color=look.colour,
-                linestyle=look.dashes,
-                linewidth=0.9,
-            )
-            spent = [f"{number(seconds)} s" for seconds in widths["seconds"]]
-            half = [f"{number(100 * part)} %" for part in widths["half"]]
-            tell(line, [Told(f"{one.name}, {way}", *both) for both in zip(spent, half, strict=True)])
+            drawn: Any = {"color": look.colour, "linestyle": look.dashes, "linewidth": 0.9}
+            axes.plot(widths["seconds"], 100 * widths["half"], **drawn)
     for axis in (axes.xaxis, axes.yaxis):
         logarithmic_ticks(axis)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from analysis.records.known import Known
+from analysis.records import known
 from support.errors import InputError
 
 MEASURED = ["runs", "times", "trajectory", "phases", "threads", "counters"]
@@ -40,7 +40,7 @@ class Records(Tables):
     skipped: list[str]
 
 
-_KNOWN: dict[Path, Known] = {}
+_KNOWN: dict[Path, dict[str, known.File]] = {}
 """By folder, as long as this process lives: whoever loads a growing folder again and again pays for what is
 new.
 """
@@ -55,10 +55,8 @@ def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
     if not results.is_dir():
         raise InputError(f"{results}: no such folder (records are made by `make experiments`)")
     place = results.resolve()
-    known = _KNOWN.pop(place, None) or Known.kept(place)
-    known.bring_up_to_date(place)
-    _KNOWN[place] = known
-    skipped = known.problems(results)
+    files = _KNOWN[place] = known.read(place, _KNOWN.get(place, {}))
+    skipped = [f"{results / name}: skipped: {why}" for name, why in known.told(files) if why is not None]
     for line in skipped:
         warn(line) if warn else print(line, file=sys.stderr)
-    return Records(**known.frames(), skipped=skipped)
+    return Records(**known.frames(files), skipped=skipped)

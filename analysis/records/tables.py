@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from analysis.statistics.pairs import rounds_of, runs_of
 from analysis.statistics.returning import excess
-from analysis.support.values import Floats
 
 Record = dict[str, Any]
 Row = dict[str, Any]
 
+_RUNS, _ROUNDS = runs_of("steps_seconds"), rounds_of("steps_seconds")
 TAGS = [
     "experiment", "series", "x_name", "x", "block", "position", "session", "scale", "site", "point",
     "label", "scene_name", "series_number", "figure", "title", "points_planned", "blocks_planned",
@@ -42,7 +43,6 @@ ERRORS = [
     "pressure_reference", "speed_distance",
 ]  # fmt: skip
 CHECKS = ["has_errors", "check_verdict", "check_scope", "check_reason", "repetitions", "process_seconds"]
-PLACE = ["file", "machine", "experiment", "scale", "scene_name", "session"]
 NO_SCENE: dict[str, Any] = {"name": "", "sha256": "", **dict.fromkeys(SCENE)}
 """Of a program that is about something else than discs."""
 CONTEXT = [
@@ -53,7 +53,7 @@ CONTEXT = [
 ]  # fmt: skip
 OF_PARTS = {
     "runs": [*WORK, *ERRORS, *CHECKS],
-    "times": ["lost_by_turns", "stops", "own_seconds"],
+    "times": ["lost_by_turns", "stops", "own_seconds", "steps_seconds", _RUNS, _ROUNDS],
     "trajectory": ["time", "rms_distance"],
     "phases": ["phase", "wall_seconds", "serial_seconds"],
     "threads": ["phase", "thread", "busy_seconds", "waiting_seconds"],
@@ -66,7 +66,9 @@ ALONE = {
     "failures": ["file", *TAGS, "command", "exit_code", "reason", "recorded_at", "owner", "program_sha256"],
 }  # fmt: skip
 """The tables of records of other kinds, each made by the function of its name."""
-FLOATS = {"runs": [*ERRORS, "pair_attempts"], "trajectory": ["rms_distance"]}
+FLOATS = {
+    "runs": [*ERRORS, "pair_attempts"], "times": ["steps_seconds"], "trajectory": ["rms_distance"],
+}  # fmt: skip
 """Columns that are numbers, NaN where nothing is known, even where that is everywhere."""
 
 
@@ -161,30 +163,23 @@ def trajectory(record: Record) -> Iterable[Row]:
 def times(record: Record) -> Iterable[Row]:
     """Give one row for a process that was timed: `lost_by_turns`, the share of its time that coming back to
     cold caches took, and `stops`, in how many slices a run of a whole program was, 0 if it was never stopped;
-    NaN where not known. `own_seconds` is the median of its runs less what they waited for a processor.
+    NaN where not known. `steps_seconds` is the median of its runs, whose times are beside it, and those of
+    its turns, run by run, if it took any; of a whole process they are its own, as seen from outside or as it
+    says itself. `own_seconds` is the median of the runs less what they waited for a processor.
     """
-    if len(seconds_of_runs(record)):
-        waited = [one.get("waited_seconds") for one in record["repetitions"]]
-        own = seconds_of_runs(record) - np.array(waited, dtype=float)
-        yield {
-            "lost_by_turns": _lost_by_turns(record),
-            "stops": _stops(record),
-            "own_seconds": float(np.median(own)),
-        }
-
-
-def seconds_of_runs(record: Record) -> Floats:
-    """Return the seconds of the steps of each timed run of a process in their order. Of a whole process they
-    are its own, as seen from outside or as it says itself.
-    """
-    is_timed = record["kind"] in ("bench", "process")
-    return np.array([one["steps_seconds"] for one in record["repetitions"]] if is_timed else [], dtype=float)
-
-
-def seconds_of_rounds(record: Record) -> Floats:
-    """Return the seconds of each turn of a process, run by run; none where it took none."""
+    if record["kind"] not in ("bench", "process") or not record["repetitions"]:
+        return
+    seconds = np.array([one["steps_seconds"] for one in record["repetitions"]], dtype=float)
+    waited = np.array([one.get("waited_seconds") for one in record["repetitions"]], dtype=float)
     turns = record.get("turns") or {}
-    return np.array(turns["seconds"] if "rounds" in turns else [], dtype=float)
+    yield {
+        "lost_by_turns": _lost_by_turns(record),
+        "stops": _stops(record),
+        "own_seconds": float(np.median(seconds - waited)),
+        "steps_seconds": float(np.median(seconds)),
+        _RUNS: seconds,
+        _ROUNDS: np.array(turns["seconds"] if "rounds" in turns else [], dtype=float),
+    }
 
 
 def _lost_by_turns(record: Record) -> float:

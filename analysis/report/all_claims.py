@@ -15,7 +15,8 @@ from matplotlib.patches import Patch, Rectangle
 from analysis import claims
 from analysis.claims.effects import Effect
 from analysis.claims.summary import colour_of, mark
-from analysis.figures.studies import prefix_of
+from analysis.figures.curves import arrow, span
+from analysis.figures.studies import data_of
 from analysis.figures.style import (
     BAND,
     BLUE,
@@ -30,18 +31,16 @@ from analysis.figures.style import (
     save,
     styled,
 )
-from analysis.records import published
 from analysis.records.reading import load
-from analysis.records.studies import split
 
 NAME = "claims"
 LOOK = {
-    "holds": (BLUE, "o"),
-    "in_direction": (SKY, "o"),
-    "fails": (VERMILLION, "s"),
-    "open": ("#b4b4b4", "o"),
+    "holds": (BLUE, "o", "measured, 95 % interval: holds"),
+    "in_direction": (SKY, "o", "holds in direction, maybe by little"),
+    "fails": (VERMILLION, "s", "does not hold"),
+    "open": ("#b4b4b4", "o", "not decided"),
 }
-"""The colour and the mark of what a verdict says; of one that is open the mark is hollow."""
+"""Colour and mark of a verdict, and what the key says of it; of one that is open the mark is hollow."""
 PUBLISHED_LOOK: Any = {"markerfacecolor": "none", "markersize": 4.6, "markeredgewidth": 0.8}
 PALE_INK = "#6e6e6e"
 """Of the names of what is open: pale, and still to be read."""
@@ -65,13 +64,14 @@ class Layout:
     below: float
     ticks: Sequence[int]
     is_narrow: bool
-    letters: float = 7
 
 
 WIDE = Layout(WIDTH, 3.55, 0.125, 0.05, 0.62, TICKS, is_narrow=False)
 NARROW = Layout(3.2, 1.24, 0.14, 0.2, 0.74, FEWER_TICKS, is_narrow=True)
 ABOVE, RIGHT = 0.2, 0.12
 """Inches beside the axes."""
+LETTERS = 7
+"""The size of names, in points."""
 SCALES = {
     True: "change of time, %",
     False: f"change of time, % (linear up to {LINEAR} %, logarithmic beyond)",
@@ -90,14 +90,8 @@ def all_claims(table: pd.DataFrame, layout: Layout = WIDE) -> Drawing | None:
     figure = Figure(figsize=(layout.width, height + ABOVE + layout.below))
     figure.set_layout_engine("none")
     whole = figure.get_figheight()
-    axes = figure.add_axes(
-        (
-            layout.left / layout.width,
-            layout.below / whole,
-            1 - (layout.left + RIGHT) / layout.width,
-            height / whole,
-        )
-    )
+    width = 1 - (layout.left + RIGHT) / layout.width
+    axes = figure.add_axes((layout.left / layout.width, layout.below / whole, width, height / whole))
     _axis(axes, rows, layout, height)
     top = 0.0
     for row in rows:
@@ -136,12 +130,11 @@ def _claim(axes: Axes, row: Mapping[Any, Any], top: float, layout: Layout) -> No
     """Draw the rows of a claim below `top`, with its name and those of its effects."""
     look = colour_of(row)
     ink = {"open": PALE_INK, "fails": VERMILLION}.get(look, INK)
-    size = layout.letters
     first = top + layout.gap + layout.row / 2
     name = f"{mark(row)} {row['name']}"
     place = axes.get_yaxis_transform()
     in_figure = -layout.left / (layout.width - layout.left - RIGHT)
-    look_of_name: Any = {"transform": place, "size": size, "color": ink, "va": "center"}
+    look_of_name: Any = {"transform": place, "size": LETTERS, "color": ink, "va": "center"}
     if layout.is_narrow:
         # On white, since the line of no difference runs below it.
         look_of_name["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
@@ -151,44 +144,22 @@ def _claim(axes: Axes, row: Mapping[Any, Any], top: float, layout: Layout) -> No
         axes.axhline(top + layout.gap / 2, color=BAND, linewidth=0.5, zorder=0)
     for number, effect in enumerate(row["effects"]):
         height = first + number * layout.row
-        ends = [_per_cent(end) for end in effect.within]
-        axes.add_patch(
-            Rectangle(
-                (ends[0], height - layout.row / 2),
-                ends[1] - ends[0],
-                layout.row,
-                color=BAND,
-                linewidth=0,
-                zorder=0,
-            )
-        )
+        low, high = map(_per_cent, effect.within)
+        corner = low, height - layout.row / 2
+        axes.add_patch(Rectangle(corner, high - low, layout.row, color=BAND, linewidth=0, zorder=0))
         if len(row["effects"]) > 1 or effect.is_exponent or layout.is_narrow:
-            axes.text(
-                -0.02,
-                height,
-                effect.what,
-                transform=place,
-                size=size - 1,
-                color=PALE_INK,
-                ha="right",
-                va="center",
-            )
+            beside: Any = {"transform": place, "size": LETTERS - 1, "color": PALE_INK, "va": "center"}
+            axes.text(-0.02, height, effect.what, ha="right", **beside)
         _effect(axes, effect, height, look)
 
 
 def _effect(axes: Axes, effect: Effect, height: float, look: str) -> None:
-    colour, shape = LOOK[look]
+    colour, shape, _ = LOOK[look]
     if effect.has_interval:
-        ends = [_per_cent(end) for end in effect.here[1:]]
-        shown = [_inside(axes, end) for end in ends]
-        axes.plot(shown, [height, height], color=colour, linewidth=2.2, solid_capstyle="butt", zorder=2)
-        for end in ends:
-            _arrow(axes, end, height, colour)
+        span(axes, _per_cent(effect.here.low), _per_cent(effect.here.high), height, colour, 2.2)
     if effect.is_measured:
         face = "white" if look == "open" else colour
-        _mark(
-            axes, shape, effect.here.estimate, height, colour, markerfacecolor=face, markersize=4.2, zorder=4
-        )
+        _mark(axes, shape, effect.here.estimate, height, colour, mfc=face, markersize=4.2, zorder=4)
     if isfinite(effect.published):
         ink = lighten(INK, 0.5) if look == "open" else INK
         _mark(axes, "D", effect.published, height, ink, **PUBLISHED_LOOK, zorder=5)
@@ -196,22 +167,8 @@ def _effect(axes: Axes, effect: Effect, height: float, look: str) -> None:
 
 def _mark(axes: Axes, shape: str, ratio: float, height: float, colour: str, **look: Any) -> None:  # noqa: ANN401
     value = _per_cent(ratio)
-    if not _arrow(axes, value, height, colour):
+    if not arrow(axes, value, height, colour):
         axes.plot(value, height, shape, color=colour, clip_on=False, **look)
-
-
-def _inside(axes: Axes, value: float) -> float:
-    low, high = axes.get_xlim()
-    return min(max(value, low), high)
-
-
-def _arrow(axes: Axes, value: float, height: float, colour: str) -> bool:
-    """Draw an arrow at the end of the axis if a value lies beyond it; tell whether it does."""
-    shown = _inside(axes, value)
-    if shown != value:
-        shape = ">" if value > shown else "<"
-        axes.plot(shown, height, shape, color=colour, markersize=4.5, clip_on=False, zorder=6)
-    return shown != value
 
 
 def _link(figure: Figure, name: str, place: tuple[float, float]) -> None:
@@ -222,21 +179,13 @@ def _link(figure: Figure, name: str, place: tuple[float, float]) -> None:
 
 
 def _key(figure: Figure, layout: Layout) -> None:
-    def point(look: str, face: str | None = None) -> Line2D:
-        colour, shape = LOOK[look]
-        return Line2D(
-            [], [], color=colour, marker=shape, markersize=4.2, linewidth=2.2, markerfacecolor=face or colour
-        )
-
+    entries: list[tuple[Any, str]] = []
+    for look, (colour, shape, text) in LOOK.items():
+        face = "white" if look == "open" else colour
+        drawn = Line2D([], [], color=colour, marker=shape, markersize=4.2, linewidth=2.2, mfc=face)
+        entries.append((drawn, text))
     published = Line2D([], [], color=INK, marker="D", linestyle="", **PUBLISHED_LOOK)
-    entries: list[tuple[Any, str]] = [
-        (point("holds"), "measured, 95 % interval: holds"),
-        (point("in_direction"), "holds in direction, maybe by little"),
-        (point("fails"), "does not hold"),
-        (point("open", "white"), "not decided"),
-        (published, "published"),
-        (Patch(color=BAND), "no difference that matters"),
-    ]
+    entries += [(published, "published"), (Patch(color=BAND), "no difference that matters")]
     figure.legend(
         *zip(*entries, strict=True), loc="lower left", ncols=2 if layout.is_narrow else 3, fontsize=6,
         frameon=False, handlelength=2.2, columnspacing=1.2, labelspacing=0.3, borderaxespad=0.2,
@@ -255,19 +204,17 @@ def _caption(rows: Sequence[Mapping[Any, Any]]) -> str:
     )
 
 
-def draw(
-    data: Data, prefix: str = "", table: pd.DataFrame | None = None, *, pdf: bool = False
-) -> tuple[str, list[Path]]:
+def draw(data: Data, table: pd.DataFrame | None = None, *, pdf: bool = False) -> tuple[str, list[Path]]:
     """Write the figure into the folder of figures, wide and narrow as SVG, wide as `pdf` as well if wanted.
 
     The claims are evaluated unless their `table` is given. Return the figure's caption and files, none where
     there is nothing to draw.
     """
     if table is None:
-        table = claims.evaluate(data.study, data.studies, data.published, claims.load(data.folder))
+        table = claims.evaluate(data, claims.load(data.folder))
     files: list[Path] = []
     caption = ""
-    for name, layout in ((f"{prefix}{NAME}", WIDE), (f"{prefix}{NAME}-narrow", NARROW)):
+    for name, layout in ((f"{data.prefix}{NAME}", WIDE), (f"{data.prefix}{NAME}-narrow", NARROW)):
         with styled(name):
             drawing = all_claims(table, layout)
         if drawing is None:
@@ -282,8 +229,6 @@ def draw_all_claims(results: Path) -> list[Path]:
 
     What cannot be read is told by whoever draws the other figures of the folder.
     """
-    studies = split(load(results, lambda _: None))
-    times = published.load()
-    pairs = [(Data(study, studies, times, results), prefix_of(study, studies)) for study in studies]
-    drawn = [draw(data, prefix, pdf=True)[1] for data, prefix in pairs]
+    records = load(results, lambda _: None)
+    drawn = [draw(data, pdf=True)[1] for data in data_of(results, records)]
     return [files[0] for files in drawn if files]

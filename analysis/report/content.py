@@ -12,19 +12,17 @@ from markupsafe import Markup
 from analysis import claims
 from analysis.claims import missing, summary
 from analysis.claims.entry import CLAIMS_FILE, questions_folder
-from analysis.figures import Drawn, titles
-from analysis.figures.studies import draw_study, prefix_of
+from analysis.figures import Drawn, draw, titles
+from analysis.figures.studies import data_of
 from analysis.figures.style import Data
-from analysis.records import published
 from analysis.records.reading import Records
-from analysis.records.studies import Study, split
+from analysis.records.studies import Study
 from analysis.report import all_claims, first_screen, graphs, provenance
 from analysis.report.parts import contents, inline, parts
 from analysis.statistics.levels import in_order, levels, shifting
 from analysis.statistics.looks import ERROR
 from analysis.statistics.noise import needed_said, process_noise, warning
-from analysis.statistics.pairs import log_ratios
-from analysis.statistics.verdicts import MARGIN, judge_one
+from analysis.statistics.verdicts import MARGIN
 from analysis.support.wording import blocks, change, count, number, share
 from support.vocabulary import CONTROL
 
@@ -36,9 +34,8 @@ def content(records: Records, results: Path, asked: Sequence[str] = ()) -> dict[
 
     Questions that were `asked` by name lead; without any, all of them were.
     """
-    studies = split(records)
     own = (results / CLAIMS_FILE.name).exists()
-    found = [_study(study, studies, results, asked) for study in studies]
+    found = [_study(data, asked) for data in data_of(results, records)]
     # A study that has what was asked comes before one that has not.
     found.sort(key=lambda study: bool(asked) and not study["asked"])
     for position, study in enumerate(found, start=1):
@@ -66,15 +63,15 @@ def content(records: Records, results: Path, asked: Sequence[str] = ()) -> dict[
     }
 
 
-def _study(study: Study, studies: Sequence[Study], results: Path, asked: Collection[str]) -> dict[str, Any]:
-    drawn = draw_study(study, studies, results)
-    table = claims.evaluate(study, studies, published.load(), claims.load(results))
+def _study(data: Data, asked: Collection[str]) -> dict[str, Any]:
+    study, is_first = data.study, data.study is data.studies[0]
+    drawn = list(draw(data))
+    table = claims.evaluate(data, claims.load(data.folder))
+    told = table if is_first else table[~table["missing"]]
     rows = table.to_dict("records")
     shown = parts(study, drawn, rows)
     places = {part.experiment: (part.anchor, part.title) for part in shown}
-    prefix = prefix_of(study, studies)
-    anchors = _anchors(rows, places, prefix)
-    data = Data(study, studies, published.load(), results)
+    anchors = _anchors(rows, places, data.prefix)
     noise, settled = process_noise(study.times), _settled(table, drawn)
     return {
         "name": study.name,
@@ -87,13 +84,13 @@ def _study(study: Study, studies: Sequence[Study], results: Path, asked: Collect
         "noise": [_noise_row(row, settled) for row in noise.to_dict("records")],
         "checks": provenance.checks(study),
         "partners": provenance.partners(study),
-        "states": missing.tally(table if study is studies[0] else table[~table["missing"]]),
+        "states": missing.tally(told),
         **_claims(table, places, asked),
-        "prefix": prefix,
+        "prefix": data.prefix,
         "said": first_screen.sentences(study, rows, drawn, anchors),
-        "figure": _all_claims(all_claims.draw(data, prefix, table), rows, anchors, prefix),
-        "beside": first_screen.beside(study, table, is_first=study is studies[0]),
-        "without_records": list(table.loc[table["missing"], "id"]) if study is studies[0] else [],
+        "figure": _all_claims(all_claims.draw(data, table), rows, anchors, data.prefix),
+        "beside": first_screen.beside(study, missing.tally(told)),
+        "without_records": list(told.loc[told["missing"], "id"]),
     }
 
 
@@ -181,11 +178,11 @@ def _settled(table: pd.DataFrame, drawn: Sequence[Drawn]) -> set[str]:
 
 def control_sentence(study: Study) -> str:
     """Say what came of the control, the same variant measured under two labels."""
-    processes = study.times_of(CONTROL)
-    sides = [part for _, part in processes.groupby("label")]
-    if len(sides) != 2:
+    verdict, row = first_screen.control_of(study)
+    if not verdict:
         return "The control (one variant, two labels) was not measured: nothing vouches for the rest."
-    return f"{_control_verdict(study, processes, sides)}{_speeds(processes)}"
+    processes = study.times_of(CONTROL)
+    return f"{_control_verdict(study, processes, verdict, row)}{_speeds(processes)}"
 
 
 def _speeds(processes: pd.DataFrame) -> str:
@@ -209,26 +206,25 @@ def _speeds(processes: pd.DataFrame) -> str:
     )
 
 
-def _control_verdict(study: Study, processes: pd.DataFrame, sides: Sequence[pd.DataFrame]) -> str:
-    row = judge_one(log_ratios(*sides)["log_ratio"])
+def _control_verdict(study: Study, processes: pd.DataFrame, verdict: str, row: dict[str, Any]) -> str:
     sessions, beside = study.times["session"].nunique(), processes["session"].nunique()
     over = "the whole run" if beside == sessions else f"{beside} of {count(sessions, 'session')}"
     said = f"one variant, measured under two labels over {over}, differs by {change(row)} ({blocks(row)})"
-    if row["verdict"] == "equivalent" and not row["low"] <= 1 <= row["high"]:
+    if verdict == "off":
         return (
             f"The control is off: {said}. That is within the margin, but its interval leaves out 0, as it "
             "does by chance in at most 5 % of studies. Only the label differs: this is a fault of the "
             "machine or of the method, and a difference as small says nothing."
         )
-    if row["verdict"] == "equivalent":
+    if verdict == "equivalent":
         return f"The control came out equivalent, as it must: {said}."
-    if row["verdict"] == "inconclusive":
+    if verdict == "inconclusive":
         return (
             f"The control is inconclusive: {said}. Differences of a few per cent cannot be told apart here."
         )
     return (
-        f"The control FAILED: {said} and was judged {row['verdict']}. Only the label differs, so do not "
-        "trust the verdicts below: measure again on a quiet machine."
+        f"The control FAILED: {said} and was judged {verdict}. Only the label differs, so do not trust the "
+        "verdicts below: measure again on a quiet machine."
     )
 
 

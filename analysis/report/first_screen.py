@@ -4,9 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import pandas as pd
-
-from analysis.claims import missing
 from analysis.claims.missing import DECIDED
 from analysis.claims.summary import (
     UNDECIDED,
@@ -111,9 +108,8 @@ def _open(rows: Sequence[Mapping[str, Any]]) -> list[Said]:
     return [Said(UNDECIDED, "not decided", "open", text)]
 
 
-def beside(study: Study, table: pd.DataFrame, *, is_first: bool) -> list[tuple[str, str]]:
-    """Return machine, time, control and the share decided, as names and values."""
-    states = missing.tally(table if is_first else table[~table["missing"]])
+def beside(study: Study, states: Mapping[str, int]) -> list[tuple[str, str]]:
+    """Return machine, time, control and the share decided, as names and values; `states` as of `tally`."""
     claims = sum(states.values())
     rest = ", ".join(f"{amount} {state}" for state, amount in list(states.items())[1:] if amount)
     decided = f"{states['decided']} of {count(claims, 'claim')}{rest and f'; {rest}'}"
@@ -141,16 +137,26 @@ def _time(study: Study) -> str:
     return f"{' to '.join(days)}; {number(minutes, 2)} min of processes; {study.scale} scale"
 
 
-def control_in_short(study: Study) -> str:
-    """Return what came of the control in a few words."""
+def control_of(study: Study) -> tuple[str, dict[str, Any]]:
+    """Return what came of the control, one variant under two labels, and its row of `verdicts.judge`: its
+    verdict, `off` where it is within the margin but its interval leaves out 0, or nothing without records.
+    """
     sides = [part for _, part in study.times_of(CONTROL).groupby("label")]
     if len(sides) != 2:
-        return "– not measured: nothing vouches for the rest"
+        return "", {}
     row = judge_one(log_ratios(*sides)["log_ratio"])
-    if row["verdict"] == "inconclusive":
-        return f"? not decided: {change(row)}"
-    if row["verdict"] != "equivalent":
-        return f"✗ failed: {change(row)}"
-    if not row["low"] <= 1 <= row["high"]:
-        return f"✗ off: {change(row)}, within the margin"
-    return f"✓ no difference found: {change(row)}"
+    is_off = row["verdict"] == "equivalent" and not row["low"] <= 1 <= row["high"]
+    return "off" if is_off else str(row["verdict"]), row
+
+
+def control_in_short(study: Study) -> str:
+    """Return what came of the control in a few words."""
+    verdict, row = control_of(study)
+    if not verdict:
+        return "– not measured: nothing vouches for the rest"
+    said = {
+        "inconclusive": f"? not decided: {change(row)}",
+        "equivalent": f"✓ no difference found: {change(row)}",
+        "off": f"✗ off: {change(row)}, within the margin",
+    }
+    return said.get(verdict, f"✗ failed: {change(row)}")

@@ -28,11 +28,6 @@ def load() -> list[Graph]:
     return [Graph(**table) for table in tomllib.loads(GRAPHS_FILE.read_text(encoding="utf-8"))["graph"]]
 
 
-def appendix() -> list[str]:
-    """Return the questions that `make appendix` asks, each once."""
-    return list(dict.fromkeys(name for graph in load() if graph.appendix for name in graph.questions))
-
-
 def rows(anchors: Mapping[str, str]) -> list[dict[str, Any]]:
     """Return a row a graph for the report, its questions with their titles and, if any, their `anchors`."""
     known = titles()

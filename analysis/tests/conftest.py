@@ -8,10 +8,8 @@ from pathlib import Path
 import pytest
 
 from analysis import report
+from analysis.figures.studies import data_of
 from analysis.figures.style import Data
-from analysis.records import published
-from analysis.records.reading import load
-from analysis.records.studies import split
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_study import failures, study, trace
@@ -46,5 +44,4 @@ def page(results: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.fixture(scope="session")
 def data(results: Path) -> Data:
-    studies = split(load(results))
-    return Data(studies[0], studies, published.load(), results)
+    return data_of(results)[0]

@@ -28,35 +28,22 @@ def _particles() -> list[Point]:
 
 
 def _grid_length() -> list[Point]:
-    sides = [9_000, *range(10_000, 100_001, 10_000)]
-    published = [
-        _at("grid_length", side, 0.35 + 3.2e-5 * side + 2.2 * (side == 9_000), scene={"side": side})
-        for side in sides
-    ]
-    flat = [
-        _at(
-            "grid_length",
-            side,
-            0.1 + 0.2 * (side == 9_000),
-            "sorted",
-            axes={"variant": "sorted"},
-            scene={"side": side},
+    """The published series falls and rises, `sorted` is flat; at the smallest side both are dense."""
+    return [
+        _at("grid_length", side, seconds + dense * (side == 9_000), series, axes=axes, scene={"side": side})
+        for side in (9_000, *range(10_000, 100_001, 10_000))
+        for series, seconds, dense, axes in (
+            ("checkered", 0.35 + 3.2e-5 * side, 2.2, {}),
+            ("sorted", 0.1, 0.2, {"variant": "sorted"}),
         )
-        for side in sides
     ]
-    return [*published, *flat]
 
 
 def _radius() -> list[Point]:
-    return [
-        _at(
-            "radius",
-            r,
-            0.14 * math.exp(0.5 * abs(math.log(r / 35)) * (1 if r < 35 else 3)),
-            scene={"radius": r},
-        )
-        for r in range(5, 51, 5)
-    ]
+    def seconds(r: int) -> float:
+        return 0.14 * math.exp(0.5 * abs(math.log(r / 35)) * (1 if r < 35 else 3))
+
+    return [_at("radius", r, seconds(r), scene={"radius": r}) for r in range(5, 51, 5)]
 
 
 def _steps() -> list[Point]:
@@ -206,21 +193,13 @@ def _ladder() -> list[Point]:
 
 
 def _limits() -> list[Point]:
+    variants = list(enumerate((("published", 1.0), ("strips-sorted-contacts", 0.4)), start=1))
     return [
-        Point(
-            name,
-            0,
-            seconds,
-            axes={"variant": name},
-            scene=change,
-            scene_name=scene,
-            tags={"series_number": number},
-        )
+        Point(name, 0, seconds, axes={"variant": name}, scene=change, scene_name=scene,
+              tags={"series_number": number})
         for scene, change in (("sparse", {}), ("dense", DENSE))
-        for number, (name, seconds) in enumerate(
-            (("published", 1.0), ("strips-sorted-contacts", 0.4)), start=1
-        )
-    ]
+        for number, (name, seconds) in variants
+    ]  # fmt: skip
 
 
 TRUE_BIAS = 0.01

@@ -53,14 +53,8 @@ def study(
 
 def _figure(experiment: str) -> str:
     points = EXPERIMENTS[experiment]()
-    if experiment in (
-        "control",
-        "machine",
-        *PROFILED,
-        "ladder",
-        "speed_against_error",
-        "hard_cases",
-    ):
+    own = ("control", "machine", *PROFILED, "ladder", "speed_against_error", "hard_cases")
+    if experiment in own:
         return experiment
     if any(point.in_turns for point in points):
         return "ways"

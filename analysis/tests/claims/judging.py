@@ -6,19 +6,21 @@ from typing import Any
 import pandas as pd
 
 from analysis import claims
-from analysis.records import published
 from analysis.records.reading import load
-from analysis.records.studies import split
 from analysis.tests.synthetic import write
 
 Records = list[dict[str, Any]]
 
 
+def verdicts_of(folder: Path) -> pd.DataFrame:
+    """Return a row a claim, by its id, of the first study in a folder."""
+    return claims.evaluate(claims.evidence_of(load(folder))[0]).set_index("id")
+
+
 def row_of(folder: Path, records: Records, claim: str) -> pd.Series:
     """Return the claim's row, of the records and of what the folder has already."""
     write(folder, records)
-    studies = split(load(folder))
-    return claims.evaluate(studies[0], studies, published.load()).set_index("id").loc[claim]
+    return verdicts_of(folder).loc[claim]
 
 
 def slowed(records: Records, factor: float, **tags: object) -> Records:

@@ -7,15 +7,14 @@ import pytest
 
 from analysis import claims
 from analysis.claims.outcome import FAILS, HOLDS, OPEN
-from analysis.records import published
 from analysis.records.reading import load
-from analysis.records.studies import split
-from analysis.tests.synthetic import Machine, Point, bench, write
+from analysis.tests.claims.judging import row_of
+from analysis.tests.synthetic import Machine, Point, bench
 
 SEEDS = (1, 2, 3, 4, 5, 6)
 
 
-def row_of(
+def reverse(
     folder: Path, attempts: dict[str, list[int]], resolves: dict[str, int] | None = None, scale: str = "paper"
 ) -> pd.Series:
     """Return the claim's row: attempts of each direction by seed; reverse is the slower one."""
@@ -31,16 +30,14 @@ def row_of(
         for point in points
         for block in range(3)
     ]
-    write(folder, records)
-    studies = split(load(folder))
-    return claims.evaluate(studies[0], studies, published.load()).set_index("id").loc["reverse"]
+    return row_of(folder, records, "reverse")
 
 
 FEWER = {"reverse": [1500, 1510, 1490, 1505, 1495, 1500], "forward": [2000, 2010, 1990, 1980, 2020, 2000]}
 
 
 def test_fewer_wasted_attempts_hold_whatever_the_time_and_the_resolves(tmp_path: Path) -> None:
-    row = row_of(tmp_path, FEWER, {"reverse": 1000, "forward": 1000})
+    row = reverse(tmp_path, FEWER, {"reverse": 1000, "forward": 1000})
     assert row["verdict"] == HOLDS
     assert "over 6\u00a0seeds" in row["measured"]
     assert "of wasted attempts (fewer)" in row["measured"]
@@ -53,33 +50,33 @@ def test_the_same_waste_does_not_hold_though_fewer_are_resolved(tmp_path: Path) 
         "reverse": [1500, 1510, 1490, 1505, 1495, 1500],
         "forward": [1600, 1610, 1590, 1605, 1595, 1600],
     }
-    row = row_of(tmp_path, attempts, {"reverse": 1000, "forward": 1100})
+    row = reverse(tmp_path, attempts, {"reverse": 1000, "forward": 1100})
     assert row["verdict"] == FAILS
     assert "of pair resolves (fewer)" in row["measured"]
 
 
 def test_blocks_are_no_repetitions_of_a_count(tmp_path: Path) -> None:
     one = {direction: counts[:1] for direction, counts in FEWER.items()}
-    row = row_of(tmp_path, one)
+    row = reverse(tmp_path, one)
     assert row["verdict"] == OPEN
     assert row["why"] == "rests on 1\u00a0seed: a verdict needs at least 6"
 
 
 def test_seeds_that_disagree_decide_nothing(tmp_path: Path) -> None:
-    row = row_of(tmp_path, {"reverse": [1220, 1700, 1300, 1650, 1250, 1600], "forward": [1500] * 6})
+    row = reverse(tmp_path, {"reverse": [1220, 1700, 1300, 1650, 1250, 1600], "forward": [1500] * 6})
     assert row["verdict"] == OPEN
     assert "more seeds" in row["why"]
 
 
 def test_attempts_that_were_not_counted_are_no_zero(tmp_path: Path) -> None:
-    row_of(tmp_path, FEWER)
-    studies = split(load(tmp_path))
-    studies[0].runs["pair_attempts"] = float("nan")  # as it is of whole processes
-    row = claims.evaluate(studies[0], studies, published.load()).set_index("id").loc["reverse"]
+    reverse(tmp_path, FEWER)
+    [evidence] = claims.evidence_of(load(tmp_path))
+    evidence.study.runs["pair_attempts"] = float("nan")  # as it is of whole processes
+    row = claims.evaluate(evidence).set_index("id").loc["reverse"]
     assert row["verdict"] == OPEN
     assert "not counted" in row["why"]
 
 
 @pytest.mark.parametrize("scale", ["paper", "quick"])
 def test_a_count_is_decided_at_both_scales(tmp_path: Path, scale: str) -> None:
-    assert row_of(tmp_path, FEWER, scale=scale)["verdict"] == HOLDS
+    assert reverse(tmp_path, FEWER, scale=scale)["verdict"] == HOLDS

@@ -29,7 +29,7 @@ def schedules(seconds: dict[tuple[str, int], float]) -> Records:
 @pytest.mark.parametrize(
     ("others", "verdict", "said"),
     [
-        ((0.75, 0.80, 0.90), HOLDS, ""),
+        ((0.75, 0.80, 0.90), HOLDS, "none of 3 others"),
         ((0.72, 0.80, 0.90), HOLDS, ""),
         ((0.73, 0.73, 0.73), IN_DIRECTION, ""),
         ((0.725, 0.725, 0.725), FAILS, "does not matter which is chosen"),

@@ -12,17 +12,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis import claims, figures
+from analysis import figures
 from analysis.figures import FIGURES, Entry
 from analysis.figures.labels import label_ends, spread
 from analysis.figures.layout import lay_out
 from analysis.figures.pairs import ratio_panel
-from analysis.figures.studies import draw_all
+from analysis.figures.studies import data_of, draw_all
 from analysis.figures.style import Data, new_figure, styled
 from analysis.figures.sweeps import level_of
-from analysis.records import published
-from analysis.records.reading import load
-from analysis.records.studies import split
+from analysis.tests.claims.judging import verdicts_of
 from analysis.tests.synthetic import Machine, write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
@@ -83,8 +81,7 @@ def data_of_part(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str
     def read(experiment: str, kept: str) -> Data:
         folder = tmp_path_factory.mktemp(experiment)
         write(folder, part(study([experiment], blocks=3, noise=Noise(), seed=3), kept))
-        studies = split(load(folder))
-        return Data(studies[0], studies, published.load(), folder)
+        return data_of(folder)[0]
 
     return read
 
@@ -201,11 +198,8 @@ def test_a_figure_and_the_claim_about_it_tell_one_ratio(tmp_path: Path) -> None:
         one["turns"] = {"contenders": 2, "seed": 1, "rounds": 8, "seconds": seconds}
         write(tmp_path, [one])
     (drawn,) = draw_all(tmp_path, ["neighbourhood"])
-    studies = split(load(tmp_path))
-    table = claims.evaluate(studies[0], studies, published.load(), claims.load(tmp_path)).set_index("id")
-    ratio = (
-        str(table.loc["four_boxes", "measured"]).removeprefix("four against nine: ").partition(" of time")[0]
-    )
+    measured = str(verdicts_of(tmp_path).loc["four_boxes", "measured"])
+    ratio = measured.removeprefix("four against nine: ").partition(" of time")[0]
     assert f"{ratio} against nine boxes" in drawn.caption
 
 
@@ -241,18 +235,6 @@ def test_several_machines_are_in_one_machine_figure(tmp_path: Path) -> None:
     caption = draw_all(tmp_path)[0].caption
     assert "bench-1: Example CPU" in caption
     assert "bench-2: Example CPU" in caption
-
-
-@pytest.mark.parametrize("speed", [0.1, 10.0])
-def test_the_order_that_others_are_compared_with_does_not_depend_on_the_times(
-    tmp_path: Path, speed: float
-) -> None:
-    fast = study(["sequential_orders"], blocks=4, speed=speed)
-    slow = study(["sequential_orders"], blocks=4)
-    write(tmp_path, [one for one in fast if one["tags"]["series"] == "once"])
-    write(tmp_path, [one for one in slow if one["tags"]["series"] != "once"])
-    (drawn,) = draw_all(tmp_path)
-    assert "Against once: repeat" in drawn.caption
 
 
 def test_labels_are_moved_apart_as_little_as_needed() -> None:

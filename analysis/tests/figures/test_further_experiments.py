@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from analysis import report
-from analysis.cli import main
 from analysis.derived.comparisons import differences, reference
 from analysis.figures import KINDS, Drawn
 from analysis.figures.studies import draw_all
@@ -81,12 +80,6 @@ def test_partial_data_never_fail(tmp_path: Path, kind: str, known: str, kept: sl
     draw_all(tmp_path)
 
 
-def test_the_title_is_that_of_the_question(tmp_path: Path) -> None:
-    drawn = drawn_of(tmp_path, unknown("radius", "trend", title="Chunks of one box"))
-    assert drawn.entry.title == "Chunks of one box"
-    assert drawn.caption.startswith("Chunks of one box (N = ")
-
-
 def test_a_trend_has_a_curve_and_a_sentence_a_series(tmp_path: Path) -> None:
     drawn = drawn_of(tmp_path, unknown("row", "trend"))
     assert "checkered: The time grows" in drawn.caption
@@ -153,9 +146,3 @@ def test_the_report_has_it_last_with_a_table_of_verdicts(
     assert "slower" in text[text.index("repeat against once") :][:80]
     assert "faster" in text[text.index("track against once") :][:80]
     assert capsys.readouterr().err == ""
-
-
-def test_the_command_draws_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    write(tmp_path, unknown("schedule_find", "schedule"))
-    assert main(["figures", "--results", str(tmp_path), "--experiment", "small_chunks"]) == 0
-    assert capsys.readouterr().out == f"{tmp_path / 'figures' / 'small_chunks.svg'}\n"

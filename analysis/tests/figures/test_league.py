@@ -8,11 +8,7 @@ import numpy as np
 import pytest
 
 from analysis.cli import main
-from analysis.figures import draw
-from analysis.figures.style import Data
-from analysis.records import published
-from analysis.records.reading import load
-from analysis.records.studies import split
+from analysis.figures.studies import draw_all
 from analysis.report import write
 from analysis.tests.synthetic import Machine
 
@@ -86,10 +82,7 @@ def results(tmp_path: Path) -> Path:
 
 
 def test_the_table_is_in_order_with_brackets_checks_and_failures(results: Path) -> None:
-    records = load(results)
-    studies = split(records)
-    data = Data(studies[0], studies, published.load(), results)
-    [drawn] = draw(data, results / "figures")
+    [drawn] = draw_all(results)
     [table] = drawn.tables
     assert [[cell.text for cell in row] for row in table.rows] == [
         ["1 to 2", "anna", "1.00", "a", "its own program, steps 0 to 20"],

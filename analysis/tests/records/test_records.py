@@ -8,7 +8,6 @@ from analysis.records.reading import load
 from analysis.records.studies import split
 from analysis.tests.synthetic import Machine, Point, bench, failure, write
 from analysis.tests.synthetic_study import failures, study
-from support.errors import InputError
 
 
 def record(**tags: str | float) -> dict[str, Any]:
@@ -129,11 +128,6 @@ def test_a_failure_of_one_of_two_programs_is_not_the_others(tmp_path: Path) -> N
     write(tmp_path, [failure("steps", "checkered", "crash", host="bench-1", program_sha256="a" * 64)])
     studies = split(load(tmp_path))
     assert [len(one.failures) for one in studies] == [0, 1]
-
-
-def test_no_folder_is_bad_input(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no such folder"):
-        load(tmp_path / "absent")
 
 
 def test_machines_revisions_and_scales_are_never_merged(tmp_path: Path) -> None:

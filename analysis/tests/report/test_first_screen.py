@@ -12,10 +12,7 @@ from analysis.claims.effects import Effect
 from analysis.claims.summary import both_in_short, change_in_short, published_in_short
 from analysis.cli import main
 from analysis.figures import titles
-from analysis.figures.style import Data
-from analysis.records import published
-from analysis.records.reading import load
-from analysis.records.studies import split
+from analysis.figures.studies import data_of
 from analysis.report import answers
 from analysis.report.all_claims import LOWEST, NARROW, WIDE, Layout, all_claims, draw
 from analysis.support.values import Interval
@@ -24,11 +21,6 @@ from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_study import study
-
-
-def data_of(folder: Path) -> Data:
-    studies = split(load(folder))
-    return Data(studies[0], studies, published.load(), folder)
 
 
 @pytest.fixture(scope="module")
@@ -139,8 +131,8 @@ def test_every_question_with_a_figure_has_words() -> None:
 
 @pytest.mark.parametrize("layout", [WIDE, NARROW])
 def test_a_missing_interval_does_not_stretch_the_axis(refuted: Path, layout: Layout) -> None:
-    data = data_of(refuted)
-    table = claims.evaluate(data.study, data.studies, data.published)
+    data = data_of(refuted)[0]
+    table = claims.evaluate(data)
     plain = all_claims(table, layout)
     assert plain is not None
     wide = Effect("x", Interval(0.9, 1e-9, 1e9), 0.95)
@@ -158,7 +150,7 @@ def test_a_missing_interval_does_not_stretch_the_axis(refuted: Path, layout: Lay
 
 def test_nothing_measured_is_no_figure(tmp_path: Path) -> None:
     write(tmp_path, study(["sequential_orders"], blocks=2))
-    assert draw(data_of(tmp_path)) == ("", [])
+    assert draw(data_of(tmp_path)[0]) == ("", [])
     assert 'class="claims-figure"' not in report.render(tmp_path)
 
 
@@ -188,8 +180,8 @@ def test_effects_agree_with_the_verdicts(tmp_path: Path) -> None:
     """On a machine with noise: what is drawn is what decides."""
     names = ["neighbourhood", "self_contained_checkered", "compiler", "row"]
     write(tmp_path, study(names, blocks=21, noise=Noise(process=0.004, repetition=0, burst_rate=0)))
-    data = data_of(tmp_path)
-    table = claims.evaluate(data.study, data.studies, data.published)
+    data = data_of(tmp_path)[0]
+    table = claims.evaluate(data)
     for row in table[~table["missing"]].itertuples():
         (effect,) = row.effects
         assert effect.has_interval

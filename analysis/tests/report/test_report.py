@@ -14,7 +14,6 @@ from analysis.tests.figures.test_figures import DRAWN
 from analysis.tests.synthetic import Machine, failure, write
 from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_study import study
-from support.errors import InputError
 
 
 class Page(HTMLParser):
@@ -90,16 +89,6 @@ def test_it_says_machine_control_noise_gaps_failures_and_commands(page: str) -> 
         assert said in text
 
 
-def test_html_of_partial_data(tmp_path: Path) -> None:
-    write(tmp_path, study(["neighbourhood"], blocks=2))
-    html = report.write(tmp_path)
-    text = text_of(html.read_text(encoding="utf-8"))
-    assert "16 claims have no records yet, and no verdict: threads, particles, grid_length, radius" in text
-    assert "Radius ( make experiments STUDY=radius )" in text
-    assert "nothing vouches for the rest" in text
-    assert not list(tmp_path.glob("*.part*"))
-
-
 def test_no_records_at_all_still_make_a_report(tmp_path: Path) -> None:
     assert "There are no records yet" in text_of(report.render(tmp_path))
 
@@ -165,31 +154,23 @@ def test_two_speeds_of_the_machine_are_said(tmp_path: Path) -> None:
     assert "it changed 4 times between them" in text
 
 
-def test_several_machines_have_a_part_each(tmp_path: Path) -> None:
-    for host in ("bench-1", "bench-2"):
-        write(tmp_path, study(["machine"], blocks=3, machine=Machine(host=host)))
-    parsed = Page(report.render(tmp_path))
-    assert {"study-1", "study-2"} <= set(parsed.ids)
-    assert len(parsed.ids) == len(set(parsed.ids))
-
-
-def test_questions_without_claims_have_a_part_a_machine_as_well(tmp_path: Path) -> None:
-    (tmp_path / "claims.toml").write_text("")
+@pytest.mark.parametrize("own", [False, True])
+def test_several_machines_have_a_part_each(tmp_path: Path, own: bool) -> None:
+    """Also in a folder of questions without a claim."""
+    if own:
+        (tmp_path / "claims.toml").write_text("")
     for host in ("bench-1", "bench-2"):
         write(tmp_path, study(["machine"], blocks=1, noise=QUIET, machine=Machine(host=host)))
     page = report.render(tmp_path)
-    assert {"study-1", "study-2"} <= set(Page(page).ids)
-    assert "no records yet" not in text_of(page)
+    parsed = Page(page)
+    assert {"study-1", "study-2"} <= set(parsed.ids)
+    assert len(parsed.ids) == len(set(parsed.ids))
+    assert ("no records yet" in text_of(page)) != own
 
 
 def test_text_from_records_is_escaped(tmp_path: Path) -> None:
     write(tmp_path, study(["machine"], blocks=2, machine=Machine(cpu_model="<script>alert(1)</script>")))
     assert "<script>" not in re.sub(r"<svg.*?</svg>", "", report.render(tmp_path), flags=re.DOTALL)
-
-
-def test_no_folder_is_bad_input(tmp_path: Path) -> None:
-    with pytest.raises(InputError):
-        report.write(tmp_path / "absent")
 
 
 def test_it_says_which_part_of_the_time_was_in_the_clock(data: Data) -> None:

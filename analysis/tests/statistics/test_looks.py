@@ -66,39 +66,6 @@ def test_looking_until_it_is_decided_errs_in_at_most_one_in_twenty(noise: object
         assert sum(verdict == "slower" for verdict, _ in found) >= 0.9 * len(found)
 
 
-def former_rule(logs: Floats) -> list[str]:
-    """Return what was decided before looks were shared out: the first verdict of intervals of 90 %, each as
-    if it were the only one.
-    """
-    said = []
-    for row in logs:
-        bound, verdict = np.log1p(MARGIN), "inconclusive"
-        for look in LOOKS:
-            found = centre(row[:look], 0.90, independent=True)
-            within = found.low > -bound and found.high < bound
-            verdicts = {"slower": found.low > bound, "faster": found.high < -bound, "equivalent": within}
-            verdict = next((one for one, holds in verdicts.items() if holds), "inconclusive")
-            if verdict != "inconclusive":
-                break
-        said.append(verdict)
-    return said
-
-
-@pytest.mark.parametrize("noise", NOISES)
-def test_the_former_rule_errs_more_often_on_the_same_data(noise: object) -> None:
-    assert callable(noise)
-    wrong = {"former": 0, "now": 0}
-    for effect, truth in ((0.019, "equivalent"), (0.021, "slower")):
-        generator = np.random.default_rng(5)
-        for _ in range(8):
-            logs = noise(generator) + np.log1p(effect)
-            now = [verdict for verdict, _ in decide(logs)]
-            for rule, said in (("former", former_rule(logs)), ("now", now)):
-                wrong[rule] += sum(verdict not in (truth, "inconclusive") for verdict in said)
-    assert wrong["former"] > 0.05 * 2 * 8 * COMPARISONS
-    assert wrong["now"] <= 0.05 * 2 * 8 * COMPARISONS
-
-
 def settled(logs: Floats) -> list[str]:
     """Return what is said of a claim that the candidate is faster: the first that the looks settle."""
     said = []

@@ -17,10 +17,8 @@ from analysis.tests.statistics.unkind_noise import (
     dependent,
     former,
     missed,
-    moderated,
     one_sided_bursts,
     student,
-    studentized_range,
     two_speeds,
 )
 
@@ -71,16 +69,6 @@ def test_a_machine_that_stays_in_one_of_two_speeds_for_a_moment() -> None:
     assert missed(former, brief) > 0.08
     assert missed_now(long) < 0.22
     assert missed(former, long) > 0.38
-
-
-@pytest.mark.parametrize(("times", "before"), [(2, 0.06), (3, 0.12)])
-def test_one_comparison_noisier_than_all_others(times: float, before: float) -> None:
-    generator = np.random.default_rng(3)
-    worst = times * generator.standard_normal((STUDIES, LAST))
-    others = generator.standard_normal((29, 200))
-    assert missed_now(worst) <= 0.03
-    looks = (4, 6, 9)
-    assert missed(lambda row, error: moderated(row, error, others[:, : len(row)]), worst, 0, looks) > before
 
 
 def test_one_estimand_for_any_number_of_blocks() -> None:
@@ -152,33 +140,14 @@ def test_a_resumed_study_decides_as_one_that_was_not_stopped() -> None:
     assert list(seen(values)) == list(values[:21])
 
 
-@pytest.mark.parametrize(("times", "before"), [(3, 0.02), (5, 0.05)])
-def test_an_end_of_a_curve_noisier_than_its_other_points(times: float, before: float) -> None:
+@pytest.mark.parametrize("times", [3, 5])
+def test_an_end_of_a_curve_noisier_than_its_other_points(times: float) -> None:
     """A curve of eight points, whose last one is noisier and a margin above the others, which is no rise."""
-    curves = np.random.default_rng(10).normal(0, 0.02, (2000, LOOKS[1], 8)) * np.r_[np.ones(7), times]
+    curves = np.random.default_rng(10).normal(0, 0.02, (150, LOOKS[1], 8)) * np.r_[np.ones(7), times]
     curves[:, :, 7] += np.log1p(MARGIN)
-    some = curves[:150]
-    assert sum(map(_rise_said, some)) <= ERROR * len(some)
-    assert sum(map(_rise_said_by_one_variance, curves)) > before * len(curves)
-
-
-def _rise_said(curve: Floats) -> bool:
-    found = [Curves(curve[:look]).shape(np.log1p(MARGIN)) for look in LOOKS[:2]]
-    return any(p <= ERROR and shape != "flat" for shape, p in found)
-
-
-def _rise_said_by_one_variance(curve: Floats) -> bool:
-    """Tell whether the last point lies above the first by more than the margin, by the former rule."""
-    for look in FORMER_LOOKS[:3]:
-        part = curve[:look]
-        freedom = (look - 1) * (part.shape[1] - 1)
-        means = part.mean(axis=0)
-        rest = part - means - part.mean(axis=1, keepdims=True) + part.mean()
-        error = np.sqrt((rest**2).sum() / freedom / look)
-        quantile = studentized_range(FORMER_SHARE, part.shape[1], freedom)
-        if means[-1] - means[0] - np.log1p(MARGIN) > quantile * error:
-            return True
-    return False
+    shapes = ([Curves(curve[:look]).shape(np.log1p(MARGIN)) for look in LOOKS[:2]] for curve in curves)
+    said = sum(any(p <= ERROR and shape != "flat" for shape, p in found) for found in shapes)
+    assert said <= ERROR * len(curves)
 
 
 def test_the_autocorrelation_is_found_and_a_burst_does_not_hide_it() -> None:

@@ -68,27 +68,9 @@ def _quantile(error: float, freedom: int) -> float:
     return float(stats.t.ppf(1 - error / 2, freedom))
 
 
-@lru_cache
-def studentized_range(error: float, points: int, freedom: int) -> float:
-    """Return the quantile of the range of so many points over its standard error (Tukey)."""
-    return float(stats.studentized_range.ppf(1 - error, points, freedom))
-
-
 def former(values: Floats, error: float) -> tuple[float, float, float]:
     """Return the interval of the former rule, which changed at 14 blocks what it estimates."""
     return (student if len(values) < 14 else signed_ranks)(values, error)
-
-
-def moderated(values: Floats, error: float, others: Floats) -> tuple[float, float, float]:
-    """Return Student's t with the variance shrunk towards that of `others`, alike, as 20 degrees of freedom
-    of them (Smyth, 2004): what was used to make four blocks decide.
-    """
-    own, freedom = float(values.var(ddof=1)), len(values) - 1
-    known = float(np.median(others.var(axis=1, ddof=1)))
-    variance = (20 * known + freedom * own) / (20 + freedom)
-    half = _quantile(error, 20 + freedom) * float(np.sqrt(variance / len(values)))
-    mean = float(values.mean())
-    return mean, mean - half, mean + half
 
 
 FORMER_LOOKS = (4, 6, 9, 14, 21, 32, 48)
