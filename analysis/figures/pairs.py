@@ -157,7 +157,7 @@ def ratio_panel(
     heights = [float(len(entries) - place) for place in range(1, len(entries) + 1)]
     rows = []
     for height, (name, row, colour) in zip(heights, entries, strict=True):
-        # Three published runs have no interval, which is no fault of theirs.
+        # Too few published runs for an interval are no open end: they have no bar at all.
         bare = {"low": np.nan, "high": np.nan} if name == "published" and np.isinf(row["high"]) else {}
         rows.append({**row, **bare, "at": height, "name": name, "colour": colour, "mark": "o", "said": ""})
         beside: Any = {"xycoords": ("axes fraction", "data"), "ha": "center", "fontsize": 7, "color": colour}
