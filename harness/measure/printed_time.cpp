@@ -220,9 +220,11 @@ double seconds_of(const Group& group, const std::string& pattern, std::optional<
     const auto unit = read.unit ? read.unit : unit_seconds;
     const double seconds = read.value.value_or(0) * unit.value_or(1);
     if ((read.rest.size() > behind.size() && !is_point) || !(seconds > 0) || !std::isfinite(seconds)) {
-        const bool has_rest = seconds > 0 && std::isfinite(seconds) && !read.number.empty();
-        refuse(group.text, has_rest ? ", expected a number, and behind it at most a unit: ns, us, ms, s, min or h"
-                                    : ", expected a positive number");
+        const bool has_word = seconds > 0 && std::isfinite(seconds) &&
+                              read.rest.find_first_of("0123456789") == std::string::npos;
+        refuse(group.text, has_word
+                               ? ", expected a number, and behind it at most a unit: ns, us, ms, s, min or h"
+                               : ", expected a positive number");
     }
     static const std::regex other_unit("[ \t]*(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\\b|[kMG]?Hz|[kMG]s\\b)");
     static const std::regex letters("([A-Za-z]{1,3})(?![A-Za-z])"); // no word, as in 0:03.5elapsed
