@@ -49,7 +49,7 @@ Piece scene_of_trial(const Scene& scene, Measure measure) {
         discs / static_cast<double>(piece.discs.size()) *
         exact_work(piece, static_cast<double>(simulation.pair_collisions() + simulation.wall_collisions()));
     return seconds_of(event_driven(), discs, work) * scene.steps <= seconds_of_one ? Piece{.scene = scene}
-                                                                                      : found;
+                                                                                   : found;
 }
 
 /// What the event-driven simulation did: the others are held against it.
