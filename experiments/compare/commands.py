@@ -134,8 +134,8 @@ def _written(options: argparse.Namespace, split: Sequence[Sequence[str]]) -> lis
     for name in combined[0]:
         if not any(name in one.values for one in found.values()):
             others = sorted(named_in(lines) - set(combined[0]))
-            beside = f" and no values for {{{others[0]}}}" if others else ""
-            raise InputError(f"found values for {name}{beside}, expected {{{name}}} in a command")
+            no_values = f" and no values for {{{others[0]}}}" if others else ""
+            raise InputError(f"found values for {name}{no_values}, expected {{{name}}} in a command")
     for one in found.values():
         if not split:
             require_filled(one.line, one.line)
