@@ -12,10 +12,12 @@ from typing import Any
 
 import pytest
 
+from experiments.__main__ import main
 from experiments.plan.point import Point
 from experiments.plan.scenes import Scene
 from experiments.run import status
 from experiments.run.study import Settings, Study
+from experiments.tests.forks import Forking, forked
 
 ROOT = Path(__file__).parents[2]
 FAKE = Path(__file__).with_name("fake_carom.py")
@@ -149,10 +151,7 @@ class Workplace:
     @property
     def settings(self) -> Settings:
         return Settings(
-            results=self.results,
-            build=self.root / "build",
-            questions=self.root / "questions",
-            figures=False,
+            results=self.results, build=self.root / "build", questions=self.root / "questions", figures=False
         )
 
     @property
@@ -187,17 +186,8 @@ class Workplace:
         return [json.loads(path.read_text()) for path in self.results.glob("failures/*/*/*.json")]
 
     def start(self, verb: str = "run", *more: str) -> "subprocess.Popen[str]":
-        """The command line, as a user starts it."""
-        command = [sys.executable, "-m", "experiments", verb, *self.arguments, *more]
-        return subprocess.Popen(
-            command,
-            cwd=self.root,
-            env={**os.environ, "PYTHONPATH": f"{self.root}{os.pathsep}{ROOT}"},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            preexec_fn=hear_every_signal,
-        )
+        """The command line, as a user starts it; its analysis is one in this folder, if there is one."""
+        return start([verb, *self.arguments, *more], self.root, PYTHONPATH=f"{self.root}{os.pathsep}{ROOT}")
 
     def calls(self) -> list[dict[str, Any]]:
         """What the fake program was asked to do, if it logs."""
@@ -239,6 +229,14 @@ def generated(point: Point) -> Scene:
     return point.scene
 
 
+def start(words: list[str], folder: Path, **environment: str) -> "subprocess.Popen[str]":
+    """The command line in a folder: a fork, as whole as a new process but for the time it would take."""
+    return forked(
+        main, ["carom study", *words], cwd=folder, env={**os.environ, **environment}, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=hear_every_signal,
+    )  # fmt: skip
+
+
 def finish(process: "subprocess.Popen[str]") -> tuple[int, str, str]:
     """Exit code, standard output and standard error of a command that was started."""
     output, error = process.communicate(timeout=300)
@@ -270,6 +268,8 @@ def is_running(number: int) -> bool:
 @pytest.fixture
 def empty_workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workplace:
     place = Workplace(tmp_path, monkeypatch)
+    monkeypatch.setattr(subprocess, "Popen", Forking)
+    monkeypatch.setattr(os, "fsync", lambda _: None)
     place.build()
     place.behave(FAKE_LOG=str(tmp_path / "log"))
     return place

@@ -18,7 +18,7 @@ def wait_for(path: Path, pattern: str) -> None:
         time.sleep(0.01)
 
 
-def test_a_run_tells_how_much_and_how_long(workplace: Workplace) -> None:
+def test_a_run_and_a_status_tell_how_much_and_how_long(workplace: Workplace) -> None:
     code, output, error = finish(workplace.start("run", "--no-figures"))
     assert (code, error) == (0, "")
     lines = output.splitlines()
@@ -27,6 +27,10 @@ def test_a_run_tells_how_much_and_how_long(workplace: Workplace) -> None:
     assert re.fullmatch(r"control, block 1 of 3: 2 of 16 processes done, about \d+ s left", lines[1])
     assert lines[-1] == "the study is complete: results/records"
     assert "\x1b" not in output, "no terminal, no escape sequences"
+    _, output, _ = finish(workplace.start("status"))
+    assert "in the clock" in output.splitlines()[0]
+    assert re.search(r"^chunks +3 +2 +6 +0 +0 +0 +[\d.]+ +\d+ %$", output, re.MULTILINE)
+    assert re.search(r"^all +7 +16 +0 +0 +0 +[\d.]+ +\d+ %$", output, re.MULTILINE)
 
 
 def test_status_and_plan_write_no_record(workplace: Workplace) -> None:
@@ -39,14 +43,6 @@ def test_status_and_plan_write_no_record(workplace: Workplace) -> None:
     assert re.search(r"^pair +2 +2 +4 +comparison +four_boxes +Pair", output, re.MULTILINE)
     assert re.search(r"16 processes; 16 of them to be run: about \d+ (s|min)", output)
     assert not workplace.records()
-
-
-def test_status_after_a_run(workplace: Workplace) -> None:
-    finish(workplace.start("run", "--no-figures"))
-    _, output, _ = finish(workplace.start("status"))
-    assert "in the clock" in output.splitlines()[0]
-    assert re.search(r"^chunks +3 +2 +6 +0 +0 +0 +[\d.]+ +\d+ %$", output, re.MULTILINE)
-    assert re.search(r"^all +7 +16 +0 +0 +0 +[\d.]+ +\d+ %$", output, re.MULTILINE)
 
 
 @pytest.mark.parametrize(("study", "builds"), [("threads", "gcc\n"), ("threads,compiler", "gcc clang\n")])
@@ -160,7 +156,7 @@ def test_two_runners_in_one_folder_are_refused(workplace: Workplace) -> None:
     assert finish(first)[0] == 128 + signal.SIGTERM
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
 def test_a_signal_stops_cleanly(workplace: Workplace, number: signal.Signals) -> None:
     workplace.behave(FAKE_SECONDS="0.3")
     process = workplace.start("run", "--no-figures")

@@ -13,8 +13,8 @@ import pytest
 from experiments.calibration.command import CONDITIONS, FILE, UNFINISHED
 from experiments.calibration.kinds import KINDS, PERCENT_MORE
 from experiments.support.busy import busy
+from experiments.tests.conftest import ROOT, finish, is_running, start
 
-ROOT = Path(__file__).resolve().parents[3]
 PROGRAM = ROOT / "build" / "gcc" / "carom"
 WORKERS = [PROGRAM.parent / "harness" / "tests" / f"calibration_{name}" for name in ("process", "benchmark")]
 COMMAND = [sys.executable, "-m", "experiments", "calibrate", "--seconds", "0.1", "--results"]
@@ -45,16 +45,10 @@ def test_six_streams_come_into_one_file_and_what_was_begun_is_gone_on_with(tmp_p
 
 def test_seconds_that_cannot_be_are_one_line(tmp_path: Path) -> None:
     for wrong in ("0", "-1", "nan", "x"):
-        done = subprocess.run(
-            [*COMMAND[:-3], "--seconds", wrong, "--results", str(tmp_path)],
-            cwd=ROOT,
-            capture_output=True,
-            text=True,
-            timeout=60,
-            check=False,
-        )
-        assert done.returncode != 0
-        assert f"found {wrong}, expected a number of seconds above 0" in done.stderr
+        words = ["calibrate", "--seconds", wrong, "--results", str(tmp_path)]
+        code, _, error = finish(start(words, ROOT))
+        assert code != 0
+        assert f"found {wrong}, expected a number of seconds above 0" in error
 
 
 def loops_of(parent: int) -> list[int]:
@@ -85,11 +79,3 @@ def test_the_loops_beside_end_with_the_block_and_with_their_parent() -> None:
     while any(is_running(one) for one in loops) and time.monotonic() < until:
         time.sleep(0.05)
     assert not any(is_running(one) for one in loops)
-
-
-def is_running(process: int) -> bool:
-    """Tell whether a process is there and no zombie."""
-    try:
-        return Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
-        return False

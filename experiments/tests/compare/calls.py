@@ -2,14 +2,17 @@
 
 import os
 import subprocess
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pytest
 
-from experiments.tests.conftest import ROOT
+import analysis.commands.programs_compared  # noqa: F401 - loaded once, for all forks
+from experiments.compare.__main__ import main
+from experiments.tests.conftest import ROOT, hear_every_signal
+from experiments.tests.forks import Forking, forked
 
 CAROM = ROOT / "build" / "gcc" / "carom"
-
 
 needs_the_program = pytest.mark.skipif(
     not CAROM.is_file(), reason="build/gcc/carom is not built (`make build` builds it)"
@@ -19,16 +22,26 @@ LOOP = "i=0; while [ $i -lt {times} ]; do i=$((i+1)); done"
 """A loop of a shell, some 30 ms for ten thousand times on any machine of today."""
 
 
-def run(folder: Path, *words: str, env: dict[str, str] | None = None) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [CAROM, *words],
-        cwd=folder,
-        env={**os.environ, "TMPDIR": str(folder / "tmp"), **(env or {})},
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+def start(folder: Path, words: Sequence[str], env: Mapping[str, str]) -> "subprocess.Popen[str]":
+    """`carom` with these words, as a fork: `test_first_day.py` calls the real program as well."""
+    return forked(
+        _carom, ["carom", *words], cwd=folder, env={**os.environ, **env}, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=hear_every_signal,
+    )  # fmt: skip
+
+
+def _carom(_: object) -> int:
+    vars(subprocess)["Popen"] = Forking
+    return main()
+
+
+def run(
+    folder: Path, *words: str, env: Mapping[str, str] | None = None, tmp: Path | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Call it, with a folder for temporary files; how it ended."""
+    with start(folder, words, {"TMPDIR": str(tmp or folder / "tmp"), **(env or {})}) as child:
+        output, error = child.communicate(timeout=300)
+    return subprocess.CompletedProcess(words, child.returncode, output, error)
 
 
 def script(path: Path, text: str) -> None:

@@ -7,10 +7,7 @@ import pytest
 
 from experiments.compare.benchmarks import call_of, names_benchmark
 from experiments.compare.commands import Compared
-from experiments.tests.compare.calls import (
-    needs_the_program,
-    run,
-)
+from experiments.tests.compare.calls import needs_the_program, run
 
 pytestmark = needs_the_program
 

@@ -10,7 +10,7 @@ import pytest
 from experiments.compare.blocks import Runs
 from experiments.compare.clock import clock_of
 from experiments.support.busy import busy
-from experiments.tests.compare.calls import LOOP, needs_the_program, run, script
+from experiments.tests.compare.calls import LOOP, TOOK, needs_the_program, run, script
 from support.vocabulary import OWN, WALL
 
 
@@ -59,10 +59,11 @@ def test_a_verdict_without_waiting_says_so_and_tells_that_of_wall_time(folder: P
 
 @needs_the_program
 def test_the_control_runs_in_every_fourth_block_after_the_first_look(folder: Path) -> None:
-    words = ("true", "false", "--ignore-exit", "1", "--margin", "0.01%", "--time", "20s")
+    script(folder / "wobbles", 'echo x >> n; echo took "$((100 + $(wc -l < n) % 7))" ms')
+    words = ("-n", "a", "-n", "b", "./wobbles", "./wobbles", *TOOK, "--margin", "1%", "--time", "30s")
     done = run(folder, "compare", *words, "--export-json", "a.json")
     assert done.returncode in (0, 5), done.stderr
     told = {one["command"]: one["blocks"] for one in json.loads((folder / "a.json").read_text())["runs"]}
-    assert told["true"] == told["false"] == list(range(len(told["true"])))
-    assert len(told["true"]) > 8
-    assert told["true again"] == [one for one in told["true"] if one < 6 or one % 4 == 0]
+    assert told["a"] == told["b"] == list(range(len(told["a"])))
+    assert len(told["a"]) > 8
+    assert told["a again"] == [one for one in told["a"] if one < 6 or one % 4 == 0]

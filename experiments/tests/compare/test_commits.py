@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from experiments.tests.compare.calls import CAROM, left_behind, needs_the_program
+from experiments.tests.compare.calls import left_behind, needs_the_program, run
 
 START = """
 prints() { printf '#!/bin/sh\\necho took %s ms\\n' "$1" >prog.in; }
@@ -356,19 +356,9 @@ def test_what_is_done_is_answered(tmp_path: Path, case: Case) -> None:
     folder = Path(made.stdout.splitlines()[-1])
     before = state(tmp_path, env)
     words = ["gate", "--base", "main", *case.options, "--build", case.build, *TOOK, "--", *case.run]
-    said = subprocess.run(
-        [CAROM, *(word.replace("HERE", str(tmp_path)) for word in words)],
-        cwd=folder,
-        env={
-            **env,
-            "TMPDIR": str(tmp_path / "tmp"),
-            **{name: value.replace("HERE", str(tmp_path)) for name, value in case.env.items()},
-        },
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    env_of_case = {name: value.replace("HERE", str(tmp_path)) for name, value in case.env.items()}
+    words = [word.replace("HERE", str(tmp_path)) for word in words]
+    said = run(folder, *words, env={**env, **env_of_case}, tmp=tmp_path / "tmp")
     everything = said.stdout + said.stderr
     assert said.returncode == case.code, everything
     for text in case.told:

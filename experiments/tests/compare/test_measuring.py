@@ -29,16 +29,6 @@ def test_what_once_comes_first_and_fails_is_said(folder: Path) -> None:
     assert "no room" in done.stderr
 
 
-def test_a_time_that_is_printed_counts(folder: Path) -> None:
-    script(folder / "prints_1", "echo took 100 ms")
-    script(folder / "prints_2", "echo took 50 ms")
-    done = run(
-        folder, "compare", "./prints_1", "./prints_2", "--time", "20s", "--time-from", "took ([0-9.]+) ms"
-    )
-    assert "prints_2 against prints_1   −50.0 % [−50.0, −50.0]   faster by more than 2 %" in done.stdout
-    assert "prints_1   100 ms" in done.stdout
-
-
 def test_threads_are_bound_or_the_environment_is_the_users(folder: Path) -> None:
     for words, env, wanted in (
         (["--threads", "1"], {"OMP_NUM_THREADS": "7"}, "1"),
@@ -50,20 +40,14 @@ def test_threads_are_bound_or_the_environment_is_the_users(folder: Path) -> None
 
 
 def test_the_layout_varies_from_block_to_block_or_is_fixed(folder: Path) -> None:
-    script(folder / "tells", 'echo "${#CAROM_PADDING}" >> paddings')
-    words = ("compare", "./short", "./tells", "--turns", "off")
-    assert run(folder, *words, "--time", "10s").returncode in (0, 5)
+    script(folder / "tells", 'echo "${#CAROM_PADDING}" >> paddings; echo took 50 ms')
+    words = ("compare", "echo took 100 ms", "./tells", *TOOK, "--time", "20s")
+    assert run(folder, *words).returncode == 0
     paddings = (folder / "paddings").read_text(encoding="utf-8").split()
     assert len(set(paddings)) > 1
     (folder / "paddings").unlink()
-    done = run(folder, *words, "--time", "1s", "--fixed-layout")
-    assert done.returncode in (0, 5)
+    assert run(folder, *words, "--fixed-layout").returncode == 0
     assert set((folder / "paddings").read_text(encoding="utf-8").split()) == {"0"}
-
-
-def test_a_shell_is_told_with_what_its_start_takes(folder: Path) -> None:
-    done = run(folder, "compare", "./short; true", "./long; true", "--time", "1ms")
-    assert "a shell starts lines" in done.stdout
 
 
 def test_a_smaller_error_is_stated_and_takes_more(folder: Path) -> None:
@@ -93,7 +77,7 @@ def test_short_commands_are_repeated(folder: Path) -> None:
     script(folder / "quick", "echo x >> runs")
     script(folder / "quicker", "exit 0")
     files = ("--export-json", "a.json")
-    done = run(folder, "compare", "./quick", "./quicker", "--time", "4s", "--turns", "off", *files)
+    done = run(folder, "compare", "./quick", "./quicker", "--time", "1s", "--turns", "off", *files)
     assert done.returncode in (0, 5), done.stderr
     told = json.loads((folder / "a.json").read_text(encoding="utf-8"))
     often = told["rounds"][0]
@@ -119,7 +103,7 @@ def test_a_short_command_that_fails_is_named_with_its_code(folder: Path) -> None
 
 def test_what_is_short_is_prepared_before_each_run(folder: Path) -> None:
     script(folder / "needs", "rm prepared")
-    words = ("--prepare", "touch prepared", "--turns", "off", "--time", "4s", "--export-json", "a.json")
+    words = ("--prepare", "touch prepared", "--turns", "off", "--time", "1s", "--export-json", "a.json")
     done = run(folder, "compare", "-n", "a", "-n", "b", "./needs", "./needs", *words)
     assert done.returncode in (0, 5), done.stderr
     assert json.loads((folder / "a.json").read_text(encoding="utf-8"))["rounds"][0] > 1
@@ -136,8 +120,8 @@ def test_slices_are_as_long_as_asked(folder: Path) -> None:
 
 
 def test_if_one_must_not_be_stopped_none_is(folder: Path) -> None:
-    script(folder / "far_longer_than_a_slice", LOOP.format(times=200_000))
-    words = ("-n", "works", "-n", "sleeps", "--time", "9s", "--append", "kept.json")
+    script(folder / "far_longer_than_a_slice", LOOP.format(times=60_000))
+    words = ("-n", "works", "-n", "sleeps", "--time", "4s", "--append", "kept.json")
     done = run(folder, "compare", *words, "--", "./far_longer_than_a_slice", "--vs", "sleep", "0.2")
     assert done.returncode in (0, 5), done.stderr
     [session] = json.loads((folder / "kept.json").read_text(encoding="utf-8"))["sessions"]

@@ -8,14 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from experiments.tests.compare.calls import (
-    TOOK,
-    left_behind,
-    needs_the_program,
-    printed,
-    run,
-    script,
-)
+from experiments.tests.compare.calls import TOOK, left_behind, needs_the_program, printed, run, script
 
 pytestmark = needs_the_program
 
@@ -53,14 +46,6 @@ def test_products_of_lists_have_a_table_of_effects(folder: Path) -> None:
         ["b 3 instead of 1", "+200.0 % [+200.0, +200.0]", more],
         ["a 200 instead of 100 and b 3 instead of 1", "+0.0 % [+0.0, +0.0]", none],
     ]
-
-
-def test_a_range_of_numbers_is_a_league(folder: Path) -> None:
-    printed(folder)
-    done = run(folder, "compare", "-P", "n", "1", "3", "./prints {n} 100", "--time", "60s", *TOOK)
-    assert "./prints 2 100 against ./prints 1 100   +100.0 %" in done.stdout
-    assert "./prints 3 100 against ./prints 1 100   +200.0 %" in done.stdout
-    assert "those with a letter in common cannot be told apart" in done.stdout
 
 
 def test_a_file_goes_on_with_what_is_in_it(folder: Path) -> None:

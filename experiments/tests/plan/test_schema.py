@@ -15,14 +15,8 @@ MISTAKES = {
         "scene.radios: unknown key; expected one of name, particles, side, radius, steps, min_velocity, "
         'max_velocity, seed, placement, isotropic, paper_only, series, case; did you mean "radius"?',
     ),
-    "misspelt required key": (
-        CHUNKS.replace("radius", "radios"),
-        'did you mean "radius"?',
-    ),
-    "missing key": (
-        CHUNKS.replace("radius = 5\n", ""),
-        "scene.radius: missing; expected a number above 0",
-    ),
+    "misspelt required key": (CHUNKS.replace("radius", "radios"), 'did you mean "radius"?'),
+    "missing key": (CHUNKS.replace("radius = 5\n", ""), "scene.radius: missing; expected a number above 0"),
     "missing table": (
         'title = "t"\nfigure = "trend"\n[[series]]\nname = "a"\nvariant = "b"\n',
         "scene: missing; expected a table, or a list scenes of several",
@@ -57,10 +51,7 @@ MISTAKES = {
         "control, speed_against_error, hard_cases, ladder, limits, ways, pauses; "
         'did you mean "schedule"?',
     ),
-    "unknown claim": (
-        PAIR.replace("four_boxes", "for_boxes"),
-        'did you mean "four_boxes"?',
-    ),
+    "unknown claim": (PAIR.replace("four_boxes", "for_boxes"), 'did you mean "four_boxes"?'),
     "name that is a number": (
         PAIR.replace('name = "four"', 'name = "1e3"'),
         'series[1].name: found "1e3", expected a name that is no number',
@@ -83,10 +74,7 @@ MISTAKES = {
         CHUNKS.replace("[1, 2, 3]", "[1.5, 2]"),
         "series[1].values: found 1.5, expected whole numbers",
     ),
-    "no series": (
-        PAIR.split("[[series]]")[0],
-        "series: missing; expected a list that is not empty",
-    ),
+    "no series": (PAIR.split("[[series]]")[0], "series: missing; expected a list that is not empty"),
     "bad threads": (
         PAIR.replace("[scene]", 'threads = "all"\n[scene]', 1),
         'threads: found "all", expected a whole number of at least 1, "cores" or "hardware_threads"',
@@ -128,10 +116,7 @@ MISTAKES = {
         ERRORS.replace("isotropic = true", "isotropic = 1"),
         "scenes[1].isotropic: found 1, expected true or false",
     ),
-    "misspelt case": (
-        ERRORS.replace('case = "cradle"', 'cases = "cradle"'),
-        'did you mean "case"?',
-    ),
+    "misspelt case": (ERRORS.replace('case = "cradle"', 'cases = "cradle"'), 'did you mean "case"?'),
     "case with a size": (
         ERRORS.replace('case = "cradle"', 'case = "cradle"\nparticles = 5'),
         "scenes[2].particles: unknown key; expected one of case, name, paper_only, series",
@@ -174,10 +159,7 @@ MISTAKES = {
         CHUNKS.replace('figure = "schedule"\n', ""),
         "kind: missing; expected one of comparison, control, trend",
     ),
-    "unknown kind": (
-        f'kind = "trends"\n{CHUNKS}',
-        'kind: found "trends", expected one of scaling, trend',
-    ),
+    "unknown kind": (f'kind = "trends"\n{CHUNKS}', 'kind: found "trends", expected one of scaling, trend'),
     "figure that cannot draw the kind": (
         f'kind = "hard_cases"\n{CHUNKS}',
         "figure: found schedule for kind hard_cases, expected one of hard_cases",
@@ -214,10 +196,7 @@ MISTAKES = {
         CHUNKS.replace('"find_chunk"', '"seed"').replace("[1, 2, 3]", "[1, 2.5]"),
         "series[1].values: found 2.5, expected whole numbers",
     ),
-    "not TOML": (
-        "title = \n",
-        "is not valid TOML: Invalid value (at line 1, column 9)",
-    ),
+    "not TOML": ("title = \n", "is not valid TOML: Invalid value (at line 1, column 9)"),
 }
 
 
@@ -286,10 +265,7 @@ SITE_MISTAKES = {
         SITE.replace('proc_bind = "close"', 'proc_bind = "closed"'),
         'openmp.proc_bind: found "closed", expected one of false, true, close, spread; did you mean "close"?',
     ),
-    "no time": (
-        "time_limit_seconds = 0" + SITE,
-        "time_limit_seconds: found 0, expected a number above 0",
-    ),
+    "no time": ("time_limit_seconds = 0" + SITE, "time_limit_seconds: found 0, expected a number above 0"),
 }
 
 

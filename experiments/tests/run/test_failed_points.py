@@ -50,15 +50,6 @@ def test_a_wrong_variant_is_never_timed(workplace: Workplace) -> None:
     assert not any("nine" in words for words in timed)
 
 
-def test_a_failed_point_is_tried_again_by_the_next_run(workplace: Workplace) -> None:
-    workplace.behave(FAKE_BENCH_CRASHES="nine")
-    run(workplace.settings)
-    workplace.behave(FAKE_BENCH_CRASHES="none")
-    assert run(workplace.settings) == 0
-    assert workplace.is_whole()
-    assert not workplace.failures()
-
-
 def test_what_was_suspended_is_measured_again_together(workplace: Workplace) -> None:
     reason = "was suspended for some time while it was measured; measure it again"
     workplace.behave(FAKE_SUSPENDED="turns")

@@ -48,25 +48,22 @@ export PYTHONPATH="$3"
 "$2" -m analysis figures --results results >/dev/null || exit
 sha256sum results/figures/* >before
 head -c 10m /dev/zero >results/ballast 2>/dev/null
-"$2" -m analysis "$4" --results results 2>said; echo "code $?"
-sed 's/^/said: /' said
-sha256sum results/figures/* >after; cmp before after && echo as it was
+for verb in figures report; do
+    "$2" -m analysis $verb --results results 2>said; echo "code $?"
+    sed 's/^/said: /' said
+    sha256sum results/figures/* >after; cmp before after && echo as it was
+done
 find results -name '*.part*'
 """
 
 
-@pytest.mark.parametrize("verb", ["figures", "report"])
-def test_a_disk_that_is_full_while_drawing_keeps_the_figures_of_before(
-    workplace: Workplace, verb: str
-) -> None:
-    words = (sys.executable, str(ROOT), verb)
+def test_a_disk_that_is_full_while_drawing_keeps_the_figures_of_before(workplace: Workplace) -> None:
+    words = (sys.executable, str(ROOT))
     said = run_on_small_disk(workplace.results, "10m", workplace.root, FULL_WHILE_DRAWING, *words)
-    code, line, kept = said.splitlines()[-3:]
-    assert code == "code 1", said
-    assert re.fullmatch(
-        r"said: carom: results/\S+: No space left on device, expected a writable place with room", line
-    )
-    assert kept == "as it was"
+    told = r"carom: results/\S+: No space left on device, expected a writable place with room"
+    of_each = rf"code 1\nsaid: {told}\nas it was\n"
+    assert len(re.findall(rf"^{of_each}", said, re.MULTILINE)) == 2, said
+    assert said.endswith("as it was\n"), said
 
 
 def not_writable(folder: Path) -> dict[str, Path]:
@@ -102,7 +99,7 @@ def test_a_results_folder_that_cannot_be_written_is_one_line(
         assert "expected a writable place" in line
 
 
-NAMES = ["with spaces", "it's a 'place' with \"quotes\"", "$HOME; `exit 3` & * ?", "-dash", "é ü 中"]
+NAMES = ["it's a 'place' with \"quotes\", $HOME; `exit 3` & * ?", "-dash é ü 中"]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -118,14 +115,9 @@ def test_any_name_does_for_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 DAMAGED = {
-    "empty": b"",
     "torn": b'{"schema_version": 1, "kind": "ben',
-    "no text": b"\xff\xfe",
     "foreign": b'{"benchmarks": []}',
     "old schema": None,
-    "nested": b"[" * 100_000,
-    "long number": b"1" * 5000,
-    "no number": b'{"schema_version": NaN}',
 }
 
 

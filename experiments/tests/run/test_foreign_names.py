@@ -24,18 +24,7 @@ def test_a_trajectory_command_is_run_by_no_shell(empty_workplace: Workplace) -> 
 
 def test_of_many_files_each_that_is_no_program_fails_by_itself(empty_workplace: Workplace) -> None:
     place = empty_workplace
-    names = [
-        "right",
-        "empty",
-        "a link",
-        "pipe",
-        "plain",
-        "lost",
-        "caf\udce9",
-        "two\nlines",
-        "{scene}",
-        "dos",
-    ]
+    names = ["right", "empty", "a link", "pipe", "plain", "lost", "caf\udce9", "two\nlines", "{scene}", "dos"]
     for name in names:
         script(place, f"subs/{name}/sim", "exit 0")
     subs = place.root / "questions" / "subs"

@@ -27,7 +27,7 @@ def test_ten_kills_lose_at_most_one_process_each(empty_workplace: Workplace) -> 
     for _ in range(KILLS):
         process = workplace.start("run", "--no-figures")
         wait_until_it_measures(workplace)
-        time.sleep(moments.uniform(0, 0.9))
+        time.sleep(moments.uniform(0, 0.5))
         os.kill(process.pid, signal.SIGKILL)
         process.communicate()
         no_child_is_left(workplace)

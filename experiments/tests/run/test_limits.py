@@ -38,6 +38,7 @@ def test_they_are_measured_once_before_the_first_profile_of_an_experiment_that_n
 
 def test_they_are_measured_in_the_environment_of_what_is_compared_with_them(place: Workplace) -> None:
     assert run(place.settings) == 0
+    assert not (place.results / "timelines").exists()
     environments = {
         call["words"][0]: call["openmp"]
         for call in place.calls()
@@ -54,11 +55,6 @@ def test_another_program_has_limits_of_its_own(place: Workplace) -> None:
     assert len(place.records(FOLDER)) == 2
 
 
-def test_other_experiments_do_not_pay_for_them(workplace: Workplace) -> None:
-    assert run(workplace.settings) == 0
-    assert calls_of(workplace, "limits") == []
-
-
 def test_without_limits_nothing_is_profiled_and_the_reason_is_kept(place: Workplace) -> None:
     place.behave(FAKE_LIMITS_FAIL="1")
     assert run(place.settings) == 2
@@ -66,11 +62,6 @@ def test_without_limits_nothing_is_profiled_and_the_reason_is_kept(place: Workpl
     assert {failure["reason"] for failure in place.failures()} == {
         "limits of the machine: --threads: found 2, but OpenMP grants 1"
     }
-
-
-def test_a_profile_against_limits_leaves_no_timeline(place: Workplace) -> None:
-    assert run(place.settings) == 0
-    assert not (place.results / "timelines").exists()
 
 
 @pytest.mark.parametrize("kind", DAMAGES)

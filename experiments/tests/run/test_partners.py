@@ -129,7 +129,7 @@ def test_a_failure_of_a_block_that_cannot_be_is_of_no_account(pair: Workplace) -
 
 def test_a_block_that_a_kill_cut_through_is_measured_anew(pair: Workplace) -> None:
     pair.question("pair", SWEPT_APART.replace("minimum = 2\nwanted = 2", "minimum = 3\nwanted = 3"))
-    pair.behave(FAKE_SECONDS="0.5")
+    pair.behave(FAKE_SECONDS="0.2")
     process = pair.start("run", "--no-figures")
     wait_until_it_measures(pair)
     while len(pair.records()) != 3:

@@ -24,8 +24,8 @@ def test_the_least_blocks_are_promised_until_more_are_decided(workplace: Workpla
 
 def test_time_spent_on_other_things_leaves_less_for_more_blocks(workplace: Workplace) -> None:
     workplace.question("pair", PAIR.replace("wanted = 2", "wanted = 40"))
-    workplace.behave(FAKE_SECONDS="0.1", FAKE_CHECK_SECONDS="2")
-    run(replace(workplace.settings, budget_seconds=5.0, figures=False))
+    workplace.behave(FAKE_SECONDS="0.05", FAKE_CHECK_SECONDS="0.8")
+    run(replace(workplace.settings, budget_seconds=2.0, figures=False))
     assert len(workplace.records("pair")) == 2 * 2, "nothing is left after the checks and the least blocks"
 
 

@@ -37,8 +37,3 @@ def test_each_point_of_a_sweep_has_its_own(workplace: Workplace) -> None:
     assert timelines(workplace) == [
         "where-a_b_c++-1.json", "where-a_b_c++-2.json", "where-nine-1.json", "where-nine-2.json",
     ]  # fmt: skip
-
-
-def test_a_record_remembers_the_title_of_its_question(workplace: Workplace) -> None:
-    run(workplace.settings)
-    assert {record["tags"]["title"] for record in workplace.records("chunks").values()} == {"Chunks"}

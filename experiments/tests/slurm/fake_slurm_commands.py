@@ -18,11 +18,11 @@ POLICY = "Batch job submission failed: Job violates accounting/QOS policy "
 POLICY += "(job submit limit, user's size and/or time limits)"
 
 
-def main() -> int:
+def main(words: list[str]) -> int:
     path = Path(os.environ["FAKE_SLURM"])
     state = json.loads(path.read_text(encoding="utf-8"))
     command = {"sbatch": sbatch, "squeue": squeue, "scontrol": scontrol}[Path(sys.argv[0]).name]
-    code = command(state, sys.argv[1:])
+    code = command(state, words)
     path.write_text(json.dumps(state), encoding="utf-8")
     return code
 
@@ -87,4 +87,4 @@ def fail(command: str, lines: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

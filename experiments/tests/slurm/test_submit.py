@@ -214,9 +214,10 @@ def test_a_list_of_blocks_stays_while_nobody_says_whether_its_job_was_taken(work
             raise InputError("squeue: nobody answers")
         return asked()
 
-    workplace.monkeypatch.setattr(scheduler, "queue", queue)
-    with pytest.raises(RefusedError, match="timed out"):
-        submit(replace(workplace.settings, site=str(workplace.root / "cluster.toml")))
+    with workplace.monkeypatch.context() as patch:
+        patch.setattr(scheduler, "queue", queue)
+        with pytest.raises(RefusedError, match="timed out"):
+            submit(replace(workplace.settings, site=str(workplace.root / "cluster.toml")))
     assert len(jobs_of(workplace)) == 1
     slurm.ends("CANCELLED")
     slurm.configure(loses_replies=[])

@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +15,7 @@ from experiments.slurm import scheduler
 from experiments.slurm.jobs import PartitionFolder, Unit, folders, units
 from experiments.slurm.submit import too_long
 from experiments.slurm.task import work
-from experiments.tests.conftest import PAIR, ROOT, Workplace, hear_every_signal
+from experiments.tests.conftest import PAIR, ROOT, Workplace, start
 from experiments.tests.slurm.test_script import site
 from support.errors import InputError
 from support.files import write_json
@@ -40,15 +39,8 @@ def job_of(workplace: Workplace, tasks: int = 1, folder: PartitionFolder | None 
     return path
 
 
-def start(manifest: Path, task: int) -> "subprocess.Popen[str]":
-    return subprocess.Popen(
-        [sys.executable, "-m", "experiments", "work", os.fspath(manifest), str(task)],
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        preexec_fn=hear_every_signal,
-    )
+def start_task(manifest: Path, task: int) -> "subprocess.Popen[str]":
+    return start(["work", os.fspath(manifest), str(task)], ROOT)
 
 
 def records(workplace: Workplace) -> dict[str, bytes]:
@@ -59,7 +51,7 @@ def records(workplace: Workplace) -> dict[str, bytes]:
 def test_two_tasks_share_a_folder_and_the_work(workplace: Workplace) -> None:
     workplace.behave(FAKE_SECONDS="0.05")
     manifest = job_of(workplace, tasks=2)
-    for process in [start(manifest, 0), start(manifest, 1)]:
+    for process in [start_task(manifest, 0), start_task(manifest, 1)]:
         _, error = process.communicate(timeout=60)
         assert process.returncode == 0
         assert all("waits for another" in line for line in error.splitlines())
@@ -71,7 +63,7 @@ def test_two_tasks_share_a_folder_and_the_work(workplace: Workplace) -> None:
 def test_two_copies_of_one_task_tear_nothing(workplace: Workplace) -> None:
     workplace.behave(FAKE_SECONDS="0.05")
     manifest = job_of(workplace)
-    for process in [start(manifest, 0) for _ in range(3)]:
+    for process in [start_task(manifest, 0) for _ in range(3)]:
         _, error = process.communicate(timeout=60)
         assert process.returncode == 0
         assert all("waits for another" in line for line in error.splitlines())
@@ -90,7 +82,7 @@ def test_what_is_measured_is_not_measured_again(workplace: Workplace) -> None:
 
 def test_the_signal_ahead_of_the_time_limit_keeps_what_is_finished(workplace: Workplace) -> None:
     workplace.behave(FAKE_SECONDS="0.3")
-    process = start(job_of(workplace), 0)
+    process = start_task(job_of(workplace), 0)
     assert process.stdout is not None
     process.stdout.readline()
     process.send_signal(signal.SIGUSR1)

@@ -120,7 +120,7 @@ def test_a_descendant_that_holds_the_pipes_keeps_nobody_waiting_and_ends_too(
     mark = f"carom-test-{os.getpid()}-{time.monotonic_ns()}"
     code = f"import os, subprocess; os.environ['MARK'] = '{mark}'; {started}; print('out', flush=True)"
     rest = "" if ends else "; import time; time.sleep(600)"
-    done = run(python(code + rest), time_limit=100 if ends else 1)
+    done = run(python(code + rest), time_limit=100 if ends else 0.7)
     assert (done.exit_code, done.output) == ((0, "out\n") if ends else (TIMED_OUT, ""))
     assert marked(mark) == []
 
@@ -236,15 +236,15 @@ def test_while_the_runner_stands_still_no_time_passes_for_its_child(tmp_path: Pa
     began, go = tmp_path / "began", tmp_path / "go"
     wait = f"import pathlib, time\npathlib.Path({str(began)!r}).touch()\n"
     wait += f"while not pathlib.Path({str(go)!r}).exists(): time.sleep(0.01)\nprint('x')"
-    stopped = runner(wait, 3.0)
+    stopped = runner(wait, 2.0)
     wait_until(began.exists)
     stopped.send_signal(signal.SIGSTOP)
     if ends:
         go.touch()
-    time.sleep(4.0)
+    time.sleep(2.5)
     stopped.send_signal(signal.SIGCONT)
     if not ends:
-        time.sleep(0.5)
+        time.sleep(0.2)
         go.touch()
     output, _ = stopped.communicate(timeout=60)
     assert output.startswith("0 ")
