@@ -55,7 +55,7 @@ CHANGES = {
     "a comment": ("kernels/move.hpp", "namespace carom {", "// changed\nnamespace carom { /* too */", False),
     "empty space": ("kernels/move.hpp", "namespace carom {", "namespace\n\n   carom\n{", False),
     "an include": ("kernels/move.hpp", "#pragma once", "#pragma once\n#include <array>", False),
-    "a key of the question": ("experiments/questions/neighbourhood.toml", "steps = 25", "steps = 26", True),
+    "a key of the question": ("experiments/questions/neighbourhood.toml", "steps = 12", "steps = 13", True),
     "a comment of the question": (
         "experiments/questions/neighbourhood.toml",
         "steps",

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from types import ModuleType
@@ -45,8 +45,13 @@ def forked(main: Main, words: Sequence[str], **options: Any) -> "subprocess.Pope
     """What Popen of `words` would be, if it were the program that `main` is."""
     environment = dict(os.environ if options.get("env") is None else options["env"])
     prepare = options.pop("preexec_fn", None) or (lambda: None)
-    become = partial(_become, main, words, environment, prepare)
-    return _Popen(words, preexec_fn=become, **options)
+    # A signal's exception in one of the hooks of a fork would be ignored.
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
+    try:
+        become = partial(_become, main, words, environment, prepare, mask)
+        return _Popen(words, preexec_fn=become, **options)
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 class Forking(_Popen):
@@ -75,7 +80,11 @@ def _stand_in(module: ModuleType, file: str, words: Sequence[str]) -> int:
 
 
 def _become(
-    main: Main, words: Sequence[str], environment: Mapping[str, str], prepare: Callable[[], object]
+    main: Main,
+    words: Sequence[str],
+    environment: Mapping[str, str],
+    prepare: Callable[[], object],
+    mask: Collection[int],
 ) -> NoReturn:
     """Go on as another program, in a child that has just been forked."""
     code = 1
@@ -84,6 +93,7 @@ def _become(
         prepare()
         if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
             signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         sys.argv = list(words)
         code = main(words[1:])
     except SystemExit as leaving:
