@@ -1,6 +1,9 @@
-"""Tests of several processes at once: none waits for the measurements of another's."""
+"""Several processes of tests at once: none waits for another's measurements, and what they fork is loaded."""
 
 import os
+
+import analysis.cli
+import analysis.commands.programs_compared  # noqa: F401
 
 
 def pytest_configure() -> None:

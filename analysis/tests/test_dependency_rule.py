@@ -151,12 +151,8 @@ def walls(root: Path) -> Iterator[str]:
 
 
 def wrong_imports(root: Path) -> Iterator[str]:
-    """Imports of a Python package in one that must not know it, wherever in a file they stand; the tests of
-    studies may know the analysis, since they fork it instead of starting it.
-    """
+    """Imports of a Python package in one that must not know it, wherever in a file they stand."""
     for name, imported in python_files(root):
-        if name.startswith("experiments/tests/"):
-            continue
         others = MUST_NOT_IMPORT[name.split("/")[0]]
         yield from (f"{name}: imports {one}" for one in imported if one.split(".")[0] in others)
 

@@ -7,6 +7,7 @@ import contextlib
 import faulthandler
 import gc
 import os
+import runpy
 import shutil
 import signal
 import subprocess
@@ -19,7 +20,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
-from analysis import cli
 from experiments.run.host_lock import WAITS
 from experiments.support.descendants import adopt_orphans
 from experiments.tests import fake_carom
@@ -64,7 +64,7 @@ class Forking(_Popen):
 
 def _main_of(words: Sequence[str], environment: Mapping[str, str]) -> Main | None:
     if words[0] == sys.executable and tuple(words[2:4]) == ("-m", "analysis"):
-        return None if "PYTHONPATH" in environment else lambda own: cli.main(own[3:])
+        return None if "PYTHONPATH" in environment else _analysis
     file = shutil.which(words[0], path=environment.get("PATH"))
     if file is None:
         return None
@@ -72,6 +72,12 @@ def _main_of(words: Sequence[str], environment: Mapping[str, str]) -> Main | Non
         content = opened.read(max(map(len, STAND_INS)))
     stand_ins = (one for text, one in STAND_INS.items() if content.startswith(text))
     return next((partial(_stand_in, one, file) for one in stand_ins), None)
+
+
+def _analysis(words: Sequence[str]) -> int:
+    sys.argv = ["analysis", *words[3:]]
+    runpy.run_module("analysis", run_name="__main__")
+    return 0
 
 
 def _stand_in(module: ModuleType, file: str, words: Sequence[str]) -> int:

@@ -156,7 +156,7 @@ def test_two_runners_in_one_folder_are_refused(workplace: Workplace) -> None:
     assert finish(first)[0] == 128 + signal.SIGTERM
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_stops_cleanly(workplace: Workplace, number: signal.Signals) -> None:
     workplace.behave(FAKE_SECONDS="0.3")
     process = workplace.start("run", "--no-figures")

@@ -40,9 +40,15 @@ def test_a_verdict_is_that_of_its_interval_and_mirrored_by_changing_sides(values
     assert other["ratio"] == pytest.approx(1 / row["ratio"])
     assert other["p"] == pytest.approx(row["p"])
     assert row["low"] <= row["ratio"] <= row["high"]
+    lowest, highest = 1 / (1 + MARGIN), 1 + MARGIN
+    if row["verdict"] == "faster":
+        assert row["high"] <= lowest + 1e-9
+    elif row["verdict"] == "slower":
+        assert row["low"] >= highest - 1e-9
+    elif row["verdict"] == "equivalent":
+        assert lowest - 1e-9 <= row["low"] <= row["high"] <= highest + 1e-9
     if len(values) < FEWEST:
         return
-    lowest, highest = 1 / (1 + MARGIN), 1 + MARGIN
     denied = {name: row[f"not_{name}"] <= ERROR for name in ("faster", "slower", "equivalent")}
     assert denied["faster"] == (row["low"] >= lowest) or row["low"] == pytest.approx(lowest)
     assert denied["slower"] == (row["high"] <= highest) or row["high"] == pytest.approx(highest)

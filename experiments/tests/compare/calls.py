@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-import analysis.commands.programs_compared  # noqa: F401 - loaded once, for all forks
 from experiments.compare.__main__ import main
 from experiments.tests.conftest import ROOT, hear_every_signal
 from experiments.tests.forks import Forking, forked

@@ -147,7 +147,7 @@ CASES = (
     ),
     Case(
         TIMED, "work left in the background", "waited for in each run",
-        ("./a", "./b"), ("a   ",), code=None, files={"a": "sleep 0.1 &\nexit 0", "b": "sleep 0.1"},
+        ("./a", "./b"), ("a   ", "10"), code=None, files={"a": "sleep 0.1 &\nexit 0", "b": "sleep 0.1"},
         through='"$@" > out; cat out; grep -Eq "^  a +1[0-9][0-9] ms" out',
     ),
     Case(

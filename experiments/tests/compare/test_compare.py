@@ -54,7 +54,8 @@ def test_what_is_wrong_is_said_before_anything_runs(folder: Path, words: list[st
     assert done.stderr.count("\n") == 1
 
 
-def test_a_signal_ends_it_with_what_there_is(folder: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_it_with_what_there_is(folder: Path, number: signal.Signals) -> None:
     words = ("compare", "./short", "./long", "--margin", "0.0001%", "--export-csv", "rows.csv")
     child = start(folder, words, {"TMPDIR": str(folder / "tmp")})
     until = time.monotonic() + 60
@@ -62,9 +63,9 @@ def test_a_signal_ends_it_with_what_there_is(folder: Path) -> None:
         folder.glob("tmp/carom-compare-*/records/compare/*/*-b1.json")
     ):
         time.sleep(0.1)
-    child.send_signal(signal.SIGINT)
+    child.send_signal(number)
     output, _ = child.communicate(timeout=60)
-    assert child.returncode == 128 + signal.SIGINT
+    assert child.returncode == 128 + number
     assert "short   " in output
     assert left_behind(folder) == []
     assert (folder / "rows.csv").exists()
@@ -77,3 +78,18 @@ def test_words_behind_dashes_and_another_reference(folder: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert "first against second   +100.0 % [+100.0, +100.0]   slower by more than 2 %" in done.stdout
     assert "control: second against itself" in done.stdout
+
+
+def test_without_time_for_an_interval_nothing_is_settled(folder: Path) -> None:
+    done = run(folder, "compare", "./long", "./short", "--time", "1ms")
+    assert done.returncode == 0
+    assert "1 block" in done.stdout
+    assert "an interval needs 6 blocks" in done.stdout
+
+
+def test_a_command_that_fails_later_is_told_with_its_runs(folder: Path) -> None:
+    script(folder / "wears_out", 'echo x >> count; [ "$(wc -l < count)" -lt 5 ] || exit 1')
+    done = run(folder, "compare", "./short", "./wears_out", "--time", "20s", "--turns", "off")
+    assert done.returncode == 2
+    assert "wears_out: failed after" in done.stderr
+    assert "short   " in done.stdout, "what was measured of the others"

@@ -55,7 +55,7 @@ def test_the_first_day(tmp_path: Path, case: Case) -> None:
     assert [name for name in left_behind(tmp_path) if name not in (*case.left, "a", "b")] == []
 
 
-@pytest.mark.parametrize("number", [signal.SIGQUIT, signal.SIGKILL])
+@pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGQUIT, signal.SIGKILL])
 def test_what_was_measured_is_kept_however_it_ends(tmp_path: Path, number: signal.Signals) -> None:
     (tmp_path / "tmp").mkdir()
     script(tmp_path / "a", LOOP.format(times=3000) + "; echo $$ > pid")

@@ -74,7 +74,7 @@ def test_a_slower_commit_may_be_accepted_in_writing(repository: Path, tmp_path: 
 
 
 @needs_the_program
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 def test_a_signal_while_it_builds_leaves_nothing(repository: Path, number: signal.Signals) -> None:
     build = "setsid sleep 1000 & echo $! > ../pid; wait"
     words = ("gate", "--base", "base", "--build", build, "--", "./program")
@@ -216,3 +216,19 @@ def test_the_action_passes_every_setting_on() -> None:
     for name in ("BASE", "BUILD", "WORDS", "OPTIONS", "LABEL"):
         assert f"        {name}: ${{{{" in action
         assert f"${name}" in script
+
+
+@needs_the_program
+@pytest.mark.parametrize(
+    ("head", "code", "said"),
+    [
+        ("equal", 0, "gate: passed: not slower by more than the margin"),
+        ("faster", 0, "gate: passed: not slower by more than the margin"),
+        ("slower", 3, "gate: failed: slower"),
+    ],
+)
+def test_the_exit_code_is_the_answer(repository: Path, head: str, code: int, said: str) -> None:
+    done = gate(repository, "--head", head)
+    assert done.returncode == code, done.stderr
+    assert said in done.stdout
+    require_untouched(repository)

@@ -108,3 +108,11 @@ def test_three_commands_are_a_league(folder: Path) -> None:
     assert "c against a   −50.0 %" in done.stdout
     places = [line.split() for line in table_behind("told apart:", done.stdout)]
     assert [place[-2:] for place in places] == [["b", "a"], ["c", "a"], ["a", "b"]]
+
+
+def test_a_range_of_numbers_is_a_league(folder: Path) -> None:
+    printed(folder)
+    done = run(folder, "compare", "-P", "n", "1", "3", "./prints {n} 100", "--time", "60s", *TOOK)
+    assert "./prints 2 100 against ./prints 1 100   +100.0 %" in done.stdout
+    assert "./prints 3 100 against ./prints 1 100   +200.0 %" in done.stdout
+    assert "those with a letter in common cannot be told apart" in done.stdout

@@ -107,3 +107,12 @@ def test_what_one_build_can_measure_comes_before_the_other_is_built(
     assert "the study is complete" in capsys.readouterr().out
     assert len(workplace.records("pair")) == 4
     assert len(workplace.records("control")) == 6, "the control goes on beside the rest"
+
+
+def test_a_failed_point_is_tried_again_by_the_next_run(workplace: Workplace) -> None:
+    workplace.behave(FAKE_BENCH_CRASHES="nine")
+    run(workplace.settings)
+    workplace.behave(FAKE_BENCH_CRASHES="none")
+    assert run(workplace.settings) == 0
+    assert workplace.is_whole()
+    assert not workplace.failures()

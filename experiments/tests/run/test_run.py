@@ -215,3 +215,33 @@ def test_a_part_of_the_study_leaves_the_rest_alone(workplace: Workplace) -> None
     workplace.build(extra="# a change")
     run(replace(workplace.settings, study=("pair",)))
     assert workplace.records("chunks") == chunks
+
+
+def test_running_again_measures_nothing_twice(workplace: Workplace) -> None:
+    run(workplace.settings)
+    before = workplace.records()
+    assert run(workplace.settings) == 0
+    assert workplace.measured() == len(before)
+    assert workplace.records() == before
+
+
+def test_what_has_lost_its_partners_is_run_again_with_them(workplace: Workplace) -> None:
+    run(workplace.settings)
+    lost = sorted(workplace.results.glob("records/chunks/*/*-b1.json"))[0]
+    lost.unlink()
+    before, done = workplace.records(), workplace.measured()
+    assert run(workplace.settings) == 0
+    assert workplace.measured() - done == 3, "a block of the question"
+    assert before.items() <= workplace.records().items()
+    assert {one["tags"]["block"] for one in workplace.records("chunks").values()} == {0, 1, 2}
+
+
+def test_the_scales_do_not_cost_each_other_anything(workplace: Workplace) -> None:
+    run(workplace.settings)
+    paper = workplace.records()
+    run(replace(workplace.settings, scale="quick"))
+    assert {one["tags"]["scale"] for one in workplace.records().values()} == {"quick"}
+    done = workplace.measured()
+    run(workplace.settings)
+    assert workplace.measured() == done
+    assert workplace.records() == paper

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/scenes/generate.hpp"
 #include "harness/scenes/hard_cases.hpp"
 #include "harness/tests/collisions/exact_runs.hpp"
 #include "harness/tests/scenes/random_scenes.hpp"
+#include "kernels/tests/simulate.hpp"
 
 // The event-driven simulation proven right collision by collision: on every hard case, and on random scenes
 // of every kind, also those whose discs overlap or lie outside at the start.
@@ -35,14 +37,35 @@ TEST(ExactRuns, AreProvenOnEveryHardCase) {
 TEST(ExactRuns, AreProvenOnRandomScenes) {
     const EventLimits limits{.at_once = 1000, .in_all = 5000};
     int ended = 0;
+    const auto is_proven = [&](const std::string& wrong, std::uint64_t seed) {
+        ended += wrong.empty();
+        EXPECT_TRUE(wrong.empty() || wrong == ExactRun::given_up) << "scene " << seed << ": " << wrong;
+    };
     const std::uint64_t scenes = tests::fuzz_scenes();
     for (std::uint64_t seed = 0; seed < scenes; ++seed) {
         const Scene scene = tests::awkward_scene(seed);
-        const std::string wrong = ExactRun(scene).wrong(scene, 3, limits);
-        ended += wrong.empty();
-        EXPECT_TRUE(wrong.empty() || wrong == ExactRun::given_up) << "scene " << seed << ": " << wrong;
+        ExactRun run(scene);
+        is_proven(run.wrong(scene, 3, limits), seed);
     }
     EXPECT_GT(ended, static_cast<int>(scenes / 2));
+}
+
+TEST(ExactRuns, EndInTheSameBitsWhetherTheyAreToldOrNot) {
+    const Scene scene = generate({.count = 300,
+                                  .side = 40,
+                                  .radius = 1,
+                                  .steps = 20,
+                                  .least_velocity = 0.1,
+                                  .largest_velocity = 1,
+                                  .seed = 21,
+                                  .placement = Placement::lattice,
+                                  .isotropic = true});
+    ExactRun told(scene);
+    ASSERT_EQ(told.wrong(scene, 20), "");
+    EventDriven<double> untold(scene);
+    ASSERT_TRUE(untold.advance(20));
+    EXPECT_TRUE(tests::same_bits(told.simulation.discs(), untold.discs()));
+    EXPECT_GT(told.checker.pair_collisions(), 1000);
 }
 
 } // namespace

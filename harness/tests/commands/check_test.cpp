@@ -38,6 +38,25 @@ TEST_F(CheckCommand, PassesARightRunOnOneLine) {
     }
 }
 
+TEST_F(CheckCommand, PassesEveryAwkwardScene) {
+    for (const auto& [name, scene] : tests::all_scenes()) {
+        const std::string path = directory.write("scene.in", scene_text(scene));
+        const ProgramResult result = run_carom({"check", path, "2", "--variant", "row-resolve_dynamic"});
+        EXPECT_EQ(result.exit_code, 0) << name << ": " << result.error;
+    }
+}
+
+TEST_F(CheckCommand, NamesTheFirstViolation) {
+    const std::string jammed = directory.write("jammed.in", "2\n4\n1\n9\n0 1 2 0 0\n1 2 2 1 0\n");
+    for (const char* variant : {"published", "row", "track", "repeat", "once"}) {
+        const ProgramResult result =
+            run_carom({"check", jammed, "1", "--variant", variant, "--sweep-limit", "30"});
+        EXPECT_TRUE(refused(result, 2,
+                            {jammed, std::string("variant ") + variant,
+                             "step 1: the resolve did not end within 30 sweeps: disc"}));
+    }
+}
+
 TEST_F(CheckCommand, GivesItsVerdictAsJson) {
     const Scene busy = tests::random_scene(150, 50, 1, 6, 2, 171);
     const std::string scene = directory.write("scene.in", scene_text(busy));
@@ -77,6 +96,13 @@ TEST_F(CheckCommand, GivesTheVerdictOfAFailureAsJsonAndInALine) {
     const std::string reason = json["reason"];
     EXPECT_TRUE(reason.starts_with("step 1: the resolve did not end within 30 sweeps"));
     EXPECT_EQ(failed.error, "carom: " + jammed + ", variant published, " + reason + "\n");
+}
+
+TEST_F(CheckCommand, ReadsTheSceneFromStandardInput) {
+    const std::string scene = directory.write("scene.in", scene_text(tests::corner()));
+    const ProgramResult result = run_carom({"check", "-"}, {}, "", scene);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_TRUE(result.output.starts_with("passed: standard input, variant published, ")) << result.output;
 }
 
 TEST_F(CheckCommand, NamesTheSubstepOfTheViolation) {

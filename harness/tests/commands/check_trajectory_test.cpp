@@ -111,6 +111,31 @@ TEST_F(CheckTrajectory, RefusesADiscThatMovedTooLittle) {
     EXPECT_TRUE(refused(check(text), 2, {"trajectory", "step 3: disc 7 moved from"}));
 }
 
+TEST_F(CheckTrajectory, RefusesAPairThatIsLeftColliding) {
+    // As if nobody had collided in the last step.
+    std::vector<Disc> before;
+    const std::string text = changed([&before](int step, std::vector<Disc>& discs) {
+        for (std::size_t i = 0; step == steps && i < discs.size(); ++i) {
+            discs[i].vx = before[i].vx;
+            discs[i].vy = before[i].vy;
+        }
+        before = discs;
+    });
+    EXPECT_TRUE(refused(check(text), 2, {"step 6: ", "left"}));
+}
+
+TEST_F(CheckTrajectory, RefusesEnergyThatIsAMillionthOff) {
+    const std::string text = changed([](int step, std::vector<Disc>& discs) {
+        if (step == steps) {
+            for (Disc& disc : discs) {
+                disc.vx *= 1 + 0.5e-6;
+                disc.vy *= 1 + 0.5e-6;
+            }
+        }
+    });
+    EXPECT_TRUE(refused(check(text), 2, {"step 6: "}));
+}
+
 TEST_F(CheckTrajectory, RefusesAStepThatIsMissing) {
     std::string text;
     std::istringstream lines(right);

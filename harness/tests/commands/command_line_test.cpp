@@ -36,6 +36,11 @@ std::size_t width(const std::string& text) {
     return longest;
 }
 
+TEST_F(CommandLine, WithoutAVerbIsRefused) {
+    EXPECT_TRUE(refused(run_carom({}), 1, {"carom: "}));
+    EXPECT_TRUE(refused(run_carom({"frobnicate"}), 1, {"carom: ", "frobnicate"}));
+}
+
 TEST_F(CommandLine, HelpsWithTheProgramAndEveryVerb) {
     const ProgramResult help = run_carom({"--help"});
     EXPECT_EQ(help.exit_code, 0);
@@ -70,6 +75,29 @@ TEST_F(CommandLine, HelpShowsTheDefaults) {
     }
 }
 
+TEST_F(CommandLine, RefusesAVariantThatThereIsNotAndNamesTheNearest) {
+    for (const char* verb : {"run", "check"}) {
+        const auto refused_for = [&](const std::string& found, const std::string& nearest) {
+            const ProgramResult result = run_carom({verb, scene, "--variant", found});
+            return refused(result, 1, {found + "', expected a name", nearest + "'"});
+        };
+        EXPECT_TRUE(refused_for("publishd", "published"));
+        EXPECT_TRUE(refused_for("row-resolv_dynamic", "row-resolve_dynamic"));
+        EXPECT_TRUE(refused_for("self-contained-off", "self_contained_off"));
+        EXPECT_TRUE(refused_for("trak", "track"));
+    }
+}
+
+TEST_F(CommandLine, RefusesThreadsThatCannotBe) {
+    for (const char* verb : {"run", "check"}) {
+        for (const char* threads : {"0", "-1", "1025", "two", "1.5", ""}) {
+            EXPECT_TRUE(refused(run_carom({verb, scene, "--threads", threads}), 1, {"threads"})) << threads;
+        }
+        EXPECT_TRUE(refused(run_carom({verb, scene, "0"}), 1, {"threads", "1 to 1024"}));
+        EXPECT_TRUE(refused(run_carom({verb, scene, "two"}), 1, {"threads", "two"}));
+    }
+}
+
 TEST_F(CommandLine, RefusesThreadsThatItDoesNotGet) {
     for (const char* verb : {"run", "check", "bench", "profile"}) {
         EXPECT_TRUE(refused(run_carom({verb, scene, "--threads", "2"}, {"OMP_THREAD_LIMIT=1"}), 1,
@@ -85,6 +113,23 @@ TEST_F(CommandLine, RefusesTuningsThatCannotBe) {
         }
     }
     EXPECT_TRUE(refused(run_carom({"run", scene, "--tolerance", "strict"}), 1, {"--tolerance", "strict"}));
+}
+
+TEST_F(CommandLine, RefusesOptionsAndArgumentsThatThereAreNot) {
+    EXPECT_TRUE(refused(run_carom({"run", scene, "--speed", "9"}), 1, {"--speed"}));
+    EXPECT_TRUE(refused(run_carom({"run", scene, "2", "extra"}), 1, {"extra"}));
+    EXPECT_TRUE(refused(run_carom({"run"}), 1, {"SCENE"}));
+    EXPECT_TRUE(refused(run_carom({"run", scene, "--variant"}), 1, {"--variant"}));
+}
+
+TEST_F(CommandLine, RefusesABadSceneWithItsLine) {
+    const std::string bad = directory.write("bad.in", "1\n10\n1\n5\n0 5 five 0 0\n");
+    const std::string missing = directory / "missing.in";
+    for (const char* verb : {"run", "check"}) {
+        EXPECT_TRUE(refused(run_carom({verb, bad}), 1, {bad + ":5: found 'five', expected a position y"}));
+        EXPECT_TRUE(refused(run_carom({verb, missing}), 1, {missing + ": cannot be read"}));
+        EXPECT_TRUE(refused(run_carom({verb, directory / "."}), 1, {"cannot be read"}));
+    }
 }
 
 TEST_F(CommandLine, SaysSoIfStandardOutputHasNoRoom) {

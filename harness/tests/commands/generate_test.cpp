@@ -71,13 +71,23 @@ TEST(GenerateCommand, WritesToStandardOutputIfToldSo) {
 }
 
 TEST(GenerateCommand, RefusesWhatNoSceneCanHave) {
+    EXPECT_TRUE(refused(generate_with(1, "-1"), 1, {"N"}));
+    EXPECT_TRUE(refused(generate_with(1, "1.5"), 1, {"N"}));
     EXPECT_TRUE(refused(generate_with(1, "100000001"), 1, {"N"}));
     EXPECT_TRUE(refused(generate_with(2, "2.9"), 1, {"L", "2.9", "2r = 3"}));
     EXPECT_TRUE(refused(generate_with(2, "nan"), 1, {"L"}));
+    EXPECT_TRUE(refused(generate_with(2, "inf"), 1, {"L"}));
     EXPECT_TRUE(refused(generate_with(3, "0"), 1, {"R", "found 0"}));
+    EXPECT_TRUE(refused(generate_with(3, "-1"), 1, {"R"}));
+    EXPECT_TRUE(refused(generate_with(3, "nan"), 1, {"R"}));
     EXPECT_TRUE(refused(generate_with(4, "-1"), 1, {"STEPS"}));
+    EXPECT_TRUE(refused(generate_with(4, "ten"), 1, {"STEPS"}));
     EXPECT_TRUE(refused(generate_with(5, "6"), 1, {"VMAX", "VMIN = 6"}));
+    EXPECT_TRUE(refused(generate_with(5, "nan"), 1, {"VM"}));
+    EXPECT_TRUE(refused(generate_with(6, "nan"), 1, {"VMAX"}));
     EXPECT_TRUE(refused(generate_with(6, "1e61"), 1, {"VMAX"}));
+    EXPECT_TRUE(refused(generate_with({"--seed", "-1"}), 1, {"--seed"}));
+    EXPECT_TRUE(refused(run_carom({"generate", "40", "100"}), 1, {"found no R"}));
 }
 
 TEST(GenerateCommand, LeavesNoFileWhereItIsRefused) {
@@ -142,6 +152,7 @@ TEST(GenerateCommand, ListsTheHardCases) {
 }
 
 TEST(GenerateCommand, RefusesAMixtureOfRandomSceneAndHardCase) {
+    EXPECT_TRUE(refused(run_carom({"generate", "--case", "cradel"}), 1, {"--case", "cradel", "--cases"}));
     EXPECT_TRUE(refused(generate_with({"--case", "cradle"}), 1, {"--case"}));
     EXPECT_TRUE(refused(run_carom({"generate", "--case", "cradle", "--seed", "3"}), 1, {"--seed"}));
     EXPECT_TRUE(refused(run_carom({"generate", "--case", "cradle", "--cases"}), 1, {"--cases"}));

@@ -32,6 +32,13 @@ TEST(ReferenceCommand, WritesToAFileWhatItWouldPrint) {
     }
 }
 
+TEST(ReferenceCommand, ReadsTheSceneFromStandardInput) {
+    const tests::TemporaryDirectory directory;
+    const std::string scene = directory.write("scene.in", scene_text(tests::corner()));
+    EXPECT_EQ(run_carom({"reference", "-", "--time", "1"}, {}, "", scene).output,
+              run_carom({"reference", scene, "--time", "1"}).output);
+}
+
 TEST(ReferenceCommand, PrintsTheSameWhenItsCollisionsAreChecked) {
     const tests::TemporaryDirectory directory;
     const std::string scene =

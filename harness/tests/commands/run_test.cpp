@@ -85,6 +85,12 @@ TEST_F(RunCommand, TakesThreadsAsItsSecondArgument) {
     EXPECT_EQ(summary({scene, "1"}, {"OMP_NUM_THREADS=2"})["threads"], 1);
 }
 
+TEST_F(RunCommand, EndsInTheSameStateForAnyThreadsAndChunks) {
+    const auto expected = summary({scene, "1"})["state_hash"];
+    EXPECT_EQ(summary({scene, "2"})["state_hash"], expected);
+    EXPECT_EQ(summary({scene, "8", "--find-chunk", "1", "--resolve-chunk", "9"})["state_hash"], expected);
+}
+
 TEST_F(RunCommand, RunsTheVariantAskedFor) {
     for (const char* name : {"nine", "row-resolve_dynamic", "once-self_contained_off"}) {
         const auto simulation = find_variant(name)->simulate(busy, {});

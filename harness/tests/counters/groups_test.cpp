@@ -68,6 +68,12 @@ EventGroups group(const Hardware& hardware, const std::vector<Alternatives>& wan
     return group_events(wanted, [&hardware] { return std::make_unique<FakeSet>(hardware); });
 }
 
+TEST(EventGroups, WhatFitsIsCountedAtOnce) {
+    const EventGroups found = group({.counters = 4}, {{"a"}, {"b"}, {"c"}, {"d"}});
+    EXPECT_EQ(found.groups, (Groups{{"a", "b", "c", "d"}}));
+    EXPECT_TRUE(found.missing.empty());
+}
+
 TEST(EventGroups, WhatDoesNotFitStartsTheNextGroup) {
     const EventGroups found = group({.counters = 2}, {{"a"}, {"b"}, {"c"}, {"d"}, {"e"}});
     EXPECT_EQ(found.groups, (Groups{{"a", "b"}, {"c", "d"}, {"e"}}));

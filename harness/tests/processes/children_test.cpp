@@ -23,7 +23,19 @@ class IgnoredChildren {
     void (*before_)(int);
 };
 
-ProcessEnd run_of(const std::vector<std::string>& words) { return run_undisturbed({.words = words}); }
+ProcessEnd run_of(const std::vector<std::string>& words) {
+    return run_undisturbed({.words = words, .folder = "", .pattern = ""});
+}
+
+TEST(RunUndisturbed, FindsAProgramOnPathAndTellsHowItEnded) {
+    EXPECT_TRUE(run_of({"true"}).succeeded());
+    EXPECT_EQ(run_of({"sh", "-c", "exit 3"}).exit_code, 3);
+    EXPECT_FALSE(run_of({"sh", "-c", "exit 3"}).succeeded());
+    EXPECT_EQ(run_of({"sh", "-c", "kill -KILL $$"}).signal, SIGKILL);
+    EXPECT_FALSE(run_of({"sh", "-c", "kill -KILL $$"}).succeeded());
+    EXPECT_NE(run_of({"carom-is-no-such-program"}).not_started, "");
+    EXPECT_FALSE(run_of({"carom-is-no-such-program"}).succeeded());
+}
 
 TEST(RunUndisturbed, KnowsTheEndThoughNobodyCaresHowChildrenEnd) {
     for (const int exit_code : {0, 3}) {

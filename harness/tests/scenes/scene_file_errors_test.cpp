@@ -33,6 +33,10 @@ const std::vector<BadFile> bad_files{
      "bad.in:1: found the end of the line, expected the number of discs N, an integer"},
     {"BinaryGarbage", "\x7f\x45LF\x02\x01\x01\0\0\xff\xfe"s,
      "bad.in:1: found '?ELF" + std::string(7, '?') + "', expected the number of discs N"},
+    {"ByteOrderMark",
+     "\xef\xbb\xbf"
+     "0\n10\n1\n5\n",
+     "bad.in:1: found '???0', expected the number of discs N"},
     {"OlderFormat", "print\n1\n10\n1\n5\n0 5 5 0 0\n",
      "bad.in:1: found 'print', expected the number of discs N, an integer (this is the older format, whose "
      "first "
@@ -43,9 +47,14 @@ const std::vector<BadFile> bad_files{
      "bad.in:2: found 'print', expected the side of the box L, a number"},
     {"CountNotANumber", "two\n10\n1\n5\n",
      "bad.in:1: found 'two', expected the number of discs N, an integer"},
+    {"CountNotAnInteger", "2.5\n10\n1\n5\n",
+     "bad.in:1: found '2.5', expected the number of discs N, an integer"},
+    {"CountWithAPlus", "+2\n10\n1\n5\n", "bad.in:1: found '+2', expected the number of discs N, an integer"},
     {"CountNegative", "-1\n10\n1\n5\n", "bad.in:1: found -1, expected a number of discs from 0 to 100000000"},
     {"CountAbsurd", "100000001\n10\n1\n5\n",
      "bad.in:1: found 100000001, expected a number of discs from 0 to 100000000"},
+    {"CountBeyondIntegers", "99999999999999999999\n10\n1\n5\n",
+     "bad.in:1: found '99999999999999999999', expected the number"},
     {"CountTooLargeForTheFile", "99999999\n10\n1\n5\n0 5 5 0 0\n",
      "bad.in:1: found 99999999 discs in a file too short for so many, expected a line `i x y vx vy` for "
      "each"},
@@ -54,12 +63,22 @@ const std::vector<BadFile> bad_files{
     {"SideMissing", "0\n", "bad.in:2: found the end of the file, expected the side of the box L, a number"},
     {"SideNotANumber", "0\nwide\n1\n5\n", "bad.in:2: found 'wide', expected the side of the box L, a number"},
     {"SideNan", with_header("1\nnan\n1\n5\n"), "bad.in:2: found nan, expected a side from 2r = 2 to 1e"},
+    {"SideInfinite", with_header("1\ninf\n1\n5\n"), "bad.in:2: found inf, expected a side from 2r = 2 to 1e"},
     {"SideBelowADiameter", with_header("1\n1.99\n1\n5\n"),
      "bad.in:2: found 1.99, expected a side from 2r = 2 to 1e"},
+    {"SideNegative", with_header("1\n-10\n1\n5\n"), "bad.in:2: found -10, expected a side from 2r = 2 to 1e"},
     {"SideAbsurd", with_header("1\n1e61\n1\n5\n"),
      "bad.in:2: found 1e+61, expected a side from 2r = 2 to 1e"},
+    {"SideBeyondDoubles", with_header("1\n1e999\n1\n5\n"),
+     "bad.in:2: found '1e999', expected the side of the box L, a number"},
+    {"SideWithADecimalComma", with_header("1\n10,5\n1\n5\n"),
+     "bad.in:2: found '10,5', expected the side of the box L, a number"},
+    {"SideInHexadecimal", with_header("1\n0x10\n1\n5\n"),
+     "bad.in:2: found '0x10', expected the side of the box L, a number"},
     {"RadiusMissing", "0\n10\n", "bad.in:3: found the end of the file, expected the radius r, a number"},
     {"RadiusZero", with_header("1\n10\n0\n5\n"), "bad.in:3: found 0, expected a radius from 1e-60 to 1e"},
+    {"RadiusNegative", with_header("1\n10\n-1\n5\n"),
+     "bad.in:3: found -1, expected a radius from 1e-60 to 1e"},
     {"RadiusNan", with_header("1\n10\nNaN\n5\n"), "bad.in:3: found nan, expected a radius from 1e-60 to 1e"},
     {"RadiusAbsurdlySmall", with_header("1\n10\n1e-61\n5\n"),
      "bad.in:3: found 1e-61, expected a radius from 1e-60 to 1e"},
@@ -67,13 +86,20 @@ const std::vector<BadFile> bad_files{
      "bad.in:3: found 1e+61, expected a radius from 1e-60 to 1e"},
     {"StepsMissing", "0\n10\n1\n",
      "bad.in:4: found the end of the file, expected the number of steps S, an integer"},
+    {"StepsNotAnInteger", with_header("1\n10\n1\n1e3\n"),
+     "bad.in:4: found '1e3', expected the number of steps S, an integer"},
     {"StepsNegative", with_header("1\n10\n1\n-5\n"),
      "bad.in:4: found -5, expected a number of steps of at least 0"},
+    {"StepsBeyondIntegers", with_header("1\n10\n1\n4000000000\n"),
+     "bad.in:4: found '4000000000', expected the number of steps S"},
     {"DiscsMissing", with_discs(""), "bad.in:1: found 2 discs in a file too short for so many"},
+    {"OnlyDiscMissing", "1\n10\n1\n5\n", "bad.in:1: found 1 disc in a file too short for so many"},
     {"OneDiscMissing", with_discs("0 5.00000 5.00000 0 0\n"),
      "bad.in:6: found the end of the file, expected one line `i x y vx vy` for each"},
     {"BlankLineForADisc", with_discs("0 5 5 0 0\n\n1 7.00000 7 0 0\n"),
      "bad.in:6: found the end of the line, expected the number of a disc, an integer"},
+    {"OneDiscTooMany", with_discs("0 5 5 0 0\n1 7 7 0 0\n2 3 3 0 0\n"),
+     "bad.in:7: found '2', expected the end of the file after the last disc"},
     {"TrailingGarbage", with_discs("0 5 5 0 0\n1 7 7 0 0\n\nend\n"),
      "bad.in:8: found 'end', expected the end of the file after the last disc"},
     {"TrailingZeroByte", with_discs("0 5 5 0 0\n1 7 7 0 0\n\0"s),
@@ -90,14 +116,21 @@ const std::vector<BadFile> bad_files{
      "bad.in:5: found the end of the line, expected a velocity vy"},
     {"FieldTooMany", with_discs("0 5 5 0 0\n1 7 7 0 0 9\n"),
      "bad.in:6: found '9', expected the end of the line"},
+    {"XNotANumber", with_discs("0 5 5 0 0\n1 seven 7 0 0\n"),
+     "bad.in:6: found 'seven', expected a position x"},
     {"XWithMoreAtItsEnd", with_discs("0 5 5 0 0\n1 7m 7 0 0\n"),
      "bad.in:6: found '7m', expected a position x"},
     {"YNan", with_discs("0 5 nan 0 0\n1 7 7 0 0\n"),
      "bad.in:5: found nan, expected a position y of magnitude at most 1e"},
+    {"YAbsurd", with_discs("0 5 -1e61 0 0\n1 7 7 0 0\n"),
+     "bad.in:5: found -1e+61, expected a position y of magnitude at most 1e"},
     {"VxInfinite", with_discs("0 5 5 -inf 0\n1 7 7 0 0\n"),
      "bad.in:5: found -inf, expected a velocity vx of magnitude at most 1e"},
+    {"VyNotANumber", with_discs("0 5 5 0 --1\n1 7 7 0 0\n"), "bad.in:5: found '--1', expected a velocity vy"},
     {"LongField", with_discs("0 5 5 0 " + std::string(1000, 'x') + "\n1 7 7 0 0\n"),
-     "bad.in:5: found '" + std::string(40, 'x') + "...', expected a velocity vy"}};
+     "bad.in:5: found '" + std::string(40, 'x') + "...', expected a velocity vy"},
+    {"FieldsSeparatedByCommas", with_discs("0,5,5,0,0\n1,7,7,0,0\n"),
+     "bad.in:5: found '0,5,5,0,0', expected the number of a disc, an integer"}};
 
 class BadSceneFile : public testing::TestWithParam<BadFile> {};
 
@@ -121,6 +154,16 @@ std::string refusal_to_read(const std::string& path) {
         return error.what();
     }
     return "accepted";
+}
+
+TEST(UnreadableSceneFile, IsRefusedWithItsName) {
+    const tests::TemporaryDirectory directory;
+    const std::string missing = directory / "missing.in";
+    EXPECT_EQ(refusal_to_read(missing),
+              missing + ": cannot be read (No such file or directory), expected a readable file");
+    const std::string folder = directory / ".";
+    EXPECT_EQ(refusal_to_read(folder),
+              folder + ": cannot be read (Is a directory), expected a readable file");
 }
 
 TEST(UnreadableSceneFile, NamesTheFileOfABadLine) {

