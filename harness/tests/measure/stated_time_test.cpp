@@ -82,7 +82,8 @@ TEST(StatedTime, HasTheUnitThatStandsBehindItOrWithIt) {
         EXPECT_DOUBLE_EQ(time_in_output(none, "([0-9]+)(?: s2)?", 0.5).seconds, 6) << none;
     }
     EXPECT_EQ(said("took 12.5 ms total\n", "took (.*)"),
-              "time: found '12.5 ms total', expected a number, and behind it at most a unit: ns, us, ms, s, min or h");
+              "time: found '12.5 ms total', expected a number, and behind it at most a unit: ns, us, ms, s, "
+              "min or h");
 }
 
 TEST(StatedTime, IsNotWhatABlankSeparatesFromItsThousands) {
