@@ -86,6 +86,8 @@ def _read(path: Path) -> list[Session]:
         raise InputError(
             f"--append: found {path}, which is no file, expected one of an earlier call, or none"
         )
+    if not path.stat().st_size:
+        return []  # as mktemp makes one
     match read_json(path):
         case {"schema_version": version, "sessions": [*sessions]} if version == SCHEMA_VERSION:
             return [_session(path, one) for one in sessions]

@@ -76,7 +76,7 @@ def _built(options: argparse.Namespace, run: Sequence[str], stack: ExitStack) ->
         if options.build is not None:
             build(options.build, trees[name])
     if commits["base"].sha != commits["head"].sha:
-        require_two_files(run, trees["base"], trees["head"], since)
+        require_two_files(run, trees["base"], trees["head"], since, is_accepted=options.same_bytes)
         if not options.same_bytes:
             require_two_programs(run, trees["base"], trees["head"])
     words, line, pattern = tuple(run), " ".join(run), options.time_from

@@ -115,8 +115,7 @@ def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], refere
     has_lists = getattr(options, "list", []) or getattr(options, "range", [])
     for option, file in {**exports, "append": getattr(options, "append", None)}.items():
         if has_lists and file is not None and named_in([str(file)]):
-            told = "append" if option == "append" else f"export-{option}"
-            raise InputError(f"--{told}: found {file}, expected one file for all commands")
+            raise InputError(f"{_option(option)}: found {file}, expected one file for all commands")
     setup, cleanup = (_once(getattr(options, what), commands, f"--{what}") for what in ("setup", "cleanup"))
     return Asked(
         commands=commands,
@@ -143,8 +142,13 @@ def _places(options: argparse.Namespace, kind: str) -> list[Path]:
     """The file that is to hold the result as that kind, if one is. Raises InputError for a second one."""
     files: list[Path] = getattr(options, f"export_{kind}")
     if len(files) > 1:
-        raise InputError(f"--export-{kind}: found {files[0]} and {files[1]}, expected one file")
+        raise InputError(f"{_option(kind)}: found {files[0]} and {files[1]}, expected one file")
     return files
+
+
+def _option(kind: str) -> str:
+    """How a file is asked for: as the parser's own messages name options of two names."""
+    return {"append": "--append", "html": "--export-html/--html"}.get(kind, f"--export-{kind}")
 
 
 def _once(line: str | None, commands: Sequence[Compared], what: str) -> tuple[str, ...]:

@@ -21,10 +21,10 @@ _NO_SOURCE = re.compile(
 """The names of files that go into no program: pages, tests, examples, settings of tools."""
 
 
-def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int) -> None:
+def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, *, is_accepted: bool) -> None:
     """Raises InputError for a file that both commits run or read: one of the user's own checkout, or one that
     their builds wrote, which has changed since a time of the file system, in nanoseconds, as all that is in
-    the trees has.
+    the trees has; and, unless that `is_accepted`, for a program from elsewhere beside nothing of the trees.
     """
     own, trees = base.repository.resolve(), base.top.resolve().parent
     of_base, of_head = (set(_read(words, tree.folder)) for tree in (base, head))
@@ -40,7 +40,15 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int) 
             raise InputError(f"found {found}, {told}; expected a path inside the checkout, such as ./prog")
     named = next((word for word, _ in sorted(of_head) if word.startswith("/")), None)
     if named and not any(path.is_relative_to(trees) for _, path in of_head):
-        warn(f"carom: both commits use {named}, and nothing that the command names lies in the checkout")
+        told = f"both commits use {named}, and nothing that the command names lies in the checkout"
+        if not (is_accepted or _is_of_the_system(named)):
+            raise InputError(f"{told}; expected a path inside it, or --same-bytes to compare all the same")
+        warn(f"carom: {told}")
+
+
+def _is_of_the_system(word: str) -> bool:
+    """Whether it lies in a folder of PATH, as make and other tools do that find their input themselves."""
+    return str(Path(word).parent) in os.environ.get("PATH", os.defpath).split(os.pathsep)
 
 
 def require_two_programs(words: Sequence[str], base: Tree, head: Tree) -> None:

@@ -139,6 +139,12 @@ COMMITS = {
         ("carom: head ", ': found "./prog", which is not there; expected a program'),
         build=f"! grep -q 100 prog.in || {{ {COPY}; }}",
     ),
+    "no program of that name on PATH": Case(
+        SLOWER,
+        1,
+        (': found "prog", which is not on PATH; expected ./prog, if the file of the folder is meant',),
+        run=("prog",),
+    ),
     "in a hook": Case(
         f"{SLOWER} git checkout -q main",
         3,
@@ -244,9 +250,16 @@ PROGRAMS = {
     ),
     "outside, and nothing of the checkout": Case(
         f"{SLOWER} cp prog.in HERE/outside && chmod +x HERE/outside",
-        0,
-        ("both commits use HERE/outside, and nothing that the command names lies in the checkout", PASSED),
+        1,
+        ("both commits use HERE/outside, and nothing that the command names lies in the checkout; expected",),
         run=("HERE/outside",),
+    ),
+    "outside, on PATH": Case(
+        f"{SLOWER} mkdir HERE/on-path && cp prog.in HERE/on-path/prog && chmod +x HERE/on-path/prog",
+        0,
+        ("both commits use HERE/on-path/prog, and nothing that the command names", PASSED),
+        run=("HERE/on-path/prog",),
+        env={"PATH": f"HERE/on-path:{os.environ['PATH']}"},
     ),
     "installed, one commit": Case(START, 0, (PASSED,), build=INSTALL, run=("HERE/fixed/prog",)),
     "installed on PATH": Case(
@@ -306,6 +319,7 @@ PROGRAMS = {
         f"{SLOWER} mkdir ../fixed && cp prog.in ../fixed/prog && chmod +x ../fixed/prog && sleep 0.1",
         0,
         (PASSED,),
+        ("--same-bytes",),
         run=("HERE/fixed/prog",),
         build="true",
     ),

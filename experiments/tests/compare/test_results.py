@@ -50,6 +50,7 @@ def test_products_of_lists_have_a_table_of_effects(folder: Path) -> None:
 
 def test_a_file_goes_on_with_what_is_in_it(folder: Path) -> None:
     printed(folder)
+    (folder / "kept.json").touch()  # an empty one, as mktemp makes it, is one of no earlier call
     words = ("compare", "./prints 100 1", "./prints 50 1", *TOOK, "--append", "kept.json", "--time", "1ms")
     assert "1 block:" in run(folder, *words).stdout
     assert "2 blocks, 1 of them earlier" in run(folder, *words).stdout
