@@ -8,6 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 from analysis.records import known
+from analysis.records.joint_turns import joined
 from support.errors import InputError
 
 MEASURED = ["runs", "times", "trajectory", "phases", "threads", "counters"]
@@ -59,4 +60,5 @@ def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
     skipped = [f"{results / name}: skipped: {why}" for name, why in known.told(files) if why is not None]
     for line in skipped:
         warn(line) if warn else print(line, file=sys.stderr)
-    return Records(**known.frames(files), skipped=skipped)
+    frames = known.frames(files)
+    return Records(**{**frames, "times": joined(frames["times"])}, skipped=skipped)

@@ -53,7 +53,7 @@ CONTEXT = [
 ]  # fmt: skip
 OF_PARTS = {
     "runs": [*WORK, *ERRORS, *CHECKS],
-    "times": ["lost_by_turns", "stops", "own_seconds", "steps_seconds", _RUNS, _ROUNDS],
+    "times": ["lost_by_turns", "stops", "own_seconds", "steps_seconds", _RUNS, _ROUNDS, "places"],
     "trajectory": ["time", "rms_distance"],
     "phases": ["phase", "wall_seconds", "serial_seconds"],
     "threads": ["phase", "thread", "busy_seconds", "waiting_seconds"],
@@ -165,7 +165,8 @@ def times(record: Record) -> Iterable[Row]:
     cold caches took, and `stops`, in how many slices a run of a whole program was, 0 if it was never stopped;
     NaN where not known. `steps_seconds` is the median of its runs, whose times are beside it, and those of
     its turns, run by run, if it took any; of a whole process they are its own, as seen from outside or as it
-    says itself. `own_seconds` is the median of the runs less what they waited for a processor.
+    says itself. `own_seconds` is the median of the runs less what they waited for a processor; `places` are
+    those of its turns among all of the process.
     """
     if record["kind"] not in ("bench", "process") or not record["repetitions"]:
         return
@@ -179,6 +180,7 @@ def times(record: Record) -> Iterable[Row]:
         "steps_seconds": float(np.median(seconds)),
         _RUNS: seconds,
         _ROUNDS: np.array(turns["seconds"] if "rounds" in turns else [], dtype=float),
+        "places": np.array(turns.get("places", ()), dtype=np.int64),
     }
 
 

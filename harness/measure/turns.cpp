@@ -21,6 +21,7 @@ std::vector<std::vector<TurnTime>> take_turns(std::span<Contender* const> conten
     std::vector<std::vector<TurnTime>> turns(contenders.size());
     std::vector<std::size_t> order(contenders.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
+    int place = 0;
     const bool may_halve = std::ranges::all_of(
         contenders, [&plan](const Contender* one) { return one->steps() >= 2 * plan.rounds; });
     for (int run = 0; run < plan.runs; ++run) {
@@ -38,6 +39,7 @@ std::vector<std::vector<TurnTime>> take_turns(std::span<Contender* const> conten
             for (const std::size_t next : order) {
                 Contender& one = *contenders[next];
                 turns[next].push_back(one.advance(steps_until(one, round + 1) - steps_until(one, round)));
+                turns[next].back().place = place++;
             }
         }
     }

@@ -9,6 +9,7 @@ namespace carom {
 
 /// What a turn took.
 struct TurnTime {
+    int place = 0; ///< among all turns of all contenders, in the order of time, from 0
     int steps = 0;
     double seconds = 0; ///< that count
 

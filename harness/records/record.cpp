@@ -47,10 +47,12 @@ Json turns_json(const std::optional<Turns>& turns) {
     if (!turns) {
         return nullptr;
     }
+    Json places = Json::array();
     Json steps = Json::array();
     Json seconds = Json::array();
     Json returning_seconds = Json::array();
     for (const TurnTime& turn : turns->turns) {
+        places.push_back(turn.place);
         steps.push_back(turn.steps);
         seconds.push_back(turn.seconds);
         returning_seconds.push_back(or_null(turn.returning_seconds));
@@ -58,6 +60,7 @@ Json turns_json(const std::optional<Turns>& turns) {
     return {{"contenders", turns->contenders},
             {"seed", turns->plan.seed},
             {"rounds", turns->plan.rounds},
+            {"places", places},
             {"steps", steps},
             {"seconds", seconds},
             {"returning_seconds", returning_seconds}};

@@ -72,6 +72,7 @@ TEST_F(TurnsCommand, LeavesARecordForEachThatIsAsOfAProcessOfItsOwn) {
         EXPECT_EQ(turns["rounds"], 10);
         EXPECT_EQ(turns["seconds"].size(), 10) << "two steps a turn";
         for (std::size_t turn = 0; turn < 10; ++turn) {
+            EXPECT_EQ(turns["places"][turn].get<std::size_t>() / 3, turn) << "one of three in each round";
             EXPECT_LT(turns["returning_seconds"][turn], turns["seconds"][turn]);
         }
         const auto seconds = turns["seconds"].get<std::vector<double>>();

@@ -57,6 +57,11 @@ TEST(Turns, EachTakesOneInEveryRoundAndAllItsStepsInAll) {
     }
     ASSERT_EQ(turns[2].size(), 10);
     EXPECT_TRUE(std::ranges::all_of(turns[2], [](const TurnTime& turn) { return turn.seconds == 1; }));
+    for (std::size_t who = 0; who < turns.size(); ++who) {
+        for (const TurnTime& turn : turns[who]) {
+            EXPECT_EQ(diary[static_cast<std::size_t>(turn.place)], static_cast<int>(who));
+        }
+    }
 }
 
 TEST(Turns, EverySecondRunBeginsWithHalfATurn) {
