@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from analysis.records.joint_turns import joined
-from analysis.statistics.turns import Order, contender_logs
+from analysis.statistics.neighbours import Order, contender_logs
 from analysis.support.values import Floats
 
 CONTENDERS, ROUNDS = 20, 6
