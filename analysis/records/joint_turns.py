@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 
 from analysis.statistics.location import location
-from analysis.statistics.pairs import rounds_of
 from analysis.statistics.neighbours import FEWEST, contender_logs
+from analysis.statistics.pairs import rounds_of
 
 PLACES = "places"
 """The column of where each turn stood among those of all contenders of its process."""
