@@ -59,6 +59,7 @@ def test_every_unit_is_known(unit: str, seconds: float) -> None:
 
 RIGHT: tuple[tuple[str | bytes, float, dict[str, float | None]], ...] = (
     (report({"name": "BM_x/8/real_time", "real_time": 2}), 2e-9, {}),
+    (report(plain("BM_x/8"), plain("BM_x")), 1e-9, {}),
     (
         report('"real_time": 5, "a": NaN, "b": Infinity, "c":-Infinity, "f": 1.5, "label": "NaN, \\" NaN"'),
         5e-9, {"a": None, "b": None, "c": None, "f": 1.5},
@@ -105,7 +106,8 @@ REFUSED = (
         (repetition(0, 1), repetition(0, 9)), (repetition(0, 1),
         repetition(1, 9, per_family_instance_index=1)),
         (aggregate("mean", 1, 0), aggregate("mean", 9, 1)), (aggregate("mean", 1), aggregate("mean", 9)),
-        (plain("BM_x"), plain("BM_x")), (plain("BM_x"), plain("BM_y"), plain("BM_x")),
+        (repetition(0, 1), plain("BM_y"), repetition(1, 9)), (plain("BM_x"), plain("BM_x")),
+        (plain("BM_x"), plain("BM_y"), plain("BM_x")),
     )),
     *((report(fields), NO_TIME.format(found)) for fields, found in (
         ('"iterations": 5', "no real_time"), ('"real_time": NaN', "real_time NaN"),
@@ -137,7 +139,8 @@ REFUSED = (
         ("Segmentation fault\n", "no JSON of Google Benchmark but 'Segmentation fault'"),
         ("loading\n" + report(plain("BM_x")), "no JSON of Google Benchmark but 'loading'"),
         (report(plain("BM_x")) + "\ndone\n", "no JSON in line 2: 'done'"),
-        ("{}", "JSON without a list `benchmarks`"), ('{"benchmarks": 5}', "JSON without a list `benchmarks`"),
+        ('{"a": "b', "JSON that breaks off after '{\"a\": \"b'"), ("{}", "JSON without a list `benchmarks`"),
+        ('{"benchmarks": 5}', "JSON without a list `benchmarks`"),
         ('{"benchmarks": [5]}', "something in the list `benchmarks` that is no object"),
         ('{"benchmarks": [{"real_time": 1e999}]}', "a number that is too large"),
     )),

@@ -37,7 +37,9 @@ RIGHT = (
     ("1e-3", r"^(\S+)$", 0.001), ("took 12. Done", "took ([0-9.]+)", 12), ("1.5e-3 s", "(.*)", 0.0015),
     ("took 5 ms\r", "took (.*)$", 0.005), ("TOOK 5 ms", "(?i)took (?P<time>.*)", 0.005),
     ("time: 1.1 ms", "time: ([0-9.]+) (?:ms|s)", 1.1e-3), ("12.5 ms/step", "([0-9.]+)", 0.0125),
-    ("took 5ticks", "took ([0-9]+)ticks", 5), ("run 1 234 ms", " ([0-9]+) ms", 0.234),
+    ("took 5ticks", "took ([0-9]+)ticks", 5), ("took 5tk", "took ([0-9]+)tk", 5),
+    ("t 5 ms", "t(.*)ms", 0.005),
+    ("run 1 234 ms", " ([0-9]+) ms", 0.234),
     ("took 1 234", "took ([0-9]+) [0-9]+", 1), ("run 1 23 ms", "([0-9]+) ms", 0.023),
     ("0.5 234 ms", "([0-9]+) ms", 0.234), ("real\t0m1.234s", r"real\s+(\S+)", 1.234),
     ("real\t2m1.5s", r"real\s+([0-9m.]+)s", 121.5), ("1h2m3s", r"(\S+)", 3723), ("1h30m", r"(\S+)", 5400),
@@ -102,6 +104,7 @@ REFUSED = (
     *((f"12 {unit}", "([0-9]+)", f"found '12' with the unit '{unit}', expected a time") for unit in (
         "MB/s", "GB", "B", "%", "KiB", "Hz", "ks",
     )),
+    ("", "(.*)", f"found '', {POSITIVE}"),
     ("took 5m", "took ([0-9]+)", "found '5' with the unit 'm', expected a time"),
     ("took 5kms", "took ([0-9]+)", "found '5' with the unit 'kms', expected a time"),
     ("took 12.5 ms total", "took (.*)", "found '12.5 ms total', expected a number, and behind"),
