@@ -3,12 +3,16 @@
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from experiments.plan.benchmark_cases import filter_of
 from experiments.plan.program import Program, generate
 from experiments.plan.scenes import Scene
+from experiments.plan.site import clean_environment
+from experiments.side_by_side.contest import Contender, Contest
+from experiments.side_by_side.sampler import Sampler
 from experiments.support import process
 from support.errors import InputError
 from support.files import read_json
@@ -22,104 +26,107 @@ _SCENE = Scene(500, 707, 12, 100, 1, 3, placement="random", isotropic=True)
 _RUNS = 3
 """Whole runs of each variant in a process, which are a block."""
 
-_LOOPS, _SECONDS = 12_000_000, 0.02
-"""Of a whole process; about how long it takes, which decides how many slices there are."""
+_LOOPS, _SECONDS, _SLICE_SECONDS = 12_000_000, 0.02, 0.01
+"""Of a whole process; about how long it takes, and how long a slice of it is."""
 
-_LIMIT_SECONDS = 60.0
-"""Of one contender's process."""
+_LIMIT_SECONDS = 120.0
+"""Of one call."""
+
+
+Rounds = list[list[float]]
+"""The seconds of every contender in every round of one call."""
 
 
 @dataclass(frozen=True)
 class Kind:
-    """Contenders of one kind, as one call of `carom` measures them."""
+    """Contenders of one kind, measured beside each other."""
 
     name: str
-    command: tuple[str, ...]
-    """Without `--seed`, which is another one in each call."""
-    records: tuple[Path, ...]
-    """What a call leaves, one file a contender."""
-    openmp: Mapping[str, str]
+    call: Callable[[int], tuple[Rounds, Any]]
+    """Of a seed, which is another one in each call, its rounds, and the provenance of whoever measured them.
+    Raises InputError where it fails.
+    """
     rounds_of_block: int
     """Successive rounds of a call that are one block. Calls with fewer rounds are a block each."""
 
 
 def variants(program: Program, openmp: Mapping[str, str], folder: Path) -> Kind:
     """One variant on one thread, with so many steps more."""
-    contenders, records = [], _records(folder)
+    contenders, records = [], [folder / f"record-{number}.json" for number in range(len(PERCENT_MORE))]
     for record, percent in zip(records, PERCENT_MORE, strict=True):
         scene = replace(_SCENE, steps=_SCENE.steps * (100 + percent) // 100)
         path = folder / f"{scene.steps}.in"
         if not path.exists():
             generate(program, scene, path)
         contenders.append([str(path), "--threads", "1", "--record", str(record)])
-    file = _written(folder / "variants.json", contenders)
+    file = folder / "variants.json"
+    file.write_text(json.dumps(contenders), encoding="utf-8")
     # A turn is a whole run, however long that is.
-    command = (str(program.path), "turns", str(file), "--turn", "1000000")
-    return Kind("variants", (*command, "--runs", str(_RUNS)), records, openmp, _RUNS)
+    command = (str(program.path), "turns", str(file), "--turn", "1000000", "--runs", str(_RUNS))
+
+    def call(seed: int) -> tuple[Rounds, Any]:
+        done = process.run((*command, "--seed", str(seed)), clean_environment(openmp), _LIMIT_SECONDS)
+        if done.exit_code != 0:
+            raise InputError(done.reason)
+        found = [read_json(record) for record in records]
+        for record in records:
+            record.unlink()  # so that nothing is taken for what the next call left
+        return _rounds([_seconds(one) for one in found]), found[0]["provenance"]
+
+    return Kind("variants", call, _RUNS)
 
 
 def processes(program: Program, openmp: Mapping[str, str], folder: Path) -> Kind:
     """A whole process, in slices of time, that repeats a loop so many times more."""
     worker = _built(program, "calibration_process")
-    records = _records(folder)
 
-    def described(loops: int, record: Path) -> dict[str, Any]:
-        return {"command": [str(worker), str(loops)], "turns": True, "record": str(record)}
+    def contender(loops: int, **more: Any) -> Contender:  # noqa: ANN401 - any field
+        return Contender((str(worker), str(loops)), environment=openmp, **more)
 
-    start = _start_in_loops(program, folder, described)
-    # A start takes its time as well: that much more of it is to be made of loops.
+    def call(seed: int, contenders: Sequence[Contender]) -> tuple[Rounds, Any]:
+        return _contest(program, contenders, seed, folder)
+
+    apart = [contender(loops, turns=False) for loops in (1, _LOOPS)]
+    least = [min(times) for times in zip(*(call(seed, apart)[0][0] for seed in range(9)), strict=True)]
+    # A start takes its time as well: as many loops as that is are that much more.
+    start = _LOOPS * least[0] / max(least[1] - least[0], 1e-9)
     loops = [_LOOPS + round((_LOOPS + start) * percent / 100) for percent in PERCENT_MORE]
-    content = [
-        {**described(one, record), "expected_seconds": _SECONDS * (one + start) / _LOOPS}
-        for one, record in zip(loops, records, strict=True)
+    all_of_them = [
+        contender(one, turns=True, expected_seconds=_SECONDS * (one + start) / _LOOPS) for one in loops
     ]
-    file = _written(folder / "processes.json", content)
-    command = (str(program.path), "processes", str(file))
-    return Kind("processes", command, records, openmp, 1)
+    return Kind("processes", partial(call, contenders=all_of_them), 1)
 
 
 def benchmarks(program: Program, openmp: Mapping[str, str], folder: Path) -> Kind:
     """A case of a Google Benchmark that repeats a loop so many times more."""
-    worker = _built(program, "calibration_benchmark")
-    records, content = _records(folder), []
-    for record, percent in zip(records, PERCENT_MORE, strict=True):
-        case, output = f"loop/{100 + percent}", record.with_suffix(".out").absolute()
-        words = [filter_of(case), f"--benchmark_out={output}", "--benchmark_out_format=json"]
-        one = {"command": [str(worker), *words], "benchmark": case, "output": str(output)}
-        content.append({**one, "record": str(record)})
-    file = _written(folder / "benchmarks.json", content)
-    return Kind("benchmarks", (str(program.path), "processes", str(file)), records, openmp, 1)
+    worker, contenders = _built(program, "calibration_benchmark"), []
+    for number, percent in enumerate(PERCENT_MORE):
+        case, output = f"loop/{100 + percent}", (folder / f"{number}.out").absolute()
+        words = (str(worker), filter_of(case), f"--benchmark_out={output}", "--benchmark_out_format=json")
+        contenders.append(Contender(words, environment=openmp, benchmark=case, output=output))
+    return Kind("benchmarks", lambda seed: _contest(program, contenders, seed, folder), 1)
 
 
 KINDS: tuple[Callable[[Program, Mapping[str, str], Path], Kind], ...] = (variants, processes, benchmarks)
 
 
-def rounds(kind: Kind) -> list[list[float]]:
-    """The seconds of every contender in every round of the call that just ended.
+def _contest(
+    program: Program, contenders: Sequence[Contender], seed: int, folder: Path
+) -> tuple[Rounds, Any]:
+    with Sampler(program.path) as sampler:
+        ended = Contest(sampler, contenders, _SLICE_SECONDS, seed, folder).measure()
+        if failed := [one.failure for one in ended if one.failure]:
+            raise InputError(failed[0])
+        provenance, _ = sampler.surroundings(1, None)
+    return _rounds([one.told_seconds for one in ended]), provenance
 
-    Raises InputError where the records do not have them.
-    """
-    times = []
-    for path in kind.records:
-        match read_json(path):
-            case {"repetitions": [*repetitions]}:
-                times.append([float(one["steps_seconds"]) for one in repetitions])
-            case {"kind": "failure", "reason": str(reason)}:
-                raise InputError(f"calibrate: {kind.name}: {reason}")
-            case _:
-                raise InputError(f"{path}: found no record, expected one of {kind.name}")
-        # So that nothing is taken for what the next call left.
-        path.unlink()
+
+def _rounds(times: Sequence[Sequence[float]]) -> Rounds:
     return [list(one) for one in zip(*times, strict=True)]
 
 
-def _records(folder: Path) -> tuple[Path, ...]:
-    return tuple(folder / f"record-{number}.json" for number in range(len(PERCENT_MORE)))
-
-
-def _written(path: Path, content: Sequence[Any]) -> Path:
-    path.write_text(json.dumps(content), encoding="utf-8")
-    return path
+def _seconds(record: Mapping[str, Any]) -> list[float]:
+    return [float(one["steps_seconds"]) for one in record["repetitions"]]
 
 
 def _built(program: Program, name: str) -> Path:
@@ -128,21 +135,3 @@ def _built(program: Program, name: str) -> Path:
     if not path.is_file():
         raise InputError(f"{path}: is not built; `make calibrate` builds it")
     return path
-
-
-def _start_in_loops(
-    program: Program, folder: Path, described: Callable[[int, Path], dict[str, Any]]
-) -> float:
-    """As how many loops the start and the end of a process take."""
-    sizes, least = (1, _LOOPS), [float("inf"), float("inf")]
-    records = [folder / f"start-{size}.json" for size in sizes]
-    content = [{**described(*one), "turns": False} for one in zip(sizes, records, strict=True)]
-    file = _written(folder / "start.json", content)
-    for seed in range(9):
-        command = [str(program.path), "processes", str(file), "--seed", str(seed)]
-        done = process.run(command, time_limit=_LIMIT_SECONDS)
-        kind = Kind("processes", (), tuple(records), {}, 1)
-        if done.exit_code != 0:
-            raise InputError(f"calibrate: processes: {done.reason}")
-        least = [min(pair) for pair in zip(least, rounds(kind)[0], strict=True)]
-    return _LOOPS * least[0] / max(least[1] - least[0], 1e-9)

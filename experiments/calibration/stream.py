@@ -4,15 +4,9 @@ import time
 from datetime import UTC, datetime
 from typing import Any
 
-from experiments.calibration.kinds import PERCENT_MORE, Kind, rounds
-from experiments.plan.site import clean_environment
+from experiments.calibration.kinds import PERCENT_MORE, Kind
 from experiments.run.host_lock import host_lock
-from experiments.support import process
 from support.errors import InputError
-from support.files import read_json
-
-_LIMIT_SECONDS = 120.0
-"""Of one call."""
 
 _TRIES = 3
 """Calls in a row that may fail, as one does that was suspended."""
@@ -34,17 +28,16 @@ def measure(kind: Kind, condition: str, seconds: float) -> dict[str, Any]:
         began_at, began = datetime.now(UTC), time.monotonic()
         while not blocks or time.monotonic() - began < seconds:
             seed += 1
-            done = process.run(
-                (*kind.command, "--seed", str(seed)), clean_environment(kind.openmp), _LIMIT_SECONDS
-            )
-            if done.exit_code != 0:
+            try:
+                rounds, told = kind.call(seed)
+            except InputError as error:
                 failed += 1
                 if failed == _TRIES:
-                    raise InputError(f"calibrate: {kind.name}, {condition}: {done.reason}")
+                    raise InputError(f"calibrate: {kind.name}, {condition}: {error}") from error
                 continue
             failed = 0
-            provenance = provenance or (read_json(kind.records[0]) or {}).get("provenance")
-            blocks += _blocks(rounds(kind), kind.rounds_of_block)
+            provenance = provenance or told
+            blocks += _blocks(rounds, kind.rounds_of_block)
     return {
         "kind": kind.name,
         "condition": condition,

@@ -13,6 +13,7 @@ from experiments.compare.options import Asked
 from experiments.compare.texts import duration
 from experiments.plan.executable import found, is_file
 from experiments.run.progress import warn
+from experiments.side_by_side.contest import LEAST_IDLE, idle_told
 from support.errors import InputError
 
 SHORT = 0.05
@@ -26,9 +27,6 @@ MOST = 15
 
 NOT_FOUND = re.compile(r"^(?:\S*sh|env|xargs): .*(?:not found|No such file)")
 """What a shell says of a word that is no program, whose exit code may be lost behind it."""
-
-_BUSY = 0.5
-"""Processors: what keeps fewer busy waits for most of its time."""
 
 _TABLE = ("Benchmark", "Time", "CPU", "Iterations")
 """The head of what a Google Benchmark prints."""
@@ -66,10 +64,8 @@ def note_idle(asked: Asked, runs: Mapping[Key, Runs], idle_processors: float) ->
     """
     for one in asked.commands:
         of_one = runs[one.name, 0]
-        cores = of_one.median("cores") if of_one.cores else 1.0
-        if cores < _BUSY and of_one.median("seconds") > SHORT and idle_processors > _BUSY:
-            told = f"it computes for only {100 * cores:.0f} % of its time"
-            of_one.undisturbed = f"{told}, and what it waits for would go on while it stands still"
+        if of_one.seconds and of_one.median("seconds") > SHORT and idle_processors > LEAST_IDLE:
+            of_one.undisturbed = idle_told(of_one.median("cores")) or of_one.undisturbed
     return any(one.undisturbed for one in runs.values())
 
 

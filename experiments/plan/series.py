@@ -2,6 +2,8 @@
 
 import glob
 import os
+import re
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
@@ -9,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from experiments.plan.benchmark_cases import cases
-from experiments.plan.pattern import PatternError, groups_of
 from support.errors import InputError, quoted
 
 SECONDS_OF_UNIT = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
@@ -171,12 +172,12 @@ def _require_no_zero_byte(key: str, value: object) -> None:
 
 
 def require_one_group(key: str, pattern: str) -> None:
-    """Raises InputError, which begins with `key`, for a pattern that is not allowed or has not one group."""
+    """Raises InputError, which begins with `key`, for what is no regular expression with one group."""
     try:
-        groups = groups_of(pattern)
-    except PatternError as error:
-        told = f"expected a regular expression that is allowed: found {error}"
-        raise InputError(f"{key}: found {quoted(pattern)}, {told}") from error
+        with warnings.catch_warnings(action="error"):
+            groups = re.compile(pattern, re.ASCII).groups
+    except (re.error, RecursionError, OverflowError, FutureWarning) as error:
+        raise InputError(f"{key}: found {quoted(pattern)}, expected a regular expression: {error}") from error
     if groups != 1:
         told = f"with {groups} groups, expected one around the number"
         raise InputError(f"{key}: found {quoted(pattern)} {told}")

@@ -6,9 +6,7 @@ from typing import Any
 
 from experiments.plan.point import Point
 from experiments.results.store import Store
-
-LEFT_ALONE = "nothing was left that it could take turns with"
-"""The one reason for a stretch of its own that the others are, and not the program itself."""
+from experiments.side_by_side.contest import LEFT_ALONE
 
 
 @dataclass

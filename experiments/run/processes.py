@@ -1,29 +1,26 @@
 """Whole processes, of variants and of anybody's programs, timed from outside, in turns."""
 
-import json
 import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from experiments.plan.command import Command, placed
+from experiments.plan.command import placed
 from experiments.plan.point import PROCESS, Point, Tags
 from experiments.plan.program import Program, build_of
 from experiments.plan.scenes import SceneFile
 from experiments.results.store import Store
 from experiments.run.behaviour import Behaviours
-from experiments.run.host_lock import run_alone
+from experiments.run.host_lock import host_lock
+from experiments.run.process_record import Described, Record, Sources, process_record
 from experiments.run.progress import warn
 from experiments.run.together import is_alike, is_left_open
 from experiments.run.written import Written, touch_of
+from experiments.side_by_side.contest import Contender, Contest, Entrant
+from experiments.side_by_side.sampler import Sampler, SamplerError
 from experiments.support.process import Completed
-from support.files import read_json, write_json
-from support.record_schema import is_record
 from support.vocabulary import PAUSES
-
-MARGIN_SECONDS = 60.0
-"""What measuring takes beside the processes, before it is given up."""
 
 CROWDED = "too many are compared to wait in memory side by side"
 """Why a program is not stopped."""
@@ -36,9 +33,6 @@ SLICE_SECONDS, SHORT_SECONDS = 0.01, 0.002
 HINDERED_SECONDS = 0.025
 """Of a slice where other programs have the processors: who goes on there is often moved to another one, whose
 caches hold nothing of it."""
-
-_RUNS = 8
-"""Of each at most: one to look at it, two in slices, and where these disagree two more of either kind."""
 
 
 @dataclass(frozen=True)
@@ -58,17 +52,17 @@ class Asked:
 
 @dataclass(frozen=True)
 class Left:
-    """What was measured: the point, its files that are known to be written among them, the file with its
-    record or failure, if there is one, and the one that it wrote itself, if it was to write one.
+    """What was measured: the point, its files that are known to be written among them, its record or failure,
+    and the file that it wrote itself, if it was to write one.
     """
 
     point: Point
-    record: Path
+    record: Record
     output: Path
 
 
 class Processes:
-    """Runs `carom processes`, which lets them run in turn and leaves a record, or a failure, of each.
+    """Measures whole processes beside each other, and tells the record, or the failure, of each.
 
     Where it `tells`, a line says of a program why it is not stopped; the record says it in any case.
     """
@@ -89,10 +83,8 @@ class Processes:
         self._behaviours = Behaviours(store)
         self._written = Written(store)
 
-    def measure(
-        self, asked: Sequence[Asked], seed: int, slice_seconds: float
-    ) -> tuple[Completed, list[Left]]:
-        """How it went, and what is left of each; the shortest runs for so many seconds before the next does.
+    def measure(self, asked: Sequence[Asked], seed: int, slice_seconds: float) -> list[Left]:
+        """What is left of each; the shortest runs for so many seconds before the next does.
 
         Where a file among the words changed, all are measured a second time: only then is it known whether
         a program writes it. So they are where one turns out to mind being stopped and others were in slices:
@@ -101,15 +93,15 @@ class Processes:
         """
         asked = [replace(one, point=self._known(one.point)) for one in asked]
         self._slice = slice_seconds
-        done, left = self._run(asked, seed)
+        left = self._run(asked, seed)
         suspected = {
             file: touch_of(file)
             for one, there in zip(asked, left, strict=True)
-            for file in self._written.changed(one.point.program, read_json(there.record))
+            for file in self._written.changed(one.point.program, there.record)
         }
         if suspected:
             provisional = [_with_written(one, frozenset(suspected)) for one in asked]
-            done, left = self._run(provisional, seed)
+            left = self._run(provisional, seed)
             self._written.learn([one.point.program for one in asked], suspected)
             for file in sorted(suspected):
                 warn(
@@ -120,18 +112,18 @@ class Processes:
         self._written.learn_created([one.point.program for one in asked])
         found = self._learn(asked, left)
         if any(found) and any(map(_was_sliced, asked, left)):
-            done, left = self._run(asked, seed)
-            _say_why_whole(asked, left, found, self._store.temporary)
+            left = self._run(asked, seed)
+            _say_why_whole(asked, left, found)
         for one, there in zip(asked, left, strict=True):
             if one.turns and one.crowded:
-                _write_why(there, CROWDED, self._store.temporary)
-        return done, left
+                _say_why(there, CROWDED)
+        return left
 
     def _learn(self, asked: Sequence[Asked], left: Sequence[Left]) -> list[str]:
         """Take in what the records tell; returns of each why it is not to be stopped, if that is news."""
         is_open = [self._turns(one, asked) is None for one in asked]
         found = [
-            self._behaviours.learn(one.point, read_json(there.record), found_out=left_open)
+            self._behaviours.learn(one.point, there.record, found_out=left_open)
             for one, there, left_open in zip(asked, left, is_open, strict=True)
         ]
         for one, said in zip(asked, found, strict=True):
@@ -141,53 +133,59 @@ class Processes:
 
     def write_trajectory(self, point: Point, scene: Path, output: Path) -> Completed:
         """Run the point's command for a trajectory, with all that it starts, once and untimed."""
-        command, record = point.command, self._folder() / "trajectory.json"
+        command = point.command
         assert command is not None
         words = placed(command.trajectory, scene, output)
-        described = {
-            **self._surroundings(command, scene, output),
-            "command": words,
-            "environment": dict(point.openmp),
-            "record": str(record),
-            "axes": {"threads": 1},
-        }
-        done = self._call([described], 1, self._time_limit * _commands(command))
-        match read_json(record):
-            case {"kind": "failure", "exit_code": int(exit_code), "reason": str(reason)}:
-                return Completed(words, exit_code or 1, "", reason)
-            case {"kind": "process"}:
-                return Completed(words, 0, "", "")
-        return Completed(words, done.exit_code or 1, "", done.error or "left no record")
+        contender = Contender(words, **self._surroundings(point, scene, output))
+        with host_lock(), Sampler(self._instrument.path) as sampler:
+            [ended] = Contest(sampler, [contender], self._slice, 1, self._folder()).measure()
+        return Completed(words, ended.exit_code if ended.failure else 0, "", ended.failure)
 
     def _known(self, point: Point) -> Point:
         return replace(point, program=self._written.known(point.program)) if point.command else point
 
-    def _run(self, asked: Sequence[Asked], seed: int) -> tuple[Completed, list[Left]]:
+    def _run(self, asked: Sequence[Asked], seed: int) -> list[Left]:
         folder = self._folder()
-        left = [
-            Left(one.point, folder / f"{number}.json", folder.absolute() / f"{number}.output")
-            for number, one in enumerate(asked)
+        outputs = [folder.absolute() / f"{number}.output" for number in range(len(asked))]
+        contenders = [
+            self._contender(one, output, self._turns(one, asked))
+            for one, output in zip(asked, outputs, strict=True)
         ]
-        described = [
-            self._described(one, there, self._turns(one, asked))
-            for one, there in zip(asked, left, strict=True)
-        ]
-        limit = sum((_RUNS + one.point.warm_up) * _commands(one.point.command) for one in asked)
-        return self._call(described, seed, self._time_limit * limit), left
+        sources = [_sources_of(one.point.program) for one in asked]
+        # The instrument itself is bound nowhere: what it starts would inherit that.
+        with host_lock(), Sampler(self._instrument.path) as sampler:
+            contest = Contest(sampler, contenders, self._slice, seed, folder)
+            return [
+                Left(one.point, self._record(sampler, ended, one, known, (len(asked), seed)), output)
+                for ended, one, known, output in zip(contest.measure(), asked, sources, outputs, strict=True)
+            ]
+
+    def _record(
+        self, sampler: Sampler, ended: Entrant, one: Asked, sources: Sources, contest: tuple[int, int]
+    ) -> Record:
+        point, scene = one.point, one.scene.path.absolute() if one.scene is not None else None
+        is_other_build = point.command is None and point.program.sha256 != self._instrument.sha256
+        its = Described(
+            one.tags,
+            {key: value for key, value in point.axes.items() if value is not None},
+            point.threads,
+            scene,
+            one.checked,
+            build_of(point.program) if is_other_build else None,
+        )
+        surroundings: tuple[Record, Any] = {}, None
+        try:
+            if not ended.failure:
+                surroundings = sampler.surroundings(point.threads, scene)
+        except SamplerError as error:
+            ended.failure = str(error)
+        return process_record(ended, its, sources, surroundings, contest)
 
     def _folder(self) -> Path:
         folder = self._store.temporary / "processes"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
         return folder
-
-    def _call(self, described: Sequence[dict[str, Any]], seed: int, seconds: float) -> Completed:
-        file = self._store.temporary / "processes" / "processes.json"
-        file.write_text(json.dumps(described), encoding="utf-8")
-        command = (str(self._instrument.path), "processes", str(file), "--seed", str(seed))
-        in_slices = (*command, "--slice", str(self._slice))
-        # The instrument itself is bound nowhere: what it starts would inherit that.
-        return run_alone(in_slices, (), seconds + MARGIN_SECONDS)
 
     def _turns(self, one: Asked, beside: Sequence[Asked]) -> bool | None:
         """Whether it takes turns with those beside it, as it is said or was found out. If one minds, none of
@@ -200,48 +198,37 @@ class Processes:
         known = [self._behaviours.of(other.point).turns for other in alike]
         return False if False in known else self._behaviours.of(one.point).turns
 
-    def _described(self, one: Asked, left: Left, turns: bool | None) -> dict[str, Any]:
-        point, command = one.point, one.point.command
-        program, path = point.program, one.scene.path.absolute() if one.scene is not None else None
-        is_benchmark = command is not None and command.benchmark is not None
-        is_other_build = command is None and program.sha256 != self._instrument.sha256
-        told: dict[str, Any] = {
-            "command": point.process_words(path, left.output),
-            "environment": dict(point.openmp),
-            "most_seconds": self._time_limit,
-            "record": str(left.record),
-            "tags": [f"{key}={value}" for key, value in one.tags.items()],
-            "sources": [str(file) for file in program.sources],
-            "threads": point.threads,
-            "axes": {key: value for key, value in point.axes.items() if value is not None},
-            "warm_ups": point.warm_up,
-            "checked": one.checked,
-            "scene": str(path) if path is not None else None,
-            "written": {str(file): program.hash_of[file] for file in program.written} or None,
-            "expected_seconds": self._behaviours.of(point).expected_seconds,
-            "build": build_of(program) if is_other_build else None,
-            "output": str(left.output) if is_benchmark else None,
-            "turns": None if is_benchmark else turns,
-        }
-        if command is not None:
-            told |= self._surroundings(command, path, left.output)
-            told |= {
-                name: getattr(command, name) for name in ("unit_seconds", "pattern", "benchmark", "rounds")
-            }
-        return {key: value for key, value in told.items() if value is not None}
+    def _contender(self, one: Asked, output: Path, turns: bool | None) -> Contender:
+        point, path = one.point, one.scene.path.absolute() if one.scene is not None else None
+        told: dict[str, Any] = {}
+        if point.command is not None:
+            told = {name: getattr(point.command, name) for name in _OF_A_COMMAND}
+        return Contender(
+            point.process_words(path, output),
+            warm_ups=point.warm_up,
+            expected_seconds=self._behaviours.of(point).expected_seconds or 0.0,
+            turns=turns,
+            output=output,
+            **self._surroundings(point, path, output),
+            **told,
+        )
 
-    def _surroundings(
-        self, command: Command, scene: Path | None = None, output: Path | None = None
-    ) -> dict[str, Any]:
-        """Where a command is run, with what before and after it, and how it may end."""
-        around = {
-            "prepare": placed(command.prepare, scene, output),
-            "conclude": placed(command.conclude, scene, output),
-            "fresh_folder": command.fresh_folder,
-            "exit_codes": command.exit_codes,
-        }
-        where = {"folder": str(command.folder), "most_seconds": self._time_limit}
-        return where | {key: value for key, value in around.items() if value}
+    def _surroundings(self, point: Point, scene: Path | None, output: Path) -> dict[str, Any]:
+        """Where the point's command is run, with what before and after it, and how it may end."""
+        around: dict[str, Any] = {"environment": dict(point.openmp), "most_seconds": self._time_limit}
+        if (command := point.command) is not None:
+            around |= {
+                "folder": str(command.folder),
+                "prepare": placed(command.prepare, scene, output),
+                "conclude": placed(command.conclude, scene, output),
+                "fresh_folder": command.fresh_folder,
+                "exit_codes": command.exit_codes or (0,),
+            }
+        return around
+
+
+_OF_A_COMMAND = ("unit_seconds", "pattern", "benchmark", "rounds")
+"""What a contender has of a point's command as it is."""
 
 
 def slice_of(point: Point, block: int) -> float:
@@ -264,30 +251,24 @@ def _is_alike(one: Asked) -> bool:
 
 def _was_sliced(one: Asked, left: Left) -> bool:
     """Whether it was, and is not to be if another minds."""
-    record = read_json(left.record)
-    return _is_alike(one) and isinstance(record, dict) and bool(record.get("turns"))
+    return _is_alike(one) and bool(left.record.get("turns"))
 
 
-def _say_why_whole(
-    asked: Sequence[Asked], left: Sequence[Left], found: Sequence[str], temporary: Path
-) -> None:
-    """Write into the records why nobody was stopped, `found` of those that mind."""
+def _say_why_whole(asked: Sequence[Asked], left: Sequence[Left], found: Sequence[str]) -> None:
+    """Let the records say why nobody was stopped, `found` of those that mind."""
     minds = next(one.point.series for one, said in zip(asked, found, strict=True) if said)
     for one, there, said in zip(asked, left, found, strict=True):
         if _is_alike(one):
-            _write_why(there, said or f"{minds} must not be, and all are measured alike", temporary)
+            _say_why(there, said or f"{minds} must not be, and all are measured alike")
 
 
-def _write_why(left: Left, why: str, temporary: Path) -> None:
-    record = read_json(left.record)
-    if is_record(record) and record["kind"] == PROCESS:
-        record["process"]["undisturbed"] = why
-        write_json(left.record, record, temporary)
+def _say_why(left: Left, why: str) -> None:
+    if left.record["kind"] == PROCESS:
+        left.record["process"]["undisturbed"] = why
 
 
-def _commands(command: Command | None) -> int:
-    """How many commands a run consists of."""
-    return 1 if command is None else 1 + bool(command.prepare) + bool(command.conclude)
+def _sources_of(program: Program) -> Sources:
+    return Sources.of(program.sources, {file: program.hash_of[file] for file in program.written})
 
 
 def _with_written(one: Asked, more: frozenset[Path]) -> Asked:

@@ -21,7 +21,7 @@ from experiments.run.written import Written, built_anew
 from experiments.support.digest import digest
 from experiments.support.process import NOT_FOUND, Completed
 from support.errors import InputError
-from support.files import move, read_json
+from support.files import move, read_json, write_json
 from support.record_schema import is_record
 from support.vocabulary import COUNTS
 
@@ -171,26 +171,25 @@ class Runner:
             )
             for task, scene in ready
         ]
-        done, left = self._processes.measure(
+        left = self._processes.measure(
             asked, seed_of(first), self.slice_seconds or slice_of(first.point, first.block)
         )
         return [
-            self._keep_process(replace(task, point=there.point), scene, there, done)
+            self._keep_process(replace(task, point=there.point), scene, there)
             for (task, scene), there in zip(ready, left, strict=True)
         ]
 
-    def _keep_process(
-        self, task: Task, scene: SceneFile | None, left: Left, done: Completed
-    ) -> ProcessResult:
+    def _keep_process(self, task: Task, scene: SceneFile | None, left: Left) -> ProcessResult:
         """Take in the record of a process; of one that wrote a trajectory only if that is right."""
-        record, command = read_json(left.record), task.point.command
-        is_measured = is_record(record) and record["kind"] == PROCESS
+        command, path = task.point.command, self._store.temporary / "record.json"
+        is_measured = left.record["kind"] == PROCESS
         if is_measured and command is not None and command.writes_trajectory and scene is not None:
             wrong = self._verifier.check_own_output(task.point, scene, left.output)
             left.output.unlink(missing_ok=True)
             if wrong is not None:
                 return self._fail(task, wrong)
-        return self._keep(task, left.record, Completed(done.command, done.exit_code, "", done.error))
+        write_json(path, left.record, self._store.temporary)
+        return self._keep(task, path, Completed((str(self._generator.path), "processes"), 0, "", ""))
 
     def _measure_in_turns(self, ready: Sequence[Ready]) -> list[ProcessResult] | None:
         """All of them in one process; None if it broke off: each must show alone what is wrong with it.

@@ -50,7 +50,7 @@ class Completed:
         said = lines[-1] if lines else ""
         said = said[-_LONGEST_REASON:]
         if self.exit_code < 0 and not said.startswith("killed by "):
-            said = f"killed by {_name_of_signal(-self.exit_code)}" + (f": {said}" if said else "")
+            said = f"killed by {name_of_signal(-self.exit_code)}" + (f": {said}" if said else "")
         return said or f"exit code {self.exit_code} without a word"
 
 
@@ -116,8 +116,9 @@ class Coprocess:
     It starts when first asked, and anew once it has ended.
     """
 
-    def __init__(self, command: Sequence[str]) -> None:
+    def __init__(self, command: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
         self._command = tuple(command)
+        self._environment = environment
         self._child: subprocess.Popen[bytes] | None = None
         # A file: a pipe that nobody reads before the end could fill, and stop the child.
         self._errors = tempfile.TemporaryFile("w+", errors="replace")  # noqa: SIM115 - closed in __exit__
@@ -137,7 +138,7 @@ class Coprocess:
         self._errors.seek(0)
         self._errors.truncate()
         if self._child is None:
-            self._child = _start(self._command, None, subprocess.PIPE, self._errors)
+            self._child = _start(self._command, self._environment, subprocess.PIPE, self._errors)
         child = self._child
         assert child.stdin is not None
         with contextlib.suppress(BrokenPipeError):
@@ -248,8 +249,8 @@ def _took_longer(time_limit: float | None) -> str:
     return f"took longer than {time_limit:g} s and was stopped"
 
 
-def _name_of_signal(number: int) -> str:
-    """Its name; those of real time have none of their own."""
+def name_of_signal(number: int) -> str:
+    """The name of a signal; those of real time have none of their own."""
     try:
         return signal.Signals(number).name
     except ValueError:

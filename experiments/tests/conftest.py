@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from experiments.plan.point import Point
 from experiments.plan.scenes import Scene
 from experiments.run import status
 from experiments.run.study import Settings, Study
+from experiments.side_by_side.contest import Contender, Contest, Entrant
 from experiments.tests.forks import Forking, forked
 
 ROOT = Path(__file__).parents[2]
@@ -139,6 +140,8 @@ class Workplace:
 
     root: Path
     monkeypatch: pytest.MonkeyPatch
+    contenders: list[Contender] = field(default_factory=list)
+    """Of all contests of this process, in their order."""
 
     @property
     def results(self) -> Path:
@@ -268,6 +271,13 @@ def is_running(number: int) -> bool:
 @pytest.fixture
 def empty_workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workplace:
     place = Workplace(tmp_path, monkeypatch)
+    measure = Contest.measure
+
+    def noted(contest: Contest) -> list[Entrant]:
+        place.contenders.extend(one.contender for one in contest.entrants)
+        return measure(contest)
+
+    monkeypatch.setattr(Contest, "measure", noted)
     monkeypatch.setattr(subprocess, "Popen", Forking)
     monkeypatch.setattr(os, "fsync", lambda _: None)
     place.build()

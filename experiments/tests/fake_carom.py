@@ -5,17 +5,15 @@ The environment says what goes wrong: FAKE_SECONDS (each measurement takes that 
 FAKE_RESULT_WRONG, FAKE_NO_RECORD, FAKE_HANGS (the variant concerned), FAKE_SUSPENDED (the verb concerned;
 only as often as the file FAKE_SUSPENSIONS has lines, if there is one), FAKE_LIMITS_FAIL.
 FAKE_LOG is a file that gets a line for every call, FAKE_SPANS one that gets a line for every call that
-computes: its verb, when it began and when it ended. FAKE_UNDISTURBED is the reason why processes do not take
-turns, where nobody said whether; with FAKE_MINDS only of those with it among their words.
+computes: its verb, when it began and when it ended. FAKE_IDLE is a word: of processes, those with it among
+theirs do nothing for most of their time.
 """
 
 import hashlib
 import json
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -43,7 +41,7 @@ def answer(words: list[str]) -> int:
     if words[0] == "turns":
         return max(answer(said) for said in contenders(words))
     if words[0] == "processes":
-        return max([process(one) for one in described(words)], default=0)
+        return sample()
     if words[0] == "list":
         print("\n".join(VARIANTS))
         return 0
@@ -147,9 +145,6 @@ def note(words: list[str]) -> None:
             }
             for call in [words, *contenders(words)]:
                 file.write(json.dumps({"pid": os.getpid(), "words": call, "openmp": openmp}) + "\n")
-            for one in described(words):
-                call = ["process", *one["command"]]
-                file.write(json.dumps({"pid": os.getpid(), "words": call, "described": one}) + "\n")
 
 
 def contenders(words: list[str]) -> list[list[str]]:
@@ -160,96 +155,44 @@ def contenders(words: list[str]) -> list[list[str]]:
     return [["bench", *said, *runs] for said in json.loads(Path(words[1]).read_text(encoding="utf-8"))]
 
 
-def described(words: list[str]) -> list[Options]:
-    """The processes that are to be measured."""
-    return json.loads(Path(words[1]).read_text(encoding="utf-8")) if words[0] == "processes" else []
-
-
-def process(one: Options) -> int:
-    """Run it once, with what goes before and after it, and leave a record or a failure."""
-    sources, written = one.get("sources", []), one.get("written", {})
-    before = [written.get(source) or sha256(source) for source in sources]
-    folder = one.get("folder")
-    fresh = tempfile.mkdtemp() if one.get("fresh_folder") else None
-    began = time.monotonic()
-    code, reason = run_all(one, fresh or folder)
-    seconds = time.monotonic() - began
-    if fresh:
-        shutil.rmtree(fresh)
-    tags = {
-        key: number_or_text(value) for key, _, value in (tag.partition("=") for tag in one.get("tags", []))
-    }
-    if reason:
-        failure = {
-            "schema_version": 1, "kind": "failure", "tags": tags, "axes": one["axes"],
-            "command": one["command"], "exit_code": code or 1, "reason": reason,
-            "recorded_at": "2024-01-01T00:00:00Z",
-        }  # fmt: skip
-        write(one["record"], json.dumps(failure))
-        return 1
-    pairs = zip(sources, before, strict=True)
-    changed = [source for source, was in pairs if source not in written and hash_or_none(source) != was]
-    write(one["record"], json.dumps(process_record(one, tags, (sources, before, changed), seconds)))
+def sample() -> int:
+    """Answer each line of standard input: what became of its processes, or what the machine is."""
+    for line in sys.stdin:
+        asked = json.loads(line)
+        if "processes" in asked:
+            told: Any = [facts(one) for one in asked["processes"]]
+        else:
+            told = {"provenance": provenance(), "scene": asked["scene"] and scene_of(asked["scene"])}
+        print(json.dumps(told), flush=True)
     return 0
 
 
-def run_all(one: Options, folder: str | None) -> tuple[int, str]:
-    """The exit code of what failed, and how; nothing of what did not."""
-    environment = {**os.environ, **one.get("environment", {})}
-    for name in ("prepare", "command", "conclude"):
-        words = one.get(name)
-        if not words:
-            continue
-        try:
-            done = subprocess.run(
-                words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True
-            )
-        except OSError as error:
-            return 127, f"cannot be run: {error.strerror}"
-        if done.returncode not in (one.get("exit_codes", [0]) if name == "command" else [0]):
-            return done.returncode, f"{name}: exit code {done.returncode}"
-    return 0, ""
-
-
-def process_record(
-    one: Options, tags: Options, files: tuple[list[str], ...], seconds: float
-) -> dict[str, Any]:
-    sources, before, changed = files
-    by_hand = hashlib.sha256("".join(before).encode()).hexdigest()
-    minds = "turns" not in one and os.environ.get("FAKE_MINDS", "") in ("", *one["command"])
-    undisturbed = os.environ.get("FAKE_UNDISTURBED") if minds else None
-    return any_record("process", {"tags": tags}) | {
-        "axes": one["axes"],
-        "scene": None,
-        "warm_ups": one.get("warm_ups", 0),
-        "repetitions": [{"steps_seconds": seconds, "cpu_seconds": seconds}],
-        "process_seconds": seconds,
-        "process": {
-            "command": one["command"],
-            "folder": one.get("folder", ""),
-            "sources": [{"path": source, "sha256": was} for source, was in zip(sources, before, strict=True)],
-            "changed": changed,
-            "undisturbed": undisturbed,
-            "exit_code": 0,
-            "wall_seconds": seconds,
-            "user_seconds": 0,
-            "system_seconds": 0,
-            "peak_memory_bytes": 1,
-            "time_from": "outside",
-            "counters": {},
-        },
-        "turns": None if undisturbed else {"contenders": 2, "seed": 1, "seconds": [seconds]},
-        "check": {
-            "verdict": "passed" if one.get("checked") else "unchecked",
-            "scope": one.get("checked") or "nothing",
-            "reason": None,
-        },
-        "provenance": provenance() | {"binary_sha256": before[0] if len(before) == 1 else by_hand},
-    }
-
-
-def hash_or_none(path: str) -> str | None:
-    return sha256(path) if Path(path).is_file() else None
+def facts(one: Options) -> Options:
+    """Run a process; all of them take as long."""
+    note(["process", *one["command"]])
+    seconds = 0.01
+    texts = "not_started unknown suspended went_on output_end error_end memory_of"
+    numbers = (
+        "exit_code signal seconds_left_behind seconds_alone system_seconds waited_seconds ran_on "
+        "output_bytes error_bytes"
+    )
+    told: Options = dict.fromkeys(texts.split(), "") | dict.fromkeys(numbers.split(), 0)
+    told |= {"seconds": [seconds], "user_seconds": seconds, "idle_seconds": seconds}
+    told |= {"peak_memory_bytes": 1, "counted": {}, "out_of_time": False, "tree": "cgroup"}
+    if os.environ.get("FAKE_IDLE") in one["command"]:
+        told["user_seconds"] = 0
+    try:
+        done = subprocess.run(
+            one["command"], cwd=one["folder"] or None, env={**os.environ, **one["environment"]},
+            stdin=subprocess.DEVNULL, capture_output=True,
+        )  # fmt: skip
+    except OSError as error:
+        return told | {"not_started": error.strerror}
+    if one["output_file"]:
+        Path(one["output_file"]).write_bytes(done.stdout)
+    told |= {"exit_code": max(done.returncode, 0), "signal": max(-done.returncode, 0)}
+    errors = done.stderr.decode().splitlines() or [""]
+    return told | {"output_bytes": len(done.stdout), "error_end": errors[-1]}
 
 
 def write(path: str, text: str) -> None:
@@ -263,24 +206,15 @@ def sha256(path: str) -> str:
 def make_record(verb: str, scene: str, options: Options, wrong: bool) -> dict[str, Any]:
     seconds = 0.001 + float(os.environ.get("FAKE_SECONDS", "0"))
     runs = int(options.get("repetitions", 1)) if verb == "bench" else 1
-    particles, side, radius, steps = map(float, Path(scene).read_text(encoding="utf-8").split()[:4])
     return any_record(verb, options) | {
         "axes": axes(options),
-        "scene": {
-            "name": scene,
-            "sha256": sha256(scene),
-            "particles": int(particles),
-            "side": side,
-            "radius": radius,
-            "steps": int(steps),
-            "area_fraction": particles * 3.14159 * radius**2 / side**2,
-        },
+        "scene": scene_of(scene),
         "warm_ups": int(options.get("warm-up", 0)),
         "repetitions": [] if wrong else [{"steps_seconds": seconds, "cpu_seconds": seconds}] * runs,
         "parse_seconds": 0.001,
         "process_seconds": runs * seconds + 0.01,
         "work": {
-            "steps": int(steps),
+            "steps": scene_of(scene)["steps"],
             "overlaps": 5,
             "pair_resolves": 4,
             "wall_resolves": 3,
@@ -294,6 +228,19 @@ def make_record(verb: str, scene: str, options: Options, wrong: bool) -> dict[st
             "reason": "energy changed by 3 %" if wrong else None,
         },
         "state_hash": "0123456789abcdef",
+    }
+
+
+def scene_of(path: str) -> dict[str, Any]:
+    particles, side, radius, steps = map(float, Path(path).read_text(encoding="utf-8").split()[:4])
+    return {
+        "name": path,
+        "sha256": sha256(path),
+        "particles": int(particles),
+        "side": side,
+        "radius": radius,
+        "steps": int(steps),
+        "area_fraction": particles * 3.14159 * radius**2 / side**2,
     }
 
 

@@ -1,7 +1,6 @@
 """Questions about programs of others, and what became of them."""
 
 from pathlib import Path
-from typing import Any
 
 from experiments.run.study import Study
 from experiments.tests.conftest import Workplace
@@ -20,11 +19,6 @@ def script(place: Workplace, name: str, text: str) -> Path:
 
 def series(name: str, *lines: str) -> str:
     return "\n".join(["[[series]]", f'name = "{name}"', *lines, ""])
-
-
-def described(place: Workplace) -> list[dict[str, Any]]:
-    """What the program was told of each process, in the order of its calls."""
-    return [call["described"] for call in place.calls() if "described" in call]
 
 
 def ids(place: Workplace) -> list[str]:

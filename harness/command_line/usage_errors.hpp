@@ -8,9 +8,8 @@
 
 namespace carom {
 
-/// Why a command line is refused, in one line of the program's own: CLI11's releases word it differently.
-/// What is wrong is found out from the options of the verb that was called, and only for what is found
-/// nowhere from the error's text.
+/// Why a command line is refused, in one line: what an option's own validator says, or CLI11, whose releases
+/// word it differently, with the help of the verb that was called.
 std::string usage_message(const CLI::App& program, const CLI::ParseError& error);
 
 /// Of the words that a verb could not place, the first that looks like an option and is none, as a message

@@ -54,7 +54,7 @@ class Keeping {
   public:
     Keeping(const ProcessCommand& command, const Cgroup* group, int line)
         : most_seconds_behind_(command.most_seconds_behind), group_(group), line_(line),
-          output_(command.pattern), error_("") {
+          output_(command.output_file), error_("") {
         sigset_t of_children;
         sigemptyset(&of_children);
         sigaddset(&of_children, SIGCHLD);
@@ -222,7 +222,7 @@ class Keeping {
 
     static Json printed_json(OutputTail& tail) {
         const Printed printed = tail.printed();
-        return {{"bytes", printed.bytes}, {"end", printed.end}, {"matched", printed.matched}};
+        return {{"bytes", printed.bytes}, {"end", printed.end}};
     }
 
     Json report() {

@@ -8,7 +8,9 @@
 #include <unistd.h>
 
 #include "harness/support/format.hpp"
+#include "harness/support/input_file.hpp"
 #include "harness/support/process_clock.hpp"
+#include "harness/support/temporary_folder.hpp"
 
 namespace carom {
 namespace {
@@ -21,7 +23,7 @@ constexpr double look = 1;
 constexpr double late = 1;
 
 Printed printed_of(const nlohmann::ordered_json& json) {
-    return {.bytes = json["bytes"], .end = json["end"], .matched = json["matched"]};
+    return {.bytes = json["bytes"], .end = json["end"]};
 }
 
 /// A process begins with the mark of memory of whoever forked it (setrlimit's ru_maxrss survives execve), so
@@ -163,9 +165,12 @@ ProcessEnd run_undisturbed(const ProcessCommand& command, KeptBy kept_by) {
 }
 
 std::string version_line(const std::string& program) {
-    const ProcessCommand command{.words = {program, "--version"}, .pattern = ".*"};
-    const ProcessEnd end = run_undisturbed(command, KeptBy::subreaper);
-    return end.succeeded() && !end.output.matched.empty() ? end.output.matched.front() : "";
+    const TemporaryFolder folder("carom-version-");
+    const std::string file = folder / "printed";
+    const ProcessEnd end =
+        run_undisturbed({.words = {program, "--version"}, .output_file = file}, KeptBy::subreaper);
+    const std::string printed = end.succeeded() ? read_file(file) : "";
+    return printed.substr(0, printed.find('\n'));
 }
 
 } // namespace carom

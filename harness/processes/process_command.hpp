@@ -14,8 +14,7 @@ struct ProcessCommand {
     std::vector<std::string> environment = own_environment(); ///< NAME=VALUE, all that it sees
     double most_seconds = 600;        ///< of its own running time; what takes longer is killed
     double most_seconds_behind = 1e9; ///< that what it started may go on after its own end
-    /// Lines of its standard output that this ECMAScript expression matches are kept.
-    std::string pattern = {};
+    std::string output_file = {};     ///< that its standard output goes into as well; may be empty
 };
 
 } // namespace carom

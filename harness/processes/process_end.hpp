@@ -11,9 +11,8 @@ namespace carom {
 
 /// What a program wrote into one of its streams: not all of it, however much it was.
 struct Printed {
-    std::int64_t bytes = 0;           ///< how many it wrote
-    std::string end;                  ///< the last of them
-    std::vector<std::string> matched; ///< the first lines that the command's pattern matched
+    std::int64_t bytes = 0; ///< how many it wrote
+    std::string end;        ///< the last of them
 };
 
 /// How a program ended with all that it had started, and what that took.

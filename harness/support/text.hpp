@@ -63,18 +63,6 @@ inline std::string in_quotes(std::string_view found, std::size_t longest = 40) {
     return shown + (found.size() > longest ? "...'" : "'");
 }
 
-/// A text of somebody else in a message of one line: not too long, line breaks and other characters that
-/// steer a terminal as question marks.
-inline std::string on_one_line(std::string_view text, std::size_t longest = 200) {
-    std::string shown(text.substr(0, longest));
-    for (char& letter : shown) {
-        if ((letter >= '\0' && letter < ' ') || letter == '\x7f') {
-            letter = '?';
-        }
-    }
-    return shown + (text.size() > longest ? "..." : "");
-}
-
 /// Breaks one line at its spaces so that it fits a terminal of 80 columns; what follows a break is indented
 /// by so many of them. The end of the last line is in it.
 inline std::string wrapped(std::string line, std::size_t indent) {

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from experiments.run.behaviour import LEFT_ALONE
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Study
+from experiments.side_by_side.contest import LEFT_ALONE
 from experiments.tests.conftest import Workplace
-from experiments.tests.foreign import BLOCKS, HEAD, described, ids, script, series
+from experiments.tests.foreign import BLOCKS, HEAD, ids, script, series
 from support.errors import InputError
 
 SURROUNDED = 'command = ["./sim", "{x}"]\nprepare = ["./before", "{folder}"]\nconclude = ["true"]\n'
@@ -20,14 +20,14 @@ def test_what_goes_before_and_after_a_run_is_handed_on(empty_workplace: Workplac
         script(place, name, "exit 0")
     place.question("asked", HEAD + series("a", SURROUNDED, "exit_codes = [0, 3]", "turns = false") + BLOCKS)
     assert run(place.settings) == 0
-    one = described(place)[0]
+    one = place.contenders[0]
     folder = place.root / "questions"
-    assert one["prepare"] == [str(folder / "before"), str(folder)]
-    assert Path(one["conclude"][0]).name == "true"
-    assert (one["exit_codes"], one["turns"], "fresh_folder" in one) == ([0, 3], False, False)
-    assert {Path(source).name for source in one["sources"]} >= {"sim", "before"}, (
-        "what prepares is a part of it"
-    )
+    assert one.prepare == (str(folder / "before"), str(folder))
+    assert Path(one.conclude[0]).name == "true"
+    assert (one.exit_codes, one.turns, one.fresh_folder) == ((0, 3), False, False)
+    record = next(iter(place.records().values()))
+    sources = {Path(source["path"]).name for source in record["process"]["sources"]}
+    assert sources >= {"sim", "before"}, "what prepares is a part of it"
 
 
 def test_each_of_these_makes_another_point_and_none_leaves_the_id_as_it_was(
@@ -84,75 +84,68 @@ def test_in_a_fresh_folder_only_whole_paths_name_files(empty_workplace: Workplac
 def test_a_prepare_that_fails_makes_the_point_fail(empty_workplace: Workplace) -> None:
     empty_workplace.question("asked", HEAD + series("a", 'command = ["true"]\nprepare = ["false"]') + BLOCKS)
     assert run(empty_workplace.settings) == POINTS_FAILED
-    assert [one["reason"] for one in empty_workplace.failures()] == ["prepare: exit code 1"]
+    [failure] = empty_workplace.failures()
+    assert failure["reason"].startswith("prepare: exit code 1 without a word")
+
+
+NO_TERMINAL = "it had no terminal: its standard input is empty, its outputs are pipes"
+IDLE = "it computes for only 0 % of its time, and what it waits for would go on while it stands still"
+
+
+def told(place: Workplace) -> list[dict[str, bool | None]]:
+    """Of each contest, by the contenders' last words, who is known to take turns."""
+    contests: list[dict[str, bool | None]] = []
+    for one in place.contenders:
+        if not contests or one.words[-1] in contests[-1]:
+            contests.append({})
+        contests[-1][one.words[-1]] = one.turns
+    return contests
+
+
+def ask(place: Workplace, *lines: str, names: str = "ab", head: str = HEAD, blocks: str = BLOCKS) -> None:
+    """Run a question about programs with names of one letter."""
+    text = "".join(series(name, f'command = ["true", "{name}"]', *lines) for name in names)
+    place.question("asked", head + text + blocks)
+    assert run(place.settings) == 0
 
 
 def test_whether_it_may_take_turns_is_found_out_once(empty_workplace: Workplace) -> None:
     place = empty_workplace
-    place.behave(FAKE_UNDISTURBED="it is idle most of the time")
-    two = series("a", 'command = ["true"]') + series("b", 'command = ["true", "b"]\nturns = true')
-    place.question("asked", HEAD + two + BLOCKS)
-    assert run(place.settings) == 0
-    told = [(one["command"][1:], one.get("turns"), "expected_seconds" in one) for one in described(place)]
-    assert sorted(told[:2]) == [([], None, False), (["b"], True, False)]
-    assert sorted(told[2:]) == [([], False, True), (["b"], True, True)]
-    (place.root / "log").unlink()
-    place.question("asked", HEAD + two + BLOCKS.replace("2", "3"))
-    assert run(place.settings) == 0
-    later = [(one["command"][1:], one.get("turns")) for one in described(place)]
-    assert sorted(later) == [([], False), (["b"], True)], "a later session knows it as well"
-
-
-def test_if_one_minds_none_takes_turns_that_nobody_asked_for(empty_workplace: Workplace) -> None:
-    place = empty_workplace
-    place.behave(FAKE_UNDISTURBED="it is idle most of the time", FAKE_MINDS="minds")
-    text = "".join(series(name, f'command = ["true", "{name}"]') for name in ("a", "minds"))
-    place.question("asked", HEAD + text + BLOCKS)
-    assert run(place.settings) == 0
-    told = [(one["command"][1], one.get("turns")) for one in described(place)]
-    assert sorted(told[:2]) == [("a", None), ("minds", None)]
-    assert sorted(told[2:4]) == [("a", False), ("minds", False)], "measured anew, all alike"
-    assert sorted(told[4:]) == [("a", False), ("minds", False)]
+    place.behave(FAKE_IDLE="b")
+    ask(place, names="abc")
+    none = dict.fromkeys("abc", False)
+    assert told(place) == [dict.fromkeys("abc"), none, none], "measured anew, all alike"
+    assert [one.expected_seconds > 0 for one in place.contenders] == [False] * 3 + [True] * 6
     first = [one for one in place.records("asked").values() if one["tags"]["block"] == 0]
     reasons = {one["tags"]["series"]: one["process"]["undisturbed"] for one in first}
-    assert reasons == {
-        "a": "minds must not be, and all are measured alike",
-        "minds": "it is idle most of the time",
-    }
+    assert reasons == {**dict.fromkeys("ac", "b must not be, and all are measured alike"), "b": IDLE}
+    place.contenders.clear()
+    ask(place, names="abc", blocks=BLOCKS.replace("2", "3"))
+    assert told(place) == [none], "a later session knows it as well"
+
+
+def test_who_is_said_to_take_turns_does(empty_workplace: Workplace) -> None:
+    empty_workplace.behave(FAKE_IDLE="b")
+    ask(empty_workplace, "turns = true")
+    assert told(empty_workplace) == [{"a": True, "b": True}] * 2
 
 
 def test_a_question_about_pauses_compares_both_ways(empty_workplace: Workplace) -> None:
-    place = empty_workplace
-    place.behave(FAKE_UNDISTURBED="it is idle most of the time", FAKE_MINDS="minds")
-    text = "".join(series(name, f'command = ["true", "{name}"]') for name in ("a", "minds"))
-    place.question(
-        "asked", 'figure = "pauses"\n' + HEAD.replace('figure = "comparison"\n', "") + text + BLOCKS
-    )
-    assert run(place.settings) == 0
-    told = [(one["command"][1], one.get("turns")) for one in described(place)]
-    assert sorted(told[2:]) == [("a", True), ("minds", False)]
-
-
-def test_who_was_only_left_alone_is_asked_again(empty_workplace: Workplace) -> None:
-    empty_workplace.behave(FAKE_UNDISTURBED=LEFT_ALONE)
-    two = series("a", 'command = ["true"]') + series("b", 'command = ["true", "b"]')
-    empty_workplace.question("asked", HEAD + two + BLOCKS)
-    assert run(empty_workplace.settings) == 0
-    assert [one.get("turns") for one in described(empty_workplace)] == [None] * 4
+    empty_workplace.behave(FAKE_IDLE="b")
+    ask(empty_workplace, head='figure = "pauses"\n' + HEAD.replace('figure = "comparison"\n', ""))
+    assert told(empty_workplace)[1:] == [{"a": None, "b": False}], "a was left alone, which tells nothing"
+    records = empty_workplace.records("asked").values()
+    assert {one["process"]["undisturbed"] for one in records} >= {LEFT_ALONE, IDLE}
 
 
 def test_who_does_not_mind_takes_turns_from_then_on(empty_workplace: Workplace) -> None:
-    two = series("a", 'command = ["true"]') + series("b", 'command = ["true", "b"]')
-    empty_workplace.question("asked", HEAD + two + BLOCKS)
-    assert run(empty_workplace.settings) == 0
-    assert [one.get("turns") for one in described(empty_workplace)] == [None, None, True, True]
+    ask(empty_workplace)
+    assert told(empty_workplace) == [{"a": None, "b": None}, {"a": True, "b": True}]
 
 
 def test_a_question_without_turns_says_so_of_each(empty_workplace: Workplace) -> None:
-    two = series("a", 'command = ["true"]') + series("b", 'command = ["true", "b"]')
-    empty_workplace.question("asked", "turns = false\n" + HEAD + two + BLOCKS)
-    assert run(empty_workplace.settings) == 0
-    assert [one["turns"] for one in described(empty_workplace)] == [False] * 4
+    ask(empty_workplace, head="turns = false\n" + HEAD)
+    assert told(empty_workplace) == [{"a": False, "b": False}] * 2
 
 
 def test_who_times_itself_joins_the_others_as_a_whole(empty_workplace: Workplace) -> None:
@@ -165,11 +158,11 @@ def test_who_times_itself_joins_the_others_as_a_whole(empty_workplace: Workplace
     place.question("asked", HEAD + text + BLOCKS)
     run(place.settings)
     assert [call["words"][0] for call in place.calls()].count("processes") == 2, "one call a block"
-    told = {Path(one["command"][0]).name + str(one.get("benchmark", "")): one for one in described(place)}
-    assert told["echo"]["turns"] is False
-    assert "turns" not in told["benchBM_b"]
-    assert "--benchmark_min_time=0.1" in told["benchBM_b"]["command"]
-    assert told["benchBM_a{x}"]["command"][1] == r"--benchmark_filter=^BM_a\{x}(/|$)"
+    by_name = {Path(one.words[0]).name + (one.benchmark or ""): one for one in place.contenders}
+    assert not by_name["echo"].may_be_sliced
+    assert not by_name["benchBM_b"].may_be_sliced
+    assert "--benchmark_min_time=0.1" in by_name["benchBM_b"].words
+    assert by_name["benchBM_a{x}"].words[1] == r"--benchmark_filter=^BM_a\{x}(/|$)"
 
 
 SORT = 'command = ["sort", "-o", "data.txt", "data.txt"]'
@@ -234,4 +227,4 @@ def test_a_program_that_fails_may_write_as_well(empty_workplace: Workplace) -> N
     script(place, "sim", "echo more >> data.txt; exit 4")
     place.question("asked", HEAD + series("a", 'command = ["./sim", "data.txt"]') + BLOCKS)
     assert run(place.settings) == POINTS_FAILED
-    assert [one["reason"] for one in place.failures()] == ["command: exit code 4"]
+    assert [one["reason"] for one in place.failures()] == ["exit code 4 without a word; " + NO_TERMINAL]

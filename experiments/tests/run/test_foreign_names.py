@@ -8,7 +8,7 @@ import pytest
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.tests.conftest import SCENE, Workplace
-from experiments.tests.foreign import BLOCKS, HEAD, described, script, series
+from experiments.tests.foreign import BLOCKS, HEAD, script, series
 from support.errors import InputError
 
 
@@ -19,7 +19,8 @@ def test_a_trajectory_command_is_run_by_no_shell(empty_workplace: Workplace) -> 
     text = series("a", 'command = ["true"]', 'trajectory = ["./empty", "{out}"]')
     place.question("asked", HEAD + SCENE + text + BLOCKS)
     assert run(place.settings) == POINTS_FAILED
-    assert place.failures()[0]["reason"] == "check of each step: cannot be run: Exec format error"
+    reason = f"check of each step: cannot be run in {place.root / 'questions'}: Exec format error"
+    assert place.failures()[0]["reason"] == reason
 
 
 def test_of_many_files_each_that_is_no_program_fails_by_itself(empty_workplace: Workplace) -> None:
@@ -44,7 +45,7 @@ def test_of_many_files_each_that_is_no_program_fails_by_itself(empty_workplace: 
     absent = "which is not there; expected a program"
     no_text = "its path is no text in UTF-8 on one line; another name can be measured"
     assert reasons == {
-        "empty": "cannot be run: Exec format error",
+        "empty": f"cannot be run in {place.root / 'questions'}: Exec format error",
         "a link": "is a link to nothing",
         "pipe": "is no file",
         "plain": f"{subs / 'plain' / 'sim'}: is not executable; `chmod +x` makes it so",
@@ -124,7 +125,7 @@ def test_braces_are_what_they_are(empty_workplace: Workplace) -> None:
     lines = 'command = ["echo", "{{scene}}", "{{out}}{scene}", "{{{x}}}"]'
     empty_workplace.question("asked", HEAD + SCENE + series("a", lines) + BLOCKS)
     assert run(empty_workplace.settings) == 0
-    words = described(empty_workplace)[0]["command"]
+    words = empty_workplace.contenders[0].words
     assert words[1] == "{scene}"
     assert words[2].startswith("{out}/")
     assert words[3] == "{0}"

@@ -15,7 +15,6 @@ namespace {
 
 using tests::content_of;
 using tests::ProgramResult;
-using tests::refused;
 using tests::run_carom;
 
 const std::vector<std::string> fields{
@@ -56,10 +55,6 @@ TEST_F(ErrorsOption, LeavesARecordWithoutItAsItWas) {
     EXPECT_EQ(errors.size(), 3u);
     EXPECT_TRUE(errors.contains("energy_drift"));
     EXPECT_FALSE(errors.contains("trajectory"));
-}
-
-TEST_F(ErrorsOption, NeedsARecordInABench) {
-    EXPECT_TRUE(refused(run_carom({"bench", path, "--errors"}), 1, {"--errors", "--record"}));
 }
 
 TEST_F(ErrorsOption, ShowsInTheSummaryOfARun) {

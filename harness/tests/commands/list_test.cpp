@@ -82,9 +82,5 @@ TEST(ListCommand, SaysOfEveryVariantWhatIsPromised) {
     EXPECT_PRED_FORMAT2(testing::IsSubstring, "with every compiler, contraction off: ", output);
 }
 
-TEST(ListCommand, RefusesTwoFormatsAtOnce) {
-    EXPECT_TRUE(tests::refused(run_carom({"list", "--names", "--json"}), 1, {"--json", "--names"}));
-}
-
 } // namespace
 } // namespace carom

@@ -28,15 +28,17 @@ class ProcessesKilled : public testing::Test {
         const std::string script = "setsid sh -c 'echo $$ >> " + numbers + "; " + busy +
                                    "' & sleep 600 & echo $! >> " + numbers + "; echo $$ >> " + numbers +
                                    "; " + busy;
-        const Json one{{"command", {"/bin/sh", "-c", script}}, {"record", directory / "a"}, {"turns", true}};
-        const Json two{{"command", {"/bin/sh", "-c", busy}}, {"record", directory / "b"}, {"turns", true}};
-        const std::string file = directory.write("processes.json", Json::array({one, two}).dump());
+        const Json plan{
+            {"processes", {{{"command", {"/bin/sh", "-c", script}}}, {{"command", {"/bin/sh", "-c", busy}}}}},
+            {"slice_seconds", 0.01}};
+        const std::string file = directory.write("plan", plan.dump());
         carom = fork();
         if (carom == 0) {
             const int nothing = open("/dev/null", O_RDWR);
+            dup2(open(file.c_str(), O_RDONLY), STDIN_FILENO);
             dup2(nothing, STDOUT_FILENO);
             dup2(nothing, STDERR_FILENO);
-            execl(CAROM_PROGRAM, "carom", "processes", file.c_str(), nullptr);
+            execl(CAROM_PROGRAM, "carom", "processes", nullptr);
             _exit(127);
         }
         std::vector<pid_t> found;
