@@ -22,14 +22,15 @@ _MARKS = (b"benchmark_list_tests", b"libbenchmark.so")
 
 _WRAPPERS = frozenset((
     "env", "taskset", "numactl", "nice", "ionice", "chrt", "stdbuf", "setarch", "nohup", "prlimit", "sudo",
-    "timeout",
+    "time", "timeout",
 ))  # fmt: skip
-"""Programs that become the one among their words."""
+"""Programs that become the one among their words, or start it alone."""
 _BEHIND_INPUT = 4
 """The place of a command's first word behind a shell that opens its input (commands.py)."""
 _ELSEWHERE = ("--benchmark_list_tests", "--help", "--version")
 """Words with which a Google Benchmark measures nothing."""
-_TIME, _FILTER = "--benchmark_min_time", "--benchmark_filter="
+_TIME, _FILTER, _OUT = "--benchmark_min_time", "--benchmark_filter=", "--benchmark_out="
+_VARIABLE = "BENCHMARK_FILTER="
 
 _BLOCKS, _SHORTEST, _LONGEST = 14, 0.01, 0.1
 """So many blocks are to find room, if a case has so many seconds each time, at least and at most."""
@@ -49,9 +50,10 @@ class Call:
 
     @property
     def filter(self) -> str | None:
-        """The one that its own arguments have, or the library's variable."""
+        """The one that its own arguments have, or the library's variable, as `env` may set it before it."""
         given = [one.removeprefix(_FILTER) for one in self.arguments if one.startswith(_FILTER)]
-        return given[-1] if given else os.environ.get("BENCHMARK_FILTER")
+        around = [one.removeprefix(_VARIABLE) for one in self.words[: self.at] if one.startswith(_VARIABLE)]
+        return next(iter((given or around)[-1:]), None)
 
 
 def call_of(command: Compared) -> Call | None:
@@ -113,14 +115,17 @@ def _listed(command: Compared, pattern: str | None) -> list[str]:
         require_executable(first, command.folder)
     except UnfitError as unfit:
         raise InputError(f'{command.called}: found "{first}", which {unfit}') from unfit
-    own = call.filter if call is not None else None
+    around = {**os.environ, **dict(command.environment)}
+    own = (call and call.filter) or around.get(_VARIABLE.rstrip("="))
+    if written := [one for one in command.words if one.startswith(_OUT)]:
+        told = f"{command.called}: found {written[0]}, which every call of it would write anew"
+        raise InputError(f"{told}; expected none: --export-json keeps all times")
     if pattern and own:
         told = f"--filter: found {pattern} beside {_FILTER}{own} of {command.called}"
         raise InputError(f"{told}, expected one of the two")
     words = (os.fspath(found(first, command.folder)), *command.words[1:])
-    around = (command.folder, {**os.environ, **dict(command.environment)})
     try:
-        return cases(words, pattern or own or ".", command.called, *around)
+        return cases(words, pattern or own or ".", command.called, command.folder, around)
     except InputError as error:
         raise InputError(
             str(error).replace(f"{command.called}.filter: ", f"{command.called}: --filter: ")

@@ -127,6 +127,9 @@ def _remarks(course: Course, by_wall: Sequence[Difference]) -> tuple[str, ...]:
         told = ", ".join(f"{one.name} {number}" for one, number in often)
         remarks.append(f"runs of each in a block, in random order and none of them stopped: {told}")
     if not (asked.has_printed_times or asked.cases):
+        runs_of = {one.name: len(course.blocks.runs[one.name, 0].all) for one in asked.commands}
+        once = [name for name, number in runs_of.items() if number == 1 < max(runs_of.values())]
+        remarks += [f"{name} ran once, and a first run may find more to do than others" for name in once]
         for one in asked.commands:
             if (runs := course.blocks.runs[one.name, 0]).all:
                 of_both = [course.first.get((name, 0), 0.0) for name in (one.name, one.name + AGAIN)]

@@ -70,9 +70,7 @@ def note_idle(asked: Asked, runs: Mapping[Key, Runs], idle_processors: float) ->
 
 
 def require_alike(asked: Asked) -> None:
-    """Raises InputError for a Google Benchmark beside a command that is none; says so of a command that has
-    one in its line or script. None of them is run to find out.
-    """
+    """Raises InputError for a Google Benchmark beside a command that is none. None is run to find out."""
     if asked.is_whole or asked.cases:
         return
     for one in asked.commands:
@@ -80,18 +78,21 @@ def require_alike(asked: Asked) -> None:
             other = next(each.called for each in asked.commands if call_of(each) is None)
             told = f"{one.called}: is a Google Benchmark, and {other} is none"
             raise InputError(f"{told}; expected cases of all, or --no-gb to time whole programs")
-        if program := names_benchmark(one):
-            warn(f"carom: {one.called}: is timed as a whole, with the Google Benchmark {program} in it")
 
 
 def require_meant(asked: Asked, runs: Mapping[Key, Runs]) -> None:
-    """Raises InputError for a Google Benchmark that would be timed as a whole although nobody said so."""
+    """Raises InputError for a Google Benchmark that would be timed as a whole although nobody said so; says
+    so of a command that has one in its line or script and does not show its table.
+    """
     for one in asked.commands:
         heads = (tuple(line.split()[:4]) for line in runs[one.name, 0].output.splitlines())
         if not (asked.is_whole or asked.cases) and _TABLE in heads:
             told = f"{one.called}: runs a Google Benchmark, which repeats its cases until their time is full"
             expected = "expected that program with its arguments alone, or --no-gb to time it as a whole"
             raise NotMeantError(f"{told}; {expected}")
+        if not (asked.is_whole or asked.cases) and (program := names_benchmark(one)):
+            told = f"{one.called}: is timed as a whole, with the Google Benchmark {program} in it"
+            warn(f"carom: {told}, which repeats its cases until their time is full, however fast they are")
 
 
 def unlike_runs(name: str, first: float, runs: Runs) -> list[str]:

@@ -38,10 +38,11 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
             found = word if word == str(path) else f"{word}, which is {path}"
             told = "written by the builds: both commits would use what was built last"
             raise InputError(f"found {found}, {told}; expected a path inside the checkout, such as ./prog")
-    named = next((word for word, _ in sorted(of_head) if word.startswith("/")), None)
+    absolute = next((word for word, _ in sorted(of_head) if word.startswith("/")), None)
+    named = absolute or next((word for word, _ in sorted(of_head)), None)
     if named and not any(path.is_relative_to(trees) for _, path in of_head):
         told = f"both commits use {named}, and nothing that the command names lies in the checkout"
-        if not (is_accepted or _is_of_the_system(named)):
+        if absolute and not (is_accepted or _is_of_the_system(absolute)):
             raise InputError(f"{told}; expected a path inside it, or --same-bytes to compare all the same")
         warn(f"carom: {told}")
 

@@ -21,8 +21,10 @@ def _typed(convert: Callable[[str], float], expected: str, text: str) -> float:
 
 def file(text: str) -> Path:
     """A place for a file."""
-    if text.endswith("/"):
-        raise argparse.ArgumentTypeError(f"found {text}, which is no name of a file, expected one")
+    if not text or text.endswith("/"):
+        raise argparse.ArgumentTypeError(
+            f"found {text or 'nothing'}, which is no name of a file, expected one"
+        )
     return Path(text)
 
 

@@ -91,9 +91,9 @@ def unusable(found: Summary | None, point: Point, block: int) -> str | None:
         return "it lacks the error measures"
     if not point.tags.items() <= found.tags.items():
         key = next(key for key, value in point.tags.items() if found.tags.get(key) != value)
-        return f"its tag {key} is {found.tags.get(key)!r}, not {point.tags[key]!r}"
+        return f"its {key} is {found.tags.get(key)!r}, not {point.tags[key]!r}"
     if found.block != block:
-        return f"its tag block is {found.block!r}, not {block!r}"
+        return f"its block is {found.block!r}, not {block!r}"
     return None
 
 

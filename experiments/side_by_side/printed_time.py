@@ -25,7 +25,8 @@ _CLOCK = re.compile(r"[1-9][0-9]*:(?:[0-9]+:)?[0-9]{2}(?:[.,][0-9]+)?$")
 _NUMBER = re.compile(r"(?:[0-9]+(?:[.,][0-9]+)*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _MICRO = "\N{MICRO SIGN}\N{GREEK SMALL LETTER MU}\N{REPLACEMENT CHARACTER}"
 """Of Latin-1 it is a byte that is no UTF-8."""
-_UNIT = re.compile(f"[ \\t]*([{_MICRO}]?[A-Za-z]+)(?![A-Za-z_0-9\u00c0-\u00ff])")
+_BLANK = "[ \t\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{THIN SPACE}]"
+_UNIT = re.compile(f"{_BLANK}*([{_MICRO}]?[A-Za-z]+)(?![A-Za-z_0-9\u00c0-\u00ff])")
 _SECOND = "s(?:ec(?:ond)?s?)?"
 _UNITS = (
     (_SECOND, 1.0), (f"m(?:illi)?{_SECOND}", 1e-3), (f"(?:u|micro|[{_MICRO}]){_SECOND}", 1e-6),
@@ -44,7 +45,10 @@ _THREE_DIGITS = re.compile(r"[0-9]{3}(?:[.,][0-9]+)?")
 _ONE_TO_THREE, _THREE_MORE = re.compile(r"[1-9][0-9]{0,2}"), re.compile(r" [0-9]{3}(?![0-9])")
 _BLANK_BEFORE_GROUP, _BLANK_BEHIND_GROUP = re.compile(r"(?: |\\s)[+*]?\("), re.compile(r"\)(?: |\\s)")
 
-_OTHER_UNIT = re.compile(r"[ \t]*(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b)", re.ASCII)
+_OTHER_UNIT = re.compile(
+    r"[ \t]*(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b|[mMuUnN]?[sS]\b|[mMhHdD]\b|(?:days?|weeks?)\b)"
+)
+"""What is no time, or none that is understood: a capital makes another unit of a short one."""
 _LETTERS = re.compile("([A-Za-z]{1,3})(?![A-Za-z])")
 """No word, as in 0:03.5elapsed."""
 
@@ -95,7 +99,8 @@ def printed_time(lines: Iterable[bytes], pattern: str, unit_seconds: float | Non
                 first, last = (first if number else match[0]), match[0]
                 group, number = _group_of(line, match), number + 1
     if number == 0:
-        raise InputError(f"time: '{pattern}' matches 0 lines of standard output, expected one")
+        told = "expected one (what goes to standard error is read with `2>&1` behind the command)"
+        raise InputError(f"time: '{pattern}' matches 0 lines of standard output, {told}")
     if number > 1:
         told = f"first {in_quotes(first)} and last {in_quotes(last)}, expected once"
         raise InputError(f"time: '{pattern}' matches {number} times in standard output, {told}")
@@ -156,6 +161,9 @@ def _read_time(text: str) -> _Reading:
             seconds = _seconds_of_larger_units(larger) + value * last.unit
             return _Reading(last.rest, larger[0] + last.number, seconds, 1.0)
     one = _read_number(text)
+    smaller = _read_number(one.rest.lstrip(" \t"))
+    if one.unit and smaller.unit and smaller.unit < one.unit:  # 2 s 300 ms
+        return replace(one, number=f"{one.number} and more")
     if text.endswith(f"m{one.rest}"):  # metres, for all we know
         return replace(one, rest=text[len(one.number) :], unit=None)
     return one
@@ -220,7 +228,7 @@ def _seconds_of(group: _Group, pattern: str, unit_seconds: float | None) -> floa
     if (len(read.rest) > len(behind) and not is_point) or not is_time:
         has_word = is_time and not re.search("[0-9]", read.rest)
         at_most = "number, and behind it at most a unit: ns, us, ms, s, min or h"
-        _refuse(group, f", expected a {at_most if has_word else 'positive number'}")
+        _refuse(group, f", expected a {at_most if has_word else 'positive number such as 1234.5'}")
     other = None if read.unit else _OTHER_UNIT.match(behind) or (group.ends_match and _LETTERS.match(behind))
     if other:
         _refuse(group, f" with the unit '{other[1]}', expected a time")

@@ -83,6 +83,9 @@ CASES = (
     _refused("a part of a number", "1.5e3 ms", "1.5", ("--time-from", "took ([0-9.]+)")),
     _refused("a word behind the number", "5 parsecs", "at most a unit", ("--time-from", "took (.*)")),
     _refused("letters that are no unit", "5kms", "with the unit 'kms'", ("--time-from", "took ([0-9]+)")),
+    _refused("seconds and milliseconds", "2 s 300 ms", "'2 s 300 ms'", ("--time-from", "took ([0-9.]+)")),
+    _refused("a unit in capitals, and --unit", "12 MS", "with the unit 'MS'", (*_NUMBER, "--unit", "us")),
+    _read("a narrow blank before the unit, and --unit", "1\u202fms", "2\u00a0ms", "+100.0", "--unit", "s"),
     _refused("two matches in one line", "1 ms took 2 ms", "2"),
     Case(
         TIMED, "a script that prints the table of a Google Benchmark",
@@ -119,6 +122,10 @@ CASES = (
         ("--export-csv", "nowhere/x", "true", "ls"),
         ("--export-csv: found nowhere/x, expected a file in a folder that is there",), code=1,
         not_left=("nowhere",),
+    ),
+    Case(
+        WRITTEN, "an export to nothing, as an empty variable is", "refused",
+        ("--export-csv", "", "true", "ls"), ("--export-csv: found nothing, which is no name",), code=1,
     ),
     Case(
         WRITTEN, "an export that ends with a slash", "refused", ("--export-csv", "nowhere/", "true", "ls"),

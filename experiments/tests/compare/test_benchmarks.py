@@ -48,6 +48,10 @@ def test_a_filter_picks_cases(benchmarks: Path) -> None:
     [
         (["--filter", "gone"], 'carom: ./bench_new: --filter: found "gone", which no case matches'),
         (["--filter", "nothing"], 'found "nothing", which no case matches'),
+        (
+            ["./bench_old --benchmark_out=kept"],
+            "found --benchmark_out=kept, which every call of it would write",
+        ),
     ],
 )
 def test_without_a_common_case_nothing_is_run(benchmarks: Path, words: list[str], told: str) -> None:
@@ -73,7 +77,10 @@ def test_benchmarks_are_known_by_what_stands_in_them(tmp_path: Path) -> None:
     assert arguments("./benchmark") == arguments("./loads_it") == ()
     assert arguments("./benchmark", "--benchmark_min_time=0.2") == ("--benchmark_min_time=0.2",)
     assert arguments("taskset", "-c", "0", "./benchmark", "-x") == ("-x",)
-    assert arguments("env", "A=1", "./loads_it") == ()
+    assert arguments("env", "A=1", "./loads_it") == arguments("time", "./loads_it") == ()
+    behind_env = call_of(Compared("x", ("env", "BENCHMARK_FILTER=a", "./benchmark"), "", folder=tmp_path))
+    assert behind_env is not None
+    assert behind_env.filter == "a"
     for words in (["./program"], ["./script"], ["./empty"], ["./missing"], ["strip", "./benchmark"]):
         assert arguments(*words) is None
     assert arguments("./benchmark", "--benchmark_list_tests") is None

@@ -261,6 +261,12 @@ PROGRAMS = {
         run=("HERE/on-path/prog",),
         env={"PATH": f"HERE/on-path:{os.environ['PATH']}"},
     ),
+    "nothing of the checkout, on PATH": Case(
+        SLOWER,
+        0,
+        ("both commits use true, and nothing that the command names lies in the checkout", PASSED),
+        run=("true",),
+    ),
     "installed, one commit": Case(START, 0, (PASSED,), build=INSTALL, run=("HERE/fixed/prog",)),
     "installed on PATH": Case(
         SLOWER,

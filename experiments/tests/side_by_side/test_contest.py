@@ -119,7 +119,8 @@ FAILURES: dict[str, tuple[Contender, int, str]] = {
     ),
     "silent": (
         scripted("echo nothing", pattern="took ([0-9]+)"), 1,
-        "time: 'took ([0-9]+)' matches 0 lines of standard output, expected one",
+        "time: 'took ([0-9]+)' matches 0 lines of standard output, expected one "
+        "(what goes to standard error is read with `2>&1` behind the command)",
     ),
     "prepare": (scripted("", prepare=("sh", "-c", "echo no >&2; exit 1")), 1, "prepare: exit code 1: no"),
     "no prepare": (
