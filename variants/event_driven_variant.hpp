@@ -14,10 +14,8 @@ extern template class EventDriven<long double>;
 extern template class EventDriven<double, CollisionLog<double>&>;
 extern template class ExactSimulation<double>;
 extern template class ExactSimulation<long double>;
-extern template class ExactSimulation<double, CollisionLog<double>&>;
 extern template class EventWindows<double>;
 extern template class EventWindows<long double>;
-extern template class EventWindows<double, CollisionLog<double>&>;
 
 /// The event-driven simulation (kernels/exact/event_driven.hpp) as one more variant, beside the table: every
 /// collision at its time, in order, exact to rounding. It ends in the same bits on any number of threads; it

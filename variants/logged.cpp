@@ -8,13 +8,11 @@
 namespace carom {
 
 template class EventDriven<double, CollisionLog<double>&>;
-template class EventWindows<double, CollisionLog<double>&>;
-template class ExactSimulation<double, CollisionLog<double>&>;
 
 std::unique_ptr<Simulation> simulate_event_driven_logged(const Scene& scene, const Tuning& tuning,
                                                          CollisionLog<double>& log) {
-    return std::make_unique<EventDrivenSimulation<ExactSimulation<double, CollisionLog<double>&>>>(
-        scene, tuning.substeps, tuning.threads, log);
+    return std::make_unique<EventDrivenSimulation<ToldSimulation>>(scene, tuning.substeps, tuning.threads,
+                                                                   log);
 }
 
 namespace part_detail {

@@ -10,19 +10,13 @@
 namespace carom {
 namespace {
 
-/// What a unit of each kind of work takes in a scene of so many discs.
-struct UnitCosts {
+struct Measured {
     double discs;
-    Work nanoseconds;
-
-    double seconds(const Work& work) const {
-        return 1e-9 * (nanoseconds.placed * work.placed + nanoseconds.moved * work.moved +
-                       nanoseconds.near * work.near + nanoseconds.collisions * work.collisions);
-    }
+    std::array<double, 4> nanoseconds;
 };
 
-/// As measured on one machine: small scenes in a cache, and large ones.
-std::vector<UnitCosts> costs_of(const Variant& variant) {
+/// Small scenes, in a cache, and large ones.
+std::vector<Measured> measured_costs(const Variant& variant) {
     if (variant.engine == Engine::event_driven) {
         return {{2'000, {100, 120, 0, 300}}, {40'000, {150, 150, 0, 380}}, {400'000, {400, 240, 50, 600}}};
     }
@@ -32,53 +26,54 @@ std::vector<UnitCosts> costs_of(const Variant& variant) {
 
 } // namespace
 
-Work& Work::operator+=(const Work& more) {
-    placed += more.placed;
-    moved += more.moved;
-    near += more.near;
-    collisions += more.collisions;
-    return *this;
-}
-
-Work operator*(double times, const Work& work) {
-    return {times * work.placed, times * work.moved, times * work.near, times * work.collisions};
-}
-
-double seconds_of(const Variant& variant, double discs, const Work& work) {
-    const std::vector<UnitCosts> sizes = costs_of(variant);
-    const auto larger = std::ranges::find_if(sizes, [&](const UnitCosts& one) { return one.discs >= discs; });
-    if (larger == sizes.begin() || larger == sizes.end()) {
-        return (larger == sizes.end() ? sizes.back() : sizes.front()).seconds(work);
+Costs::Costs(const Variant& variant, std::size_t discs) : variant_(variant) {
+    const std::vector<Measured> sizes = measured_costs(variant);
+    const auto count = static_cast<double>(discs);
+    auto larger = sizes.begin() + 1;
+    while (larger + 1 != sizes.end() && larger->discs < count) {
+        ++larger;
     }
-    const UnitCosts& smaller = *(larger - 1);
-    const double share = std::log(discs / smaller.discs) / std::log(larger->discs / smaller.discs);
-    return (1 - share) * smaller.seconds(work) + share * larger->seconds(work);
+    const Measured& smaller = *(larger - 1);
+    const double beyond = std::log(count / smaller.discs) / std::log(larger->discs / smaller.discs);
+    for (std::size_t kind = 0; kind < nanoseconds_.size(); ++kind) {
+        nanoseconds_[kind] =
+            std::lerp(smaller.nanoseconds[kind], larger->nanoseconds[kind], std::clamp(beyond, 0.0, 1.0));
+    }
 }
 
-Work work_of_step(const Variant& variant, const Scene& scene) {
+double Costs::setting_up(const Scene& scene) const {
+    return 1e-9 * nanoseconds_[0] * static_cast<double>(scene.discs.size());
+}
+
+double Costs::step(const Scene& scene) const {
     const auto count = static_cast<double>(scene.discs.size());
-    const Grid grid(scene.side, scene.radius, static_cast<int>(scene.discs.size()),
-                    variant.policies.box_side);
-    std::vector<double> held(static_cast<std::size_t>(grid.box_count()), 0.0);
-    for (const Disc& disc : scene.discs) {
-        const int box = grid.box_of(grid.coordinate(disc.y), grid.coordinate(disc.x));
-        ++held[static_cast<std::size_t>(box)];
+    if (variant_.engine == Engine::steps) {
+        return 1e-9 * (nanoseconds_[1] * count + nanoseconds_[2] * near_in_steps(scene));
     }
-    double squares = 0;
-    for (const double discs : held) {
-        squares += discs * discs;
-    }
-    return {.moved = count, .near = 4.5 * squares}; // half of nine boxes
-}
-
-Work work_of_events(const Scene& scene) {
-    const auto count = static_cast<double>(scene.discs.size());
     const double cell = std::max(2 * scene.radius, scene.side / std::sqrt(count + 1));
     double flown = 0;
     for (const Disc& disc : scene.discs) {
         flown += std::abs(disc.vx) + std::abs(disc.vy);
     }
-    return {.moved = flown / cell, .near = count};
+    return 1e-9 * (nanoseconds_[1] * flown / cell + nanoseconds_[2] * count);
+}
+
+double Costs::collisions(std::int64_t count) const {
+    return 1e-9 * nanoseconds_[3] * static_cast<double>(count);
+}
+
+/// Pairs of discs in half of the nine boxes around each.
+double Costs::near_in_steps(const Scene& scene) const {
+    const Grid grid(scene.side, scene.radius, static_cast<int>(scene.discs.size()),
+                    variant_.policies.box_side);
+    std::vector<double> held(static_cast<std::size_t>(grid.box_count()), 0.0);
+    double pairs = 0;
+    for (const Disc& disc : scene.discs) {
+        const int box = grid.box_of(grid.coordinate(disc.y), grid.coordinate(disc.x));
+        const double before = held[static_cast<std::size_t>(box)]++;
+        pairs += 2 * before + 1; // the square of how many there are
+    }
+    return 4.5 * pairs;
 }
 
 } // namespace carom

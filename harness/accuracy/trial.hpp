@@ -14,7 +14,7 @@ struct Trial {
     std::vector<Tried> tried; ///< never empty; the event-driven simulation is the first
     std::size_t discs = 0;    ///< of the scene or its piece
     bool whole_scene = false; ///< not a piece of it
-    int units_of_time = 0;    ///< that each method ran; fewer where its error was too large already
+    int units_of_time = 0;    ///< that each method ran
     double seconds = 0;       ///< that all of it took
 };
 

@@ -22,7 +22,7 @@ void add_doctor_command(CLI::App& program) {
     command->callback([json, noise, build] {
         if (*build) {
             auto built = build_json();
-            built["openmp"] = {{"runtime", read_openmp().runtime}};
+            built["openmp"] = {{"runtime", openmp_json()["runtime"]}};
             std::cout << json_text(built, 2) << '\n';
             return;
         }

@@ -33,8 +33,9 @@ struct LimitsOptions {
 void limits(const LimitsOptions& options) {
     tags_json(options.tags);
     require_writable(options.record);
-    const std::int64_t most_bytes =
-        options.memory_mebibytes ? *options.memory_mebibytes * mebibyte : read_machine().memory_bytes / 4;
+    const std::int64_t most_bytes = options.memory_mebibytes
+                                        ? *options.memory_mebibytes * mebibyte
+                                        : read_machine()["memory_bytes"].get<std::int64_t>() / 4;
     Suspensions suspensions;
     suspensions.start();
     const Limits found = measure_limits(options.threads, options.seconds, most_bytes);

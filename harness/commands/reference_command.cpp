@@ -30,8 +30,7 @@ struct ReferenceOptions {
 };
 
 /// Pressure on the walls: momentum taken up per time and length of wall.
-template <class Log>
-nlohmann::ordered_json counts_json(const ExactSimulation<double, Log>& reference, const Scene& scene,
+nlohmann::ordered_json counts_json(const ExactSimulation<double>& reference, const Scene& scene,
                                    double start) {
     const double end = kinetic_energy(reference.discs());
     const double time = reference.time();
@@ -49,9 +48,8 @@ nlohmann::ordered_json counts_json(const ExactSimulation<double, Log>& reference
 }
 
 /// Writes what `reference` is at the asked time, which `checker` has followed if there is one.
-template <class Log>
-void simulate(const ReferenceOptions& options, const Scene& scene, ExactSimulation<double, Log> reference,
-              PathChecker* checker) {
+template <class Exact>
+void simulate(const ReferenceOptions& options, const Scene& scene, Exact reference, PathChecker* checker) {
     const double start = kinetic_energy(reference.discs());
     const bool ended = reference.advance(options.time);
     const auto wrong = checker ? checker->violation_at(reference.time(), reference.discs()) : std::nullopt;
@@ -71,7 +69,7 @@ void simulate(const ReferenceOptions& options, const Scene& scene, ExactSimulati
     write_text(options.output, json.dump(2) + "\n");
 }
 
-/// Collisions are told only to a checker: several threads tell them one after the other, which takes time.
+/// Collisions are told only to a checker: for that the simulation goes along in one piece, too.
 void reference(const ReferenceOptions& options) {
     require_writable(options.output);
     const Scene scene = read_scene(options.scene);
@@ -80,9 +78,7 @@ void reference(const ReferenceOptions& options) {
         return;
     }
     PathChecker checker(scene);
-    CollisionLog<double>& told = checker;
-    simulate(options, scene, ExactSimulation<double, CollisionLog<double>&>(scene, options.threads, told),
-             &checker);
+    simulate(options, scene, ToldSimulation(scene, options.threads, checker), &checker);
 }
 
 } // namespace

@@ -56,7 +56,7 @@ PerfAccess read_perf_access() {
     if (const auto line = first_line("/proc/sys/kernel/perf_event_paranoid")) {
         access.paranoid = parse_number<int>(*line);
     }
-    access.virtualised = read_machine().virtualised;
+    access.virtualised = read_machine()["virtualised"];
     return access;
 }
 

@@ -1,5 +1,6 @@
 #include "harness/doctor/findings.hpp"
 
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "harness/counters/counters.hpp"
 #include "harness/counters/papi.hpp"
 #include "harness/counters/rusage.hpp"
+#include "harness/machine/cpu_quota.hpp"
 #include "harness/machine/machine.hpp"
 #include "harness/machine/provenance.hpp"
 #include "harness/machine/threads.hpp"
@@ -28,6 +30,14 @@ std::optional<bool> read_turbo() {
     const auto off = first_line("/sys/devices/system/cpu/intel_pstate/no_turbo");
     const auto on = first_line("/sys/devices/system/cpu/cpufreq/boost");
     return off ? std::optional(*off == "0") : on ? std::optional(*on == "1") : std::nullopt;
+}
+
+Json some_of(const Json& all, std::initializer_list<const char*> fields) {
+    Json some = Json::object();
+    for (const char* field : fields) {
+        some[field] = all[field];
+    }
+    return some;
 }
 
 Json topology_json(const Topology& topology) {
@@ -118,26 +128,19 @@ Json examine_machine(double noise_seconds) {
     const Silence silence;
     // Noise comes first: what follows starts programs, which may still be at work.
     const Noise noise = measure_noise(noise_seconds);
-    const Machine machine = read_machine();
+    const Json told = read_machine();
+    Json machine = some_of(told, {"host", "operating_system", "cpu_model", "virtualised", "memory_bytes"});
+    machine["memory_available_bytes"] = or_null(available_memory());
+    Json affinity = some_of(told, {"affinity", "affinity_count", "hardware_threads", "cpu_quota"});
+    affinity["has_unread_cpu_quota"] = has_unread_cpu_quota();
+    affinity["usable_processors"] = usable_processors();
+    affinity["threads_by_default"] = default_threads();
     const PerfAccess perf = read_perf_access();
-    return {{"machine",
-             {{"host", machine.host},
-              {"operating_system", machine.operating_system},
-              {"cpu_model", machine.cpu_model},
-              {"virtualised", machine.virtualised},
-              {"memory_bytes", machine.memory_bytes},
-              {"memory_available_bytes", or_null(available_memory())}}},
+    return {{"machine", machine},
             {"topology", topology_json(read_topology())},
-            {"frequency", {{"governor", or_null(machine.governor)}, {"turbo", or_null(read_turbo())}}},
-            {"affinity",
-             {{"affinity", machine.affinity},
-              {"affinity_count", machine.affinity_count},
-              {"hardware_threads", machine.hardware_threads},
-              {"cpu_quota", or_null(machine.cpu_quota)},
-              {"has_unread_cpu_quota", machine.has_unread_cpu_quota},
-              {"usable_processors", usable_processors()},
-              {"threads_by_default", default_threads()}}},
-            {"openmp", openmp_json(read_openmp())},
+            {"frequency", {{"governor", told["governor"]}, {"turbo", or_null(read_turbo())}}},
+            {"affinity", affinity},
+            {"openmp", openmp_json()},
             {"perf_events",
              {{"papi", papi_version()}, {"paranoid", or_null(perf.paranoid)}, {"pmu", !lacks_pmu(perf)}}},
             {"counters", counters_json()},

@@ -1,6 +1,7 @@
 #include "harness/machine/machine.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <initializer_list>
 #include <set>
@@ -15,6 +16,7 @@
 #include <unistd.h>
 
 #include "harness/machine/cpu_quota.hpp"
+#include "harness/support/json.hpp"
 
 namespace carom {
 namespace {
@@ -76,14 +78,16 @@ void add_places(cpu_set_t* set, std::size_t bytes) {
     }
 }
 
-/// A CPU set as 0-3,8. The set is as large as the system needs: more CPUs than cpu_set_t holds are no error.
-void read_affinity(Machine& machine) {
+/// The CPUs as 0-3,8, and how many they are. The set is as large as the system needs: more CPUs than
+/// cpu_set_t holds are no error.
+std::pair<std::string, int> read_affinity() {
+    std::pair<std::string, int> found{"", 1};
     cpu_set_t* set = CPU_ALLOC(most_cpus);
     const std::size_t bytes = CPU_ALLOC_SIZE(most_cpus);
     CPU_ZERO_S(bytes, set);
     if (sched_getaffinity(0, bytes, set) == 0) {
         add_places(set, bytes);
-        machine.affinity_count = CPU_COUNT_S(bytes, set);
+        found.second = CPU_COUNT_S(bytes, set);
         std::ostringstream ranges;
         int first = most_cpus;
         for (int cpu = 0; cpu < most_cpus; ++cpu) {
@@ -101,9 +105,10 @@ void read_affinity(Machine& machine) {
             }
             cpu = last;
         }
-        machine.affinity = ranges.str();
+        found.first = ranges.str();
     }
     CPU_FREE(set);
+    return found;
 }
 
 } // namespace
@@ -117,25 +122,22 @@ std::optional<std::string> first_line(const std::string& path) {
     return line;
 }
 
-Machine read_machine() {
-    Machine machine;
+nlohmann::ordered_json read_machine() {
     utsname kernel{};
     uname(&kernel);
-    machine.host = kernel.nodename;
     const CpuInfo info = read_cpu_info();
-    machine.cpu_model = info.model;
-    machine.virtualised = info.hypervisor;
-    if (!info.cores.empty()) {
-        machine.cores = static_cast<int>(info.cores.size());
-    }
-    machine.hardware_threads = static_cast<int>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));
-    machine.memory_bytes = std::int64_t{sysconf(_SC_PHYS_PAGES)} * sysconf(_SC_PAGE_SIZE);
-    machine.governor = first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
-    machine.operating_system = read_operating_system();
-    read_affinity(machine);
-    machine.cpu_quota = read_cpu_quota();
-    machine.has_unread_cpu_quota = has_unread_cpu_quota();
-    return machine;
+    const auto [affinity, affinity_count] = read_affinity();
+    return {{"host", kernel.nodename},
+            {"cpu_model", info.model},
+            {"cores", or_null(info.cores.empty() ? std::nullopt : std::optional(info.cores.size()))},
+            {"hardware_threads", std::max(1L, sysconf(_SC_NPROCESSORS_ONLN))},
+            {"affinity", affinity},
+            {"affinity_count", affinity_count},
+            {"cpu_quota", or_null(read_cpu_quota())},
+            {"memory_bytes", std::int64_t{sysconf(_SC_PHYS_PAGES)} * sysconf(_SC_PAGE_SIZE)},
+            {"virtualised", info.hypervisor},
+            {"governor", or_null(first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"))},
+            {"operating_system", read_operating_system()}};
 }
 
 } // namespace carom

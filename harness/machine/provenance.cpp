@@ -28,16 +28,16 @@ std::string openmp_runtime() {
 
 } // namespace
 
-OpenMp read_openmp() {
+Json openmp_json() {
     constexpr std::array<const char*, 5> binds{"false", "true", "primary", "close", "spread"};
     const auto bind = static_cast<std::size_t>(omp_get_proc_bind());
-    return {.runtime = openmp_runtime(),
-            .version = _OPENMP,
-            .max_threads = omp_get_max_threads(),
-            .dynamic = omp_get_dynamic() != 0,
-            .proc_bind = bind < binds.size() ? binds[bind] : "unknown",
-            .places = omp_get_num_places(),
-            .environment = variables_with_prefixes(own_environment(), {"OMP_", "GOMP_", "KMP_"})};
+    return {{"runtime", openmp_runtime()},
+            {"version", _OPENMP},
+            {"max_threads", omp_get_max_threads()},
+            {"dynamic", omp_get_dynamic() != 0},
+            {"proc_bind", bind < binds.size() ? binds[bind] : "unknown"},
+            {"places", omp_get_num_places()},
+            {"environment", variables_with_prefixes(own_environment(), {"OMP_", "GOMP_", "KMP_"})}};
 }
 
 std::map<std::string, std::string> slurm_variables() {
@@ -56,13 +56,6 @@ std::string build_text() {
            commit_text("commit not known");
 }
 
-Json openmp_json(const OpenMp& openmp) {
-    return {{"runtime", openmp.runtime},         {"version", openmp.version},
-            {"max_threads", openmp.max_threads}, {"dynamic", openmp.dynamic},
-            {"proc_bind", openmp.proc_bind},     {"places", openmp.places},
-            {"environment", openmp.environment}};
-}
-
 Json build_json() {
     const std::string dirty = build_info::dirty;
     return {{"compiler", build_info::compiler},
@@ -74,21 +67,11 @@ Json build_json() {
 
 Json provenance_json(int threads) {
     // A process that leaves many records reads once what stays the same.
-    static const Machine machine = read_machine();
+    static const Json machine = read_machine();
     static const std::string own_sha256 = sha256(read_file("/proc/self/exe"));
-    Json json{{"host", machine.host},
-              {"cpu_model", machine.cpu_model},
-              {"cores", or_null(machine.cores)},
-              {"hardware_threads", machine.hardware_threads},
-              {"affinity", machine.affinity},
-              {"affinity_count", machine.affinity_count},
-              {"cpu_quota", or_null(machine.cpu_quota)},
-              {"oversubscribed", threads > machine.affinity_count},
-              {"memory_bytes", machine.memory_bytes},
-              {"virtualised", machine.virtualised},
-              {"governor", or_null(machine.governor)},
-              {"operating_system", machine.operating_system},
-              {"openmp", openmp_json(read_openmp())}};
+    Json json = machine;
+    json["oversubscribed"] = threads > machine["affinity_count"];
+    json["openmp"] = openmp_json();
     json.update(build_json());
     json["diff_sha256"] = text_or_null(std::string(build_info::diff_sha256));
     json["binary_sha256"] = own_sha256;

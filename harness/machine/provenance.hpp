@@ -7,18 +7,6 @@
 
 namespace carom {
 
-/// The OpenMP runtime of this process.
-struct OpenMp {
-    std::string runtime; ///< libgomp, libomp or unknown
-    int version = 0;     ///< of the specification, as year and month
-    int max_threads = 1;
-    bool dynamic = false;
-    std::string proc_bind;
-    int places = 0;
-    std::map<std::string, std::string> environment; ///< its variables that are set
-};
-OpenMp read_openmp();
-
 /// The variables of the Slurm job that this process is in; none outside of one.
 std::map<std::string, std::string> slurm_variables();
 
@@ -26,8 +14,8 @@ std::map<std::string, std::string> slurm_variables();
 /// record schema's `provenance`. `threads` tells whether the affinity mask is oversubscribed.
 nlohmann::ordered_json provenance_json(int threads);
 
-/// What it says of the OpenMP runtime.
-nlohmann::ordered_json openmp_json(const OpenMp& openmp);
+/// What it says of the OpenMP runtime of this process.
+nlohmann::ordered_json openmp_json();
 
 /// What it says of how the program was built.
 nlohmann::ordered_json build_json();

@@ -6,10 +6,10 @@
 namespace carom {
 
 Topology read_topology() {
-    const Machine machine = read_machine();
+    const auto machine = read_machine();
     return {.source = "the operating system",
-            .cores = machine.cores,
-            .hardware_threads = machine.hardware_threads};
+            .cores = machine["cores"].is_null() ? std::nullopt : std::optional(machine["cores"].get<int>()),
+            .hardware_threads = machine["hardware_threads"]};
 }
 
 } // namespace carom

@@ -6,11 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <type_traits>
 #include <vector>
 
 #include "kernels/exact/agreement.hpp"
-#include "kernels/exact/collisions_in_order.hpp"
 #include "kernels/exact/memory_order.hpp"
 #include "kernels/exact/tile.hpp"
 #include "kernels/exact/tile_grid.hpp"
@@ -42,12 +40,10 @@ struct WindowSettings {
 /// A window is short, one collision a disc, since what is wrong at the edge of the halo spreads inwards no
 /// faster than collisions hand it on. A tile is small enough to stay in a processor's cache for all of a
 /// window, which on large scenes is worth more than what copies cost.
-///
-/// `Log` is told every collision, in order; CollisionLog<Real>& is one that can.
-template <class Real, class Log = NoCollisionLog> class EventWindows {
+template <class Real> class EventWindows {
   public:
-    EventWindows(const Scene& scene, int threads, const WindowSettings& settings, Log log = Log())
-        : log_(log), settings_(settings), threads_(threads), side_(static_cast<Real>(scene.side)),
+    EventWindows(const Scene& scene, int threads, const WindowSettings& settings)
+        : settings_(settings), threads_(threads), side_(static_cast<Real>(scene.side)),
           radius_(static_cast<Real>(scene.radius)), grid_(side_, settings.tiles) {
         restart(scene);
     }
@@ -100,8 +96,6 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
     std::int64_t repeated() const { return repeated_; }
 
   private:
-    static constexpr bool tells = !std::is_same_v<Log, NoCollisionLog>;
-
     /// One window, until `time` at most, again and again until the tiles agree; at last in one tile.
     bool next_window(Real time) {
         const Real wanted = window_;
@@ -163,13 +157,6 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
                 ++wall_collisions_;
             }
         }
-        if constexpr (tells) {
-            CollisionsInOrder<Real> collisions;
-            for (int tile = 0; tile < grid_.count(); ++tile) {
-                collisions.add(tile, tiles_[index(tile)]->history());
-            }
-            collisions.tell(log_);
-        }
         pair_collisions_ += pairs;
         ++windows_;
         if (end - now_ >= window_ / 2) { // a shorter one says little
@@ -187,7 +174,7 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
         grid_ = TileGrid<Real>(side_, tiles);
         agreed_.assign(index(grid_.count()), 0);
         for (int tile = 0; tile < grid_.count(); ++tile) {
-            tiles_.push_back(std::make_unique<Tile<Real>>(grid_, tile, side_, radius_, tells));
+            tiles_.push_back(std::make_unique<Tile<Real>>(grid_, tile, side_, radius_));
         }
         for (const int disc : memory_order(flights, now_, side_)) {
             const Flight<Real>& one = flights[index(disc)];
@@ -245,7 +232,6 @@ template <class Real, class Log = NoCollisionLog> class EventWindows {
 
     static std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-    [[no_unique_address]] Log log_;
     WindowSettings settings_;
     int threads_;
     std::size_t count_ = 0; ///< of discs

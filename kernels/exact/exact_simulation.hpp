@@ -15,17 +15,14 @@ namespace carom {
 
 /// The exact simulation of a scene on so many threads at most: in one piece (event_driven.hpp) or in tiles
 /// (event_windows.hpp), whichever takes less time. No result depends on which, nor on the threads.
-///
-/// `Log` is told every collision, in order; CollisionLog<Real>& is one that can.
-template <class Real, class Log = NoCollisionLog> class ExactSimulation {
+template <class Real> class ExactSimulation {
   public:
-    ExactSimulation(const Scene& scene, int threads, Log log = Log()) {
+    ExactSimulation(const Scene& scene, int threads) {
         const TileCounts tiles = tiles_for(scene.discs.size(), threads);
         if (tiles.all() == 1) {
-            in_one_ = std::make_unique<EventDriven<Real, Log>>(scene, log);
+            in_one_ = std::make_unique<EventDriven<Real>>(scene);
         } else {
-            in_tiles_ = std::make_unique<EventWindows<Real, Log>>(scene, threads,
-                                                                  WindowSettings{.tiles = tiles}, log);
+            in_tiles_ = std::make_unique<EventWindows<Real>>(scene, threads, WindowSettings{.tiles = tiles});
         }
     }
 
@@ -59,8 +56,29 @@ template <class Real, class Log = NoCollisionLog> class ExactSimulation {
     }
 
   private:
-    std::unique_ptr<EventDriven<Real, Log>> in_one_;
-    std::unique_ptr<EventWindows<Real, Log>> in_tiles_;
+    std::unique_ptr<EventDriven<Real>> in_one_;
+    std::unique_ptr<EventWindows<Real>> in_tiles_;
+};
+
+/// The same, beside which goes the simulation in one piece and tells its collisions, in order. States and
+/// counts are those of the first: whoever holds them against what is told finds where the two differ.
+class ToldSimulation : public ExactSimulation<double> {
+  public:
+    ToldSimulation(const Scene& scene, int threads, CollisionLog<double>& log)
+        : ExactSimulation(scene, threads), told_(scene, log) {}
+
+    void restart(const Scene& scene) {
+        ExactSimulation::restart(scene);
+        told_.restart(scene);
+    }
+
+    bool advance(double time) {
+        const bool ended = told_.advance(time);
+        return ExactSimulation::advance(time) && ended;
+    }
+
+  private:
+    EventDriven<double, CollisionLog<double>&> told_;
 };
 
 } // namespace carom

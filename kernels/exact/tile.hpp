@@ -25,11 +25,10 @@ template <class Real> class Tile {
     using Tiles = std::vector<std::unique_ptr<Tile>>;
 
     /// In a box of that side, with discs of that radius.
-    Tile(const TileGrid<Real>& grid, int number, Real box_side, Real radius, bool lists_collisions)
+    Tile(const TileGrid<Real>& grid, int number, Real box_side, Real radius)
         : grid_(grid), number_(number), radius_(radius), engine_(box_side, radius, Told{&history_}) {
         history_.bounds = grid.bounds(number);
         history_.flights = &engine_.foresight().flights();
-        history_.lists_collisions = lists_collisions;
     }
 
     Tile(const Tile&) = delete;

@@ -56,20 +56,12 @@ template <class Real> class TileHistory {
         Real velocity;
     };
 
-    /// A collision by the numbers of the discs, and which of them the tile owns.
-    struct Listed {
-        Collision<Real> collision;
-        bool owns_first;
-        bool owns_second;
-    };
-
     Bounds<Real> bounds; ///< of the tile; infinite beyond the walls
     std::vector<Held> held;
     std::vector<Kind> kinds;                            ///< of each of `held`
     std::vector<int> remembered;                        ///< places of copies and shared discs
     const std::vector<Flight<Real>>* flights = nullptr; ///< of each of `held`, as they are now
-    bool ended = true;             ///< did the collisions of each instant come to an end?
-    bool lists_collisions = false; ///< are all collisions of owned discs to be listed?
+    bool ended = true; ///< did the collisions of each instant come to an end?
 
     /// Forgets the last window. All discs are known. Keeps how they fly now: all at once, if much happened in
     /// the last window, else each when it changes, so that a window in which little happens takes little
@@ -105,9 +97,6 @@ template <class Real> class TileHistory {
             own_is_at({one.second_after.x, one.second_after.y});
         } else {
             remember(one);
-        }
-        if (lists_collisions && (owns(one.first) || owns(one.second))) {
-            list(one, held[index(one.first)].disc, held[index(one.second)].disc);
         }
     }
 
@@ -158,8 +147,6 @@ template <class Real> class TileHistory {
     /// Of owned discs; those of two tiles count where the disc of the lower number is owned.
     std::int64_t pair_collisions() const { return pair_collisions_; }
     const std::vector<AtWall>& at_walls() const { return at_walls_; }
-    /// In order, by the numbers of the discs, if they are listed: all in which an owned disc has part.
-    const std::vector<Listed>& collisions() const { return collisions_; }
 
   private:
     static constexpr int not_kept = -1;
@@ -178,7 +165,6 @@ template <class Real> class TileHistory {
         kept_.clear();
         changes_.clear();
         at_walls_.clear();
-        collisions_.clear();
         told_ = 0;
         excursion_ = 0;
         clearance_ = Bounds<Real>::infinity;
@@ -220,18 +206,6 @@ template <class Real> class TileHistory {
         changes_.push_back({time, partner, Change<Real>::none, after});
     }
 
-    void list(const Collision<Real>& one, int first, int second) {
-        const bool owns_first = owns(one.first);
-        const bool owns_second = owns(one.second);
-        if (first <= second) {
-            collisions_.push_back(
-                {{one.time, 0, first, second, one.first_after, one.second_after}, owns_first, owns_second});
-        } else {
-            collisions_.push_back(
-                {{one.time, 0, second, first, one.second_after, one.first_after}, owns_second, owns_first});
-        }
-    }
-
     std::vector<Change<Real>> changes_;
     std::vector<int> first_; ///< of each place's changes
     std::vector<int> last_;
@@ -241,7 +215,6 @@ template <class Real> class TileHistory {
     std::vector<int> kept_places_; ///< of each of kept_, if not all are kept
     std::vector<int> kept_at_;     ///< the inverse
     std::vector<AtWall> at_walls_;
-    std::vector<Listed> collisions_;
     std::size_t told_ = 0; ///< collisions
     Real excursion_ = 0;
     Real clearance_ = 0;

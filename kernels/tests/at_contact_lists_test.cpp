@@ -1,17 +1,14 @@
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "kernels/step.hpp"
+#include "kernels/tests/fast_policies.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "kernels/tests/simulate.hpp"
 
@@ -24,22 +21,10 @@ using tests::Random;
 using tests::same_bits;
 
 constexpr Policies lists{.impact = Impact::at_contact};
-constexpr Policies contacts{.neighbourhood = Neighbourhood::nine,
-                            .order = Order::wavefront,
-                            .self_contained = SelfContained::off,
-                            .resolve_schedule = Schedule::dynamic,
-                            .storage = Storage::sorted,
-                            .box_side = BoxSide::snug,
-                            .overlaps = Overlaps::contacts,
-                            .search = Search::filtered,
-                            .worklist = Worklist::active,
-                            .impact = Impact::at_contact};
-
-constexpr Policies in_float(Policies policies) {
-    policies.precision = Precision::float_;
-    return policies;
+constexpr Policies contacts = tests::at_contact(tests::fastest);
+constexpr Policies in_float(const Policies& policies) {
+    return tests::with(policies, &Policies::precision, Precision::float_);
 }
-
 /// Discs of radius 1, none of which overlaps another at the start: a square lattice, each disc somewhere in
 /// the gap around its place.
 Scene scene_apart(int per_side, double area_fraction, int steps, double speed, std::uint64_t seed) {
@@ -155,111 +140,6 @@ TEST(CollisionsAtContact, AreTheSameWithEveryOrderAndNeighbourhood) {
     EXPECT_GT((collisions_alike<lists, track>(scene, {}).at_contact), 200);
 }
 
-/// Every disc's near ones and, if it is near a wall, itself, by looking at all pairs.
-std::vector<std::multiset<int>> near_by_brute_force(const Scene& scene, const std::vector<Disc>& discs,
-                                                    double radius) {
-    std::vector<std::multiset<int>> near(discs.size());
-    for (std::size_t i = 0; i < discs.size(); ++i) {
-        for (std::size_t j = 0; j < discs.size(); ++j) {
-            const double dx = discs[i].x - discs[j].x;
-            const double dy = discs[i].y - discs[j].y;
-            if (i == j ? overlaps_wall(discs[i], scene.side, radius)
-                       : dx * dx + dy * dy <= 2 * radius * (2 * radius)) {
-                near[i].insert(static_cast<int>(j));
-            }
-        }
-    }
-    return near;
-}
-
-/// Discs as large as the published ones, whose boxes would not hold the wider reach if they were as
-/// published.
-Scene large_discs() { return tests::scaled(scene_apart(15, 0.65, 4, 0.5, 33), 16, 16); }
-
-template <Policies policies> void finds_what_is_near() {
-    auto scenes = tests::all_scenes();
-    scenes.push_back({"large discs", large_discs()});
-    for (const auto& [name, scene] : scenes) {
-        SCOPED_TRACE(name);
-        State<policies> state(scene);
-        const Tally tally = found(state, {.threads = 3});
-        const std::vector<Disc> discs = discs_by_number(state);
-        const double radius = std::min(scene.radius + state.speed / 2, 1.125 * scene.radius);
-        const auto expected = near_by_brute_force(scene, discs, radius);
-        const auto overlapping = near_by_brute_force(scene, discs, scene.radius);
-        std::int64_t overlaps = 0;
-        for (std::size_t i = 0; i < discs.size(); ++i) {
-            std::multiset<int> near;
-            for (const auto& one : state.near[i]) {
-                near.insert(one.other);
-            }
-            EXPECT_EQ(near, expected[i]) << i;
-            overlaps += static_cast<std::int64_t>(overlapping[i].size()) -
-                        overlaps_wall(discs[i], scene.side, scene.radius);
-        }
-        EXPECT_EQ(2 * tally.overlaps, overlaps);
-    }
-}
-
-TEST(NearDiscs, AreAllWithinTheSearchRadius) { finds_what_is_near<lists>(); }
-
-TEST(NearDiscs, AreAllWithinTheSearchRadiusInNineBoxes) {
-    finds_what_is_near<Policies{.neighbourhood = Neighbourhood::nine, .impact = Impact::at_contact}>();
-}
-
-/// What is left in the lists is what was near and overlaps now, of the own box first.
-TEST(OverlapsLeft, AreWhatIsNearAndOverlaps) {
-    const Scene scene = scene_apart(20, 0.65, 1, 0.7, 34);
-    State<lists> state(scene);
-    collided(state, {});
-    NoProbe probe;
-    find_left(state, {}, probe);
-    const auto overlapping = near_by_brute_force(scene, state.discs, scene.radius);
-    int left = 0;
-    for (std::size_t i = 0; i < state.discs.size(); ++i) {
-        std::multiset<int> expected;
-        for (const auto& near : state.near[i]) {
-            if (near.other != static_cast<int>(i) && overlapping[i].contains(near.other)) {
-                expected.insert(near.other);
-            }
-        }
-        EXPECT_EQ(std::multiset<int>(state.overlaps[i].begin(), state.overlaps[i].end()), expected) << i;
-        left += static_cast<int>(expected.size());
-    }
-    EXPECT_GT(left, 10);
-}
-
-/// A blow goes through three in a row, beside a pair at rest. At first all six entries of lists are asked;
-/// then, after each of the two collisions, the four of the three.
-TEST(CollisionsAtContact, AskAgainOnlyWhoIsNearOne) {
-    const Scene scene{
-        .side = 30,
-        .radius = 1,
-        .steps = 1,
-        .discs = {
-            {10, 10, 1, 0}, {12.25, 10, 0, 0}, {14.375, 10, 0, 0}, {10, 20, 0, 0}, {12.0625, 20, 0, 0}}};
-    State<lists> state(scene);
-    NoProbe probe;
-    Tally work = found(state);
-    work += collide_at_contact(state, {}, probe);
-    EXPECT_EQ(work.pair_resolves, 2);
-    EXPECT_EQ(work.pair_attempts, 6 + 4 + 4);
-}
-
-/// One disc pushes another into a wall that this was not near: it stays in there, still moving into it. The
-/// next step follows it back to when it met the wall, a step ago.
-template <Policies policies> void leaves_to_the_next_step_who_is_pushed_into_a_wall() {
-    Scene scene{.side = 20, .radius = 1, .steps = 1, .discs = {{10, 1.625, 0, 0}, {10, 3.875, 0, -1}}};
-    EXPECT_EQ(tests::simulate<policies>(scene).discs[0], (Disc{10, 0.875, 0, -1}));
-    scene.steps = 2;
-    EXPECT_EQ(tests::simulate<policies>(scene).discs[0], (Disc{10, 2.125, 0, 1}));
-}
-
-TEST(CollisionsAtContact, LeaveToTheNextStepWhoIsPushedIntoAWall) {
-    leaves_to_the_next_step_who_is_pushed_into_a_wall<lists>();
-    leaves_to_the_next_step_who_is_pushed_into_a_wall<contacts>();
-}
-
 /// A disc strikes two at one instant. Of its speed the first gets 3/4 along its path, and the second less.
 TEST(CollisionsAtOneInstant, AreMadeWithTheLowestDiscFirst) {
     const Disc striker{10, 10, 1, 0};
@@ -277,33 +157,23 @@ TEST(CollisionsAtOneInstant, AreMadeWithTheLowestDiscFirst) {
     expect_first(0, {lower, striker, upper});
 }
 
-/// Four discs meet in a square, each with two others at one instant: every choice is one between equals, and
-/// yet some pair chooses each other until none is left to, however they are numbered.
-TEST(CollisionsAtOneInstant, ComeToAnEnd) {
-    std::vector<Disc> corners;
-    for (const auto& [x, y] : {std::pair{1.0, 1.0}, {1.0, -1.0}, {-1.0, -1.0}, {-1.0, 1.0}}) {
-        corners.push_back({10 + 1.5 * x, 10 + 1.5 * y, -0.75 * x, -0.75 * y});
+/// So many discs that later sweeps, too, change enough to run on all threads.
+TEST(CollisionsAtContact, DependOnNoThreadInManySweeps) {
+    constexpr Policies policies{.find_schedule = Schedule::dynamic_chunk,
+                                .resolve_schedule = Schedule::dynamic_chunk,
+                                .impact = Impact::at_contact};
+    const Scene scene = tests::random_scene_of_density(8000, 0.8, 2, 83);
+    const tests::Outcome expected = tests::simulate<policies>(scene, {.threads = 1});
+    ASSERT_GT(expected.work.pair_resolves, 16 * few_changes);
+    for (const int threads : {2, 3, 8}) {
+        for (const int chunk : {1, 5}) {
+            SCOPED_TRACE(testing::Message() << threads << " threads, chunks of " << chunk);
+            const auto found = tests::simulate<policies>(
+                scene, {.threads = threads, .find_chunk = chunk, .resolve_chunk = chunk});
+            EXPECT_TRUE(same_bits(found.discs, expected.discs));
+            EXPECT_EQ(found.work, expected.work);
+        }
     }
-    std::array<std::size_t, 4> order{0, 1, 2, 3};
-    do {
-        Scene square{.side = 20, .radius = 1, .steps = 1, .discs = {}};
-        for (const std::size_t i : order) {
-            square.discs.push_back(corners[i]);
-        }
-        State<lists> state(square);
-        const Tally work = collided(state, {});
-        EXPECT_GE(work.pair_resolves, 4);
-        EXPECT_LT(work.sweeps, most_sweeps_at_contact);
-        for (const auto& next : state.next) {
-            EXPECT_LT(next.other, 0);
-        }
-        for (std::size_t i = 0; i < order.size(); ++i) {
-            const Disc& corner = corners[order[i]];
-            const Disc back{corner.x, corner.y, -corner.vx, -corner.vy};
-            EXPECT_NEAR(state.discs[i].vx, back.vx, 1e-15);
-            EXPECT_NEAR(state.discs[i].vy, back.vy, 1e-15);
-        }
-    } while (std::ranges::next_permutation(order).found);
 }
 
 } // namespace

@@ -27,37 +27,6 @@ State<sorted_discs> stepped(const Scene& scene, int steps, int threads) {
     return state;
 }
 
-TEST(SortedBin, PutsTheDiscsInTheOrderOfTheirBoxes) {
-    for (const auto& [name, scene] : tests::all_scenes()) {
-        SCOPED_TRACE(name);
-        const auto state = stepped(scene, 2, 3);
-        int next = 0;
-        for (int row = 0; row < state.grid.boxes_per_side(); ++row) {
-            for (int column = 0; column < state.grid.boxes_per_side(); ++column) {
-                for (const int i : state.discs_in(row, column)) {
-                    const Disc& disc = state.discs[static_cast<std::size_t>(i)];
-                    ASSERT_EQ(i, next++);
-                    ASSERT_EQ(state.grid.coordinate(disc.x), column);
-                    ASSERT_EQ(state.grid.coordinate(disc.y), row);
-                }
-            }
-        }
-        ASSERT_EQ(next, state.count());
-    }
-}
-
-TEST(SortedBin, CarriesTheNumbersAlong) {
-    for (const auto& [name, scene] : tests::all_scenes()) {
-        SCOPED_TRACE(name);
-        std::vector<Disc> expected = scene.discs;
-        for (Disc& disc : expected) {
-            disc.x = disc.x + disc.vx + disc.vx;
-            disc.y = disc.y + disc.vy + disc.vy;
-        }
-        EXPECT_TRUE(tests::same_bits(discs_by_number(stepped(scene, 2, 3)), expected));
-    }
-}
-
 TEST(SortedBin, IsStableAndSoTheSameForAnyNumberOfThreads) {
     const Scene scene = tests::random_scene(500, 60, 1, 1, 3, 52);
     const auto one = stepped(scene, 1, 1);

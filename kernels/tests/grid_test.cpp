@@ -94,59 +94,23 @@ TEST(GridCoordinate, NeverDecreasesWithThePosition) {
     }
 }
 
-TEST(GridReach, IsTowardsTheNearerBox) {
-    const Grid grid(50, 1);
-    EXPECT_EQ(grid.nearer_side(10.1), -1);
-    EXPECT_EQ(grid.nearer_side(12.4), -1);
-    EXPECT_EQ(grid.nearer_side(12.5), 1);
-    EXPECT_EQ(grid.nearer_side(12.6), 1);
-    EXPECT_EQ(grid.nearer_side(14.9), 1);
-    EXPECT_EQ(grid.nearer_side(-0.1), -1);
-    EXPECT_EQ(grid.nearer_side(-4.9), -1);
-}
-
-TEST(GridNeighbours, OfBothNeighbourhoodsHoldEveryOverlappingPartner) {
-    Random random(23);
-    int across = 0;
-    for (int trial = 0; trial < 3'000; ++trial) {
-        const Box box = random_box(random);
-        const Grid grid(box.side, box.radius, 1, BoxSide::wide, random_rest(random));
-        for (int pair = 0; pair < 50; ++pair) {
-            const Disc disc{random_position(box, grid, random), random_position(box, grid, random), 0, 0};
-            const Disc partner = random_partner(disc, box.radius, random);
-            if (!overlap(disc, partner, 4 * box.radius * box.radius)) {
-                continue;
-            }
-            across += grid.coordinate(disc.x) != grid.coordinate(partner.x);
-            const auto where = [&] {
-                return testing::Message()
-                       << disc << " and " << partner << ", L = " << box.side << ", r = " << box.radius;
-            };
-            ASSERT_TRUE(sees<Neighbourhood::nine>(grid, disc, partner)) << where();
-            ASSERT_TRUE(sees<Neighbourhood::nine>(grid, partner, disc)) << where();
-            ASSERT_TRUE(sees<Neighbourhood::four>(grid, disc, partner)) << where();
-            ASSERT_TRUE(sees<Neighbourhood::four>(grid, partner, disc)) << where();
-        }
-    }
-    EXPECT_GT(across, 5'000) << "too few pairs lie in different boxes for this test to mean anything";
-}
-
-/// What the snug grid owes to a disc of a random scene: the box holds no less than its reach, the neighbours
-/// every partner, and `at_wall` every disc at a wall.
-TEST(SnugGrid, HoldsPartnersInNeighboursAndDiscsAtWallsInBoxesAtTheWall) {
-    Random random(25);
+/// What a grid owes to a disc of a random scene: neighbours that hold every partner, whichever of the two
+/// looks, and `at_wall` of the box of every disc at a wall.
+template <Neighbourhood... neighbourhoods, class MakeGrid>
+void holds_partners_and_walls(std::uint64_t seed, const MakeGrid& make_grid) {
+    Random random(seed);
     int across = 0;
     int at_wall = 0;
     for (int trial = 0; trial < 3'000; ++trial) {
         const Box box = random_box(random);
-        const Grid grid(box.side, box.radius, random.below(5'000) + 1, BoxSide::snug);
-        ASSERT_GT(grid.box_side(), 2 * box.radius);
+        const Grid grid = make_grid(box, random);
         for (int pair = 0; pair < 50; ++pair) {
             const Disc disc{random_position(box, grid, random), random_position(box, grid, random), 0, 0};
             const Disc partner = random_partner(disc, box.radius, random);
             if (overlap(disc, partner, 4 * box.radius * box.radius)) {
                 across += grid.coordinate(disc.x) != grid.coordinate(partner.x);
-                ASSERT_TRUE(sees<Neighbourhood::nine>(grid, disc, partner)) << disc << " and " << partner;
+                ASSERT_TRUE((sees<neighbourhoods>(grid, disc, partner) && ...)) << disc << " and " << partner;
+                ASSERT_TRUE((sees<neighbourhoods>(grid, partner, disc) && ...)) << disc << " and " << partner;
             }
             if (overlaps_wall(disc, box.side, box.radius)) {
                 ++at_wall;
@@ -154,8 +118,23 @@ TEST(SnugGrid, HoldsPartnersInNeighboursAndDiscsAtWallsInBoxesAtTheWall) {
             }
         }
     }
-    EXPECT_GT(across, 5'000);
+    EXPECT_GT(across, 5'000) << "too few pairs lie in different boxes for this test to mean anything";
     EXPECT_GT(at_wall, 5'000);
+}
+
+TEST(Grid, HoldsPartnersInNeighboursAndDiscsAtWallsInBoxesAtTheWall) {
+    holds_partners_and_walls<Neighbourhood::nine, Neighbourhood::four>(
+        23, [](const Box& box, Random& random) {
+            return Grid(box.side, box.radius, 1, BoxSide::wide, random_rest(random));
+        });
+}
+
+TEST(SnugGrid, HoldsPartnersInNeighboursAndDiscsAtWallsInBoxesAtTheWall) {
+    holds_partners_and_walls<Neighbourhood::nine>(25, [](const Box& box, Random& random) {
+        const Grid grid(box.side, box.radius, random.below(5'000) + 1, BoxSide::snug);
+        EXPECT_GT(grid.box_side(), 2 * box.radius);
+        return grid;
+    });
 }
 
 TEST(SnugGrid, HasBoxesForItsDiscsAndNotForEmptySpace) {
@@ -186,28 +165,6 @@ TEST(GridNeighbours, AreNoMoreThanTheNeighbourhoodAllows) {
         EXPECT_GE(four.first, nine.first);
         EXPECT_LE(four.last, nine.last);
     }
-}
-
-TEST(GridAtWall, HoldsForTheBoxOfEveryDiscThatOverlapsAWall) {
-    Random random(24);
-    int at_high_wall = 0;
-    for (int trial = 0; trial < 3'000; ++trial) {
-        const Box box = random_box(random);
-        const Grid grid(box.side, box.radius, 1, BoxSide::wide, random_rest(random));
-        for (int one = 0; one < 50; ++one) {
-            const double x = random_position(box, grid, random);
-            const double y = random_position(box, grid, random);
-            const auto touches = [&box](double p) {
-                return p - box.radius <= 0 || p + box.radius >= box.side;
-            };
-            if (touches(x) || touches(y)) {
-                ASSERT_TRUE(grid.at_wall(grid.coordinate(y), grid.coordinate(x)))
-                    << "(" << x << ", " << y << "), L = " << box.side << ", r = " << box.radius;
-                at_high_wall += x + box.radius >= box.side && x < box.side;
-            }
-        }
-    }
-    EXPECT_GT(at_high_wall, 5'000) << "too few discs overlap the high wall for this test to mean anything";
 }
 
 TEST(GridAtWall, DoesNotHoldInTheMiddle) {

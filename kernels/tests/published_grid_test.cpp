@@ -14,13 +14,6 @@ namespace {
 using tests::Random;
 using tests::random_position;
 
-TEST(PublishedGrid, HasItsBoxSide) {
-    const Grid grid(10'000, 16);
-    EXPECT_EQ(grid.boxes_per_side(), 154); // 10000 / 65, rounded up
-    EXPECT_EQ(grid.box_side(), 65);
-    EXPECT_EQ(grid.box_count(), 154 * 154);
-}
-
 TEST(PublishedGrid, PutsTheRestWhereItIsTold) {
     EXPECT_EQ(Grid(52, 1, 1, BoxSide::wide, Rest::own_box).boxes_per_side(), 11);
     EXPECT_EQ(Grid(50, 1, 1, BoxSide::wide, Rest::own_box).boxes_per_side(), 10);
@@ -30,13 +23,6 @@ TEST(PublishedGrid, PutsTheRestWhereItIsTold) {
     EXPECT_EQ(wider.coordinate(51.9), 9);
     EXPECT_EQ(Grid(3, 1, 1, BoxSide::wide, Rest::in_last_box).boxes_per_side(), 1);
     EXPECT_EQ(Grid(1e60, 1e-60, 1, BoxSide::wide, Rest::in_last_box).boxes_per_side(), 4096);
-}
-
-TEST(PublishedGrid, OfEachPublishedProgramHasItsRest) {
-    const Scene scene{.side = 52, .radius = 1, .steps = 1, .discs = {}};
-    EXPECT_EQ(State<Policies{}>(scene).grid.boxes_per_side(), 10);
-    EXPECT_EQ(State<Policies{.order = Order::track}>(scene).grid.boxes_per_side(), 10);
-    EXPECT_EQ(State<Policies{.order = Order::row}>(scene).grid.boxes_per_side(), 11);
 }
 
 /// What the published program computes, in its own words.

@@ -98,69 +98,15 @@ TEST(RowOrder, NeverTouchesADiscFromTwoRowsOfOneParity) {
     }
 }
 
-TEST(EveryOther, CountsIndicesOfOneParity) {
-    for (int count = 0; count < 10; ++count) {
-        for (const int first : {0, 1}) {
-            int expected = 0;
-            for (int i = first; i < count; i += 2) {
-                ++expected;
-            }
-            EXPECT_EQ(every_other(count, first), expected) << count << " from " << first;
-        }
-    }
-}
-
-/// Says which boxes of the grid a sweep visits, by what a probe is told.
-template <Policies policies> Tally sweep_of(State<policies>& state, int threads) {
-    NoProbe probe;
-    const Tuning tuning{.threads = threads};
-    const ApproachTolerance approaching(tuning.tolerance);
-    if constexpr (policies.order == Order::checkered) {
-        return sweep_checkered(state, tuning, approaching, probe).work;
-    } else if constexpr (policies.order == Order::wavefront) {
-        Wavefront wavefront(state.grid.strip_count(strip_height(policies.order)));
-        return sweep_wavefront(state, wavefront, 0, 1, false, tuning, approaching, probe).work;
-    } else {
-        return sweep_strips(state, tuning, approaching, probe).work;
-    }
-}
-
-/// A disc in each box of a grid with an odd or even number of rows meets its own partner: one sweep resolves
-/// all.
-template <Order order> void one_sweep_reaches_every_box() {
-    for (const int boxes : {1, 2, 3, 6, 7}) {
-        SCOPED_TRACE(boxes);
-        Scene scene{.side = 5.0 * boxes, .radius = 1, .steps = 1, .discs = {}};
-        for (int row = 0; row < boxes; ++row) {
-            for (int column = 0; column < boxes; ++column) {
-                scene.discs.push_back({5.0 * column + 1.5, 5.0 * row + 2.5, 0.25, 0});
-                scene.discs.push_back({5.0 * column + 3.5, 5.0 * row + 2.5, -0.125, 0});
-            }
-        }
-        State state = with_overlaps<Policies{
-            .order = order, .self_contained = SelfContained::off, .resolve_schedule = Schedule::dynamic}>(
-            scene);
-        ASSERT_EQ(state.grid.boxes_per_side(), boxes);
-        EXPECT_EQ(sweep_of(state, 2).pair_resolves, boxes * boxes);
-        EXPECT_FALSE(sweep_of(state, 2).changed());
-    }
-}
-
-TEST(CheckeredOrder, ReachesEveryBoxInASweep) { one_sweep_reaches_every_box<Order::checkered>(); }
-TEST(RowOrder, ReachesEveryBoxInASweep) { one_sweep_reaches_every_box<Order::row>(); }
-TEST(StripsOrder, ReachesEveryBoxInASweep) { one_sweep_reaches_every_box<Order::strips>(); }
-TEST(WavefrontOrder, ReachesEveryBoxInASweep) { one_sweep_reaches_every_box<Order::wavefront>(); }
-
 /// Three discs in a row: the first runs into the second, which passes the blow on to the third.
-template <Order order = Order::checkered, Direction direction = Direction::reverse> auto chain() {
-    return with_overlaps<Policies{
-        .order = order, .self_contained = SelfContained::off, .direction = direction}>(
+template <Direction direction> auto chain() {
+    return with_overlaps<Policies{.self_contained = SelfContained::off, .direction = direction}>(
         {.side = 50, .radius = 1, .steps = 1, .discs = {{20, 27, 1, 0}, {22.5, 27, 0, 0}, {24, 27, 0, 0}}});
 }
 
 TEST(Direction, DecidesWhichPartnerComesFirst) {
-    State forward = chain<Order::checkered, Direction::forward>();
-    State reverse = chain();
+    State forward = chain<Direction::forward>();
+    State reverse = chain<Direction::reverse>();
     const ApproachTolerance approaching(Tolerance::relative);
     std::vector<int> changed;
     const auto note = [&changed](int j) { changed.push_back(j); };
@@ -171,25 +117,6 @@ TEST(Direction, DecidesWhichPartnerComesFirst) {
     changed.clear();
     visit<false, Direction::reverse>(reverse, 1, false, approaching, note);
     EXPECT_EQ(changed, (std::vector<int>{0}));
-}
-
-template <Order order> Tally resolve_chain() {
-    State state = chain<order>();
-    NoProbe probe;
-    const Tally tally = resolve(state, {}, probe);
-    EXPECT_EQ(state.discs[0].vx, 0);
-    EXPECT_EQ(state.discs[1].vx, 0);
-    EXPECT_EQ(state.discs[2].vx, 1);
-    return tally;
-}
-
-TEST(Once, PassesOncePerDiscAndSweep) { EXPECT_EQ(resolve_chain<Order::once>().pair_resolves, 2); }
-
-TEST(Track, EndsWithoutASweepOverEverything) {
-    // All three are visited; disc 0 changes 1 before it is visited, 1 changes 2 likewise: nothing is left
-    // pending.
-    EXPECT_EQ(resolve_chain<Order::track>().sweeps, 1);
-    EXPECT_EQ(resolve_chain<Order::repeat>().sweeps, 2);
 }
 
 } // namespace

@@ -18,6 +18,7 @@
 #include "kernels/probe.hpp"
 #include "kernels/state.hpp"
 #include "kernels/step.hpp"
+#include "kernels/tests/fast_policies.hpp"
 #include "kernels/tests/scenes.hpp"
 
 namespace {
@@ -55,15 +56,7 @@ void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { rel
 namespace carom {
 namespace {
 
-constexpr Policies fastest{.neighbourhood = Neighbourhood::nine,
-                           .order = Order::wavefront,
-                           .self_contained = SelfContained::off,
-                           .resolve_schedule = Schedule::dynamic,
-                           .storage = Storage::sorted,
-                           .box_side = BoxSide::snug,
-                           .overlaps = Overlaps::contacts,
-                           .search = Search::filtered,
-                           .worklist = Worklist::active};
+using tests::fastest;
 
 /// The most memory that a simulation has held while it was built and took three steps.
 std::size_t most_memory(const Scene& scene, int threads) {

@@ -25,8 +25,7 @@ TEST(Registry, HasOneVariantForEachRowOfTheTable) {
     }
 }
 
-TEST(Registry, HasNoNameTwiceAndPublishedFirst) {
-    EXPECT_EQ(variants()[0].name, "published");
+TEST(Registry, HasNoNameTwice) {
     std::set<std::string_view> names;
     for (const Variant& variant : variants()) {
         EXPECT_TRUE(names.insert(variant.name).second) << variant.name;

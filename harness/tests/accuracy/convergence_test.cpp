@@ -1,10 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <ostream>
 #include <string>
-#include <string_view>
-#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -96,91 +93,6 @@ INSTANTIATE_TEST_SUITE_P(Registry, Convergence, testing::ValuesIn(variants_with(
                          tests::variant_test_name);
 INSTANTIATE_TEST_SUITE_P(Registry, ConvergenceAtContact, testing::ValuesIn(variants_with(Impact::at_contact)),
                          tests::variant_test_name);
-
-/// How dense a scene is, and how near the rate of collisions comes to that of the reference in steps of 1.
-struct Density {
-    std::string name;
-    double side;
-    Placement placement;
-    double rate_within;
-};
-
-void PrintTo(const Density& density, std::ostream* stream) { *stream << density.name; }
-
-/// A variant whose collisions happen at the step's end, and the same with collisions at contact.
-struct Storages {
-    std::string name;
-    std::string_view at_step_end;
-    std::string_view at_contact;
-};
-
-void PrintTo(const Storages& storages, std::ostream* stream) { *stream << storages.name; }
-
-class AtContact : public testing::TestWithParam<std::tuple<Storages, Density>> {
-  protected:
-    static const Variant& at_step_end() { return *find_variant(std::get<Storages>(GetParam()).at_step_end); }
-    static const Variant& at_contact() { return *find_variant(std::get<Storages>(GetParam()).at_contact); }
-    static const Density& density() { return std::get<Density>(GetParam()); }
-
-    static ErrorMeasures errors(const Variant& variant, int steps, const Tuning& tuning) {
-        const Scene scene = generate({.count = 2000,
-                                      .side = density().side,
-                                      .radius = 16,
-                                      .steps = steps,
-                                      .least_velocity = 2,
-                                      .largest_velocity = 5,
-                                      .seed = 1,
-                                      .placement = density().placement,
-                                      .isotropic = true});
-        return measure_errors(scene, variant, tuning);
-    }
-
-    static double distance(const Variant& variant, const Tuning& tuning) {
-        return errors(variant, 1, tuning).reference->trajectory.front().rms_distance;
-    }
-};
-
-/// Of the error of the paths at time 1, in steps of 1, 1/2 and 1/8.
-TEST_P(AtContact, ErrsByAFractionOfWhatTheStepsEndErrsBy) {
-    for (const int threads : {1, 2, 5}) {
-        SCOPED_TRACE(testing::Message() << threads << " threads");
-        const auto ratio = [threads](int substeps) {
-            const Tuning tuning{.threads = threads, .substeps = substeps};
-            return distance(at_contact(), tuning) / distance(at_step_end(), tuning);
-        };
-        EXPECT_LT(ratio(1), 0.1);
-        EXPECT_LT(ratio(2), 0.08);
-        EXPECT_LT(ratio(8), 0.02);
-    }
-}
-
-TEST_P(AtContact, CollidesAboutAsOftenAsTheReference) {
-    const ErrorMeasures measures = errors(at_contact(), 16, {.threads = 2});
-    const double rate = measures.reference->collision_rate;
-    EXPECT_NEAR(measures.collision_rate.value(), rate, density().rate_within * rate);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Registry, AtContact,
-    testing::Combine(
-        testing::Values(
-            Storages{"Published", "published", "at_contact"},
-            Storages{"PublishedInFloat", "float", "at_contact-float"},
-            Storages{"Fastest",
-                     "nine-wavefront-self_contained_off-resolve_dynamic-sorted-snug-contacts-filtered-active",
-                     "nine-wavefront-self_contained_off-resolve_dynamic-sorted-snug-contacts-filtered-active-"
-                     "at_contact"},
-            Storages{"FastestInFloat",
-                     "nine-wavefront-self_contained_off-resolve_dynamic-sorted-snug-contacts-filtered-active-"
-                     "float",
-                     "nine-wavefront-self_contained_off-resolve_dynamic-sorted-snug-contacts-filtered-active-"
-                     "at_contact-float"}),
-        testing::Values(Density{"Dilute", 4011, Placement::random, 0.03},
-                        Density{"Medium", 2005, Placement::random, 0.03},
-                        Density{"Dense", 1573, Placement::lattice, 0.09})),
-    [](const auto& info) {
-        return std::get<Storages>(info.param).name + std::get<Density>(info.param).name;
-    });
 
 } // namespace
 } // namespace carom

@@ -14,22 +14,21 @@ namespace {
 
 const Variant& plain = *find_variant("published");
 
-TEST(Costs, OfWorkAreSummedAndLieBetweenTheSizesMeasured) {
-    const Work work{.placed = 1000, .moved = 100, .near = 10, .collisions = 1};
-    EXPECT_DOUBLE_EQ(seconds_of(event_driven(), 2'000, work), 112.3e-6);
-    EXPECT_DOUBLE_EQ(seconds_of(event_driven(), 1, work), 112.3e-6) << "smaller than the smallest measured";
-    EXPECT_DOUBLE_EQ(seconds_of(event_driven(), 1e9, work), 425.1e-6);
-    const double middle = std::sqrt(40'000.0 * 400'000.0);
-    EXPECT_NEAR(seconds_of(plain, middle, work), (3.055e-6 + 14.08e-6) / 2, 1e-15) << "on a logarithmic axis";
+TEST(Costs, LieBetweenTheSizesMeasured) {
+    EXPECT_DOUBLE_EQ(Costs(event_driven(), 2'000).collisions(10), 3e-6);
+    EXPECT_DOUBLE_EQ(Costs(event_driven(), 1).collisions(10), 3e-6) << "smaller than the smallest measured";
+    EXPECT_DOUBLE_EQ(Costs(event_driven(), 40'000).collisions(10), 3.8e-6);
+    EXPECT_DOUBLE_EQ(Costs(event_driven(), 1'000'000'000).collisions(10), 6e-6);
+    EXPECT_NEAR(Costs(plain, 126'491).collisions(10), 3e-7, 1e-12) << "in the middle of a logarithmic axis";
 }
 
-TEST(Costs, CountTheWorkOfAScene) {
+TEST(Costs, AreOfTheWorkOfAScene) {
     const Scene scene{
         .side = 100, .radius = 1, .steps = 1, .discs = {{10, 10, 1, -2}, {11, 10, 3, 0}, {90, 90, 0, 0}}};
-    EXPECT_EQ(work_of_step(plain, scene).moved, 3);
-    EXPECT_EQ(work_of_step(plain, scene).near, 4.5 * (2 * 2 + 1));
-    EXPECT_DOUBLE_EQ(work_of_events(scene).moved, 6 / 50.0) << "cells of half the side";
-    EXPECT_EQ(work_of_events(scene).near, 3);
+    EXPECT_DOUBLE_EQ(Costs(plain, 40'000).step(scene), 1e-9 * 3.5 * 4.5 * (2 * 2 + 1)) << "discs in one box";
+    EXPECT_DOUBLE_EQ(Costs(event_driven(), 2'000).step(scene), 1e-9 * 120 * 6 / 50)
+        << "cells of half the side";
+    EXPECT_DOUBLE_EQ(Costs(event_driven(), 2'000).setting_up(scene), 1e-9 * 100 * 3);
 }
 
 /// Twelve times, on different numbers of threads: a choice by the clock came out differently.

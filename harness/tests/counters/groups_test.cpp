@@ -64,64 +64,52 @@ class FakeSet : public EventSet {
     bool started_ = false;
 };
 
-EventGroups group(const Hardware& hardware, const std::vector<Alternatives>& wanted) {
-    return group_events(wanted, [&hardware] { return std::make_unique<FakeSet>(hardware); });
-}
+struct GroupCase {
+    const char* what;
+    Hardware hardware;
+    std::vector<Alternatives> wanted;
+    Groups groups;
+    std::string missing = {}; ///< the event
+    std::string error = {};
+};
 
-TEST(EventGroups, WhatFitsIsCountedAtOnce) {
-    const EventGroups found = group({.counters = 4}, {{"a"}, {"b"}, {"c"}, {"d"}});
-    EXPECT_EQ(found.groups, (Groups{{"a", "b", "c", "d"}}));
-    EXPECT_TRUE(found.missing.empty());
-}
-
-TEST(EventGroups, WhatDoesNotFitStartsTheNextGroup) {
-    const EventGroups found = group({.counters = 2}, {{"a"}, {"b"}, {"c"}, {"d"}, {"e"}});
-    EXPECT_EQ(found.groups, (Groups{{"a", "b"}, {"c", "d"}, {"e"}}));
-    EXPECT_TRUE(found.missing.empty());
-}
-
-TEST(EventGroups, EventsThatExcludeEachOtherAreKeptApart) {
-    const EventGroups found = group({.conflict = {"a", "b"}}, {{"a"}, {"b"}, {"c"}});
-    EXPECT_EQ(found.groups, (Groups{{"a", "c"}, {"b"}}));
-    EXPECT_TRUE(found.missing.empty());
-}
-
-TEST(EventGroups, AnUnknownEventIsMissingAndKeepsNoOtherOut) {
-    const EventGroups found = group({.unknown = {"b"}}, {{"a"}, {"b"}, {"c"}});
-    EXPECT_EQ(found.groups, (Groups{{"a", "c"}}));
-    ASSERT_EQ(found.missing.size(), 1U);
-    EXPECT_EQ(found.missing[0].event, "b");
-    EXPECT_EQ(found.missing[0].error, "b is unknown");
-}
-
-TEST(EventGroups, AnEventThatCanBeAddedButNotStartedIsMissing) {
-    const EventGroups found = group({.not_starting = {"a"}}, {{"a"}, {"b"}});
-    EXPECT_EQ(found.groups, (Groups{{"b"}}));
-    ASSERT_EQ(found.missing.size(), 1U);
-    EXPECT_EQ(found.missing[0].error, "start is refused");
-}
-
-TEST(EventGroups, CyclesThatStayZeroAreMissingButMissesMayBeZero) {
-    const EventGroups found =
-        group({.always_zero = {"PAPI_TOT_CYC", "PAPI_L3_TCM"}}, {{"PAPI_TOT_CYC"}, {"PAPI_L3_TCM"}});
-    EXPECT_EQ(found.groups, (Groups{{"PAPI_L3_TCM"}}));
-    ASSERT_EQ(found.missing.size(), 1U);
-    EXPECT_EQ(found.missing[0].event, "PAPI_TOT_CYC");
-    EXPECT_NE(found.missing[0].error.find("counts nothing"), std::string::npos);
-}
-
-TEST(EventGroups, TheFirstAlternativeThatCountsIsTaken) {
-    const EventGroups found = group({.unknown = {"a", "b"}}, {{"a", "b", "c", "d"}});
-    EXPECT_EQ(found.groups, (Groups{{"c"}}));
-    EXPECT_TRUE(found.missing.empty());
-}
-
-TEST(EventGroups, WithoutAnyAlternativeTheFirstIsNamed) {
-    const EventGroups found = group({.unknown = {"a", "b"}}, {{"a", "b"}});
-    EXPECT_TRUE(found.groups.empty());
-    ASSERT_EQ(found.missing.size(), 1U);
-    EXPECT_EQ(found.missing[0].event, "a");
-    EXPECT_EQ(found.missing[0].error, "a is unknown");
+TEST(EventGroups, HoldWhatIsCountedAtOnceAndTheRestIsMissing) {
+    const std::vector<GroupCase> cases{
+        {"what fits", {.counters = 4}, {{"a"}, {"b"}, {"c"}, {"d"}}, {{"a", "b", "c", "d"}}},
+        {"what does not fit",
+         {.counters = 2},
+         {{"a"}, {"b"}, {"c"}, {"d"}, {"e"}},
+         {{"a", "b"}, {"c", "d"}, {"e"}}},
+        {"events that exclude each other",
+         {.conflict = {"a", "b"}},
+         {{"a"}, {"b"}, {"c"}},
+         {{"a", "c"}, {"b"}}},
+        {"an unknown one", {.unknown = {"b"}}, {{"a"}, {"b"}, {"c"}}, {{"a", "c"}}, "b", "b is unknown"},
+        {"one that does not start",
+         {.not_starting = {"a"}},
+         {{"a"}, {"b"}},
+         {{"b"}},
+         "a",
+         "start is refused"},
+        {"cycles must count, misses need not",
+         {.always_zero = {"PAPI_TOT_CYC", "PAPI_L3_TCM"}},
+         {{"PAPI_TOT_CYC"}, {"PAPI_L3_TCM"}},
+         {{"PAPI_L3_TCM"}},
+         "PAPI_TOT_CYC",
+         "PAPI_TOT_CYC starts but counts nothing"},
+        {"the first alternative that counts", {.unknown = {"a", "b"}}, {{"a", "b", "c", "d"}}, {{"c"}}},
+        {"no alternative that counts", {.unknown = {"a", "b"}}, {{"a", "b"}}, {}, "a", "a is unknown"}};
+    for (const GroupCase& one : cases) {
+        SCOPED_TRACE(one.what);
+        const EventGroups found =
+            group_events(one.wanted, [&one] { return std::make_unique<FakeSet>(one.hardware); });
+        EXPECT_EQ(found.groups, one.groups);
+        ASSERT_EQ(found.missing.size(), one.missing.empty() ? 0U : 1U);
+        if (!one.missing.empty()) {
+            EXPECT_EQ(found.missing[0].event, one.missing);
+            EXPECT_EQ(found.missing[0].error, one.error);
+        }
+    }
 }
 
 } // namespace

@@ -272,7 +272,7 @@ TEST(CheckerAtContact, LetsRoundingDecideNothingWhereAPairIsApart) {
 TEST(CheckerAtContact, TakesNeitherKindOfStepForTheOther) {
     const Checker at_end(side, radius, 1, Tolerance::relative);
     EXPECT_NE(at_end.step(before, rightly_stepped()), std::nullopt);
-    const auto resolved = tests::simulate_all_pairs(scene, {}).discs;
+    const auto resolved = tests::simulate<Policies{}>(scene).discs;
     EXPECT_EQ(at_end.step(before, resolved), std::nullopt);
     EXPECT_NE(checker().step(before, resolved), std::nullopt);
 }

@@ -23,7 +23,7 @@ const std::vector<Disc> before{{20, 20, 0.5, 0.25}, {22, 21, -0.5, 0}, {35, 35, 
                                {1.5, 10, -1, 0.5},  {30, 8, -0.25, 0}, {31, 8, 0.5, 0.125}};
 
 std::vector<Disc> rightly_stepped() {
-    return tests::simulate_all_pairs({.side = side, .radius = radius, .steps = 1, .discs = before}, {}).discs;
+    return tests::simulate<Policies{}>({.side = side, .radius = radius, .steps = 1, .discs = before}).discs;
 }
 
 std::string violation(const std::vector<Disc>& start, const std::vector<Disc>& end) {
@@ -140,19 +140,17 @@ TEST(Checker, PassesSpeedsWhoseSquaresUnderflow) {
     const Scene scene = tests::random_scene(60, side, radius, 1, 1, 102);
     for (const double factor : {1e-100, 1e-150, 1e-155, 1e-158, 1e-160, 1e-162, 1e-170, 1e-300}) {
         const Scene slow = tests::scaled(scene, 1, factor);
-        EXPECT_EQ(violation(slow.discs, tests::simulate_all_pairs(slow, {}).discs), "")
+        EXPECT_EQ(violation(slow.discs, tests::simulate<Policies{}>(slow).discs), "")
             << "speeds times " << factor;
     }
 }
 
 TEST(Checker, PassesAStepOfAFractionOfTime) {
-    const Scene scene{.side = side, .radius = radius, .steps = 1, .discs = before};
-    AllPairs reference(scene, {}, {.substeps = 3});
-    reference.step();
-    EXPECT_EQ(Checker(side, radius, 1.0 / 3, Tolerance::relative).step(before, reference.discs()),
-              std::nullopt);
-    EXPECT_NE(Checker(side, radius, 1.0 / 2, Tolerance::relative).step(before, reference.discs()),
-              std::nullopt);
+    State<> state({.side = side, .radius = radius, .steps = 1, .discs = before});
+    NoProbe probe;
+    step(state, {.substeps = 3}, probe);
+    EXPECT_EQ(Checker(side, radius, 1.0 / 3, Tolerance::relative).step(before, state.discs), std::nullopt);
+    EXPECT_NE(Checker(side, radius, 1.0 / 2, Tolerance::relative).step(before, state.discs), std::nullopt);
 }
 
 TEST(Checker, AllowsASlowApproachUnderThePublishedToleranceOnly) {

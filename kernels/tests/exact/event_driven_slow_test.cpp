@@ -1,5 +1,3 @@
-#include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -22,18 +20,7 @@ double twice_energy(const std::vector<Disc>& discs) {
 /// direction: a million of them, added at random, by some 1e-16 of the whole, and never by more than 1e-12.
 TEST(EventDrivenForLong, KeepsEnergyTo1em12OverAMillionCollisions) {
     for (const double area_fraction : {0.2, 0.6}) {
-        constexpr int per_side = 32;
-        const double side = per_side * std::sqrt(std::numbers::pi / area_fraction);
-        Random random(21);
-        Scene scene{.side = side, .radius = 1, .steps = 0, .discs = {}};
-        for (int i = 0; i < per_side * per_side; ++i) {
-            const int row = i / per_side;
-            const int column = i % per_side;
-            const double vx = random.uniform(-1, 1);
-            scene.discs.push_back(
-                {side / per_side * (column + 0.5), side / per_side * (row + 0.5), vx, random.uniform(-1, 1)});
-        }
-        EventDriven<double> reference(scene);
+        EventDriven<double> reference(lattice_scene(32, area_fraction, 21));
         const double start = twice_energy(reference.discs());
         for (double time = 10; reference.pair_collisions() < 1'000'000; time += 10) {
             ASSERT_TRUE(reference.advance(time));

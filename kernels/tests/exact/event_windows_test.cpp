@@ -2,7 +2,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -133,26 +132,6 @@ TEST(EventWindows, EndInTheSameBitsForAnyHaloAndLengthAndHoweverOftenOneLooks) {
                 .tiles = {3, 3}, .halo = halo, .halo_paths = 0, .collisions_per_disc = collisions};
             EXPECT_TRUE(in_windows(scene, time, 2, settings, looks).last == expected)
                 << name << ", halo " << halo << ", " << collisions << " collisions, " << looks;
-        }
-    }
-}
-
-class Kept : public CollisionLog<double> {
-  public:
-    void collided(const Collision<double>& one) override { all.push_back(one); }
-    std::vector<Collision<double>> all;
-};
-
-TEST(EventWindows, TellTheSameCollisionsInTheSameOrder) {
-    for (const auto& [name, scene, time] : cases()) {
-        Kept expected;
-        EventDriven<double, CollisionLog<double>&> in_one_piece(scene, expected);
-        EXPECT_TRUE(in_one_piece.advance(time));
-        for (const TileCounts& tiles : {TileCounts{}, TileCounts{1, 2}, TileCounts{5, 5}}) {
-            Kept found;
-            EventWindows<double, CollisionLog<double>&> simulation(scene, 2, {.tiles = tiles}, found);
-            EXPECT_TRUE(simulation.advance(time));
-            EXPECT_TRUE(found.all == expected.all) << name << ", " << tiles.all() << " tiles";
         }
     }
 }
