@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from analysis.statistics.pairs import rounds_of, runs_of
-from analysis.statistics.returning import excess
+from analysis.statistics.turns import excess
 
 Record = dict[str, Any]
 Row = dict[str, Any]

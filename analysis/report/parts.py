@@ -94,8 +94,8 @@ def _figure(figure: Drawn) -> dict[str, Any]:
         "title": figure.entry.title,
         "caption": figure.caption,
         "verdicts": [
-            {"name": row["name"], "change": change(row), "blocks": blocks(row), "verdict": row["verdict"]}
-            for row in ([] if figure.verdicts is None else figure.verdicts.to_dict("records"))
+            {"name": row.name, "change": change(row), "blocks": blocks(row), "verdict": row.verdict}
+            for row in (() if figure.verdicts is None else figure.verdicts.itertuples())
         ],
         "tables": figure.tables,
         "svg": Markup(inline(figure.files[0].read_text(encoding="utf-8"), figure.files[0].stem)),

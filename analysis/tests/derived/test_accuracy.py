@@ -11,7 +11,8 @@ from analysis import report
 from analysis.derived import accuracy
 from analysis.derived.accuracy import MEASURES, Measure
 from analysis.figures import further
-from analysis.figures.speed_against_error import draw, front_in_words, power_of_ten, run_label
+from analysis.figures.errors import draw, front_in_words, run_label
+from analysis.figures.labels import power_of_ten
 from analysis.figures.studies import draw_all
 from analysis.figures.style import Data, Drawing
 from analysis.records import published

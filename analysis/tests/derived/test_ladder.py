@@ -1,6 +1,5 @@
 """The ladder's table, figure and sentences, from synthetic records whose factors are known."""
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from analysis.figures.ladder import waterfall
 from analysis.figures.style import Data, Drawing, styled
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
+from analysis.statistics.verdicts import Ratio
 from analysis.support.wording import NO_INTERVAL
 from analysis.tests.synthetic import Machine, failure, profile, write
 from analysis.tests.synthetic_noise import QUIET, Noise
@@ -175,5 +175,5 @@ def moved_to(host: str, record: dict[str, Any]) -> dict[str, Any]:
 
 
 def test_a_factor_without_an_interval_says_so() -> None:
-    assert speed_up({"ratio": 0.25, "low": 0.0, "high": math.inf}) == f"4.00 × {NO_INTERVAL}"
-    assert speed_up({"ratio": 0.5, "low": 0.4, "high": 0.625}) == "2.00 × [1.60, 2.50]"
+    assert speed_up(Ratio(ratio=0.25)) == f"4.00 × {NO_INTERVAL}"
+    assert speed_up(Ratio(ratio=0.5, low=0.4, high=0.625)) == "2.00 × [1.60, 2.50]"

@@ -11,7 +11,7 @@ import pytest
 from analysis.derived.ladder import named
 from analysis.derived.limits import against_limits
 from analysis.derived.unavoidable import PHASES, unavoidable
-from analysis.figures.limits import phases_against_limits
+from analysis.figures.profiles import phases_against_limits
 from analysis.figures.style import Data, styled
 from analysis.records import published
 from analysis.records.reading import load

@@ -71,15 +71,6 @@ def test_every_kind_is_drawn_without_a_published_series(tmp_path: Path, kind: st
         assert "<!-- published" not in drawn.files[0].read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(("kind", "known"), LIKE)
-@pytest.mark.parametrize(
-    "kept", [pytest.param(slice(0, 1), marks=pytest.mark.slow), slice(None, None, 3)], ids=["one", "a third"]
-)
-def test_partial_data_never_fail(tmp_path: Path, kind: str, known: str, kept: slice) -> None:
-    write(tmp_path, unknown(known, kind)[kept])
-    draw_all(tmp_path)
-
-
 def test_a_trend_has_a_curve_and_a_sentence_a_series(tmp_path: Path) -> None:
     drawn = drawn_of(tmp_path, unknown("row", "trend"))
     assert "checkered: The time grows" in drawn.caption

@@ -77,7 +77,7 @@ def test_the_contents_name_every_question_and_claims_lead_to_their_figures(page:
 
 
 def test_points_tell_their_values_in_the_page(page: str) -> None:
-    assert len(re.findall(r"<use [^>]*><title>[^<]*\d[^<]*</title></use>", page)) > 500
+    assert len(re.findall(r'<g id="[^"]*point-\d+"><title>[^<]*\d[^<]*</title>', page)) > 500
 
 
 def test_every_published_graph_has_its_place(page: str) -> None:

@@ -3,8 +3,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from analysis.statistics.convergence import FEWEST, order
-from analysis.statistics.pareto import front
+from analysis.statistics.ranking import front
+from analysis.statistics.trends import FEWEST_ERRORS as FEWEST
+from analysis.statistics.trends import order
 
 DT = 1 / 2.0 ** np.arange(7)
 POINTS = st.lists(st.tuples(st.integers(0, 6), st.integers(0, 6)), max_size=12)

@@ -47,7 +47,7 @@ def decide(logs: Floats) -> list[tuple[str, int]]:
 
 def _decide_one(row: Floats) -> tuple[str, int]:
     for look in LOOKS:
-        verdict = str(judge_one(row[:look])["verdict"])
+        verdict = str(judge_one(row[:look]).verdict)
         if verdict != "inconclusive":
             break
     return verdict, look
@@ -71,7 +71,7 @@ def settled(logs: Floats) -> list[str]:
     said = []
     for row in logs:
         rows = (judge_one(row[:look]) for look in LOOKS)
-        found = ((one["verdict"] == "faster", one["not_faster"] <= ERROR) for one in rows)
+        found = ((one.verdict == "faster", one.not_faster <= ERROR) for one in rows)
         holds, denied = next((one for one in found if any(one)), (False, False))
         said.append("holds" if holds else "does not hold" if denied else "open")
     return said
@@ -111,11 +111,11 @@ def test_intervals_that_forget_the_looks_err_more_often_than_they_say() -> None:
 def test_what_is_looked_at_once_has_the_whole_of_the_error() -> None:
     logs = np.random.default_rng(10).normal(0, 0.03, (1000, 60))
     once = [judge_one(row, once=True) for row in logs]
-    misses = np.mean([not one["low"] < 1 < one["high"] for one in once])
+    misses = np.mean([not one.low < 1 < one.high for one in once])
     assert 0.03 <= misses <= 0.065
     among_looks = judge_one(logs[0])
-    assert once[0]["low"] > among_looks["low"]
-    assert once[0]["not_faster"] < among_looks["not_faster"] * share(48), "none depends on another"
+    assert once[0].low > among_looks.low
+    assert once[0].not_faster < among_looks.not_faster * share(48), "none depends on another"
 
 
 def test_the_shares_of_all_looks_are_a_whole() -> None:

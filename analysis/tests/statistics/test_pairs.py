@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.claims.alternatives import alternatives
-from analysis.statistics.location import location
 from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import join_replicates, log_ratios, scaled, without_partner
+from analysis.statistics.turns import location
+from analysis.statistics.verdicts import judge
 
 OTHERS = 16
 REPLICATES = 4
@@ -104,8 +104,8 @@ def comparisons(replicates: int, blocks: int, seed: int) -> pd.DataFrame:
 
 def unsettled(replicates: int, blocks: int) -> int:
     """Return of how many others, over all studies, it is not settled that they are no faster."""
-    tables = [alternatives(comparisons(replicates, blocks, seed)).table for seed in range(STUDIES)]
-    return sum(int((table["behind"] > ERROR).sum()) for table in tables)
+    tables = [judge(comparisons(replicates, blocks, seed), ["name"]) for seed in range(STUDIES)]
+    return sum(int((table["not_faster"] > ERROR).sum()) for table in tables)
 
 
 def measured(*rows: tuple[str, float, int, str]) -> pd.DataFrame:

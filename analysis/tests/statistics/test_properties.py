@@ -36,24 +36,24 @@ def processes(rows: list[list[float]]) -> pd.DataFrame:
 @settings(max_examples=200, deadline=None)
 def test_a_verdict_is_that_of_its_interval_and_mirrored_by_changing_sides(values: list[float]) -> None:
     row, other = judge_one(values), judge_one([-value for value in values])
-    assert other["verdict"] == MIRRORED.get(row["verdict"], row["verdict"])
-    assert other["ratio"] == pytest.approx(1 / row["ratio"])
-    assert other["p"] == pytest.approx(row["p"])
-    assert row["low"] <= row["ratio"] <= row["high"]
+    assert other.verdict == MIRRORED.get(row.verdict, row.verdict)
+    assert other.ratio == pytest.approx(1 / row.ratio)
+    assert other.p == pytest.approx(row.p)
+    assert row.low <= row.ratio <= row.high
     lowest, highest = 1 / (1 + MARGIN), 1 + MARGIN
-    if row["verdict"] == "faster":
-        assert row["high"] <= lowest + 1e-9
-    elif row["verdict"] == "slower":
-        assert row["low"] >= highest - 1e-9
-    elif row["verdict"] == "equivalent":
-        assert lowest - 1e-9 <= row["low"] <= row["high"] <= highest + 1e-9
+    if row.verdict == "faster":
+        assert row.high <= lowest + 1e-9
+    elif row.verdict == "slower":
+        assert row.low >= highest - 1e-9
+    elif row.verdict == "equivalent":
+        assert lowest - 1e-9 <= row.low <= row.high <= highest + 1e-9
     if len(values) < FEWEST:
         return
-    denied = {name: row[f"not_{name}"] <= ERROR for name in ("faster", "slower", "equivalent")}
-    assert denied["faster"] == (row["low"] >= lowest) or row["low"] == pytest.approx(lowest)
-    assert denied["slower"] == (row["high"] <= highest) or row["high"] == pytest.approx(highest)
-    assert denied["equivalent"] == (row["verdict"] in ("faster", "slower"))
-    assert not denied.get(row["verdict"], False)
+    denied = {name: getattr(row, f"not_{name}") <= ERROR for name in ("faster", "slower", "equivalent")}
+    assert denied["faster"] == (row.low >= lowest) or row.low == pytest.approx(lowest)
+    assert denied["slower"] == (row.high <= highest) or row.high == pytest.approx(highest)
+    assert denied["equivalent"] == (row.verdict in ("faster", "slower"))
+    assert not denied.get(row.verdict, False)
 
 
 @given(st.lists(st.tuples(SECONDS, SECONDS), min_size=2, max_size=8), st.floats(1e-3, 1e3))

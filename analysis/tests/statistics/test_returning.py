@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from analysis.statistics.returning import bias, excess
+from analysis.statistics.turns import bias, excess
 from analysis.statistics.verdicts import judge_one
 
 STEPS, ROUNDS, RUNS, BLOCKS = 40, 10, 4, 9
@@ -67,8 +67,8 @@ def test_what_turns_cost_one_of_two_equals_is_no_verdict() -> None:
             ratios[block] = np.log(sum(candidate[0]) / sum(reference[0]))
             lost = [excess(*side, EACH, ROUNDS) for side in (reference, candidate)]
             biases[block] = bias(*(one.share for one in lost if one is not None))
-        former += judge_one(ratios)["verdict"] == "slower"
-        now += judge_one(ratios, biases=biases)["verdict"] in ("slower", "faster")
+        former += judge_one(ratios).verdict == "slower"
+        now += judge_one(ratios, biases=biases).verdict in ("slower", "faster")
     assert former > 50
     assert now <= 5
 
@@ -76,8 +76,8 @@ def test_what_turns_cost_one_of_two_equals_is_no_verdict() -> None:
 def test_a_true_difference_beyond_the_bias_is_still_found() -> None:
     ratios = np.random.default_rng(3).normal(0.1, 0.005, BLOCKS)
     row = judge_one(ratios, biases=np.random.default_rng(4).normal(0.01, 0.002, BLOCKS))
-    assert row["verdict"] == "slower"
-    assert row["low"] < 1.09 < row["high"]
+    assert row.verdict == "slower"
+    assert row.low < 1.09 < row.high
     few = np.r_[np.full(BLOCKS - 2, np.nan), 0.5, 0.5]
     for unknown in (np.full(BLOCKS, np.nan), few):
         assert judge_one(ratios, biases=unknown) == judge_one(ratios), "not known, not said"

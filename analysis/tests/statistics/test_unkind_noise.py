@@ -5,10 +5,9 @@ were used before. Seeds are fixed.
 import numpy as np
 import pytest
 
-from analysis.statistics.dependence import autocorrelation, widening, widening_of_independent
-from analysis.statistics.intervals import centre
+from analysis.statistics.intervals import autocorrelation, centre, widening, widening_of_independent
 from analysis.statistics.looks import ERROR, LOOKS, last_look, seen
-from analysis.statistics.simultaneous import Curves
+from analysis.statistics.trends import Curves
 from analysis.statistics.verdicts import MARGIN, holm, judge_one
 from analysis.tests.statistics.unkind_noise import (
     FORMER_LOOKS,
@@ -99,9 +98,9 @@ def test_a_table_of_equals_on_a_machine_of_two_speeds(slow: float) -> None:
         logs = np.log(2.3) * (generator.random((20, LAST)) < slow) + generator.normal(0, 0.007, (20, LAST))
         rows = [[judge_one(one[:look] - logs[0, :look]) for one in logs[1:]] for look in LOOKS]
         wrong += any(
-            corrected <= ERROR and row["verdict"] in ("faster", "slower")
+            corrected <= ERROR and row.verdict in ("faster", "slower")
             for table in rows
-            for row, corrected in zip(table, holm([row["p"] for row in table]), strict=True)
+            for row, corrected in zip(table, holm([row.p for row in table]), strict=True)
         )
     assert wrong <= 1
 
