@@ -135,7 +135,7 @@ def _against_own(axes: Axes, times: pd.DataFrame, published: pd.DataFrame, look:
     at_theirs = at if at in set(published["x"]) else float(published["x"].min())
     theirs = published_ratios(published, published["x"] == at_theirs)
     ratio_axis(axes, pd.concat([table, theirs]), f"that at {exact(at)}", stated(times).margin)
-    ratio_curve(axes, table.assign(series=""), look)
+    ratio_curve(axes, table.assign(series=times["series"].iloc[0]), look)
     said = f" Below: ratios to the time at {exact(at)}, {DECIDES}"
     if theirs.empty:
         return said

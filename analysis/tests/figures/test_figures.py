@@ -116,12 +116,6 @@ def test_partial_data_are_drawn_or_left_out_but_never_fail(
             drawing.figure.draw_without_rendering()
 
 
-def test_partial_data_are_marked_in_figure_and_caption(tmp_path: Path) -> None:
-    write(tmp_path, [record for record in study(["steps"], blocks=4) if record["tags"]["block"] != 2])
-    (drawn,) = draw_all(tmp_path)
-    assert drawn.caption.endswith("Partial: 30 of 40 runs.")
-
-
 def test_a_block_that_was_left_has_another_in_its_place(tmp_path: Path) -> None:
     records = study(["steps"], blocks=5)
     for record in records:
@@ -218,14 +212,6 @@ def test_the_same_records_give_the_same_svg(tmp_path: Path) -> None:
     write(tmp_path, study(["steps"], blocks=2))
     first = draw_all(tmp_path)[0].files[0].read_bytes()
     assert draw_all(tmp_path)[0].files[0].read_bytes() == first
-
-
-def test_a_second_machine_has_files_of_its_own(tmp_path: Path) -> None:
-    write(tmp_path, study(["steps"], blocks=3))
-    write(tmp_path, study(["steps"], blocks=2, machine=Machine(host="bench-2")))
-    names = [drawn.files[0].stem for drawn in draw_all(tmp_path)]
-    assert names[0] == "steps"
-    assert names[1].startswith("bench-2-example-cpu")
 
 
 def test_several_machines_are_in_one_machine_figure(tmp_path: Path) -> None:

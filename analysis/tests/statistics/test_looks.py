@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from analysis.statistics.intervals import centre
 from analysis.statistics.looks import ERROR, LOOKS, last_look, next_look, share
 from analysis.statistics.verdicts import MARGIN, judge_one
 
@@ -93,19 +92,6 @@ def test_a_claim_is_denied_where_equivalent_and_slower_are_not_told_apart() -> N
     verdicts = [verdict for verdict, _ in decide(logs)]
     assert verdicts.count("inconclusive") >= 180
     assert settled(logs).count("does not hold") >= 195
-
-
-def test_intervals_that_forget_the_looks_err_more_often_than_they_say() -> None:
-    """What the shares are for: the same looks, each at 95 % as if it were the only one."""
-    generator = np.random.default_rng(6)
-    logs = generator.normal(0, 0.03, (2000, LAST))
-
-    def misses(level: float | None) -> float:
-        looks = ([centre(row[:look], level) for look in LOOKS] for row in logs)
-        return float(np.mean([any(not one.low < 0 < one.high for one in found) for found in looks]))
-
-    assert misses(None) <= ERROR
-    assert misses(0.95) > 5 * misses(None)
 
 
 def test_what_is_looked_at_once_has_the_whole_of_the_error() -> None:
