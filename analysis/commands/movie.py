@@ -50,6 +50,7 @@ def draw(scene: Path, trajectory: Path, output: Path | None = None, step: int | 
             picture.show(Moment(run.steps if step is None else step, 0.0))
             picture.figure.savefig(part, dpi=PICTURE_DOTS)
         else:
+            picture.discs.set(antialiased=False, alpha=1)  # equal discs have equal pixels, which are small
             write = _write_mp4 if target.suffix == ".mp4" else _write_gif
             write(picture, moments(run.steps, FRAMES), part)
     return target

@@ -4,10 +4,12 @@ colours in which the checkered order resolves them.
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.text import Text
@@ -112,11 +114,12 @@ def _draw_boxes(axes: Axes, box: Box) -> None:
     if count > MOST_BOXES:
         return
     side = max(4 * box.radius + 1, box.side / count)
-    for row in range(count):
-        for column in range(count):
-            corner = column * side, row * side
-            width, height = (min(side, box.side - start) for start in corner)
-            colour = COLOURS[row % 2 * 2 + column % 2]
-            axes.add_patch(
-                Rectangle(corner, width, height, facecolor=colour, edgecolor="white", linewidth=0.5)
-            )
+    ends, odd = np.minimum(side * np.arange(count + 1), box.side), np.arange(count) % 2
+    look: Any = {
+        "cmap": ListedColormap(COLOURS),
+        "edgecolors": "white",
+        "linewidth": 0.5,
+        "zorder": 1,
+        "antialiased": True,
+    }
+    axes.pcolormesh(ends, ends, 2 * odd[:, np.newaxis] + odd, vmin=0, vmax=len(COLOURS) - 1, **look)

@@ -170,7 +170,7 @@ def machines(data: Data, experiment: str, subject: str) -> Drawing | None:
     if not published.empty:
         axes[0].set_title("measured")
         gigahertz = data.published.machines.set_index("machine")["maximum_gigahertz"]
-        theirs = published[::-1].rename("median").reset_index().assign(low=float("nan"), high=float("nan"))
+        theirs = published[::-1].rename("median").reset_index()
         names = [f"{name}\n{gigahertz[name]} GHz" for name in theirs["series"]]
         forest(axes[1], of_medians(theirs, names, lighten(BLUE, 0.4)), names)
         axes[1].set(xlabel="time of the process, s", title="published, 16 threads")

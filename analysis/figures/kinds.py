@@ -48,9 +48,9 @@ def of_medians(summary: pd.DataFrame, names: Sequence[str], colour: str, *, shor
     dots = []
     for height, (name, row) in enumerate(zip(names, summary.itertuples(), strict=True)):
         value = f"{number(row.median)} s"
-        told = value if np.isnan(row.low) else f"{interval_of(row)} s"
-        said = value if short else told
-        dots.append(Dot(row.median, row.low, row.high, height, name, told, Look(colour), said))
+        told = f"{interval_of(row)} s" if "low" in summary else value
+        low, high = getattr(row, "low", np.nan), getattr(row, "high", np.nan)
+        dots.append(Dot(row.median, low, high, height, name, told, Look(colour), value if short else told))
     return dots
 
 

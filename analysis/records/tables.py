@@ -187,8 +187,7 @@ def _lost_by_turns(record: Record) -> float:
     turns = record.get("turns") or {}
     if "steps" not in turns:
         return math.nan
-    found = excess(turns["seconds"], turns["returning_seconds"], turns["steps"], turns["rounds"])
-    return float(found.share) if found else math.nan
+    return excess(turns["seconds"], turns["returning_seconds"], turns["steps"], turns["rounds"])
 
 
 def _stops(record: Record) -> float:

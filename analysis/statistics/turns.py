@@ -7,7 +7,6 @@ number of stops: the line through both lengths is followed to none (`unstopped`)
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,21 +32,11 @@ def location(values: Floats) -> float:
     return found
 
 
-@dataclass(frozen=True)
-class Excess:
-    """By how many `seconds` the first step of a turn is longer than its neighbours, with its standard
-    `error`, and the `share` of the time of the runs that all of the turns lose so.
-    """
-
-    seconds: float
-    error: float
-    share: float
-
-
 def excess(
     seconds: Sequence[float], returning: Sequence[float | None], steps: Sequence[int], rounds: int
-) -> Excess | None:
-    """Return what the turns of one contender in one process lose; None where it cannot be told.
+) -> float:
+    """Return the share of the time of its runs that the turns of one contender in one process lose, as the
+    first step of each is longer than its neighbours; NaN where it cannot be told.
 
     `seconds` and `steps` of the turns, run by run, each run of so many `rounds`; `returning`, the seconds of
     the first step of each turn, None where a turn is one step. A first step lies between the other steps of
@@ -62,10 +51,7 @@ def excess(
     before, after = counts[:, :-1], counts[:, 1:]
     line = (rest[:, :-1] * after + rest[:, 1:] * before) / (before + after)
     lost = (firsts[:, 1:] - line)[~np.isnan(firsts[:, 1:] - line)]
-    if not lost.size:
-        return None
-    error = float(lost.std(ddof=1) / np.sqrt(lost.size)) if lost.size > 1 else float("nan")
-    return Excess(float(lost.mean()), error, float(lost.mean() * turns.size / turns.sum()))
+    return float(lost.mean() * turns.size / turns.sum()) if lost.size else float("nan")
 
 
 def bias(reference: float, candidate: float) -> float:
