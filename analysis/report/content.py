@@ -100,21 +100,7 @@ def _claims(
     figures, and how many have each verdict.
     """
     rows = [
-        {
-            **row,
-            "places": [places[name] for name in row["experiments"] if name in places],
-            "sign": summary.mark(row),
-            "look": summary.colour_of(row),
-            "short": summary.verdict_in_short(row),
-            "numbers": [
-                {
-                    "what": one.what if len(row["effects"]) > 1 or one.is_exponent else "",
-                    "published": summary.published_in_short(one),
-                    "here": summary.change_in_short(one),
-                }
-                for one in row["effects"]
-            ],
-        }
+        {**row, "places": [places[name] for name in row["experiments"] if name in places]}
         for row in table[~table["missing"]].to_dict("records")
     ]
     rows.sort(key=lambda row: bool(asked) and not set(row["experiments"]) & set(asked))
