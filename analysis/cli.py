@@ -176,20 +176,17 @@ def _calibration(options: argparse.Namespace) -> int:
 
 
 def _movie(options: argparse.Namespace) -> int:
-    from analysis.commands.movie_file import target_of
-
-    target_of(options.scene, options.output, options.step)  # a mistake is told before anything is simulated
     from analysis.commands import movie
-    from analysis.commands.simulated import ProgramError, simulated
 
+    movie.target_of(options.scene, options.output, options.step)  # a mistake is told before it is simulated
     if options.trajectory is not None:
         print(movie.draw(options.scene, options.trajectory, options.output, options.step))
         return 0
     if options.program is None:
         raise InputError("TRAJECTORY: missing, expected a file that `carom run --trajectory` wrote")
     try:
-        with simulated(options.program, options.scene, options.variant) as trajectory:
+        with movie.simulated(options.program, options.scene, options.variant) as trajectory:
             print(movie.draw(options.scene, trajectory, options.output, options.step))
-    except ProgramError as failed:
+    except movie.ProgramError as failed:
         return failed.exit_code
     return 0

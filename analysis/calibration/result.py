@@ -128,6 +128,6 @@ def draw(compared: pd.DataFrame, origin: str) -> Drawing:
             axes.tick_params(axis="y", length=0)
             axes.spines["left"].set_visible(False)
             axes.set_yticks(range(len(ways)), ways if axes is panels[0] else [""] * len(ways))
-        key(panels[0], [(one, colours.get(one, INK)) for one in conditions])
+        key(figure, [(one, colours.get(one, INK)) for one in conditions])
     told = "Three kinds of contenders; exact 95 % intervals, of as many comparisons as would not overlap"
     return Drawing(figure, f"False alarms and findings. {told}. {origin}.")

@@ -6,7 +6,7 @@ all over the stream and overlap: they show how often something happens, and are 
 the other set are disjoint: exact bounds rest on them.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +15,7 @@ import pandas as pd
 
 from analysis.calibration.streams import Stream
 from analysis.statistics.looks import LOOKS, looks_up_to
-from analysis.statistics.verdicts import MARGIN, judge_one
+from analysis.statistics.verdicts import MARGIN, Ratio, judge_one
 from analysis.support.parallel import in_parallel
 from analysis.support.values import Floats
 
@@ -52,8 +52,7 @@ def is_wrong(verdict: str, more: float, margin: float = MARGIN) -> bool:
     return verdict in DECIDED and verdict != truth
 
 
-Rule = Callable[[Floats], Mapping[str, Any]]
-"""From the values of blocks to a row as `verdicts.judge_one` gives it."""
+Rule = Callable[[Floats], Ratio]
 
 
 def study(values: Floats, looks: Sequence[int], more: float, rule: Rule = judge_one) -> dict[str, Any]:
@@ -63,8 +62,8 @@ def study(values: Floats, looks: Sequence[int], more: float, rule: Rule = judge_
     verdict, covered, blocks = "inconclusive", True, 0
     for look in looks:
         row = rule(values[:look])
-        verdict, blocks = row["verdict"], look
-        covered = covered and row["low"] <= 1 + more <= row["high"]
+        verdict, blocks = row.verdict, look
+        covered = covered and row.low <= 1 + more <= row.high
         if verdict in DECIDED:
             break
     return {"verdict": verdict, "blocks": blocks, "wrong": is_wrong(verdict, more), "covered": covered}

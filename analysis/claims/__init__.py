@@ -7,14 +7,11 @@ from dataclasses import asdict, replace
 import pandas as pd
 
 from analysis.claims import family, missing
-from analysis.claims.compilers import compilers
-from analysis.claims.counts import fewer_wasted_attempts
 from analysis.claims.curves import falls_then_rises, grows, linear, spike_then_linear
 from analysis.claims.entry import Claim, Evidence, evidence_of, load
 from analysis.claims.machines import clock
 from analysis.claims.outcome import ELSEWHERE, FAILS, OPEN, PLAIN, Compared, Outcome, Verdict
-from analysis.claims.phases import phase_dominates
-from analysis.claims.ratios import pair
+from analysis.claims.ratios import compilers, fewer_wasted_attempts, pair, phase_dominates
 from analysis.claims.scaling import scaling
 from analysis.claims.schedules import best_schedule
 from analysis.records.studies import Study
@@ -156,7 +153,7 @@ def _said(outcome: Outcome, claim: Claim, tested: tuple[int, ...], scale: str) -
     plain = PLAIN[verdict]
     at_scale = "" if scale in claim.scales else f" at {scale} scale"
     found = [one for one in outcome.effects if one.has_interval]
-    if plain == FAILS and found and all(one.here.low < 1 < one.here.high for one in found):
+    if plain == FAILS and found and all(one.low < 1 < one.high for one in found):
         at_scale = f" by {100 * (found[0].within[1] - 1):g} %{at_scale}"
     if _on_its_threads(claim, tested):
         return f"{plain}{at_scale}"
@@ -184,8 +181,8 @@ def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> tuple
     )
     models = listed(sorted(runs["cpu_model"].unique()))
     return (
-        Compared("threads", said, listed(tested)),
-        Compared("machine", origin.machine, models),
-        Compared("scene", origin.scene, scene),
-        Compared("tolerance", "published", listed(sorted(runs["tolerance"].dropna().unique())) or "–"),
+        ("threads", said, listed(tested)),
+        ("machine", origin.machine, models),
+        ("scene", origin.scene, scene),
+        ("tolerance", "published", listed(sorted(runs["tolerance"].dropna().unique())) or "–"),
     )

@@ -3,22 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from math import isfinite, nan
-from typing import Any
 
 import pandas as pd
 
-from analysis.claims.alternatives import alternatives
-from analysis.claims.effects import EXPONENT, NOT_MEASURED, Effect, effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records
+from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records, unmeasured
+from analysis.claims.schedules import EFFECTS, nothing_faster
 from analysis.records.studies import Study
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.pairs import log_ratios, ratios_of
 from analysis.statistics.trends import Minimum, growth, linearity, minimum
-from analysis.statistics.verdicts import MARGIN
-from analysis.support.values import Interval
-from analysis.support.wording import blocks, change, exact, factor, interval, listed, number
+from analysis.statistics.verdicts import EXPONENT, Ratio
+from analysis.support.wording import blocks, change, exact, factor, interval, interval_of, listed, number
 
 ONE_POINT = "needs at least two values of the swept parameter"
 FOUR_POINTS = "needs four values measured in the same block"
@@ -41,31 +38,25 @@ def grows(evidence: Evidence, experiments: Sequence[str]) -> Outcome:
 
 
 def _grows(evidence: Evidence, experiment: str) -> Outcome:
-    row, outcome = _growth_tested(evidence, experiment)
     curve = evidence.published.without_degenerate(experiment, evidence.published.curve(experiment))
-    published = growth(curve).change["ratio"] if curve["x"].nunique() > 1 else nan
-    what = experiment.replace("_", " ")
-    return replace(outcome, effects=(effect_of(what, row, published, evidence.margin(experiment)),))
-
-
-def _growth_tested(evidence: Evidence, experiment: str) -> tuple[dict[str, Any] | None, Outcome]:
-    """Return the row of the change over the whole range, if it was measured, and the outcome."""
+    published = growth(curve).change.ratio if curve["x"].nunique() > 1 else nan
+    what, margin = experiment.replace("_", " "), evidence.margin(experiment)
+    nothing = (unmeasured(what, published, margin),)
     processes = published_processes(evidence.study, experiment)
     if processes.empty:
-        return None, no_records(experiment)
+        return replace(no_records(experiment), effects=nothing)
     kept = evidence.published.without_degenerate(experiment, processes)
     if kept["x"].nunique() < 2:
-        return None, Outcome(OPEN, why=ONE_POINT)
-    trend = growth(kept, evidence.margin(experiment))
-    name = processes["x_name"].iloc[0]
+        return Outcome(OPEN, why=ONE_POINT, effects=nothing)
+    trend, name = growth(kept, margin), processes["x_name"].iloc[0]
     without = sorted(set(processes["x"]) - set(kept["x"]))
     measured = (
         f"{change(trend.change)} of time from {name} = {exact(trend.first)} to {exact(trend.last)}, "
         f"exponent {interval(trend.exponent)}, {blocks(trend.change)}"
     ) + (f" (without the degenerate {name} = {listed(without)})" if without else "")
     figures = (_growth_compared(evidence, experiment, kept),)
-    row = {"blocks": trend.change["blocks"], "p": trend.p, "verdict": trend.verdict}
-    return trend.change, judged(row, "grows", measured, figures)
+    effect = replace(trend.change, what=what, published=published)
+    return replace(judged(trend.change, "grows", measured, figures), effects=(effect,))
 
 
 def _growth_compared(evidence: Evidence, experiment: str, processes: pd.DataFrame) -> Compared:
@@ -73,14 +64,14 @@ def _growth_compared(evidence: Evidence, experiment: str, processes: pd.DataFram
     curve = evidence.published.curve(experiment)
     theirs = evidence.published.without_degenerate(experiment, curve)
     said = [_factor(one) if one["x"].nunique() > 1 else "–" for one in (theirs, processes)]
-    return Compared(f"growth of the time over {processes['x_name'].iloc[0]}", *said)
+    return f"growth of the time over {processes['x_name'].iloc[0]}", said[0], said[1]
 
 
 def _factor(processes: pd.DataFrame) -> str:
     """Return the factor of the times and that of x, e.g. `×5.67 from 10 000 to 100 000`."""
     ends = processes["x"].min(), processes["x"].max()
     both = len(ratios_of(processes, "x", *ends))
-    trend = growth(processes).change["ratio"] if both else float("nan")
+    trend = growth(processes).change.ratio if both else nan
     return f"{factor(trend)} from {exact(ends[0])} to {exact(ends[1])}"
 
 
@@ -89,33 +80,31 @@ def linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> 
     processes = published_processes(evidence.study, experiment)
     curve = evidence.published.curve(experiment)
     if processes.empty:
-        effect = _exponent(linearity(curve, within).exponent.estimate, within)
-        return replace(no_records(experiment), effects=(effect,))
+        return replace(no_records(experiment), effects=(_exponent(curve, within),))
     outcome = _linear(processes, curve, within)
     grown = _growth_compared(evidence, experiment, processes)
     return replace(outcome, figures=(*outcome.figures, grown))
 
 
 def _linear(processes: pd.DataFrame, published: pd.DataFrame, within: tuple[float, float]) -> Outcome:
-    line = linearity(processes, within)
-    theirs = linearity(published, within).exponent.estimate
-    name = processes["x_name"].iloc[0]
-    effect = _exponent(theirs, within, line.exponent)
-    if pd.isna(line.exponent.estimate):
-        return Outcome(OPEN, why=FOUR_POINTS, effects=(effect,))
+    nothing = _exponent(published, within)
+    line, name = linearity(processes, nothing.within), processes["x_name"].iloc[0]
+    effects = (replace(line, published=nothing.published),)
+    if not line.is_measured:
+        return Outcome(OPEN, why=FOUR_POINTS, effects=effects)
     measured = (
-        f"time = fixed + slope × {name}^e with e = {interval(line.exponent)}, "
+        f"time = fixed + slope × {name}^e with e = {interval_of(line, 'ratio')}, "
         f"taken as linear between {within[0]} and {within[1]}"
     )
-    figures = (Compared(f"exponent over {name}", number(theirs), interval(line.exponent)),)
-    row = {"blocks": line.blocks, "p": line.p, "verdict": line.verdict}
+    figures = ((f"exponent over {name}", number(nothing.published), interval_of(line, "ratio")),)
     why = "the exponent's interval reaches across a bound: more blocks would decide"
-    return replace(judged(row, "linear", measured, figures, why), effects=(effect,))
+    return replace(judged(line, "linear", measured, figures, why), effects=effects)
 
 
-def _exponent(published: float, within: tuple[float, float], here: Interval = NOT_MEASURED) -> Effect:
-    """Return the exponent as an effect: of a straight line it is 1."""
-    return Effect(EXPONENT, here, published, (within[0], within[1]))
+def _exponent(published: pd.DataFrame, within: tuple[float, float]) -> Ratio:
+    """Return the exponent of the published curve as an effect that was not measured here."""
+    low, high = within
+    return Ratio(what=EXPONENT, published=linearity(published, (low, high)).ratio, within=(low, high))
 
 
 def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = None) -> Outcome:
@@ -142,27 +131,23 @@ def _shape(processes: pd.DataFrame, published: pd.DataFrame, margin: float) -> O
     )
     theirs = minimum(published)
     figures = (
-        Compared(f"least time at {name}", exact(theirs.lowest), exact(ours.lowest)),
-        Compared(f"smallest {name} against it", factor(theirs.fall["ratio"]), factor(ours.fall["ratio"])),
-        Compared(f"largest {name} against it", factor(theirs.rise["ratio"]), factor(ours.rise["ratio"])),
+        (f"least time at {name}", exact(theirs.lowest), exact(ours.lowest)),
+        (f"smallest {name} against it", factor(theirs.fall.ratio), factor(ours.fall.ratio)),
+        (f"largest {name} against it", factor(theirs.rise.ratio), factor(ours.rise.ratio)),
     )
-    row = {"blocks": ours.fall["blocks"], "p": ours.p, "verdict": ours.verdict}
-    outcome = judged(row, "falls then rises", measured, figures)
-    return replace(outcome, why=outcome.why or ours.verdict, effects=_ends(published, ours, margin))
+    outcome = judged(ours.fall, "falls then rises", measured, figures)
+    return replace(outcome, why=outcome.why or ours.fall.verdict, effects=_ends(published, ours))
 
 
-def _ends(published: pd.DataFrame, ours: Minimum | None, margin: float = MARGIN) -> tuple[Effect, ...]:
+def _ends(published: pd.DataFrame, ours: Minimum | None) -> tuple[Ratio, ...]:
     """Return the times at both ends of the range against the least."""
     theirs = minimum(published) if len(published) else None
-    return tuple(
-        effect_of(
-            f"at the {end}",
-            getattr(ours, side) if ours else None,
-            getattr(theirs, side)["ratio"] if theirs else nan,
-            margin,
-        )
-        for end, side in (("smallest", "fall"), ("largest", "rise"))
-    )
+    effects = []
+    for end, side in (("smallest", "fall"), ("largest", "rise")):
+        row = getattr(ours, side) if ours else Ratio()
+        told = getattr(theirs, side).ratio if theirs else nan
+        effects.append(replace(row, what=f"at the {end}", published=told))
+    return tuple(effects)
 
 
 def _break(least: Minimum) -> str:
@@ -186,10 +171,10 @@ def _least_at(processes: pd.DataFrame, least: float, margin: float) -> Outcome:
     )
     if pairs.empty:
         return Outcome(OPEN, why=f"needs another {name} in a block with {exact(least)}")
-    found = alternatives(pairs, margin)
-    best = found.best
-    outcome = found.outcome(f"{best['name']} against {exact(least)}: {change(best)} of time, {blocks(best)}")
-    return replace(outcome, effects=(effect_of("best other", best, margin=margin),))
+    found = nothing_faster(pairs, margin)
+    (best,) = found.effects
+    measured = f"{best.what} against {exact(least)}: {change(best)} of time, {blocks(best)}"
+    return replace(found, measured=measured, effects=(replace(best, what=EFFECTS[0]),))
 
 
 def spike_then_linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> Outcome:
@@ -197,8 +182,7 @@ def spike_then_linear(evidence: Evidence, experiment: str, within: tuple[float, 
     spike = falls_then_rises(evidence, experiment)
     theirs = _from_the_lowest(evidence.published.curve(experiment))
     if not spike.measured:
-        line = _exponent(linearity(theirs, within).exponent.estimate, within)
-        return replace(spike, effects=(*spike.effects, line))
+        return replace(spike, effects=(*spike.effects, _exponent(theirs, within)))
     ours = _from_the_lowest(published_processes(evidence.study, experiment))
     return both([spike, _linear(ours, theirs, within)])
 

@@ -6,12 +6,11 @@ from itertools import pairwise
 
 import pandas as pd
 
-from analysis.claims.effects import Effect, effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records
+from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records, unmeasured
 from analysis.records.published import Published
-from analysis.statistics.unpaired import judge_unpaired
+from analysis.statistics.verdicts import Ratio, judge_unpaired
 from analysis.support.wording import listed, number
 
 
@@ -62,19 +61,19 @@ def clock(evidence: Evidence, experiment: str) -> Outcome:
     joined = both([judged(row, "faster", "", unit="process") for row in rows])
     why = "a higher clock was not faster" if joined.verdict == FAILS else joined.why
     effects = tuple(
-        effect_of(f"{fast.gigahertz} against {slow.gigahertz} GHz", row)
+        replace(row, what=f"{fast.gigahertz} against {slow.gigahertz} GHz")
         for (slow, fast), row in zip(faster, rows, strict=True)
     )
     return replace(joined, measured=measured, why=why, figures=figures, effects=effects)
 
 
-def _published_effects(published: Published, experiment: str) -> tuple[Effect, ...]:
+def _published_effects(published: Published, experiment: str) -> tuple[Ratio, ...]:
     """Return the times of the published machines, each against the one with the next lower clock."""
     times = published.experiment(experiment).groupby("series")["seconds"].median()
     known = published.machines[published.machines["machine"].isin(times.index)]
     ordered = known.sort_values("maximum_gigahertz")[["maximum_gigahertz", "machine"]]
     return tuple(
-        effect_of(f"{fast[0]} against {slow[0]} GHz", None, float(times[fast[1]] / times[slow[1]]))
+        unmeasured(f"{fast[0]} against {slow[0]} GHz", float(times[fast[1]] / times[slow[1]]))
         for slow, fast in pairwise(ordered.itertuples(index=False, name=None))
     )
 
@@ -100,8 +99,8 @@ def _figures(published: Published, experiment: str, machines: Sequence[Measured]
         cpus = ((one, str(one.processes["cpu_model"].iloc[0])) for one in machines if one.gigahertz)
         ours = next((one.seconds for one, cpu in cpus if _names(str(row.processor), cpu)), "–")
         theirs = f"{number(float(times[row.machine]))} s" if row.machine in times else "–"
-        rows.append(Compared(f"{row.machine}, {row.maximum_gigahertz} GHz", theirs, ours))
-    others = [Compared(one.machine, "–", one.seconds) for one in machines if not one.gigahertz]
+        rows.append((f"{row.machine}, {row.maximum_gigahertz} GHz", theirs, ours))
+    others = [(one.machine, "–", one.seconds) for one in machines if not one.gigahertz]
     return (*rows, *others)
 
 

@@ -7,7 +7,7 @@ import pandas as pd
 from analysis.claims.entry import Claim, setting
 from analysis.claims.outcome import ELSEWHERE, OPEN, Outcome
 from analysis.records.studies import Study
-from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
+from analysis.statistics.noise import MOST_BLOCKS, blocks_to_decide
 from analysis.statistics.pairs import PAIR, without_partner
 from analysis.support.wording import count, number
 

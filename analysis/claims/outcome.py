@@ -1,18 +1,16 @@
 """What became of a claim: holds, does not hold, or cannot be decided here, with what was measured and why."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from math import isfinite
-from typing import Any
+from math import nan
 
-from numpy.typing import ArrayLike
-
-from analysis.claims.effects import Effect
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.looks import ERROR
-from analysis.statistics.verdicts import MARGIN, judge_one
+from analysis.statistics.verdicts import INCONCLUSIVE, MARGIN, Ratio, within_margin
 from analysis.support.wording import count, percent
+
+Compared = tuple[str, str, str]
+"""One figure of the study beside ours: what it is, as published, here; an en dash for what is not there."""
 
 
 class Verdict(StrEnum):
@@ -52,15 +50,6 @@ TOO_FEW = "the interval reaches across the margin: more blocks or a quieter mach
 
 
 @dataclass(frozen=True)
-class Compared:
-    """One figure of the study beside ours; an en dash for what one of the two does not have."""
-
-    what: str
-    published: str
-    here: str
-
-
-@dataclass(frozen=True)
 class Outcome:
     """`measured` is the effect with its 95 % interval, empty if there is none; `why` is the reason in
     words. `missing` tells a claim without records from one that they do not decide. `p` is the p-value of the
@@ -79,7 +68,7 @@ class Outcome:
     direction: float | None = None
     """Of a claim that holds, the p-value of its holding in direction, where that is something else."""
     blocks: int = 0
-    effects: tuple[Effect, ...] = ()
+    effects: tuple[Ratio, ...] = ()
     """What it is about as numbers."""
 
 
@@ -89,81 +78,77 @@ def no_records(experiment: str, missing: str = "") -> Outcome:
     return Outcome(OPEN, why=f"{NO_RECORDS}{detail} (experiment {experiment!r})", missing=True)
 
 
-def directed(log_ratios: ArrayLike, margin: float = MARGIN, **more: Any) -> dict[str, Any]:  # noqa: ANN401
-    """Return the row of `judge_one`, which takes `more`, with its `margin`, and the p-values of the ratio
-    being less than 1 and more than 1, by however little: `any_faster` and `any_slower`.
-    """
-    level = judge_one(log_ratios, 0.0, **more)
-    any_change = {"any_faster": level["not_slower"], "any_slower": level["not_faster"]}
-    return {**judge_one(log_ratios, margin, **more), "margin": margin, **any_change}
+def unmeasured(what: str, published: float = nan, margin: float = MARGIN) -> Ratio:
+    """Return a ratio of which there are no records."""
+    return Ratio(what=what, published=published, within=within_margin(margin))
 
 
 def judged(
-    row: Mapping[str, Any],
+    row: Ratio,
     expected: str,
     measured: str,
     figures: tuple[Compared, ...] = (),
     unsettled: str = TOO_FEW,
     unit: str = "block",
 ) -> Outcome:
-    """Return what a verdict with its `p`, from so many `blocks` (or another unit), says of a claim that
-    expects one; `unsettled` is why it is open where they are enough and do not decide.
+    """Return what a verdict, from so many `blocks` (or another unit), says of a claim that expects one;
+    `unsettled` is why it is open where they are enough and do not decide.
 
-    That one choice is faster, or slower, holds in direction where the interval of a row of `directed` lies
-    wholly on that side of 0, but not beyond the margin. Else a claim does not hold where the interval has no
-    part in what was expected, whether or not it tells the other verdicts from each other. A row without the
-    p-value of that, e.g. `not_faster`, fails by another verdict.
+    That one choice is faster, or slower, holds in direction where the interval lies wholly on that side of 0,
+    but not beyond the margin. Else a claim does not hold where the interval has no part in what was expected,
+    whether or not it tells the other verdicts from each other. What has no p-value of that, as where a curve
+    `grows`, fails by another verdict.
     """
-    outcome = Outcome(OPEN, measured, figures=figures, blocks=row["blocks"])
-    if row["blocks"] < FEWEST:
-        why = f"rests on {count(row['blocks'], unit)}: a verdict needs at least {FEWEST}"
+    outcome = Outcome(OPEN, measured, figures=figures, blocks=row.blocks)
+    if row.blocks < FEWEST:
+        why = f"rests on {count(row.blocks, unit)}: a verdict needs at least {FEWEST}"
         return replace(outcome, why=why)
-    against = row.get(denial(expected))
-    if row["verdict"] == expected:
-        return replace(outcome, verdict=HOLDS, p=row["p"], direction=row.get(f"any_{expected}"))
+    against, direction = denial(row, expected), getattr(row, f"any_{expected}", None)
+    if row.verdict == expected:
+        return replace(outcome, verdict=HOLDS, p=row.p, direction=direction)
     if _is_in_direction(row, expected):
-        return replace(outcome, verdict=IN_DIRECTION, p=row[f"any_{expected}"])
+        return replace(outcome, verdict=IN_DIRECTION, p=direction)
     if against is not None and against <= ERROR:
         return replace(outcome, verdict=FAILS, p=against)
-    if row["verdict"] != "inconclusive":
-        return replace(outcome, verdict=FAILS, p=row["p"])
-    return replace(outcome, why=unsettled + _short(row, expected), p=row["p"], against=against)
+    if row.verdict != INCONCLUSIVE:
+        return replace(outcome, verdict=FAILS, p=row.p)
+    return replace(outcome, why=unsettled + _short(row, expected), p=row.p, against=against)
 
 
-def told(row: Mapping[str, Any], expected: str) -> str:
-    """Return the verdict of a row in words, with what it denies where it tells no more, e.g. `faster`, `not
+def told(row: Ratio, expected: str) -> str:
+    """Return the verdict of a ratio in words, with what it denies where it tells no more, e.g. `faster`, `not
     faster`, `faster, but by less than 2 %` or `faster, unknown whether by 2 %`.
     """
-    is_denied = row.get(denial(expected), 1.0) <= ERROR
-    if row["verdict"] != expected and _is_in_direction(row, expected):
+    denied = denial(row, expected)
+    is_denied = denied is not None and denied <= ERROR
+    if row.verdict != expected and _is_in_direction(row, expected):
         how = "but by less than" if is_denied else "unknown whether by"
-        return f"{expected}, {how} {100 * row['margin']:g} %"
-    if row["verdict"] == "inconclusive" and is_denied:
-        return denial(expected).replace("_", " ")
-    return str(row["verdict"])
+        return f"{expected}, {how} {100 * (row.within[1] - 1):g} %"
+    return f"not {expected}" if row.verdict == INCONCLUSIVE and is_denied else row.verdict
 
 
-def denial(expected: str) -> str:
-    """Return the name of the p-value of an expected verdict's contrary (see `judge_one`)."""
-    return f"not_{expected}"
+def denial(row: Ratio, expected: str) -> float | None:
+    """Return the p-value of an expected verdict's contrary, None of a verdict that has none."""
+    p: float | None = getattr(row, f"not_{expected}", None)
+    return p
 
 
-def _is_in_direction(row: Mapping[str, Any], expected: str) -> bool:
-    return row["blocks"] >= FEWEST and row.get(f"any_{expected}", 1.0) <= ERROR
+def _is_in_direction(row: Ratio, expected: str) -> bool:
+    p = getattr(row, f"any_{expected}", None)
+    return row.blocks >= FEWEST and p is not None and p <= ERROR
 
 
-def _short(row: Mapping[str, Any], expected: str) -> str:
-    """Say by how much the interval of a ratio, if a row has one, misses the verdict that it is closest to."""
-    if "low" not in row or not isfinite(row["low"]) or not isfinite(row["high"]):
+def _short(row: Ratio, expected: str) -> str:
+    """Say by how much an interval, if there is one, misses the verdict that it is closest to."""
+    if expected not in SETTLES or not row.has_interval:
         return ""
-    margin = row.get("margin", MARGIN)
-    least, most = 1 / (1 + margin), 1 + margin
+    least, most = row.within
     by = {
-        "faster": row["high"] - least,
-        "slower": most - row["low"],
-        "equivalent": max(row["high"] - most, least - row["low"]),
-        "not faster": least - row["low"],
-        "not slower": row["high"] - most,
+        "faster": row.high - least,
+        "slower": most - row.low,
+        "equivalent": max(row.high - most, least - row.low),
+        "not faster": least - row.low,
+        "not slower": row.high - most,
     }
     nearest = min(SETTLES[expected], key=lambda verdict: by[verdict])
     return f" ({percent(by[nearest]).lstrip('+')} short of {nearest})" if by[nearest] > 0 else ""

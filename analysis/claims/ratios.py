@@ -1,23 +1,31 @@
-"""Claims that one choice is faster than, or as fast as, another.
+"""Claims about one ratio: of two choices, of compilers, of counts, of the phases of a step.
 
-One rule for ties: where the interval has no part in faster by more than the margin, the claim does not hold,
-be the two equivalent or the other one faster. But where the interval lies wholly below 0 it holds in
-direction, by however little: the margin is ours, and no source of a claim stated it.
+Each is ln(candidate / reference) a block, or a seed, and the verdict on that. One rule for ties: where the
+interval has no part in faster by more than the margin, the claim does not hold, be the two equivalent or the
+other one faster. But where the interval lies wholly below 0 it holds in direction, by however little: the
+margin is ours, and no source of a claim stated it.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
 from math import nan
-from typing import Any
 
+import numpy as np
 import pandas as pd
 
-from analysis.claims.effects import effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import OPEN, Compared, Outcome, directed, judged, no_records, told
-from analysis.statistics.pairs import log_ratios
-from analysis.support.wording import blocks, change, exact, percent
+from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, judged, no_records, told, unmeasured
+from analysis.statistics.looks import ERROR
+from analysis.statistics.pairs import PAIR, log_ratios, ratios_of
+from analysis.statistics.verdicts import Ratio, judge_one, judge_pairs
+from analysis.support.wording import blocks, change, count, exact, number, percent, share
+from support.vocabulary import COUNTS
+
+CODE_ALONE = "g++'s code with the runtime of clang++, which its build has where clang++ is installed"
+OF_COUNTS = {"faster": "fewer", "slower": "more", "not faster": "not fewer"}
+"""The verdicts on a ratio in words for a number of things; the others are the same."""
+VARIANTS = ["published", "self_contained_off"]
 
 
 def pair(
@@ -32,61 +40,184 @@ def pair(
     """Test that `candidate` is faster than (or equivalent to) `reference` on an axis; in a sweep, at the
     value `at` of its parameter and nowhere else.
     """
-    sides = (axis, candidate, reference)
-    found = []
-    for name in experiments:
-        outcome = _one_pair(evidence, name, sides, expected, at)
-        if len(experiments) > 1:
-            told = name.rpartition("_")[2]
-            outcome = replace(outcome, effects=tuple(replace(one, what=told) for one in outcome.effects))
-        found.append(outcome)
-    return both(found)
+    found = [_one_pair(evidence, one, (axis, candidate, reference), expected, at) for one in experiments]
+    if len(found) == 1:
+        return both(found)
+    names = (one.rpartition("_")[2] for one in experiments)
+    named = [
+        replace(one, effects=tuple(replace(each, what=name) for each in one.effects))
+        for name, one in zip(names, found, strict=True)
+    ]
+    return both(named)
 
 
 def _one_pair(
     evidence: Evidence, experiment: str, sides: tuple[str, str, str], expected: str, at: float | None
 ) -> Outcome:
-    _, candidate, reference = sides
-    row, outcome = _tested(evidence, experiment, sides, expected, at)
-    what = f"{candidate} against {reference}"
-    # As the study tells it, of means; `ratio` is the middle of its three runs.
+    axis, candidate, reference = sides
+    # As the study tells it, of means; `Published.ratio` is the middle of its three runs.
     means = evidence.published.experiment(experiment).groupby("series")["seconds"].mean()
     known = {candidate, reference} <= set(means.index)
     published = float(means[candidate] / means[reference]) if known else nan
-    return replace(outcome, effects=(effect_of(what, row, published, evidence.margin(experiment)),))
-
-
-def _tested(
-    evidence: Evidence, experiment: str, sides: tuple[str, str, str], expected: str, at: float | None
-) -> tuple[dict[str, Any] | None, Outcome]:
-    """Return the row that decides, if it was measured, and the outcome."""
-    axis, candidate, reference = sides
+    margin, what = evidence.margin(experiment), f"{candidate} against {reference}"
+    nothing = (unmeasured(what, published, margin),)
     times = evidence.study.times_of(experiment)
-    if times.empty:
-        return None, no_records(experiment)
     chosen, against = (times[times[axis] == value] for value in (candidate, reference))
-    missing = [name for name, side in ((candidate, chosen), (reference, against)) if side.empty]
-    if missing:
-        return None, no_records(experiment, " and ".join(f"{axis} = {name}" for name in missing))
+    lacking = [
+        f"{axis} = {name}" for name, side in zip(sides[1:], (chosen, against), strict=True) if side.empty
+    ]
+    if times.empty or lacking:
+        needed = "" if times.empty else " and ".join(lacking)
+        return replace(no_records(experiment, needed), effects=nothing)
     name, shared = times["x_name"].iloc[0], sorted(set(chosen["x"]) & set(against["x"]))
     if not shared:
-        return None, no_records(experiment, f"{candidate} and {reference} at the same {name}")
-    rows = {x: _judged(against, chosen, x, evidence.margin(experiment)) for x in shared}
+        needed = f"{candidate} and {reference} at the same {name}"
+        return replace(no_records(experiment, needed), effects=nothing)
+    pairs = log_ratios(against, chosen, match=("x",))
+    rows = {x: judge_pairs(pairs[pairs["x"] == x], margin) for x in shared}
     theirs = evidence.published.ratio(experiment, candidate, reference)
-    published = percent(theirs["ratio"] - 1) if theirs else "–"
-    what = f"time of {candidate} against {reference}"
     figures = tuple(
-        Compared(f"{what}, {experiment if at is None else f'{name} = {exact(x)}'}", published, change(row))
+        (
+            f"time of {what}, {experiment if at is None else f'{name} = {exact(x)}'}",
+            percent(theirs.ratio - 1) if theirs else "–",
+            change(row),
+        )
         for x, row in rows.items()
     )
     if at is not None and at not in rows:
-        return None, Outcome(OPEN, why=f"needs {name} = {exact(at)}", figures=figures)
+        return Outcome(OPEN, why=f"needs {name} = {exact(at)}", figures=figures, effects=nothing)
     where, row = ("", rows[shared[-1]]) if at is None else (f" at {name} = {exact(at)}", rows[at])
-    said = told(row, expected)
-    measured = f"{candidate} against {reference}{where}: {change(row)} of time, {blocks(row)} ({said})"
-    return row, judged(row, expected, measured, figures)
+    measured = f"{what}{where}: {change(row)} of time, {blocks(row)} ({told(row, expected)})"
+    found = judged(row, expected, measured, figures)
+    return replace(found, effects=(replace(row, what=what, published=published),))
 
 
-def _judged(against: pd.DataFrame, chosen: pd.DataFrame, x: float, margin: float) -> dict[str, Any]:
-    pairs = log_ratios(against[against["x"] == x], chosen[chosen["x"] == x])
-    return directed(pairs["log_ratio"], margin, biases=pairs["bias"], stops=pairs["stops"])
+def compilers(evidence: Evidence, experiment: str, candidate: str, reference: str) -> Outcome:
+    """Test that the candidate's code is faster with the same OpenMP runtime under both. What the reference's
+    own runtime changes is told beside it.
+    """
+    times = evidence.study.times_of(experiment)
+    if times.empty:
+        return no_records(experiment)
+    family, runtime = times["compiler_family"], times["openmp_runtime"]
+    ours, theirs = times[family == candidate], times[family == reference]
+    shared = theirs["openmp_runtime"].isin(set(runtime[family == candidate]))
+    if ours.empty or theirs[shared].empty:
+        return no_records(experiment, candidate if ours.empty else CODE_ALONE)
+    margin = evidence.margin(experiment)
+
+    def against(side: pd.DataFrame) -> Ratio:
+        return judge_pairs(log_ratios(theirs[shared], side).drop(columns="bias"), margin)
+
+    row, names = against(ours), f"{_compiler(ours)} against {_compiler(theirs[shared])}"
+    verdict = told(row, "faster")
+    measured = f"{names}: {change(row)} of time, {blocks(row)} ({verdict})"
+    if not theirs[~shared].empty:
+        alone = against(theirs[~shared])
+        beside = f"{_compiler(theirs[~shared])} against {_compiler(theirs[shared])}: {change(alone)} of time"
+        measured += f"; the runtime alone: {beside} ({told(alone, 'faster')})"
+    outcome = judged(row, "faster", measured, ((f"time of {names}", "–", change(row)),))
+    why = outcome.why or f"{verdict} with the same runtime"
+    return replace(outcome, why=why, effects=(replace(row, what=f"{candidate} against {reference}"),))
+
+
+def _compiler(side: pd.DataFrame) -> str:
+    return f"{side['compiler_family'].iloc[0]} ({' or '.join(sorted(side['openmp_runtime'].unique()))})"
+
+
+def fewer_wasted_attempts(
+    evidence: Evidence, experiment: str, axis: str, candidate: str, reference: str
+) -> Outcome:
+    """Test that `candidate` wastes fewer attempts: pairs asked whether they collide that then do not.
+
+    A count is the same in each repetition, so that its repetitions are the seeds of the scene: the interval
+    is over them. The question says how many, so that they are looked at once. Attempts, resolves and the
+    time, where it was measured, stand beside, and do not decide.
+    """
+    runs = evidence.study.runs_of(experiment)
+    runs = runs[runs["x_name"] == "seed"].assign(
+        wasted_attempts=lambda one: one["pair_attempts"] - one["pair_resolves"]
+    )
+    before, after = (runs[runs[axis] == value] for value in (reference, candidate))
+    if before.empty or after.empty:
+        return no_records(experiment, "a sweep of seeds")
+    if runs["pair_attempts"].isna().any():
+        return Outcome(OPEN, why="attempts were not counted: whole processes tell none")
+    rows = {
+        value.replace("_", " "): judge_one(_over_seeds(before, after, value), once=True)
+        for value in ("wasted_attempts", "pair_attempts", "pair_resolves")
+    }
+    said = "; ".join(f"{change(row)} of {what} ({_of_counts(row)})" for what, row in rows.items())
+    wasted = rows["wasted attempts"]
+    measured = f"{candidate} against {reference}, over {count(wasted.blocks, 'seed')}: {said}"
+    if not (runs["question_kind"] == COUNTS).all():
+        # The mean over the seeds of each block: what a block suffers, all its seeds do.
+        pairs = ratios_of(evidence.study.times_of(experiment), axis, reference, candidate, match=("x",))
+        rows["time"] = row = judge_one(pairs.groupby(PAIR)["log_ratio"].mean())
+        measured += f"; {change(row)} of time, {blocks(row)} ({row.verdict})"
+    figures = tuple((what, "–", change(row)) for what, row in rows.items())
+    unsettled = TOO_FEW.replace("blocks or a quieter machine", "seeds")
+    found = judged(wasted, "faster", measured, figures, unsettled, unit="seed")
+    # More blocks bring no further seed.
+    return replace(found, blocks=0, effects=(replace(wasted, what="wasted attempts"),))
+
+
+def _of_counts(row: Ratio) -> str:
+    verdict = told(row, "faster")
+    return OF_COUNTS.get(verdict, verdict.replace("faster", "fewer"))
+
+
+def _over_seeds(before: pd.DataFrame, after: pd.DataFrame, value: str) -> pd.Series:
+    """Return ln(after / before) of each seed that both have; a count of 0 has no ratio."""
+    counted = [side.groupby("x")[value].median() for side in (before, after)]
+    ratios = np.log(counted[1] / counted[0])
+    return ratios.replace([np.inf, -np.inf], np.nan).dropna()
+
+
+def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str) -> Outcome:
+    """Test that the published variant spends more than half of a step in `phase`, with what it does of it
+    early, in the phase `early`.
+
+    Early (self-contained) resolves cannot be timed apart from the search around them. Without them `early` is
+    the search alone: what it takes longer with them, in the same block, is theirs. This takes the search to
+    last as long with them as without. The ratio tested is that of resolving to all the rest.
+
+    Two ratios are judged, each with half of the error: that of the later resolves, a share within one
+    process, and that of all of them. Since what is done early only adds, the claim holds where either is more
+    than half: the surer one is told.
+    """
+    (phases,) = evidence.study.of(experiment, "phases")
+    walls = phases[phases["variant"].isin(VARIANTS)].pivot_table(
+        index=PAIR, columns=["variant", "phase"], values="wall_seconds"
+    )
+    for variant in VARIANTS:
+        if not {(variant, phase), (variant, early)} <= set(walls.columns):
+            return no_records(experiment, f"{phase} and {early} of the variant {variant}")
+    with_early, without = (walls.dropna()[variant] for variant in VARIANTS)
+    whole, resolved_early = with_early.sum(axis=1), with_early[early] - without[early]
+    late, resolving = with_early[phase], with_early[phase] + resolved_early
+    parts = pd.DataFrame({"late": late, early: with_early[early], "early": resolved_early, "all": resolving})
+    part = parts.div(whole, axis=0).median().map(share)
+    late_row, row = (
+        judge_one(np.log(one / (whole - one)), error=ERROR / 2).scaled(2) for one in (late, resolving)
+    )
+    # Later ones of less than half refute nothing.
+    is_surer = row.verdict != "slower" and _above(late_row) <= min(ERROR, _above(row))
+    if late_row.verdict == "slower" or is_surer:
+        row, said = late_row, f"{part['late']} without early resolves"
+        of = f"{part['late']} of a step in {phase} alone, without what is done early in {early}"
+    else:
+        said, late_and_early = str(part["all"]), f"{part['late']} in {phase} and {part['early']} early"
+        of = f"{part['all']} of a step: {late_and_early}, of the {part[early]} of {early}"
+    measured = (
+        f"resolving takes {of}; the ratio to all the rest is {number(row.ratio)} [{number(row.low)}, "
+        f"{number(row.high)}], {blocks(row)}"
+    )
+    figures: tuple[Compared, ...] = (("share of a step that resolving takes", "–", said),)
+    effect = replace(row, what="resolving against the rest")
+    return replace(judged(row, "slower", measured, figures), effects=(effect,))
+
+
+def _above(row: Ratio) -> float:
+    assert row.any_slower is not None
+    return row.any_slower

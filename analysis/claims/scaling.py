@@ -2,18 +2,26 @@
 
 from dataclasses import dataclass, replace
 from math import nan
-from typing import Any
 
 import pandas as pd
 
 from analysis.claims.curves import published_processes
-from analysis.claims.effects import Effect, effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import FAILS, HOLDS, OPEN, Compared, Outcome, directed, judged, no_records, told
+from analysis.claims.outcome import (
+    FAILS,
+    HOLDS,
+    OPEN,
+    Compared,
+    Outcome,
+    judged,
+    no_records,
+    told,
+    unmeasured,
+)
 from analysis.statistics.pairs import ratios_of
 from analysis.statistics.scalability import doubt
-from analysis.statistics.verdicts import MARGIN
+from analysis.statistics.verdicts import MARGIN, Ratio, judge_one
 from analysis.support.wording import blocks, change, exact, factor
 
 ANOTHER_BINDING = "threads are bound at one end and not at the other: the binding changes with their number"
@@ -30,9 +38,9 @@ class Stretch:
     expected: str
     needs: str
 
-    def judge(self, processes: pd.DataFrame) -> dict[str, Any]:
-        """Return the row of `directed` for the time at its end against that at its start."""
-        return directed(ratios_of(processes, "x", self.start, self.end)["log_ratio"], self.margin)
+    def judge(self, processes: pd.DataFrame) -> Ratio:
+        """Return the time at its end against that at its start."""
+        return judge_one(ratios_of(processes, "x", self.start, self.end)["log_ratio"], self.margin)
 
     def same_binding(self, processes: pd.DataFrame) -> bool:
         """Tell whether both ends were measured with threads bound alike."""
@@ -78,7 +86,7 @@ def _stretches(
 
 def _judged(stretch: Stretch, processes: pd.DataFrame, cores: int) -> Outcome:
     row, span = stretch.judge(processes), f"{stretch.start:g} to {stretch.end:g} threads"
-    unlikely = doubt(1 / row["ratio"], min(stretch.end, cores) / min(stretch.start, cores))
+    unlikely = doubt(1 / row.ratio, min(stretch.end, cores) / min(stretch.start, cores))
     measured = f"{span}: {change(row)} of time, {blocks(row)}{unlikely and f' ({unlikely})'}"
     if not stretch.same_binding(processes):
         return Outcome(OPEN, measured, ANOTHER_BINDING)
@@ -90,7 +98,7 @@ def _judged(stretch: Stretch, processes: pd.DataFrame, cores: int) -> Outcome:
 
 def _beside(
     evidence: Evidence, experiment: str, ours: list[Stretch], processes: pd.DataFrame, machine: str
-) -> tuple[tuple[Compared, ...], tuple[Effect, ...]]:
+) -> tuple[tuple[Compared, ...], tuple[Ratio, ...]]:
     """Return the change of time over each stretch on the study's machine and, where it is, on this one: in
     words, and as effects.
     """
@@ -102,13 +110,14 @@ def _beside(
         our = ours[number] if ours else None
         published = their.judge(curve) if their.start < their.end else None
         row = our.judge(processes) if our is not None and our.start < our.end else None
-        figures.append(Compared(f"time {their.what}", _said(their, published), _said(our, row)))
-        ratio = nan if published is None else float(published["ratio"])
-        effects.append(effect_of(their.what, row, ratio, MARGIN if our is None else our.margin))
+        figures.append((f"time {their.what}", _said(their, published), _said(our, row)))
+        nothing = unmeasured("", margin=MARGIN if our is None else our.margin)
+        told = nan if published is None else published.ratio
+        effects.append(replace(row or nothing, what=their.what, published=told))
     return tuple(figures), tuple(effects)
 
 
-def _said(stretch: Stretch | None, row: dict[str, Any] | None) -> str:
+def _said(stretch: Stretch | None, row: Ratio | None) -> str:
     if stretch is None or row is None:
         return "–"
-    return f"{factor(row['ratio'])} from {exact(stretch.start)} to {exact(stretch.end)}"
+    return f"{factor(row.ratio)} from {exact(stretch.start)} to {exact(stretch.end)}"

@@ -1,27 +1,51 @@
-"""Claims that one schedule and chunk is the one to choose."""
+"""Claims that one choice is the one to make: no other that was measured is faster."""
 
 from dataclasses import replace
-from math import nan
+from math import inf, nan
 
 import numpy as np
 import pandas as pd
 
-from analysis.claims.alternatives import alternatives
-from analysis.claims.effects import effect_of
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, directed, judged, no_records, told
+from analysis.claims.outcome import FAILS, OPEN, TOO_FEW, Outcome, judged, no_records, told, unmeasured
+from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import PAIR, log_ratios
+from analysis.statistics.verdicts import INCONCLUSIVE, MARGIN, Ratio, judge, judge_one, of_row, within_margin
 from analysis.support.wording import blocks, change, count, exact, number, percent
 
 ONE_THREAD = "on a single thread a schedule shares nothing out: needs 2 hardware threads"
-
 EFFECTS = ("best other", "against the others")
 NOT_BETTER = {
     "equivalent": "equivalent to the others on average: it does not matter which is chosen",
     "slower": "slower than the others on average",
     "not faster": "not faster than the others on average by more than the margin",
 }
+
+
+def nothing_faster(pairs: pd.DataFrame, margin: float = MARGIN) -> Outcome:
+    """Test that no alternative is faster by more than the margin; `pairs` has `name` and `log_ratio` =
+    ln(alternative / choice). Its effect is the fastest alternative, by its name.
+
+    That nothing is faster needs evidence against every alternative (an intersection of tests, each at 5 %);
+    that something is faster is Holm-corrected over the alternatives.
+    """
+    table = judge(pairs, ["name"], margin)
+    fastest = table.loc[table["ratio"].idxmin()]
+    best, others = of_row(fastest, what=fastest["name"], within=within_margin(margin)), len(table)
+    faster, fewest = table[table["verdict"] == "faster"], int(table["blocks"].min())
+    if len(faster):
+        why = f"faster by more than {100 * margin:g} %: {', '.join(faster['name'])}"
+        return Outcome(FAILS, why=why, p=float(faster["p"].min()), blocks=fewest, effects=(best,))
+    undecided = int((table["not_faster"] > ERROR).sum())
+    verdict = INCONCLUSIVE if undecided else "not faster"
+    row = Ratio(blocks=fewest, p=float(table["not_faster"].max()), verdict=verdict)
+    why = f"not settled against {undecided} of {others} others; {TOO_FEW}"
+    found = judged(row, "not faster", "", unsettled=why)
+    why = found.why or f"none of {others} others is faster by more than {100 * margin:g} %"
+    ahead = table["not_equivalent"].where(table["ratio"] < 1, inf)
+    against = float(ahead.min()) * others if undecided else None
+    return replace(found, why=why, against=against, effects=(best,))
 
 
 def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str, chunk: int) -> Outcome:
@@ -35,8 +59,7 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     processes = evidence.study.times_of(experiment)
     best_published, *ratios = _published(evidence, experiment, schedule, chunk)
     if processes.empty:
-        effects = tuple(effect_of(what, None, ratio) for what, ratio in zip(EFFECTS, ratios, strict=True))
-        return replace(no_records(experiment), effects=effects)
+        return replace(no_records(experiment), effects=tuple(map(unmeasured, EFFECTS, ratios)))
     kind = processes[axis].str.split("_").str[0]
     chosen = processes[(kind == schedule) & (processes["x"] == chunk)]
     others = processes.drop(chosen.index)
@@ -53,26 +76,29 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     margin = evidence.margin(experiment)
     # ln(choice / mean of the others) of every block that has all of them.
     table = pairs.pivot_table(index=PAIR, columns="name", values="log_ratio").dropna()
-    average = directed(-table.mean(axis=1), margin)
-    found = alternatives(pairs, margin)
-    best, seconds = found.best, number(float(np.median(chosen["steps_seconds"])))
-    measured = (
-        f"{schedule} {chunk}: {seconds} s on {count(int(chosen['threads'].iloc[0]), 'thread')}; "
-        f"best other, {best['name']}: {change(best)} of time, {blocks(best)}"
+    average = judge_one(-table.mean(axis=1), margin)
+    seconds = number(float(np.median(chosen["steps_seconds"])))
+    threads = count(int(chosen["threads"].iloc[0]), "thread")
+    found = nothing_faster(pairs, margin)
+    (best,) = found.effects
+    other = f"best other, {best.what}: {change(best)} of time, {blocks(best)}"
+    found = replace(found, measured=f"{schedule} {chunk}: {seconds} s on {threads}; {other}")
+    matters = judged(
+        average, "faster", f"against the others on average {change(average)} of time, {blocks(average)}"
     )
+    if matters.verdict == FAILS:
+        matters = replace(matters, why=NOT_BETTER[told(average, "faster")])
     medians = processes.groupby(["series", "x"], as_index=False)["steps_seconds"].median()
     fastest = _least(evidence.published.experiment(experiment), "seconds"), _least(medians, "steps_seconds")
     figures = (
-        Compared("fastest measured", *fastest),
-        Compared("best other against the choice", best_published, f"{best['name']}: {change(best)}"),
+        ("fastest measured", *fastest),
+        ("best other against the choice", best_published, f"{best.what}: {change(best)}"),
     )
-    against = f"against the others on average {change(average)} of time, {blocks(average)}"
-    matters = judged(average, "faster", against)
-    if matters.verdict == FAILS:
-        matters = replace(matters, why=NOT_BETTER[told(average, "faster")])
-    rows = zip(EFFECTS, (best, average), ratios, strict=True)
-    effects = tuple(effect_of(what, row, published, margin) for what, row, published in rows)
-    return replace(both([found.outcome(measured), matters]), figures=figures, effects=effects)
+    effects = tuple(
+        replace(row, what=what, published=published)
+        for row, what, published in zip((best, average), EFFECTS, ratios, strict=True)
+    )
+    return replace(both([found, matters]), figures=figures, effects=effects)
 
 
 def _published(

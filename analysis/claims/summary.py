@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import Any
 
-from analysis.claims.effects import Effect
 from analysis.claims.missing import DECIDED
 from analysis.claims.outcome import FAILS, HOLDS, IN_DIRECTION, PLAIN, Verdict
 from analysis.statistics.intervals import FEWEST
+from analysis.statistics.verdicts import Ratio
 from analysis.support.wording import NO_BREAK, count, number
 
 MARKS = {HOLDS: "✓", IN_DIRECTION: "✓", FAILS: "✗"}
@@ -56,32 +56,32 @@ def verdict_in_short(row: Mapping[str, Any]) -> str:
     return known or "not decided: not in sight"
 
 
-def _known_in_short(effect: Effect) -> str:
+def _known_in_short(effect: Ratio) -> str:
     """Return what an interval says although it reaches across the margin."""
     if effect.is_exponent or not effect.has_interval:
         return ""
-    most = f"{100 * max(abs(effect.here.low - 1), abs(effect.here.high - 1)):.1f}{NO_BREAK}%"
-    lies_on_it = any(abs(effect.here.estimate - end) <= _ON_THE_MARGIN for end in effect.within)
+    most = f"{100 * max(abs(effect.low - 1), abs(effect.high - 1)):.1f}{NO_BREAK}%"
+    lies_on_it = any(abs(effect.ratio - end) <= _ON_THE_MARGIN for end in effect.within)
     return f"on the margin, at most {most}" if lies_on_it else f"at most {most}"
 
 
-def change_in_short(effect: Effect) -> str:
+def change_in_short(effect: Ratio) -> str:
     """Return what was measured of an effect, e.g. `−10.0 % [−14.7, −5.0]`; an en dash without records."""
     if not effect.is_measured:
         return UNMEASURED
-    estimate = _one(effect, effect.here.estimate, unit=True)
+    estimate = _one(effect, effect.ratio, unit=True)
     if not effect.has_interval:
         return f"{estimate} ({TOO_FEW_BLOCKS})"
-    low, high = (_one(effect, end) for end in effect.here[1:])
+    low, high = (_one(effect, end) for end in (effect.low, effect.high))
     return f"{estimate} [{low}, {high}]"
 
 
-def published_in_short(effect: Effect) -> str:
+def published_in_short(effect: Ratio) -> str:
     """Return what the study measured of an effect, an en dash for what it gives no number of."""
     return _one(effect, effect.published, unit=True) if isfinite(effect.published) else UNMEASURED
 
 
-def both_in_short(effect: Effect) -> str:
+def both_in_short(effect: Ratio) -> str:
     """Return what was measured of an effect and what the study measured of it, as part of a sentence."""
     theirs = (
         f"{published_in_short(effect)} published" if isfinite(effect.published) else "no number published"
@@ -89,7 +89,7 @@ def both_in_short(effect: Effect) -> str:
     return f"{change_in_short(effect)} here, {theirs}"
 
 
-def _one(effect: Effect, ratio: float, *, unit: bool = False) -> str:
+def _one(effect: Ratio, ratio: float, *, unit: bool = False) -> str:
     if effect.is_exponent:
         return number(ratio, 3)
     change = 100 * (ratio - 1)
@@ -97,6 +97,6 @@ def _one(effect: Effect, ratio: float, *, unit: bool = False) -> str:
     return f"{text}{NO_BREAK}%" if unit else text
 
 
-def first_effect(row: Mapping[str, Any]) -> Effect | None:
+def first_effect(row: Mapping[str, Any]) -> Ratio | None:
     """Return the first effect of a row that was measured, None without one."""
     return next((one for one in row["effects"] if one.is_measured), None)

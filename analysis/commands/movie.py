@@ -1,17 +1,20 @@
 """Draws a run as an animation, or one step of it as a picture."""
 
+import logging
 import math
+import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.animation import FFMpegWriter
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
-from analysis.commands.frames import TRANSPARENT, Bytes, Canvas
-from analysis.commands.movie_file import target_of
 from analysis.commands.picture import Moment, Picture
 from analysis.figures.style import SETTINGS
 from analysis.records.trajectory import read_box, read_trajectory
@@ -24,6 +27,11 @@ FRAMES = 150
 
 PICTURE_DOTS, MOVIE_DOTS = 150, 64
 """Dots per inch."""
+COLOURS = 64
+"""Of a GIF: few, so that it is small."""
+
+FOLDER = Path("results", "movies")
+SUFFIXES = (".mp4", ".gif", ".png")
 
 
 def draw(scene: Path, trajectory: Path, output: Path | None = None, step: int | None = None) -> Path:
@@ -42,10 +50,53 @@ def draw(scene: Path, trajectory: Path, output: Path | None = None, step: int | 
             picture.show(Moment(run.steps if step is None else step, 0.0))
             picture.figure.savefig(part, dpi=PICTURE_DOTS)
         else:
-            canvas = Canvas(picture, MOVIE_DOTS)
-            frames = canvas.frames(moments(run.steps, FRAMES))
-            (_write_mp4 if target.suffix == ".mp4" else _write_gif)(canvas, frames, part)
+            picture.discs.set(antialiased=False, alpha=1)  # equal discs have equal pixels, which are small
+            write = _write_mp4 if target.suffix == ".mp4" else _write_gif
+            write(picture, moments(run.steps, FRAMES), part)
     return target
+
+
+def target_of(scene: Path, output: Path | None = None, step: int | None = None) -> Path:
+    """Return the file that `draw` would write: without an output results/movies/SCENE.mp4, .gif where ffmpeg
+    is missing, .png for a step. Raises InputError for a scene, an output or a step with which it could not.
+    """
+    box, has_ffmpeg = read_box(scene), shutil.which("ffmpeg") is not None
+    suffix = ".png" if step is not None else ".mp4" if has_ffmpeg else ".gif"
+    target = output or (FOLDER / scene.stem).with_suffix(suffix)
+    if target.suffix not in SUFFIXES:
+        expected = f"expected one of {', '.join(SUFFIXES)}"
+        raise InputError(f"{target}: found the suffix '{target.suffix}', {expected}")
+    if target.suffix == ".mp4" and not has_ffmpeg:
+        raise InputError(f"{target}: needs ffmpeg, which is not here; install it, or choose a name *.gif")
+    if output is not None and not target.parent.is_dir():
+        raise InputError(f"{target}: found no folder {target.parent}, expected one that is there")
+    if step is not None and target.suffix != ".png":
+        raise InputError(f"{target}: found a step beside a movie, expected a name *.png for a single step")
+    if step is not None and not 0 <= step <= box.steps:
+        raise InputError(f"--step: found {step}, expected a step from 0 to {box.steps}")
+    return target
+
+
+class ProgramError(Exception):
+    """The program said on standard error why; it ended with `exit_code`."""
+
+    def __init__(self, exit_code: int) -> None:
+        super().__init__(f"exit code {exit_code}")
+        self.exit_code = exit_code
+
+
+@contextmanager
+def simulated(program: Path, scene: Path, variant: str) -> Iterator[Path]:
+    """The trajectory of a variant on a scene, simulated now. The program's summary goes where this program's
+    output goes. Raises ProgramError.
+    """
+    with tempfile.TemporaryDirectory(prefix="carom-") as folder:
+        trajectory = Path(folder) / "trajectory"
+        words = [program, "run", scene, "--variant", variant, "--trajectory", trajectory]
+        code = subprocess.call([str(word) for word in words])
+        if code != 0:
+            raise ProgramError(code if code > 0 else 128 - code)
+        yield trajectory
 
 
 def moments(steps: int, frames: int) -> list[Moment]:
@@ -57,47 +108,33 @@ def moments(steps: int, frames: int) -> list[Moment]:
         every = math.ceil(steps / frames)
         return [Moment(step, 0.0) for step in (*range(0, steps, every), steps)]
     parts = frames // max(1, steps)
-    return [Moment(step, part / parts) for step in range(steps) for part in range(parts)] + [
-        Moment(steps, 0.0)
-    ]
+    between = [Moment(step, part / parts) for step in range(steps) for part in range(parts)]
+    return [*between, Moment(steps, 0.0)]
 
 
-def _write_gif(canvas: Canvas, frames: Iterator[Bytes], target: Path) -> None:
-    """Write what changes from frame to frame: all else is transparent, and stays as it was."""
-    palette = canvas.palette.tobytes()
-
-    def images() -> Iterator[Image.Image]:
-        before = None
-        for frame in frames:
-            changed = frame if before is None else np.where(frame == before, TRANSPARENT, frame)
-            before = frame
-            image = Image.frombytes("P", frame.shape[::-1], changed.astype(np.uint8).tobytes())
-            image.putpalette(palette)
-            yield image
-
-    drawn = images()
-    first = next(drawn)
-    first.save(
-        target, save_all=True, append_images=drawn, palette=palette, optimize=False, loop=0, disposal=1,
-        transparency=TRANSPARENT, duration=1000 // FRAMES_PER_SECOND,
-    )  # fmt: skip
+def _write_gif(picture: Picture, shown: Iterable[Moment], target: Path) -> None:
+    picture.figure.set_dpi(MOVIE_DOTS)
+    canvas = FigureCanvasAgg(picture.figure)
+    frames: list[Image.Image] = []
+    for moment in shown:
+        picture.show(moment)
+        canvas.draw()
+        pixels = Image.fromarray(np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[:, :, :3]))
+        palette = frames[0] if frames else None
+        frames.append(pixels.quantize(COLOURS, palette=palette, dither=Image.Dither.NONE))
+    first, *others = frames
+    first.save(target, save_all=True, append_images=others, loop=0, duration=1000 // FRAMES_PER_SECOND)
 
 
-def _write_mp4(canvas: Canvas, frames: Iterator[Bytes], target: Path) -> None:
-    height, width = canvas.background.shape
-    source = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(FRAMES_PER_SECOND)]
-    result = ["-an", "-vcodec", "h264", "-pix_fmt", "yuv420p", str(target)]
-    with tempfile.TemporaryFile("w+", errors="replace") as errors:
-        command = ["ffmpeg", "-loglevel", "error", "-y", *source, "-i", "-", *result]
-        with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=errors) as child:
-            try:
-                assert child.stdin is not None
-                for frame in frames:
-                    child.stdin.write(canvas.palette[frame].tobytes())
-                child.stdin.close()
-            except BrokenPipeError:
-                pass  # what it says is told below
-        if child.returncode != 0:
-            errors.seek(0)
-            said = errors.read().strip().splitlines() or ["it broke off without a word"]
-            raise InputError(f"ffmpeg: {said[-1]}; a name *.gif needs no ffmpeg")
+def _write_mp4(picture: Picture, shown: Iterable[Moment], target: Path) -> None:
+    logging.getLogger("matplotlib.animation").setLevel(logging.ERROR)  # which would tell it in many lines
+    writer = FFMpegWriter(fps=FRAMES_PER_SECOND, codec="h264")
+    try:
+        with writer.saving(picture.figure, str(target), MOVIE_DOTS):
+            for moment in shown:
+                picture.show(moment)
+                writer.grab_frame()
+    except subprocess.CalledProcessError as failed:
+        lines = (failed.stderr or "").strip().splitlines()
+        said = lines[-1] if lines else "it broke off without a word"
+        raise InputError(f"ffmpeg: {said}; a name *.gif needs no ffmpeg") from failed

@@ -12,8 +12,9 @@ from analysis.claims.missing import DECIDED
 from analysis.derived.comparisons import differences, reference, stated
 from analysis.records.reading import load
 from analysis.records.studies import Study
-from analysis.statistics.forecast import blocks_to_decide
 from analysis.statistics.looks import ERROR, next_look
+from analysis.statistics.noise import blocks_to_decide
+from analysis.statistics.verdicts import INCONCLUSIVE
 from analysis.support.wording import change
 
 COMPARED = ("comparison", "control")
@@ -82,13 +83,13 @@ def _comparisons(study: Study, claimed: Collection[str], said: dict[str, str]) -
             continue
         against = reference(times)
         table, error = differences(times, against), stated(times).error
-        undecided = int((table["verdict"] == "inconclusive").sum())
-        for row in table.to_dict("records"):
-            name = f"{experiment}: {row['series']} against {against}"
-            if row["verdict"] != "inconclusive":
-                said[name] = f"{row['verdict']}: {change(row)} of time"
-                yield str(experiment), row["blocks"], math.nan
+        undecided = int((table["verdict"] == INCONCLUSIVE).sum())
+        for row in table.itertuples():
+            name = f"{experiment}: {row.series} against {against}"
+            if row.verdict != INCONCLUSIVE:
+                said[name] = f"{row.verdict}: {change(row)} of time"
+                yield str(experiment), row.blocks, math.nan
             else:
                 # The forecast waits for `ERROR`: a stricter error is that of a larger family.
                 family = max(1, round(undecided * ERROR / error))
-                yield str(experiment), row["blocks"], blocks_to_decide(row["alone"], row["blocks"], family)
+                yield str(experiment), row.blocks, blocks_to_decide(row.alone, row.blocks, family)

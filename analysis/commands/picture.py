@@ -4,17 +4,18 @@ colours in which the checkered order resolves them.
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.text import Text
 
 from analysis.figures.style import INK
 from analysis.records.trajectory import Box, Trajectory
-from analysis.support.values import Floats
 
 MOST_BOXES = 48
 """Boxes a side up to which they are drawn; more of them would be finer than the picture."""
@@ -55,22 +56,13 @@ class Picture:
         _draw_boxes(self.axes, box)
 
     def show(self, moment: Moment) -> None:
-        """Put the discs where they are at the moment."""
-        self.discs.set_offsets(self.positions(moment))
-        self.discs.set_array(self.speeds(moment))
-        self.title.set_text(self.words(moment))
-
-    def positions(self, moment: Moment) -> Floats:
-        """Return where the discs are: between two steps they fly freely."""
-        return self.run.positions[moment.step] + moment.fraction * self.run.velocities[moment.step]
-
-    def speeds(self, moment: Moment) -> Floats:
-        """Return how fast each disc is."""
-        return np.hypot(*self.run.velocities[moment.step].T)
-
-    def words(self, moment: Moment) -> str:
-        """Return the title: the scene and the step."""
-        return f"{self._name}, step {moment.step} of {self.run.steps}"
+        """Put the discs where they are at the moment, in the colours of their speeds: between two steps they
+        fly freely.
+        """
+        velocities = self.run.velocities[moment.step]
+        self.discs.set_offsets(self.run.positions[moment.step] + moment.fraction * velocities)
+        self.discs.set_array(np.hypot(*velocities.T))
+        self.title.set_text(f"{self._name}, step {moment.step} of {self.run.steps}")
 
     def _name_boxes(self) -> None:
         count = boxes_per_side(self.box)
@@ -122,11 +114,12 @@ def _draw_boxes(axes: Axes, box: Box) -> None:
     if count > MOST_BOXES:
         return
     side = max(4 * box.radius + 1, box.side / count)
-    for row in range(count):
-        for column in range(count):
-            corner = column * side, row * side
-            width, height = (min(side, box.side - start) for start in corner)
-            colour = COLOURS[row % 2 * 2 + column % 2]
-            axes.add_patch(
-                Rectangle(corner, width, height, facecolor=colour, edgecolor="white", linewidth=0.5)
-            )
+    ends, odd = np.minimum(side * np.arange(count + 1), box.side), np.arange(count) % 2
+    look: Any = {
+        "cmap": ListedColormap(COLOURS),
+        "edgecolors": "white",
+        "linewidth": 0.5,
+        "zorder": 1,
+        "antialiased": True,
+    }
+    axes.pcolormesh(ends, ends, 2 * odd[:, np.newaxis] + odd, vmin=0, vmax=len(COLOURS) - 1, **look)

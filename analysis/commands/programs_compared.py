@@ -10,11 +10,11 @@ import pandas as pd
 from analysis.derived.comparisons import Stated, differences, reference, stated
 from analysis.records.reading import load
 from analysis.records.studies import split
-from analysis.statistics.forecast import blocks_to_decide
 from analysis.statistics.looks import ERROR, next_look
+from analysis.statistics.noise import blocks_to_decide
 from analysis.statistics.pairs import rounds_of, runs_of
 from analysis.statistics.ranking import ranking
-from analysis.statistics.verdicts import corrected, judge_one
+from analysis.statistics.verdicts import INCONCLUSIVE, corrected, judge_one
 from support.files import read_json
 from support.vocabulary import AGAIN, ASKED, OWN, WALL
 
@@ -43,12 +43,10 @@ def programs_compared(results: Path, many: int = 1, clock: str = WALL) -> dict[s
     found = differences(times[~is_control], against)
     together = Stated(by.margin, by.error / (max(1, len(found)) * many))
     of_all = differences(times[~is_control], against, together).set_index(["series", "x"])["low"]
-    rows = [
-        {**_row(row), "low_of_all": _end(of_all[row["series"], row["x"]])} for row in found.to_dict("records")
-    ]
-    open_ones = max(1, sum(row["verdict"] == "inconclusive" for row in rows))
+    rows = [{**_row(row), "low_of_all": _end(of_all[row.series, row.x])} for row in found.itertuples()]
+    open_ones = max(1, sum(row["verdict"] == INCONCLUSIVE for row in rows))
     for row in rows:
-        if row["verdict"] == "inconclusive":
+        if row["verdict"] == INCONCLUSIVE:
             needed = blocks_to_decide(
                 row["alone"], row["blocks"], max(1, round(open_ones * ERROR / by.error))
             )
@@ -89,9 +87,11 @@ def _effects(times: pd.DataFrame, by: Stated, contrasts: Any) -> list[dict[str, 
         weights = pd.Series(one["weights"], dtype=float)
         if set(weights.index) <= set(logs.columns):
             sums = logs[weights.index].to_numpy() @ weights.to_numpy()
-            rows.append({"series": one["name"], "x": 0, **judge_one(sums, by.margin, by.error, stops=stops)})
+            rows.append(
+                {"series": one["name"], "x": 0, **vars(judge_one(sums, by.margin, by.error, stops=stops))}
+            )
     table = pd.DataFrame(rows)
-    return [_row(row) for row in corrected(table, by.error).to_dict("records")] if rows else []
+    return list(map(_row, corrected(table, by.error).itertuples())) if rows else []
 
 
 def _controls(times: pd.DataFrame, against: str) -> list[dict[str, Any]]:
@@ -100,7 +100,7 @@ def _controls(times: pd.DataFrame, against: str) -> list[dict[str, Any]]:
     """
     by = stated(times)
     part = by.error / max(1, times["x"].nunique())
-    return [_row(row) for row in differences(times, against, Stated(by.margin, part)).to_dict("records")]
+    return list(map(_row, differences(times, against, Stated(by.margin, part)).itertuples()))
 
 
 def _places(times: pd.DataFrame) -> list[dict[str, Any]]:
@@ -112,13 +112,12 @@ def _places(times: pd.DataFrame) -> list[dict[str, Any]]:
     ]
 
 
-def _row(row: dict[Any, Any]) -> dict[str, Any]:
+def _row(row: Any) -> dict[str, Any]:  # noqa: ANN401 - of a table
     """Return the row as JSON has it; what reaches without end is None."""
-    ends = {key: _end(row[key]) for key in ("low", "high")}
-    told = {"series": str(row["series"]), "verdict": row["verdict"], "x": int(row["x"])}
-    numbers = {key: float(row[key]) for key in ("ratio", "alone", "p")}
-    differs = ends["low"] is not None and ends["high"] is not None and not ends["low"] <= 1 <= ends["high"]
-    return {**told, **numbers, **ends, "blocks": int(row["blocks"]), "differs": differs}
+    told = {"series": str(row.series), "verdict": row.verdict, "x": int(row.x), "blocks": int(row.blocks)}
+    numbers = {key: float(getattr(row, key)) for key in ("ratio", "alone", "p")}
+    differs = bool(np.isfinite(row.high) and not row.low <= 1 <= row.high)
+    return {**told, **numbers, "low": _end(row.low), "high": _end(row.high), "differs": differs}
 
 
 def _end(value: float) -> float | None:

@@ -11,10 +11,10 @@ from matplotlib.ticker import MaxNLocator
 
 from analysis.commands.programs_compared import asked, times_of
 from analysis.derived.comparisons import Stated, differences, reference, stated
-from analysis.figures.curves import forest
-from analysis.figures.labels import name_rows
-from analysis.figures.style import BAND, FAINT, PALETTE, Drawing, lighten, new_grid, save, styled
+from analysis.figures.kinds import forest, of_ratio, shade
+from analysis.figures.style import FAINT, PALETTE, Drawing, Look, lighten, new_grid, save, styled
 from analysis.statistics.pairs import log_ratios
+from analysis.statistics.verdicts import INCONCLUSIVE
 from support.errors import InputError
 from support.vocabulary import AGAIN
 
@@ -75,27 +75,24 @@ def _pairs(times: pd.DataFrame, against: str) -> dict[tuple[str, float], pd.Seri
 def _intervals(
     axes: Axes, table: pd.DataFrame, pairs: dict[tuple[str, float], pd.Series], by: Stated
 ) -> None:
-    rows = table.to_dict("records")
-    for height, row in enumerate(rows):
-        known = row["verdict"] if row["verdict"] != "inconclusive" else "not settled"
-        row |= {"at": height, "mark": "o", "said": "control" if row["is_control"] else known}
-        blocks = pairs[row["series"], row["x"]]
-        pale = lighten(row["colour"], 0.6)
+    dots = []
+    for height, row in enumerate(table.itertuples()):
+        known = row.verdict if row.verdict != INCONCLUSIVE else "not settled"
+        said = "control" if row.is_control else known
+        dots.append(of_ratio(row, height, row.name, Look(row.colour), said))
+        blocks, pale = pairs[row.series, row.x], lighten(row.colour, 0.6)
         axes.plot(blocks, np.full(len(blocks), height - 0.28), "o", color=pale, markersize=2, zorder=2)
-    forest(axes, rows, by.margin)
-    name_rows(axes, list(table["name"]))
-    axes.set_ylim(-0.7, len(table) - 0.2)
+    forest(axes, dots, list(table["name"]), by.margin)
 
 
 def _blocks(axes: Axes, table: pd.DataFrame, pairs: dict[tuple[str, float], pd.Series], by: Stated) -> None:
-    axes.axhspan(-100 * by.margin, 100 * by.margin, color=BAND, zorder=0, linewidth=0)
-    axes.axhline(0, color=FAINT, linewidth=0.7, zorder=1)
-    for row in table.to_dict("records"):
-        blocks = pairs[row["series"], row["x"]]
-        label = f"{row['name']} (control)" if row["is_control"] else row["name"]
+    shade(axes, -100 * by.margin, 100 * by.margin, 0, upright=True)
+    for row in table.itertuples():
+        blocks = pairs[row.series, row.x]
+        label = f"{row.name} (control)" if row.is_control else row.name
         axes.plot(
             range(1, len(blocks) + 1), blocks, marker="o", markersize=2.5, linewidth=0.8,
-            color=row["colour"], label=label,
+            color=row.colour, label=label,
         )  # fmt: skip
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.legend(fontsize=7, frameon=False, ncols=min(4, len(table)), loc="upper left")

@@ -14,10 +14,10 @@ import pandas as pd
 
 from analysis.records.studies import Study
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.convergence import order
 from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import log_ratios, narrow, scaled
-from analysis.statistics.pareto import front
+from analysis.statistics.ranking import front
+from analysis.statistics.trends import order
 from analysis.statistics.verdicts import error_of_picked, judge_one
 from analysis.support.values import Interval
 
@@ -228,8 +228,8 @@ class Race:
         key = candidate, reference
         if key not in self._slower:
             ratios = self._ratios_to(reference).get(candidate, pd.Series(dtype=float))
-            row = judge_one(ratios, error=error_of_picked(len(self._timed)))
-            self._slower[key] = row["verdict"] == "slower"
+            verdict = judge_one(ratios, error=error_of_picked(len(self._timed))).verdict
+            self._slower[key] = verdict == "slower"
         return self._slower[key]
 
     def _ratios_to(self, reference: Entrant) -> dict[Entrant, pd.Series]:

@@ -5,6 +5,7 @@ one or more scenes. What each rung costs and gains, from the records alone.
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -75,13 +76,13 @@ def totals(times: pd.DataFrame) -> pd.DataFrame:
     return _judged(times, lambda numbers: [(numbers[0], numbers[-1])] if len(numbers) > 1 else [], RUNG[:1])
 
 
-def speed_up(row: pd.Series | dict[str, float], digits: int = 3) -> str:
-    """Return a row of `verdicts.judge` as the factor by which it is faster, e.g. `9.87 × [9.52, 10.2]`, with
+def speed_up(row: Any, digits: int = 3) -> str:  # noqa: ANN401 - a ratio, or a row of a table of them
+    """Return a ratio as the factor by which it is faster, e.g. `9.87 × [9.52, 10.2]`, with
     its interval if it has one.
     """
-    if not math.isfinite(row["high"]):
-        return f"{number(1 / row['ratio'], digits)} × {NO_INTERVAL}"
-    factor, low, high = (number(1 / row[end], digits) for end in ("ratio", "high", "low"))
+    factor, low, high = (number(1 / end, digits) if end else "" for end in (row.ratio, row.high, row.low))
+    if not math.isfinite(row.high):
+        return f"{factor} × {NO_INTERVAL}"
     return f"{factor} × [{low}, {high}]"
 
 
@@ -89,8 +90,8 @@ def claims(runs: pd.DataFrame, times: pd.DataFrame) -> list[str]:
     """Return a sentence a scene: by how much the last rung is faster than the first, with its interval."""
     first = _name(runs, runs["series_number"].min())
     return [
-        f"{scene_title(runs, str(row['scene_name']))}: {speed_up(row)} faster than {first} ({row['verdict']})"
-        for row in totals(times).to_dict("records")
+        f"{scene_title(runs, str(row.scene_name))}: {speed_up(row)} faster than {first} ({row.verdict})"
+        for row in totals(times).itertuples()
     ]
 
 

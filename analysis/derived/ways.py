@@ -11,6 +11,7 @@ import pandas as pd
 from analysis.records.studies import Study
 from analysis.statistics.intervals import FEWEST, centre
 from analysis.statistics.pairs import PAIR, ratios_of
+from analysis.statistics.verdicts import ratio_of
 from analysis.support.values import Interval
 from analysis.support.wording import change, listed, percent
 
@@ -111,5 +112,6 @@ def overall(found: list[Comparison]) -> Interval:
 
 def said(log_ratio: Interval) -> str:
     """Return a log ratio as a change with its interval, e.g. `−0.2 % [−0.9 %, +0.5 %]`."""
-    row = dict(zip(("ratio", "low", "high"), np.exp(log_ratio).tolist(), strict=True))
-    return change(row) if np.isfinite(row["high"]) else percent(row["ratio"] - 1)
+    return (
+        change(ratio_of(log_ratio)) if np.isfinite(log_ratio.high) else percent(np.expm1(log_ratio.estimate))
+    )

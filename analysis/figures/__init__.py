@@ -14,22 +14,7 @@ import pandas as pd
 from analysis import claims
 from analysis.derived.accuracy import MEASURES
 from analysis.derived.ways import KIND, bias_sentence
-from analysis.figures import (
-    comparisons,
-    counters,
-    hard_cases,
-    ladder,
-    limits,
-    machines,
-    pairs,
-    phases,
-    scaling,
-    schedules,
-    speed_against_error,
-    sweeps,
-    timeline,
-    ways,
-)
+from analysis.figures import comparisons, errors, ladder, pairs, profiles, scaling, sweeps
 from analysis.figures.captions import growth_sentence, linear_sentence, minimum_sentence
 from analysis.figures.style import Data, Drawing, mark_partial, partial, save, styled
 from analysis.records.studies import Study
@@ -87,19 +72,19 @@ def _schedule(experiment: str, title: str, subject: str) -> Entry:
     """Return the entry of schedules, with the one that a published claim says is to be chosen."""
     told = next(claim.arguments for claim in claims.load() if experiment in claim.experiments)
     chosen = (told["schedule"], told["chunk"])
-    return _of_kind(experiment, title, schedules.schedule, subject, chosen=chosen)
+    return _of_kind(experiment, title, sweeps.schedule, subject, chosen=chosen)
 
 
 def _counted(name: str, title: str, source: str, subject: str) -> Entry:
-    return Entry(name, "phases", title, bound(counters.panels, source=source, subject=subject))
+    return Entry(name, "phases", title, bound(profiles.panels, source=source, subject=subject))
 
 
 def _accuracy(kind: str, experiment: str, name: str, title: str) -> list[Entry]:
     """Return the entries of an experiment about errors: one figure, or one for each measure."""
     if kind == HARD_CASES:
-        drawn = bound(hard_cases.hard_cases, experiment=experiment, subject=title)
+        drawn = bound(errors.hard_cases, experiment=experiment, subject=title)
         return [Entry(name, experiment, title, drawn, kind)]
-    drawn = bound(speed_against_error.draw, experiment=experiment, subject=title)
+    drawn = bound(errors.draw, experiment=experiment, subject=title)
     return [
         Entry(f"{name}-{one.key}", experiment, f"{title}: {one.title}", bound(drawn, measure=one), kind)
         for one in MEASURES
@@ -114,12 +99,13 @@ _EARLY = "Resolving self-contained pairs early, on against off, under the"
 FIGURES = [
     _pair("control", "Control: the same variant twice", "A-again", "A",
           "The same variant under two labels", ("A again", "A")),
-    _of_kind("ways", "In turns, and in processes of their own", ways.ways, "The same comparisons both ways"),
-    _of_kind("ways_of_processes", "Whole processes in slices, and alone", ways.ways,
+    _of_kind("ways", "In turns, and in processes of their own", comparisons.ways,
+             "The same comparisons both ways"),
+    _of_kind("ways_of_processes", "Whole processes in slices, and alone", comparisons.ways,
              "The same whole processes both ways"),
     _of_kind("threads", "Threads", scaling.scaling, "Time, speed-up and efficiency over threads"),
     _own("oversubscription", "More threads than the machine has", scaling.oversubscription),
-    _of_kind("machine", "Machines", machines.machines, "One scene on every machine"),
+    _of_kind("machine", "Machines", comparisons.machines, "One scene on every machine"),
     _over("particles", "Number of discs", "number of discs", growth_sentence),
     _own("grid_length", "Side length", sweeps.grid_length),
     _over("radius", "Radius", "radius of a disc", minimum_sentence),
@@ -148,10 +134,10 @@ FIGURES = [
           "The same source by two compilers"),
     _of_kind("ladder", "The ladder from the published best to the fastest variant", ladder.waterfall,
              "From the published best to the fastest variant"),
-    _of_kind("phases", "The phases of a step", phases.profile, "Where the time of a step goes"),
-    _of_kind("limits", "How close to the limits of the machine", limits.phases_against_limits,
+    _of_kind("phases", "The phases of a step", profiles.profile, "Where the time of a step goes"),
+    _of_kind("limits", "How close to the limits of the machine", profiles.phases_against_limits,
              "Phases of a step against the limits of this machine"),
-    _own("timeline", "A step on every thread", timeline.timeline, "phases"),
+    _own("timeline", "A step on every thread", profiles.timeline, "phases"),
     _counted("counters_hardware", "Hardware counters", "papi-hardware", "Hardware counters (PAPI)"),
     _counted("counters_software", "Software counters", "papi-software", "Software counters (PAPI)"),
     _counted("counters_usage", "Resource usage", "rusage", "Resource usage (getrusage)"),
@@ -166,13 +152,13 @@ KINDS: dict[str, Callable[[Data, str, str], Drawing | None]] = {
     "trend": sweeps.trend,
     "comparison": comparisons.comparison,
     "control": comparisons.comparison,
-    "schedule": schedules.schedule,
-    "machine": machines.machines,
-    "phases": phases.profile,
+    "schedule": sweeps.schedule,
+    "machine": comparisons.machines,
+    "phases": profiles.profile,
     "ladder": ladder.waterfall,
-    "limits": limits.phases_against_limits,
-    KIND: ways.ways,
-    PAUSES: ways.pauses,
+    "limits": profiles.phases_against_limits,
+    KIND: comparisons.ways,
+    PAUSES: comparisons.pauses,
 }
 """How an experiment without a figure of its own is drawn, given its name and title, by its tag `figure`."""
 

@@ -7,7 +7,7 @@ import pandas as pd
 from analysis.statistics.pairs import timed_runs, without_partner
 from analysis.statistics.trends import growth, linearity, minimum
 from analysis.support.values import Interval
-from analysis.support.wording import change, count, exact, interval, listed
+from analysis.support.wording import change, count, exact, interval, interval_of, listed
 
 MEDIANS = "Dots are medians, bars their 95 % bootstrap intervals"
 PROCESSES = "A dot is the median of one process"
@@ -44,9 +44,9 @@ def _alone(times: pd.DataFrame) -> str:
 
 
 def differing(names: Iterable[str], table: pd.DataFrame) -> str:
-    """Say the change of each row of `verdicts.judge`, with its name and its verdict."""
-    rows = zip(names, table.to_dict("records"), strict=True)
-    return "; ".join(f"{name} {change(row)} ({row['verdict']})" for name, row in rows)
+    """Say each ratio of a table, with its name and its verdict."""
+    rows = zip(names, table.itertuples(), strict=True)
+    return "; ".join(f"{name} {change(row)} ({row.verdict})" for name, row in rows)
 
 
 def by_series(runs: pd.DataFrame) -> str:
@@ -79,7 +79,7 @@ def growth_sentence(times: pd.DataFrame) -> str:
         return ""
     trend = growth(times)
     verdict = {"grows": "The time grows", "falls": "The time falls", "flat": "The time stays the same"}
-    said = verdict.get(trend.verdict, "No trend is settled")
+    said = verdict.get(trend.change.verdict, "No trend is settled")
     return (
         f" {said}: {change(trend.change)} from {exact(trend.first)} to {exact(trend.last)}"
         f"{_with('; fitted exponent', trend.exponent)}."
@@ -89,11 +89,11 @@ def growth_sentence(times: pd.DataFrame) -> str:
 def linear_sentence(times: pd.DataFrame) -> str:
     """Say whether the time is a straight line, with the exponent over a fixed cost."""
     line = linearity(times)
-    if pd.isna(line.exponent.estimate):
+    if not line.is_measured:
         return growth_sentence(times)
     said = {"linear": "The time is linear", "not linear": "The time is not linear"}
     verdict = said.get(line.verdict, "Whether the time is linear is not settled")
-    return f" {verdict}: exponent {interval(line.exponent)} over a fixed cost."
+    return f" {verdict}: exponent {interval_of(line, 'ratio')} over a fixed cost."
 
 
 def minimum_sentence(times: pd.DataFrame) -> str:
@@ -104,7 +104,7 @@ def minimum_sentence(times: pd.DataFrame) -> str:
     where = f"{exact(least.lowest)}{_with('; break point', least.break_point)}"
     return (
         f" The time is least at {where}; against it {change(least.fall)} at the smallest and "
-        f"{change(least.rise)} at the largest ({least.verdict})."
+        f"{change(least.rise)} at the largest ({least.fall.verdict})."
     )
 
 

@@ -1,5 +1,5 @@
-"""What is written in a figure: keys, ticks, and names at the ends of curves and beside points, so that none
-lies on another.
+"""What is written in a figure: keys, ticks, names of rows, and names at the ends of curves and beside points,
+so that none lies on another.
 """
 
 import math
@@ -7,21 +7,17 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea, VPacker
-from matplotlib.textpath import TextPath
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
-from matplotlib.transforms import ScaledTranslation
 from scipy.optimize import isotonic_regression
 
-from analysis.figures.layout import POINTS_PER_INCH, when_laid_out
-from analysis.figures.style import WIDTH
 from analysis.support.wording import exact
 
-KEY_SIZE, KEY_GAP, KEY_WIDTH = 7, 9, 72 * WIDTH - 50
-"""In points: of the letters of a key, between its entries, and the most of a line, beside an axis."""
+KEY_LETTERS = 105
+"""Letters that a line of a key has room for."""
 
 SIGNS = {"o": "●", "s": "■", "^": "▲", "D": "◆", "v": "▼", "P": "✚"}
 HOLLOW_SIGNS = {"o": "○", "s": "□", "^": "△", "D": "◇", "v": "▽", "P": "✚"}
@@ -34,54 +30,18 @@ STEPS = (
 """Round numbers of one power of ten, ever fewer."""
 
 LINE_POINTS = 9.0
-
-DIGIT_WIDTH, DIGIT_HEIGHT = 0.66, 1.0
-"""Of a label beside a point, in sizes of its font."""
-
-CORNERS = ((-1, -1), (1, -1), (-1, 1), (1, 1))
-"""Where a label may stand beside its point, the best place first."""
-
-BESIDE = 3.0
-"""Points between a point and its label."""
+"""Of a name at the end of a curve."""
 
 
-def key(axes: Axes, entries: Sequence[tuple[str, str]], raised: float = 4) -> None:
-    """Name the curves above the axes, each in its own colour, in as many lines as it takes; `entries` are
-    text and colour, `raised` is in points.
-    """
-    lines: list[Artist] = [
-        HPacker(
-            children=[TextArea(text, textprops={"color": to, "fontsize": KEY_SIZE}) for text, to in line],
-            pad=0,
-            sep=KEY_GAP,
-            align="baseline",
-        )
-        for line in _lines_of_key(entries)
-    ]
-    figure = axes.figure.get_figure(root=True)
-    anchored = AnchoredOffsetbox(
-        "lower left", child=VPacker(children=lines, pad=0, sep=3, align="left"), pad=0, borderpad=0,
-        frameon=False, bbox_to_anchor=(0, 1),
-        bbox_transform=axes.transAxes + ScaledTranslation(0, raised / 72, figure.dpi_scale_trans),
+def key(figure: Figure, entries: Sequence[tuple[str, str]]) -> None:
+    """Name what is drawn above the panels, each text in its colour."""
+    texts, colours = zip(*entries, strict=True)
+    columns = max(1, min(len(texts), KEY_LETTERS // (max(map(len, texts)) + 3)))
+    figure.legend(
+        [Line2D([], [], linestyle="") for _ in texts], texts, loc="outside upper left", ncols=columns,
+        labelcolor=list(colours), fontsize=7, frameon=False, handlelength=0, handletextpad=0, borderpad=0.2,
+        columnspacing=1.3, labelspacing=0.3,
     )  # fmt: skip
-    # Wide keys run on over the neighbouring axes: only their height may count in the layout.
-    anchored.set_in_layout(False)
-    axes.set_title("\n".join(" " for _ in lines), pad=raised)
-    axes.add_artist(anchored)
-
-
-def _lines_of_key(entries: Sequence[tuple[str, str]]) -> list[list[tuple[str, str]]]:
-    """Share the entries out to lines that end before the figure does."""
-    lines: list[list[tuple[str, str]]] = [[]]
-    left = KEY_WIDTH
-    for text, colour in entries:
-        width = TextPath((0, 0), text, size=KEY_SIZE).get_extents().width + KEY_GAP
-        if width > left and lines[-1]:
-            lines.append([])
-            left = KEY_WIDTH
-        lines[-1].append((text, colour))
-        left -= width
-    return lines
 
 
 def name_rows(axes: Axes, names: Sequence[str], heights: Sequence[float] | None = None) -> None:
@@ -133,58 +93,53 @@ def steps_within(low: float, high: float, most: int) -> list[float]:
     return []
 
 
+def power_of_ten(value: float) -> str:
+    """Return a power of ten as 0.01 or 10⁻⁶, whichever is shorter to read."""
+    power = round(np.log10(value))
+    if -3 <= power <= 3:
+        return exact(value)
+    return f"10{str(power).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"
+
+
 def from_zero(axes: Axes) -> None:
     """Let the vertical axis begin at zero, with room above the highest point."""
     axes.set_ylim(0, axes.get_ylim()[1] * 1.02)
 
 
+def _points(axes: Axes, x: float, y: float) -> tuple[float, float]:
+    """Return, nearly, where a place of a panel will be, in points from its corner."""
+    figure = axes.figure.get_figure(root=True)
+    place = axes.transAxes.inverted().transform(axes.transData.transform((x, y)))
+    size = axes.get_position().size * figure.get_size_inches() * 72
+    return float(place[0] * size[0]), float(place[1] * size[1])
+
+
 def label_ends(axes: Axes, labels: Sequence[tuple[str, float, str]], size: float = 7) -> None:
-    """Write each label (text, height in data units, colour) right of the axes, none on another."""
-    lines = max((text.count("\n") + 1 for text, _, _ in labels), default=1)
-    figure = axes.figure.get_figure(root=True)
-    beside: Any = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center"}
-    written = [
-        axes.annotate(text, (1, y), xytext=(4, 0), color=colour, fontsize=size, **beside)
-        for text, y, colour in labels
-    ]
-
-    def move_apart() -> None:
-        points = POINTS_PER_INCH / figure.dpi
-        wanted = [axes.transData.transform((axes.get_xlim()[1], y))[1] * points for _, y, _ in labels]
-        for text, height, place in zip(written, spread(wanted, lines * LINE_POINTS), wanted, strict=True):
-            text.set_position((4, height - place))
-
-    when_laid_out(figure, move_apart)
-
-
-def label_points(axes: Axes, labels: Sequence[tuple[str, float, float]], colour: str, size: float = 6) -> int:
-    """Write each label (text, x, y) into a corner of its point where it lies on no other and beside no axes;
-    leave out one that has no room. Return how many were written.
-
-    Call it when the figure is laid out: it needs the final limits and layout.
+    """Write each label (text, height in data units, colour) right of the axes, none on another. Call it when
+    the limits are settled.
     """
-    figure = axes.figure.get_figure(root=True)
-    window = axes.get_window_extent()
-    first, last = (end * 72 / figure.dpi for end in (window.x0, window.x1))
-    taken: list[tuple[float, float, float, float]] = []
+    lines = max((text.count("\n") + 1 for text, _, _ in labels), default=1)
+    at = [_points(axes, axes.get_xlim()[1], y)[1] for _, y, _ in labels]
+    beside: Any = {"xycoords": ("axes fraction", "data"), "va": "center", "fontsize": size}
+    for (text, y, colour), wanted, place in zip(labels, at, spread(at, lines * LINE_POINTS), strict=True):
+        note(axes, text, (1, y), (4, place - wanted), color=colour, **beside)
+
+
+def label_points(
+    axes: Axes, labels: Sequence[tuple[str, float, float]], colour: str, size: float = 6
+) -> None:
+    """Write each label (text, x, y) below and left of its point; leave out one that would lie on another.
+    Call it when the limits are settled.
+    """
+    taken: list[tuple[float, float, float]] = []
     for text, x, y in labels:
-        at = axes.transData.transform((x, y)) * 72 / figure.dpi
-        width, height = DIGIT_WIDTH * size * len(text), DIGIT_HEIGHT * size
-        for right, up in CORNERS:
-            left = at[0] + (BESIDE if right > 0 else -BESIDE - width)
-            bottom = at[1] + (BESIDE if up > 0 else -BESIDE - height)
-            box = (left, bottom, left + width, bottom + height)
-            inside = first <= left and left + width <= last
-            if inside and not any(
-                box[0] < other[2] and other[0] < box[2] and box[1] < other[3] and other[1] < box[3]
-                for other in taken
-            ):
-                taken.append(box)
-                align = {"ha": "left" if right > 0 else "right", "va": "bottom" if up > 0 else "top"}
-                offset = right * BESIDE, up * BESIDE
-                note(axes, text, (x, y), offset, fontsize=size, color=colour, zorder=4, **align)
-                break
-    return len(taken)
+        (right, up), width = _points(axes, x, y), 0.66 * size * len(text)
+        is_free = all(
+            right < left or end < right - width or abs(up - other) > size for left, end, other in taken
+        )
+        if is_free and right > width:
+            taken.append((right - width, right, up))
+            note(axes, text, (x, y), (-3, -3), fontsize=size, color=colour, zorder=4, ha="right", va="top")
 
 
 def spread(positions: Sequence[float], gap: float) -> list[float]:

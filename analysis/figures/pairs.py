@@ -3,8 +3,7 @@ axis, and the times of both beside it.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -13,14 +12,13 @@ from matplotlib.ticker import MaxNLocator
 
 from analysis.derived.comparisons import USUAL, Stated
 from analysis.figures.captions import PROCESSES, SCENES, opening, time_axis
-from analysis.figures.curves import forest, line
-from analysis.figures.hover import Told
-from analysis.figures.labels import label_ends, name_rows, note, plain_ticks
+from analysis.figures.kinds import forest, line, of_ratio
+from analysis.figures.labels import label_ends, note, plain_ticks
 from analysis.figures.style import INK, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.statistics.pairs import PAIR, log_ratios
-from analysis.statistics.verdicts import MARGIN, judge_one
+from analysis.statistics.verdicts import MARGIN, Ratio, judge_pairs
 from analysis.support.values import Floats
-from analysis.support.wording import blocks, change, count, exact, number, percent
+from analysis.support.wording import blocks, change, count, exact, percent
 from support.vocabulary import COUNTS
 
 MANY = 40
@@ -37,57 +35,62 @@ class Sides:
     subject: str
     names: tuple[str, str]
 
+    @property
+    def series(self) -> tuple[str, str]:
+        """Their names in the records."""
+        return self.candidate, self.reference
+
+    @property
+    def looks(self) -> dict[str, Look]:
+        """The look of both by the names that the reader is given."""
+        found = looks(self.series[::-1])
+        return {name: found[series] for name, series in zip(self.names, self.series, strict=True)}
+
 
 def pair_drawing(
-    data: Data, sides: Sides, work: bool = False, by: Stated = USUAL, row: dict[str, Any] | None = None
+    data: Data, sides: Sides, work: bool = False, by: Stated = USUAL, row: Ratio | None = None
 ) -> Drawing | None:
     """Draw the ratio of both sides with its verdict, of `row` if it is known, by what the question states.
     Below it is the published one, beside it are the times block by block. With `work` also the attempts at
     resolving a pair that each takes.
     """
     times = data.study.times_of(sides.experiment)
-    both = [times[times["series"] == name] for name in (sides.candidate, sides.reference)]
-    candidate, reference = map(_one_a_block, both)
+    candidate, reference = (times[times["series"] == name] for name in sides.series)
     if candidate.empty or reference.empty:
         return None
     if work and (times["question_kind"] == COUNTS).all():
         return _of_counts(data, sides)
-    theirs = data.published.ratio(sides.experiment, sides.candidate, sides.reference)
+    theirs = data.published.ratio(sides.experiment, *sides.series)
     # The ratio has most of the room.
     widths = [2.1, 1.0, *([0.9] if theirs else []), *([0.9] if work else [])]
     figure, axes = new_figure(2.3, len(widths), widths)
     # Of several scenes of a sweep, one value a block.
-    pairs = log_ratios(both[1], both[0], match=("x",)).groupby(PAIR, as_index=False, sort=False)
+    pairs = log_ratios(reference, candidate, match=("x",)).groupby(PAIR, as_index=False, sort=False)
     pairs = pairs[["log_ratio", "bias", "stops"]].mean()
-    if row is None:
-        row = judge_one(pairs["log_ratio"], by.margin, by.error, biases=pairs["bias"], stops=pairs["stops"])
+    row = row or judge_pairs(pairs, by.margin, by.error)
     runs = data.published.experiment(sides.experiment)
+    named = dict(zip(sides.series, sides.names, strict=True))
     each = [np.exp(pairs["log_ratio"].to_numpy()), _published_ratios(runs, sides)]
     ratio_panel(axes[0], row, theirs, sides.names, by.margin, each)
-    shown = _shown(sides)
-    _by_block(axes[1], {sides.names[0]: candidate, sides.names[1]: reference}, shown, time_axis(times))
+    both = _one_a_block(times[times["series"].isin(sides.series)])
+    _times(axes[1], both.assign(name=both["series"].map(named)), "steps_seconds", sides.looks)
+    axes[1].set(xlabel="block", ylabel=time_axis(times), title="measured")
     if theirs:
         axes[2].set(xlabel="repetition", ylabel="time of the process, s", title="published")
-        of_names = dict(zip((sides.candidate, sides.reference), sides.names, strict=True))
-        _times(axes[2], runs.assign(name=runs["series"].map(of_names)), "seconds", shown, published=True)
+        runs = runs.assign(name=runs["series"].map(named))
+        _times(axes[2], runs, "seconds", sides.looks, published=True)
     if work:
         _work(axes[-1], data, sides)
     dots = SCENES if times["x"].nunique() > 1 else PROCESSES
     said = _sentences(row, theirs, sides, by)
-    verdicts = pd.DataFrame([{**row, "name": f"{sides.names[0]} against {sides.names[1]}"}])
+    verdicts = pd.DataFrame([{**vars(row), "name": f"{sides.names[0]} against {sides.names[1]}"}])
     return Drawing(figure, opening(times, sides.subject, dots) + said + lost_by_turns(pairs), verdicts)
-
-
-def _shown(sides: Sides) -> dict[str, Look]:
-    """Return the look of both sides by the names that the reader is given."""
-    found = looks([sides.reference, sides.candidate])
-    return {sides.names[0]: found[sides.candidate], sides.names[1]: found[sides.reference]}
 
 
 def _published_ratios(published: pd.DataFrame, sides: Sides) -> Floats:
     """Return the ratio of each published repetition of both."""
     runs = published.pivot_table(index="x", columns="series", values="seconds")
-    if not {sides.candidate, sides.reference} <= set(runs):
+    if not set(sides.series) <= set(runs):
         return np.empty(0)
     return np.asarray((runs[sides.candidate] / runs[sides.reference]).dropna(), dtype=float)
 
@@ -106,20 +109,12 @@ def _of_counts(data: Data, sides: Sides) -> Drawing:
 
 
 def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:
-    """Return one row a block: where it holds several scenes of a sweep, the geometric mean of their times."""
-    logs = processes.assign(steps_seconds=np.log(processes["steps_seconds"]))
-    table = logs.groupby(PAIR, as_index=False).agg({"steps_seconds": "mean"})
-    return table.assign(steps_seconds=np.exp(table["steps_seconds"]))
-
-
-def _by_block(
-    axes: Axes, curves: dict[str, pd.DataFrame], shown: Mapping[str, Look], label: str
-) -> None:  # fmt: skip
-    axes.set(xlabel="block", ylabel=label, title="measured")
-    both = pd.concat(curves, names=["name"]).reset_index("name")
-    # Nodes number their blocks alike: they stand one after another.
-    both["x"] = 1 + both.groupby(PAIR).ngroup()
-    _times(axes, both, "steps_seconds", shown)
+    """Return one row a series and block, numbered as `x`, since nodes number theirs alike; where it holds
+    several scenes of a sweep, the geometric mean of their times.
+    """
+    table = np.log(processes["steps_seconds"]).groupby([processes[key] for key in ("series", *PAIR)]).mean()
+    both = np.exp(table).reset_index()
+    return both.assign(x=1 + both.groupby(PAIR).ngroup())
 
 
 def _times(
@@ -130,12 +125,9 @@ def _times(
     for name, look in shown.items():
         own = runs[runs["name"] == name].sort_values("x")
         lighter = look._replace(colour=lighten(look.colour)) if published else look
-        told = f"{name}, published" if published else name
-        points = [
-            Told(told, exact(one), number(other)) for one, other in zip(own["x"], own[value], strict=True)
-        ]
         size = 2.5 if len(own) <= MANY else 1.2
-        line(axes, own["x"], own[value], lighter, points, markersize=size, linewidth=0.8)
+        told = f"{name}, published" if published else name
+        line(axes, own["x"], own[value], lighter, told, markersize=size, linewidth=0.8)
         ink = lighten(look.colour, 0.35) if published else look.colour
         labels.append((name.replace(" with ", "\nwith "), own[value].iloc[-1], ink))
     axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
@@ -147,29 +139,37 @@ def _times(
 
 
 def ratio_panel(
-    axes: Axes, ours: dict[str, Any], theirs: dict[str, Any] | None, names: tuple[str, str],
+    axes: Axes, ours: Ratio, theirs: Ratio | None, names: tuple[str, str],
     margin: float = MARGIN, each: Sequence[Floats] = (),
 ) -> None:  # fmt: skip
     """Draw the ratio as a dot with the interval on which the verdict rests, the published one below it, and
     below either the ratios of `each` of its blocks or runs.
     """
-    entries = [("measured", ours, INK)] + ([("published", theirs, lighten(INK, 0.4))] if theirs else [])
-    heights = [float(len(entries) - place) for place in range(1, len(entries) + 1)]
-    rows = []
-    for height, (name, row, colour) in zip(heights, entries, strict=True):
+    rows = [("published", theirs, lighten(INK, 0.4))] if theirs else []
+    rows.append(("measured", ours, INK))
+    dots = []
+    for at, (name, row, colour) in enumerate(rows):
+        dot = of_ratio(row, at, name, Look(colour))
         # Too few published runs for an interval are no open end: they have no bar at all.
-        bare = {"low": np.nan, "high": np.nan} if name == "published" and np.isinf(row["high"]) else {}
-        rows.append({**row, **bare, "at": height, "name": name, "colour": colour, "mark": "o", "said": ""})
-        beside: Any = {"xycoords": ("axes fraction", "data"), "ha": "center", "fontsize": 7, "color": colour}
-        note(axes, change(row), (0.5, height), (0, 9), **beside)
-    forest(axes, rows, margin, width=2.6)
+        is_bare = name == "published" and not row.has_interval
+        dots.append(replace(dot, low=np.nan, high=np.nan) if is_bare else dot)
+        note(
+            axes,
+            change(row),
+            (0.5, at),
+            (0, 9),
+            xycoords=("axes fraction", "data"),
+            ha="center",
+            fontsize=7,
+            color=colour,
+        )
+    forest(axes, dots, [f"{name}:\n{row.verdict}" for name, row, _ in rows], margin, width=2.6)
     low, high = axes.get_xlim()
-    for height, ratios, (_, _, colour) in zip(heights, each, entries, strict=False):
-        blocks = 100 * (ratios[(100 * (ratios - 1) > low) & (100 * (ratios - 1) < high)] - 1)
-        axes.plot(blocks, np.full(len(blocks), height - 0.24), "|", color=lighten(colour, 0.3), markersize=5)
-    name_rows(axes, [f"{name}:\n{row['verdict']}" for name, row, _ in entries], heights)
-    axes.set(ylim=(-0.5, len(entries) - 0.3), title="difference")
-    axes.set_xlabel(f"time of {names[0]} against {names[1]}, %")
+    for (_, _, colour), at, ratios in zip(reversed(rows), reversed(range(len(rows))), each, strict=False):
+        blocks = 100 * (ratios - 1)
+        blocks = blocks[(blocks > low) & (blocks < high)]
+        axes.plot(blocks, np.full(len(blocks), at - 0.24), "|", color=lighten(colour, 0.3), markersize=5)
+    axes.set(title="difference", xlabel=f"time of {names[0]} against {names[1]}, %")
     axes.xaxis.set_major_locator(MaxNLocator(6))
 
 
@@ -179,11 +179,8 @@ def _work(axes: Axes, data: Data, sides: Sides) -> None:
     counts = (
         runs[["pair_resolves", "pair_attempts"]].div(runs["steps"], axis=0).groupby(runs["series"]).median()
     )
-    shown = _shown(sides)
-    for height, (series, name) in enumerate(
-        zip((sides.reference, sides.candidate), sides.names[::-1], strict=True)
-    ):
-        colour = shown[name].colour
+    for height, (series, name) in enumerate(zip(sides.series[::-1], sides.names[::-1], strict=True)):
+        colour = sides.looks[name].colour
         resolves, attempts = counts.loc[series]
         counted = not np.isnan(attempts)
         axes.barh(height, attempts if counted else 0, color=lighten(colour, 0.5), height=0.5)
@@ -196,11 +193,11 @@ def _work(axes: Axes, data: Data, sides: Sides) -> None:
     axes.spines["left"].set_visible(False)
 
 
-def _sentences(row: dict[str, float], theirs: dict[str, float] | None, sides: Sides, by: Stated) -> str:
-    published = f" Published: {change(theirs)} ({theirs['verdict']})." if theirs else ""
+def _sentences(row: Ratio, theirs: Ratio | None, sides: Sides, by: Stated) -> str:
+    published = f" Published: {change(theirs)} ({theirs.verdict})." if theirs else ""
     return (
         f" The time of {sides.names[0]} is {change(row)} against {sides.names[1]}, from {blocks(row)} "
-        f"(paired log ratios): {row['verdict']} with a margin of {100 * by.margin:g} % (shaded; "
+        f"(paired log ratios): {row.verdict} with a margin of {100 * by.margin:g} % (shaded; "
         f"the bar is the {100 * (1 - by.error):g} % interval, which decides). Each stroke below is the ratio "
         f"of one block.{published}"
     )

@@ -1,6 +1,6 @@
 """Time, speed-up and efficiency over threads, with the machine's limits and the universal scalability law."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from analysis.figures.captions import differing, opening
-from analysis.figures.curves import curve, published_curve, ratio_axis, ratio_curve
+from analysis.figures.kinds import curve, published_curve, ratio_axis, ratio_curve
 from analysis.figures.labels import SIGNS, from_zero, key, note, plain_ticks
 from analysis.figures.style import BLUE, FAINT, ORANGE, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.figures.sweeps import stacked
@@ -36,13 +36,24 @@ def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
     shown = looks(sorted(times["series"].unique()))
     parts = {str(series): part for series, part in times.groupby("series")}
     measured = {series: _series(panels, part, shown[series]) for series, part in parts.items()}
+    entries = [_entry(series, part, shown[series], len(parts) > 1) for series, part in parts.items()]
     law = scalability.fit(times, data.study.hardware_threads) if len(parts) == 1 else None
-    _published(panels, published)
-    _ideal(panels, pd.concat(measured.values()), published)
+    most = max(table["speed_up"].max() for table in measured.values())
+    if len(published):
+        x, speed = published["x"], published["seconds"].iloc[0] / published["seconds"]
+        for axes, y in zip(panels, (1 / speed, speed, speed * x.iloc[0] / x), strict=True):
+            published_curve(axes, x, y, Look(BLUE))
+        most = max(most, speed.max())
+        entries.append(("● published", lighten(BLUE, 0.4)))
+    ideal = np.geomspace(1, 1.1 * most, 50)
+    panels[1].plot(times["x"].min() * ideal, ideal, color=FAINT, linestyle="--", linewidth=0.9, zorder=1)
+    panels[2].axhline(1, color=FAINT, linestyle="--", linewidth=0.9, zorder=1)
+    entries.append(("- - ideal", FAINT))
     if law:
         n = np.geomspace(1, times["x"].max(), 100)
         for axes, y in zip(panels[1:], (law.speed_up(n), law.speed_up(n) / n), strict=True):
             axes.plot(n, y, color=ORANGE, linewidth=0.9, zorder=2.5)
+        entries.append(("— universal scalability law", ORANGE))
     first = count(int(times["x"].min()), "thread")
     labels = f"time relative to {first}", f"speed-up over {first}", "efficiency"
     for axes, label in zip(panels, labels, strict=True):
@@ -50,11 +61,10 @@ def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
         from_zero(axes)
         limits(axes, data.study, named=axes is panels[0])
         axes.set_ylabel(label)
-    key(panels[0], _entries(parts, shown, not published.empty, law is not None))
-    cores = data.study.cores or data.study.hardware_threads
-    said = "".join(_greatest(series, table, len(parts) > 1, cores) for series, table in measured.items())
-    said += _sentences(data.study, not published.empty)
-    return Drawing(figure, opening(times, subject) + said + (_law_sentence(law) if len(parts) == 1 else ""))
+    key(figure, entries)
+    return Drawing(
+        figure, opening(times, subject) + _sentences(data.study, measured, law, len(published) > 0)
+    )
 
 
 def _by_curve(times: pd.DataFrame) -> pd.DataFrame:
@@ -68,32 +78,23 @@ def _by_curve(times: pd.DataFrame) -> pd.DataFrame:
 
 def _series(panels: Sequence[Axes], times: pd.DataFrame, look: Look) -> pd.DataFrame:
     """Draw one series and return its speed-ups."""
-    speed_ups, first = speed_up(times), float(times["x"].min())
-    summary = summarise(times, ["x"])
-    scale = summary.loc[summary["x"] == first, "median"].iloc[0]
-    relative = summary.assign(**{end: summary[end] / scale for end in ("median", "low", "high")})
-    ends = ("speed_up", "low", "high")
-    efficiency = speed_ups.assign(**{end: speed_ups[end] * first / speed_ups["x"] for end in ends})
-    series = times["series"].iloc[0]
+    series, first = times["series"].iloc[0], float(times["x"].min())
+    speed_ups = speed_up(times).assign(series=series)
+    summary = summarise(times, ["series", "x"])
+    ends = ["median", "low", "high"]
+    relative = summary.assign(**summary[ends] / summary.loc[summary["x"] == first, "median"].iloc[0])
+    ends = ["speed_up", "low", "high"]
+    efficiency = speed_ups.assign(**speed_ups[ends].mul(first / speed_ups["x"], axis=0))
     for axes, table in zip(panels, (relative, speed_ups, efficiency), strict=True):
-        curve(axes, table.assign(series=series), look, "median" if table is relative else "speed_up")
+        curve(axes, table, look, "median" if table is relative else "speed_up")
     return speed_ups
 
 
-def _entries(
-    parts: Mapping[str, pd.DataFrame], shown: Mapping[str, Look], published: bool, law: bool
-) -> list[tuple[str, str]]:
-    entries = []
-    for series, times in parts.items():
-        first = times["x"].min()
-        seconds = times.query("x == @first")["steps_seconds"].median()
-        name = series if len(parts) > 1 else "measured"
-        said = f"{name}, {number(seconds)} s on {count(int(first), 'thread')}"
-        entries.append((f"{SIGNS[shown[series].marker]} {said}", shown[series].colour))
-    if published:
-        entries.append(("● published", lighten(BLUE, 0.4)))
-    entries.append(("- - ideal", FAINT))
-    return [*entries, ("— universal scalability law", ORANGE)] if law else entries
+def _entry(series: str, times: pd.DataFrame, look: Look, several: bool) -> tuple[str, str]:
+    first = times["x"].min()
+    seconds = times.loc[times["x"] == first, "steps_seconds"].median()
+    said = f"{number(seconds)} s on {count(int(first), 'thread')}"
+    return f"{SIGNS[look.marker]} {series if several else 'measured'}, {said}", look.colour
 
 
 def oversubscription(data: Data) -> Drawing | None:
@@ -108,7 +109,9 @@ def oversubscription(data: Data) -> Drawing | None:
     from_zero(above)
     reference = times[times["x"] == times.loc[times["x"] <= hardware, "x"].max()]
     table = judge(log_ratios_by_x(reference, times[times["x"] > hardware]), ["x"])
-    own = pd.DataFrame([{"x": x, "ratio": 1.0} for x in reference["x"].unique()], columns=table.columns)
+    own = pd.DataFrame(
+        [{"x": x, "ratio": 1.0} for x in reference["x"].unique()], columns=["x", "ratio", "low", "high"]
+    )
     ratios = pd.concat([own, table], ignore_index=True) if len(table) else own
     ratio_axis(below, ratios, "all hardware threads")
     ratio_curve(below, ratios, Look(BLUE))
@@ -144,45 +147,28 @@ def _thread_axis(axes: Axes, values: list[float], ticks: Iterable[float] = THREA
     axes.minorticks_off()
 
 
-def _published(panels: Sequence[Axes], published: pd.DataFrame) -> None:
-    if published.empty:
-        return
-    x, first = published["x"], published["seconds"].iloc[0]
-    speed = first / published["seconds"]
-    for axes, y in zip(panels, (1 / speed, speed, speed * x.iloc[0] / x), strict=True):
-        published_curve(axes, x, y, Look(BLUE))
-
-
-def _ideal(panels: Sequence[Axes], speed_ups: pd.DataFrame, published: pd.DataFrame) -> None:
-    greatest = [speed_ups["speed_up"].max()]
-    if not published.empty:
-        greatest.append(published["seconds"].iloc[0] / published["seconds"].min())
-    ideal = np.geomspace(speed_ups["x"].min(), 1.1 * max(greatest) * speed_ups["x"].min(), 50)
-    panels[1].plot(ideal, ideal / ideal[0], color=FAINT, linestyle="--", linewidth=0.9, zorder=1)
-    panels[2].axhline(1, color=FAINT, linestyle="--", linewidth=0.9, zorder=1)
-
-
-def _greatest(series: str, speed_ups: pd.DataFrame, named: bool, cores: int) -> str:
-    best = speed_ups.loc[speed_ups["speed_up"].idxmax()]
-    unlikely = scalability.doubt(best["speed_up"], min(best["x"], cores) / speed_ups["x"].min())
-    return (
-        f" Greatest speed-up{f' of {series}' if named else ''} {interval_of(best, 'speed_up')} with "
-        f"{exact(best['x'])} threads{unlikely and f' ({unlikely})'}."
-    )
-
-
-def _sentences(study: Study, published: bool) -> str:
-    theirs = (
-        " Lighter: the published series, relative to its own single thread (10 cores, 20 hardware threads)."
-    )
-    return (
+def _sentences(
+    study: Study, measured: dict[str, pd.DataFrame], law: ScalabilityLaw | None, published: bool
+) -> str:
+    """Say each series' greatest speed-up, the machine's limits, and the law if there is one series."""
+    said, cores = "", study.cores or study.hardware_threads
+    for series, table in measured.items():
+        (best,) = table.loc[[table["speed_up"].idxmax()]].itertuples()
+        unlikely = scalability.doubt(best.speed_up, min(best.x, cores) / table["x"].min())
+        said += (
+            f" Greatest speed-up{f' of {series}' if len(measured) > 1 else ''} "
+            f"{interval_of(best, 'speed_up')} with {exact(best.x)} threads{unlikely and f' ({unlikely})'}."
+        )
+    said += (
         f" The machine has {study.cores or 'an unknown number of'} cores and {study.hardware_threads} "
-        f"hardware threads (dotted).{theirs if published else ''}"
+        "hardware threads (dotted)."
     )
-
-
-def _law_sentence(law: ScalabilityLaw | None) -> str:
-    said = " The universal scalability law is "
+    if published:
+        own = "its own single thread (10 cores, 20 hardware threads)"
+        said += f" Lighter: the published series, relative to {own}."
+    if len(measured) > 1:
+        return said
+    said += " The universal scalability law is "
     if law is None:
         return f"{said}not fitted: it needs four thread counts up to the hardware threads."
     return (

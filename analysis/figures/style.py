@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,10 +14,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from analysis.claims.entry import Evidence
-from analysis.figures.hover import identify, with_titles
-from analysis.figures.layout import lay_out
 from analysis.records.plans import planned_runs
 from analysis.support.values import Table
 from support.files import replacing
@@ -195,16 +195,49 @@ def mark_partial(figure: Figure, text: str | None) -> None:
         figure.suptitle(text, x=0.995, ha="right", fontsize=7, color=VERMILLION, weight="bold")
 
 
+class Point(Line2D):
+    """A mark that tells its name and its values along both axes when the pointer rests on it in an SVG."""
+
+    told = ("", "", "")
+
+
+def point(axes: Axes, x: float, y: float, mark: str, *told: str, **look: Any) -> None:  # noqa: ANN401
+    """Draw a mark that tells its name and its values along both axes, which the axes' labels name."""
+    drawn = Point([x], [y], marker=mark, linestyle="", **look)
+    name, along, up = (*told, "", "", "")[:3]
+    drawn.told = name, along, up
+    axes.add_line(drawn)
+    axes.autoscale_view()
+
+
+def _in_words(one: Point) -> str:
+    """Return what a mark tells, a line each."""
+    name, along, up = one.told
+    axes: Any = one.axes
+    shared = axes.get_shared_x_axes().get_siblings(axes)
+    x_label = next(filter(None, (each.get_xlabel() for each in (axes, *shared))), "")
+    values = (
+        (" ".join(label.split()), value) for label, value in ((x_label, along), (axes.get_ylabel(), up))
+    )
+    lines = (f"{label}: {value}" if label and value else value for label, value in values)
+    return "\n".join(filter(None, (name, *lines)))
+
+
 def save(drawing: Drawing, folder: Path, name: str, *, pdf: bool = False) -> list[Path]:
     """Write the figure as SVG, and as `pdf` if wanted, and return the files; an outdated PDF is removed."""
     svg, other = (folder / f"{name}.{suffix}" for suffix in ("svg", "pdf"))
+    points = [one for one in drawing.figure.findobj(Point) if isinstance(one, Point)]
+    for number, one in enumerate(points):
+        one.set_gid(f"point-{number}")
+
+    def titled(found: re.Match[str]) -> str:
+        return f"{found[0]}<title>{escape(_in_words(points[int(found[1])]), quote=False)}</title>"
+
     with styled(name):
-        lay_out(drawing.figure)
-        lines = identify(drawing.figure)
         with replacing(svg) as part:
             drawing.figure.savefig(part, format="svg", dpi=DOTS_PER_INCH, metadata={"Date": None})
-            text = part.read_text(encoding="utf-8")
-            part.write_text(with_titles(text, drawing.figure, lines), encoding="utf-8")
+            text = re.sub(r'<g id="point-(\d+)">', titled, part.read_text(encoding="utf-8"))
+            part.write_text(text, encoding="utf-8")
         if not pdf:
             other.unlink(missing_ok=True)
             return [svg]

@@ -1,8 +1,9 @@
 """Time over one swept parameter, and below it ratios: to one of its points, the published ones on the same
-axis, or to another series at the same point.
+axis, or to another series at the same point. Schedules over their chunks are swept so, too.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,13 +13,13 @@ from matplotlib.figure import Figure
 from analysis.derived.comparisons import PUBLISHED, differences, differences_from, reference, stated
 from analysis.derived.ladder import per_disc_step, speed_up
 from analysis.figures.captions import differing, growth_sentence, minimum_sentence, opening, time_axis
-from analysis.figures.curves import curve, curves, line, published_curve, ratio_axis, ratio_curve
-from analysis.figures.hover import Told
+from analysis.figures.kinds import curve, curves, ends_of, line, published_curve, ratio_axis, ratio_curve
 from analysis.figures.labels import from_zero, label_ends, logarithmic_ticks, plain_ticks
 from analysis.figures.style import (
     BLUE,
     FAINT,
     GREEN,
+    INK,
     Data,
     Drawing,
     Look,
@@ -28,12 +29,18 @@ from analysis.figures.style import (
     new_grid,
 )
 from analysis.statistics.bootstrap import summarise
-from analysis.statistics.pairs import log_ratios, ratios_of
+from analysis.statistics.pairs import join_replicates, log_ratios, ratios_of
 from analysis.statistics.verdicts import error_of_picked, judge_one
 from analysis.support.wording import exact, interval_of, number
 
 SAME_RANGE = 0.75
 GRID_LENGTH, OVER_GRID_LENGTH = "grid_length", "Time over the side length"
+
+ASIDE = {"dynamic": 0.985, "static": 1.015}
+"""How far the curve of a schedule is moved aside, so that intervals at one chunk do not cover each other."""
+CHUNKS = [1, 2, 3, 5, 10, 20, 40, 80, 160, 320, 640, 1280]
+
+DECIDES = "of pairs within blocks, with the intervals that decide."
 
 
 def density(data: Data) -> Drawing | None:
@@ -42,13 +49,11 @@ def density(data: Data) -> Drawing | None:
     if times.empty:
         return None
     figure, (left, right) = new_figure(2.6, columns=2)
-    summary = summarise(times, ["x"])
-    curve(left, summary, Look(BLUE))
+    curve(left, summarise(times, ["x"]), Look(BLUE))
     left.set_ylabel("time of the steps, s")
     runs = data.study.runs_of("density")
     resolves = (runs["pair_resolves"] / (runs["particles"] * runs["steps"])).groupby(runs["x"]).median()
-    told = [Told("", exact(float(str(x))), number(count)) for x, count in resolves.items()]
-    line(right, resolves.index.to_series(), resolves, Look(GREEN), told)
+    line(right, resolves.index, resolves, Look(GREEN), "")
     right.set_ylabel("pair resolves per disc and step")
     for axes in (left, right):
         axes.set_xlabel("area fraction of the discs, N π r² / L²")
@@ -70,22 +75,49 @@ def trend(
     times = data.study.times_of(experiment)
     if times.empty:
         return None
-    shown = looks(sorted(times["series"].unique()))
-    figure, (above, below) = stacked(label or times["x_name"].iloc[0].replace("_", " "))
-    ends = curves(above, summarise(times, ["series", "x"]), shown)
+    label = label or times["x_name"].iloc[0].replace("_", " ")
+    if times["series"].nunique() > 1:
+        said = "".join(f" {series}:{describe(part)}" for series, part in times.groupby("series"))
+        return _several(times, label, opening(times, subject) + said)
+    figure, (above, below) = stacked(label)
+    (look,) = looks(times["series"].unique()).values()
+    curve(above, summarise(times, ["series", "x"]), look)
     above.set_ylabel(time_axis(times))
     from_zero(above)
     plain_ticks(above.xaxis)
-    if len(shown) > 1:
-        label_ends(above, ends)
-        said = "".join(f" {series}:{describe(part)}" for series, part in times.groupby("series"))
-        return Drawing(figure, opening(times, subject) + said + against_reference(below, times, shown))
-    published = data.published.experiment(experiment)
-    ratios = _against_own(below, times, published, next(iter(shown.values())))
     caption = opening(times, subject) + describe(data.published.without_degenerate(experiment, times))
     if set(times["x"]) & set(data.published.degenerate.get(experiment, ())):
         caption += " At its degenerate end, which is no part of that, all discs start with one velocity."
-    return Drawing(figure, caption + ratios)
+    return Drawing(figure, caption + _against_own(below, times, data.published.experiment(experiment), look))
+
+
+def _several(times: pd.DataFrame, label: str, caption: str, scale: str = "", more: Any = None) -> Drawing:  # noqa: ANN401
+    """Draw the times of several series, with what `more` there is, above their ratios to the reference. They
+    are per disc and step where a `scale` names the axes that are logarithmic.
+    """
+    shown, height = looks(sorted(times["series"].unique())), 4.2 if scale == "xy" else 3.7
+    figure, (above, below) = stacked(label, height)
+    value = "nanoseconds" if scale else "steps_seconds"
+    summary = summarise(per_disc_step(times) if scale else times, ["series", "x"], value=value)
+    ends = curves(above, summary, shown)
+    above.set_ylabel("time per disc\nand step, ns" if scale else time_axis(times))
+    above.set(xscale="log" if "x" in scale else "linear", yscale="log" if "y" in scale else "linear")
+    if "y" in scale:
+        logarithmic_ticks(above.yaxis)
+    else:
+        from_zero(above)
+    ends += more(above, summary, shown) if more else []
+    label_ends(above, ends)
+    against = reference(times)
+    table = differences(times, against)
+    ratio_axis(below, table, against, stated(times).margin)
+    for series, part in table.groupby("series"):
+        ratio_curve(below, part, shown[str(series)])
+    if len(table):
+        label_ends(below, ends_of(table, shown, "ratio"))
+    plain_ticks(below.xaxis, _far_apart(summary["x"]) if "y" in scale else None)
+    said = f" Below: ratios to {against} at the same x, {DECIDES} The margin is shaded."
+    return Drawing(figure, caption + said, table if scale == "x" else None)
 
 
 def stacked(label: str, height: float = 3.7) -> tuple[Figure, tuple[Axes, Axes]]:
@@ -93,23 +125,6 @@ def stacked(label: str, height: float = 3.7) -> tuple[Figure, tuple[Axes, Axes]]
     figure, [[above], [below]] = new_grid(height, 2, sharex=True, height_ratios=[1.0, 1.25])
     below.set_xlabel(label)
     return figure, (above, below)
-
-
-def against_reference(axes: Axes, times: pd.DataFrame, shown: Mapping[str, Look]) -> str:
-    """Draw the ratio of each series to the reference at the same x; say what it shows."""
-    against = reference(times)
-    table = differences(times, against)
-    ratio_axis(axes, table, against, stated(times).margin)
-    labels = []
-    for series, part in table.groupby("series"):
-        look = shown[str(series)]
-        ratio_curve(axes, part, look)
-        labels.append((str(series), _last(part), look.colour))
-    label_ends(axes, labels)
-    return (
-        f" Below: ratios to {against} at the same x, of pairs within blocks, with the intervals that "
-        "decide. The margin is shaded."
-    )
 
 
 def _against_own(axes: Axes, times: pd.DataFrame, published: pd.DataFrame, look: Look) -> str:
@@ -120,10 +135,8 @@ def _against_own(axes: Axes, times: pd.DataFrame, published: pd.DataFrame, look:
     at_theirs = at if at in set(published["x"]) else float(published["x"].min())
     theirs = published_ratios(published, published["x"] == at_theirs)
     ratio_axis(axes, pd.concat([table, theirs]), f"that at {exact(at)}", stated(times).margin)
-    ratio_curve(axes, table, look)
-    said = (
-        f" Below: ratios to the time at {exact(at)}, of pairs within blocks, with the intervals that decide."
-    )
+    ratio_curve(axes, table.assign(series=times["series"].iloc[0]), look)
+    said = f" Below: ratios to the time at {exact(at)}, {DECIDES}"
     if theirs.empty:
         return said
     beside = axes
@@ -135,12 +148,9 @@ def _against_own(axes: Axes, times: pd.DataFrame, published: pd.DataFrame, look:
     published_curve(beside, theirs["x"], theirs["ratio"], look)
     plain_ticks(beside.xaxis)
     ends = (("measured", table, look.colour), ("published", theirs, lighten(look.colour, 0.35)))
-    label_ends(axes, [(name, _last(part), colour) for name, part, colour in ends])
+    last = ((name, part.loc[part["x"].idxmax(), "ratio"], colour) for name, part, colour in ends)
+    label_ends(axes, [(name, float(ratio), colour) for name, ratio, colour in last])
     return f"{said} Lighter: the published ratios on the same axis, to the time at {exact(at_theirs)}."
-
-
-def _last(table: pd.DataFrame) -> float:
-    return float(table.loc[table["x"].idxmax(), "ratio"])
 
 
 def level_of(times: pd.DataFrame, published: pd.DataFrame) -> float:
@@ -172,26 +182,15 @@ def row(data: Data) -> Drawing | None:
     times = data.study.times_of("row")
     if times.empty:
         return None
-    shown = looks(sorted(times["series"].unique()))
-    figure, (above, below) = stacked("discs")
-    summary = summarise(per_disc_step(times), ["series", "x"], value="nanoseconds")
-    label_ends(above, curves(above, summary, shown))
-    above.set(xscale="log", ylabel="time per disc\nand step, ns")
-    from_zero(above)
-    against = reference(times)
-    table = differences(times, against)
+    subject = "Alternate rows against the checkered pattern, over scene size at one density"
+    drawn = _several(times, "discs", "", "x")
+    assert drawn.verdicts is not None
+    table, against = drawn.verdicts, reference(times)
     sizes = [f"{exact(x)} discs" for x in table["x"]]
-    said = differing(sizes, table)
-    caption = (
-        opening(times, "Alternate rows against the checkered pattern, over scene size at one density")
-        + f" Time of row against {against}: {said} (Holm-corrected)."
-        + against_reference(below, times, shown)
-        + " The published study states that row wins on large scenes, without a number."
-    )
-    for axes in (above, below):
-        plain_ticks(axes.xaxis)
+    said = f" Time of row against {against}: {differing(sizes, table)} (Holm-corrected).{drawn.caption}"
+    beside = " The published study states that row wins on large scenes, without a number."
     names = [f"{name} against {against}, {size}" for name, size in zip(table["series"], sizes, strict=True)]
-    return Drawing(figure, caption, table.assign(name=names))
+    return Drawing(drawn.figure, opening(times, subject) + said + beside, table.assign(name=names))
 
 
 def grid_length(data: Data) -> Drawing | None:
@@ -199,22 +198,22 @@ def grid_length(data: Data) -> Drawing | None:
     times = data.study.times_of(GRID_LENGTH)
     if times["series"].nunique() < 2:
         return trend(data, GRID_LENGTH, OVER_GRID_LENGTH, "side length", minimum_sentence)
-    summary = summarise(per_disc_step(times), ["series", "x"], value="nanoseconds")
-    shown = looks(sorted(times["series"].unique()))
-    figure, (above, below) = stacked("side length", 4.2)
-    above.set(xscale="log", yscale="log", ylabel="time per disc and step, ns")
-    labels = curves(above, summary, shown)
-    logarithmic_ticks(above.yaxis)
     published = data.published.experiment(GRID_LENGTH)
-    ours = summary[summary["series"].isin(published["series"])]
+    ours = times[times["series"].isin(published["series"])]
     caption = opening(times, OVER_GRID_LENGTH) + _sentences(times)
-    if not ours.empty and ranges_agree(ours["x"], published["x"]):
-        labels.append(_published_moved(above, ours, published, shown))
-        caption += " Lighter: the published series, its times moved so that its median is level with ours."
-    label_ends(above, labels)
-    caption += against_reference(below, times, shown)
-    plain_ticks(below.xaxis, _far_apart(summary["x"]))
-    return Drawing(figure, caption)
+    if ours.empty or not ranges_agree(ours["x"], published["x"]):
+        return _several(times, "side length", caption, "xy")
+
+    def moved(axes: Axes, summary: pd.DataFrame, shown: Mapping[str, Look]) -> list[tuple[str, float, str]]:
+        series = summary[summary["series"].isin(published["series"])]
+        seconds = published["seconds"] * (series["median"].median() / published["seconds"].median())
+        look = shown[str(series["series"].iloc[0])]
+        published_curve(axes, published["x"], seconds, look)
+        said = f"as published, {number(published['seconds'].iloc[-1])} s"
+        return [(said, float(seconds.iloc[-1]), lighten(look.colour, 0.4))]
+
+    caption += " Lighter: the published series, its times moved so that its median is level with ours."
+    return _several(times, "side length", caption, "xy", moved)
 
 
 def _far_apart(x: pd.Series) -> list[float]:
@@ -224,18 +223,6 @@ def _far_apart(x: pd.Series) -> list[float]:
         if not kept or value < kept[-1] / 1.35:
             kept.append(float(value))
     return kept
-
-
-def _published_moved(
-    axes: Axes, ours: pd.DataFrame, published: pd.DataFrame, shown: Mapping[str, Look]
-) -> tuple[str, float, str]:
-    """Draw the published curve moved to the median of ours; return its label."""
-    factor = ours["median"].median() / published["seconds"].median()
-    moved = published["seconds"] * factor
-    look = shown[str(ours["series"].iloc[0])]
-    published_curve(axes, published["x"], moved, look)
-    said = f"as published, {number(published['seconds'].iloc[-1])} s"
-    return said, float(moved.iloc[-1]), lighten(look.colour, 0.4)
 
 
 def _sentences(times: pd.DataFrame) -> str:
@@ -274,3 +261,88 @@ def _against(first: pd.DataFrame, processes: pd.DataFrame) -> str:
         row = judge_one(log_ratios(first[first["x"] == x], processes[processes["x"] == x])["log_ratio"])
         said.append(f"{speed_up(row)} at {exact(x)}")
     return f" It is faster than the published variant by {' and '.join(said)}."
+
+
+Choice = tuple[str, float]
+"""A schedule and its chunk."""
+
+
+def schedule(data: Data, experiment: str, subject: str, chosen: Choice | None = None) -> Drawing | None:
+    """Draw the ratio to the published choice over the chunk, a curve a kind of schedule, beside the published
+    ones on the same axis, and the times small below; the choice is ringed. Where it was not measured the
+    ratios are to the smallest chunk of the reference.
+    """
+    times = data.study.times_of(experiment)
+    if times.empty:
+        return None
+    summary = summarise(join_replicates(times), ["series", "x"])
+    published = data.published.experiment(experiment)
+    first = reference(times)
+    against = first, float(times.loc[times["series"] == first, "x"].min())
+    if chosen is not None and _is(times, chosen).any():
+        against = chosen
+    named = f"{against[0]} with chunk {exact(against[1])}"
+    # That of the reference to itself has no interval.
+    own = pd.DataFrame([{"series": against[0], "x": against[1], "ratio": 1.0}])
+    ours = pd.concat([differences_from(times, _is(times, against)), own], ignore_index=True)
+    theirs = published_ratios(published, _is(published, against))
+    shown = looks(sorted({*times["series"], *published["series"]}))
+    sides: Sequence[tuple[str, pd.DataFrame, pd.DataFrame]] = [
+        ("measured", ours, summary), *([("published", theirs, published)] if len(theirs) else []),
+    ]  # fmt: skip
+    figure, grid = new_grid(3.7, 2, len(sides), sharex="col", height_ratios=[2.0, 1.0])
+    for (upper, lower), (title, ratios, seconds) in zip(grid.T, sides, strict=True):
+        ratio_axis(upper, pd.concat([ours, theirs]), named, stated(times).margin)
+        _over_chunks(upper, lower, ratios, seconds, shown)
+        at = ratios[_is(ratios, against)]
+        upper.plot(at["x"], at["ratio"], "o", color=INK, markersize=9, markerfacecolor="none", linewidth=0.8)
+        upper.set_title(title)
+    grid[1][0].set_ylabel("time of\nthe steps, s")
+    if len(theirs):
+        grid[0][1].set_ylabel("")
+        grid[1][1].set_ylabel("time of the\nprocess, s")
+    said = _of_schedules(summary, published, named, is_chosen=against == chosen)
+    return Drawing(figure, opening(times, subject) + said)
+
+
+def _is(table: pd.DataFrame, choice: Choice) -> pd.Series:
+    return (table["series"] == choice[0]) & (table["x"] == choice[1])
+
+
+def _over_chunks(
+    upper: Axes, lower: Axes, ratios: pd.DataFrame, seconds: pd.DataFrame, shown: Mapping[str, Look]
+) -> None:
+    """Draw the ratios on an axis that is settled, with names at their ends, and the times themselves."""
+    published = "seconds" in seconds
+    upper.set_xscale("log")
+    for kind, look in shown.items():
+        own, times = (table[table["series"] == kind].sort_values("x") for table in (ratios, seconds))
+        if published:
+            published_curve(upper, own["x"], own["ratio"], look)
+            published_curve(lower, times["x"], times["seconds"], look)
+        else:
+            ratio_curve(upper, own, look, ASIDE.get(kind, 1.0))
+            curve(lower, times, look, aside=ASIDE.get(kind, 1.0))
+    upper.tick_params(labelbottom=False)
+    ends = ends_of(ratios, shown, "ratio")
+    label_ends(upper, [(name, y, lighten(ink, 0.35) if published else ink) for name, y, ink in ends])
+    lower.set_xlabel("chunk")
+    within = seconds["x"].min(), seconds["x"].max()
+    plain_ticks(lower.xaxis, [tick for tick in CHUNKS if within[0] <= tick <= within[1]] or within)
+    lower.minorticks_off()
+
+
+def _of_schedules(summary: pd.DataFrame, published: pd.DataFrame, named: str, *, is_chosen: bool) -> str:
+    (best,) = summary.loc[[summary["median"].idxmin()]].itertuples()
+    said = (
+        f" Least measured median: {best.series} with chunk {exact(best.x)}, {interval_of(best)} s."
+        f" The upper panels show ratios to {named} (ringed{', the published choice' if is_chosen else ''}). "
+        "They are of pairs within blocks, with the intervals that decide. The margin is shaded."
+    )
+    if published.empty:
+        return said
+    theirs = published.loc[published["seconds"].idxmin()]
+    return (
+        f"{said} The least published time is {number(theirs['seconds'])} s, {theirs['series']} with chunk "
+        f"{exact(theirs['x'])}. Published ratios stand on the same axis."
+    )

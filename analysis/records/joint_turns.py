@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 import pandas as pd
 
-from analysis.statistics.location import location
 from analysis.statistics.neighbours import FEWEST, contender_logs
 from analysis.statistics.pairs import rounds_of
+from analysis.statistics.turns import location
 
 PLACES = "places"
 """The column of where each turn stood among those of all contenders of its process."""

@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.statistics.pairs import log_ratios
-from analysis.statistics.verdicts import judge_one
+from analysis.statistics.verdicts import Ratio, judge_one
 
 PUBLISHED_FILE = Path(__file__).parent / "published.toml"
 
@@ -40,8 +40,8 @@ class Published:
         columns = {"file": times["x"].astype(str), "steps_seconds": times["seconds"]}
         return times.assign(**columns, node="published", block=0, session="")
 
-    def ratio(self, experiment: str, candidate: str, reference: str) -> dict[str, Any] | None:
-        """Return the row of `judge_one` of two series, paired by repetition; None without both."""
+    def ratio(self, experiment: str, candidate: str, reference: str) -> Ratio | None:
+        """Return the ratio of two series, paired by repetition; None without both."""
         times = self.experiment(experiment)
         times = times.assign(node="published", block=times["x"], session="")
         first, second = (times[times["series"] == series] for series in (reference, candidate))

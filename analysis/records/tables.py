@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from analysis.statistics.pairs import rounds_of, runs_of
-from analysis.statistics.returning import excess
+from analysis.statistics.turns import excess
 
 Record = dict[str, Any]
 Row = dict[str, Any]
@@ -189,8 +189,7 @@ def _lost_by_turns(record: Record) -> float:
     turns = record.get("turns") or {}
     if "steps" not in turns:
         return math.nan
-    found = excess(turns["seconds"], turns["returning_seconds"], turns["steps"], turns["rounds"])
-    return float(found.share) if found else math.nan
+    return excess(turns["seconds"], turns["returning_seconds"], turns["steps"], turns["rounds"])
 
 
 def _stops(record: Record) -> float:

@@ -7,12 +7,18 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
+from analysis.claims.summary import change_in_short, colour_of, mark, published_in_short, verdict_in_short
 from analysis.records.reading import Records, load
 from analysis.report.content import content
-from analysis.support.wording import NO_BREAK
+from analysis.support.wording import NO_BREAK, blocks, change
 from support.files import replacing
 
 TEMPLATE = "report.html.jinja"
+WORDS = {
+    one.__name__: one
+    for one in (blocks, change, change_in_short, colour_of, mark, published_in_short, verdict_in_short)
+}
+"""What the template says of a claim or a ratio."""
 
 
 def write(results: Path, asked: Sequence[str] = (), how_far: str = "") -> Path:
@@ -49,5 +55,6 @@ def _page(records: Records, results: Path, asked: Sequence[str], goes_on: str = 
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.globals.update(WORDS)
     gathered = content(records, results, asked)
     return environment.get_template(TEMPLATE).render(gathered, goes_on=goes_on, nbsp=NO_BREAK)

@@ -13,9 +13,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from analysis import claims
-from analysis.claims.effects import Effect
 from analysis.claims.summary import colour_of, mark
-from analysis.figures.curves import arrow, span
+from analysis.figures.kinds import arrow, span
 from analysis.figures.studies import data_of
 from analysis.figures.style import (
     BAND,
@@ -32,6 +31,7 @@ from analysis.figures.style import (
     styled,
 )
 from analysis.records.reading import load
+from analysis.statistics.verdicts import Ratio
 
 NAME = "claims"
 LOOK = {
@@ -105,9 +105,7 @@ def all_claims(table: pd.DataFrame, layout: Layout = WIDE) -> Drawing | None:
 
 def _axis(axes: Axes, rows: Sequence[Mapping[Any, Any]], layout: Layout, height: float) -> None:
     effects = [one for row in rows for one in row["effects"]]
-    known = [
-        _per_cent(value) for one in effects for value in (one.here.estimate, one.published) if isfinite(value)
-    ]
+    known = [_per_cent(value) for one in effects for value in (one.ratio, one.published) if isfinite(value)]
     # Estimates alone stretch the axis: an interval that does not fit ends in an arrow.
     low = max((end for end in LOWEST if end <= min([*known, -LINEAR])), default=LOWEST[0])
     high = min((end for end in HIGHEST if end >= max([*known, LINEAR])), default=HIGHEST[-1])
@@ -153,13 +151,13 @@ def _claim(axes: Axes, row: Mapping[Any, Any], top: float, layout: Layout) -> No
         _effect(axes, effect, height, look)
 
 
-def _effect(axes: Axes, effect: Effect, height: float, look: str) -> None:
+def _effect(axes: Axes, effect: Ratio, height: float, look: str) -> None:
     colour, shape, _ = LOOK[look]
     if effect.has_interval:
-        span(axes, _per_cent(effect.here.low), _per_cent(effect.here.high), height, colour, 2.2)
+        span(axes, _per_cent(effect.low), _per_cent(effect.high), height, colour, 2.2)
     if effect.is_measured:
         face = "white" if look == "open" else colour
-        _mark(axes, shape, effect.here.estimate, height, colour, mfc=face, markersize=4.2, zorder=4)
+        _mark(axes, shape, effect.ratio, height, colour, mfc=face, markersize=4.2, zorder=4)
     if isfinite(effect.published):
         ink = lighten(INK, 0.5) if look == "open" else INK
         _mark(axes, "D", effect.published, height, ink, **PUBLISHED_LOOK, zorder=5)

@@ -14,6 +14,7 @@ from analysis.claims.summary import both_in_short, colour_of, mark, verdict_in_s
 from analysis.derived.ladder import headlines
 from analysis.figures import Drawn
 from analysis.records.studies import Study
+from analysis.statistics.verdicts import INCONCLUSIVE
 from analysis.support.wording import change, count
 
 QUESTIONS_FILE = Path(__file__).parent / "questions.toml"
@@ -71,15 +72,15 @@ def of_claim(row: Mapping[str, Any]) -> Answer:
 
 def of_comparisons(table: pd.DataFrame) -> Answer:
     """Return the answer that the rows of a table of `verdicts.judge` are, with their `name`."""
-    rows = table.to_dict("records")
-    undecided = sum(row["verdict"] == "inconclusive" for row in rows)
+    rows = list(table.itertuples())
+    undecided = sum(row.verdict == INCONCLUSIVE for row in rows)
     sign, word, look = ("?", "not decided", "open") if undecided == len(rows) else ("✓", "decided", "plain")
     if len(set(table["verdict"])) == 1 and not undecided:
-        word = str(rows[0]["verdict"])
+        word = str(rows[0].verdict)
     elif 0 < undecided < len(rows):
         word = f"{len(rows) - undecided} of {len(rows)} decided"
     if len(rows) <= _MOST:
-        told = (f"{row['name']}: {change(row)} of time, {_verdict(row['verdict'])}" for row in rows)
+        told = (f"{row.name}: {change(row)} of time, {_verdict(row.verdict)}" for row in rows)
         return Answer(sign, word, look, f"{'; '.join(told)}.")
     counts = table["verdict"].map(_verdict).value_counts()
     told = (f"{amount} {verdict}" for verdict, amount in counts.items())
@@ -87,7 +88,7 @@ def of_comparisons(table: pd.DataFrame) -> Answer:
 
 
 def _verdict(verdict: str) -> str:
-    return "not decided" if verdict == "inconclusive" else str(verdict)
+    return "not decided" if verdict == INCONCLUSIVE else str(verdict)
 
 
 def _telling(caption: str) -> str:

@@ -19,10 +19,9 @@ from analysis.records.reading import Records
 from analysis.records.studies import Study
 from analysis.report import all_claims, first_screen, graphs, provenance
 from analysis.report.parts import contents, inline, parts
-from analysis.statistics.levels import in_order, levels, shifting
 from analysis.statistics.looks import ERROR
-from analysis.statistics.noise import needed_said, process_noise, warning
-from analysis.statistics.verdicts import MARGIN
+from analysis.statistics.noise import in_order, levels, needed_said, process_noise, shifting, warning
+from analysis.statistics.verdicts import INCONCLUSIVE, MARGIN, Ratio
 from analysis.support.wording import blocks, change, count, number, share
 from support.vocabulary import CONTROL
 
@@ -101,21 +100,7 @@ def _claims(
     figures, and how many have each verdict.
     """
     rows = [
-        {
-            **row,
-            "places": [places[name] for name in row["experiments"] if name in places],
-            "sign": summary.mark(row),
-            "look": summary.colour_of(row),
-            "short": summary.verdict_in_short(row),
-            "numbers": [
-                {
-                    "what": one.what if len(row["effects"]) > 1 or one.is_exponent else "",
-                    "published": summary.published_in_short(one),
-                    "here": summary.change_in_short(one),
-                }
-                for one in row["effects"]
-            ],
-        }
+        {**row, "places": [places[name] for name in row["experiments"] if name in places]}
         for row in table[~table["missing"]].to_dict("records")
     ]
     rows.sort(key=lambda row: bool(asked) and not set(row["experiments"]) & set(asked))
@@ -171,7 +156,7 @@ def _settled(table: pd.DataFrame, drawn: Sequence[Drawn]) -> set[str]:
     unsettled = {name for row in still_open["experiments"] for name in row}
     for figure in drawn:
         if figure.verdicts is not None and len(figure.verdicts):
-            inconclusive = (figure.verdicts["verdict"] == "inconclusive").any()
+            inconclusive = (figure.verdicts["verdict"] == INCONCLUSIVE).any()
             (unsettled if inconclusive else settled).add(figure.entry.experiment)
     return settled - unsettled
 
@@ -206,7 +191,7 @@ def _speeds(processes: pd.DataFrame) -> str:
     )
 
 
-def _control_verdict(study: Study, processes: pd.DataFrame, verdict: str, row: dict[str, Any]) -> str:
+def _control_verdict(study: Study, processes: pd.DataFrame, verdict: str, row: Ratio) -> str:
     sessions, beside = study.times["session"].nunique(), processes["session"].nunique()
     over = "the whole run" if beside == sessions else f"{beside} of {count(sessions, 'session')}"
     said = f"one variant, measured under two labels over {over}, differs by {change(row)} ({blocks(row)})"

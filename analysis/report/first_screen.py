@@ -17,7 +17,7 @@ from analysis.derived.ladder import headlines
 from analysis.figures import Drawn
 from analysis.records.studies import Study
 from analysis.statistics.pairs import log_ratios
-from analysis.statistics.verdicts import judge_one
+from analysis.statistics.verdicts import Ratio, judge_one
 from analysis.support.wording import change, count, exact, number
 from support.vocabulary import CONTROL
 
@@ -91,11 +91,11 @@ def _link(row: Mapping[str, Any], anchors: Mapping[str, str]) -> tuple[str, str]
 def _of_comparisons(drawn: Sequence[Drawn]) -> list[Said]:
     """Return a sentence for each comparison that came out faster or slower, without claims about any."""
     return [
-        Said("✓", row["verdict"], "holds", f"{row['name']}: {change(row)} of time.")
+        Said("✓", row.verdict, "holds", f"{row.name}: {change(row)} of time.")
         for one in drawn
         if one.verdicts is not None and one.entry.experiment != CONTROL
-        for row in one.verdicts.to_dict("records")
-        if row["verdict"] in ("faster", "slower")
+        for row in one.verdicts.itertuples()
+        if row.verdict in ("faster", "slower")
     ]
 
 
@@ -137,16 +137,16 @@ def _time(study: Study) -> str:
     return f"{' to '.join(days)}; {number(minutes, 2)} min of processes; {study.scale} scale"
 
 
-def control_of(study: Study) -> tuple[str, dict[str, Any]]:
-    """Return what came of the control, one variant under two labels, and its row of `verdicts.judge`: its
+def control_of(study: Study) -> tuple[str, Ratio]:
+    """Return what came of the control, one variant under two labels, and its ratio: the
     verdict, `off` where it is within the margin but its interval leaves out 0, or nothing without records.
     """
     sides = [part for _, part in study.times_of(CONTROL).groupby("label")]
     if len(sides) != 2:
-        return "", {}
+        return "", Ratio()
     row = judge_one(log_ratios(*sides)["log_ratio"])
-    is_off = row["verdict"] == "equivalent" and not row["low"] <= 1 <= row["high"]
-    return "off" if is_off else str(row["verdict"]), row
+    is_off = row.verdict == "equivalent" and not row.low <= 1 <= row.high
+    return "off" if is_off else row.verdict, row
 
 
 def control_in_short(study: Study) -> str:

@@ -13,7 +13,6 @@ from analysis.records.studies import Study
 from analysis.report.answers import Answer, answer, questions
 from analysis.report.horizons import horizons
 from analysis.report.provenance import commands_of
-from analysis.support.wording import blocks, change
 
 PHASES = "phases"
 
@@ -93,10 +92,7 @@ def _figure(figure: Drawn) -> dict[str, Any]:
         "name": figure.files[0].stem,
         "title": figure.entry.title,
         "caption": figure.caption,
-        "verdicts": [
-            {"name": row["name"], "change": change(row), "blocks": blocks(row), "verdict": row["verdict"]}
-            for row in ([] if figure.verdicts is None else figure.verdicts.to_dict("records"))
-        ],
+        "verdicts": [] if figure.verdicts is None else list(figure.verdicts.itertuples()),
         "tables": figure.tables,
         "svg": Markup(inline(figure.files[0].read_text(encoding="utf-8"), figure.files[0].stem)),
     }

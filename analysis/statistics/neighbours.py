@@ -10,7 +10,7 @@ does (Ann. Math. Stat. 35, 1964), so that bursts spoil little.
 
 import numpy as np
 
-from analysis.statistics.location import BEND, spread
+from analysis.statistics.turns import BEND, spread
 from analysis.support.values import Floats
 
 Order = np.ndarray[tuple[int, int], np.dtype[np.int64]]

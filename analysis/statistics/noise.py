@@ -1,19 +1,53 @@
-"""How noisy the machine was, what that allows to decide, and what to do about it."""
+"""How noisy the machine was, what that allows to decide, and what to do about it; whether it has two speeds;
+and how many blocks what is open would need, if its effect and its noise are as measured.
+"""
 
+import math
 from collections.abc import Collection
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
 from analysis.statistics import quantiles
-from analysis.statistics.dependence import widening_of_independent
-from analysis.statistics.forecast import MOST_BLOCKS
-from analysis.statistics.looks import ERROR, looks_up_to
+from analysis.statistics.intervals import widening_of_independent
+from analysis.statistics.looks import ERROR, LOOKS, looks_up_to, next_look
 from analysis.statistics.looks import share as share_of_error
 from analysis.statistics.pairs import PAIR
 from analysis.statistics.verdicts import MARGIN
 from analysis.support.values import Floats
 from analysis.support.wording import count, listed, share
+
+MOST_BLOCKS = 1000
+"""Of more, an estimate would say nothing."""
+
+
+def blocks_to_decide(p: float, blocks: int, family: int = 1) -> float:
+    """Return at which look, beyond so many blocks, a verdict is expected; infinite if it is not in sight.
+
+    `p` is that of the verdict best supported, over all looks and not cut at 1 (`verdicts.judge_one`). The
+    statistic that it stands for grows as the error of the centre falls; it has to reach what the look asks,
+    corrected for `family` claims that are open.
+    """
+    if blocks < LOOKS[0]:
+        return LOOKS[0]
+    alone = p * share_of_error(blocks)
+    if not 0 < alone < 1:
+        return math.inf if alone else next_look(blocks)
+    per_block = -quantiles.student(alone / 2, blocks - 1) * _error(blocks)
+    for look in looks_up_to(MOST_BLOCKS):
+        if look > blocks and per_block >= -quantiles.student(
+            ERROR * share_of_error(look) / family / 2, look - 1
+        ) * _error(look):
+            return look
+    return math.inf
+
+
+def _error(blocks: int) -> float:
+    """Return the error of a centre in standard deviations of a block, as the interval takes it."""
+    return widening_of_independent(blocks) / math.sqrt(blocks)
+
 
 BURST = 4.0
 LARGE_EFFECTS = (
@@ -129,3 +163,68 @@ def warning(noise: pd.DataFrame, settled: Collection[str] = ()) -> str | None:
         f"{count(worst['bursts'], 'burst')}, which needs {needed_said(worst['needed'])} blocks; "
         f"{worst['blocks']} were run.{others} To do better: {ADVICE}."
     )
+
+
+FEWEST_TIMES = 8
+FACTOR = 1.25
+EXPLAINED = 0.94
+"""The share of the variance of ln(time) between the two groups: 0.64 for a normal distribution cut at its
+middle, more for few times by chance; this is exceeded in about 1 normal sample in 100."""
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Two levels of a time: the slower is `factor` times the faster, and has `slow` of `times` values; the
+    machine changed between them `changes` times.
+    """
+
+    factor: float
+    slow: int
+    times: int
+    changes: int
+
+
+def levels(times: ArrayLike) -> Levels | None:
+    """Return the two levels of times of the same thing, given in the order in which they were measured; None
+    if it is not clear that they are two.
+
+    The times are parted where the two groups differ most (Otsu, IEEE Trans. Syst. Man Cybern. 9, 1979). They
+    are two levels if that explains at least `EXPLAINED` of the variance, each has two times or more, and the
+    levels are a factor of `FACTOR` apart.
+    """
+    logs = np.log(np.asarray(times, dtype=float))
+    if len(logs) < FEWEST_TIMES or np.ptp(logs) == 0:
+        return None
+    ordered = np.sort(logs)
+    sizes = np.arange(2, len(logs) - 1)
+    gaps = np.array([ordered[size:].mean() - ordered[:size].mean() for size in sizes])
+    between = gaps**2 * sizes * (len(logs) - sizes) / len(logs) ** 2
+    best = int(between.argmax())
+    if between[best] < EXPLAINED * logs.var() or gaps[best] < np.log(FACTOR):
+        return None
+    slow = logs > (ordered[sizes[best] - 1] + ordered[sizes[best]]) / 2
+    changes = int((slow[1:] != slow[:-1]).sum())
+    return Levels(float(np.exp(gaps[best])), int(slow.sum()), len(logs), changes)
+
+
+def shifting(times: ArrayLike) -> bool:
+    """Tell whether times of the same thing, in the order in which they were measured, are of a speed that
+    shifts: a factor of `FACTOR` apart, and neighbours more alike than chance would have it.
+
+    That is von Neumann's ratio, of the mean square of successive differences to the variance, at 1 %, of
+    ranks, so that bursts hardly count (Bartels, J. Am. Stat. Assoc. 77, 1982).
+    """
+    values = np.asarray(times, dtype=float)
+    count = len(values)
+    if count < FEWEST_TIMES or np.quantile(values, 0.9) < FACTOR * np.quantile(values, 0.1):
+        return False
+    ranks = pd.Series(values).rank().to_numpy()
+    ratio = (np.diff(ranks) ** 2).mean() / ranks.var()
+    deviation = np.sqrt(4 * (count - 2) / (count**2 - 1))
+    return bool(ratio < 2 + quantiles.normal(0.01) * deviation)
+
+
+def in_order(processes: pd.DataFrame) -> Floats:
+    """Return the times of processes in the order in which they were measured."""
+    ordered = processes.sort_values(["recorded_at", "block", "position"], kind="stable")
+    return ordered["steps_seconds"].to_numpy(dtype=float)

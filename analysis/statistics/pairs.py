@@ -3,8 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from analysis.statistics.location import location
-from analysis.statistics.returning import bias
+from analysis.statistics.turns import bias, location
 from analysis.support.values import Floats
 
 PAIR = ["node", "block", "session"]

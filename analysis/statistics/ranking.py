@@ -1,10 +1,14 @@
-"""Alternatives in the order of their times, those that cannot be told apart bracketed together."""
+"""Alternatives in the order of their times, those that cannot be told apart bracketed together; and which
+choices no other beats in both of two costs.
+"""
 
 from collections.abc import Collection, Sequence
 from itertools import combinations
 from string import ascii_lowercase
 
+import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike, NDArray
 
 from analysis.statistics.pairs import log_ratios
 from analysis.statistics.verdicts import MARGIN, judge
@@ -66,3 +70,18 @@ def brackets(names: Sequence[str], apart: Collection[tuple[str, str]]) -> dict[s
         name: "".join(letter for letter, (first, last) in named if first <= number <= last)
         for number, name in enumerate(names)
     }
+
+
+def front(error: ArrayLike, time: ArrayLike) -> NDArray[np.bool_]:
+    """Return which points are on the Pareto front: no other has at most their error and at most their time.
+
+    Of points that are equal in both, the first is on it. A point whose error or time is NaN never is.
+    """
+    errors, times = np.asarray(error, dtype=float), np.asarray(time, dtype=float)
+    on_front = np.zeros(len(errors), dtype=bool)
+    least = np.inf
+    for index in np.lexsort((times, errors)):
+        if np.isfinite(errors[index]) and times[index] < least:
+            on_front[index] = True
+            least = times[index]
+    return on_front

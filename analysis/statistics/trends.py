@@ -1,20 +1,32 @@
 """Trends over a swept parameter: the growth exponent, linearity, and the point where a curve turns from
 falling to rising. Each takes one row a process (as `records.tables.times` has them) of a single series with
-its column `x`.
+its column `x`; the order in which an error
+falls with the time step.
 """
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations, permutations
+from typing import Literal
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
-from analysis.statistics.breaks import break_point
-from analysis.statistics.intervals import FEWEST, centre, measure
-from analysis.statistics.looks import ERROR, last_look, seen
+from analysis.statistics import quantiles
+from analysis.statistics.intervals import FEWEST, Centre, centre, measure
+from analysis.statistics.looks import ERROR, last_look, seen, share
 from analysis.statistics.pairs import block_curves, ratios_of
-from analysis.statistics.simultaneous import Curves
-from analysis.statistics.verdicts import MARGIN, judge_one, two_sided, verdict_row
+from analysis.statistics.verdicts import (
+    EXPONENT,
+    INCONCLUSIVE,
+    MARGIN,
+    Ratio,
+    judge_one,
+    ratio_of,
+    two_sided,
+    within_margin,
+)
 from analysis.support.values import Floats, Interval
 
 TOO_FEW_BLOCKS = "too few blocks"
@@ -24,38 +36,24 @@ EXPONENTS = (0.3, 2.5, 441)
 
 @dataclass(frozen=True)
 class Growth:
-    """How a time grows with x: its `exponent`, and the `change` from first to last (as of `judge_one`)."""
+    """How a time grows with x: its `exponent`, and the `change` from first to last with its verdict."""
 
     exponent: Interval
-    change: dict[str, Any]
+    change: Ratio
     first: float
     last: float
-    verdict: str
-    p: float
-
-
-@dataclass(frozen=True)
-class Linearity:
-    """The exponent of x over a fixed cost, from how many blocks, and whether that is a straight line."""
-
-    exponent: Interval
-    blocks: int
-    verdict: str
-    p: float
 
 
 @dataclass(frozen=True)
 class Minimum:
-    """A fall to a break point and a rise from it; `fall` and `rise` are rows like those of `judge_one`, of
-    the first and the last x against the lowest.
+    """A fall to a break point and a rise from it: `fall` and `rise` are the first and the last x against the
+    lowest, with the verdict on the shape.
     """
 
     break_point: Interval
     lowest: float
-    fall: dict[str, Any]
-    rise: dict[str, Any]
-    verdict: str
-    p: float
+    fall: Ratio
+    rise: Ratio
 
 
 def growth(processes: pd.DataFrame, margin: float = MARGIN) -> Growth:
@@ -75,14 +73,14 @@ def growth(processes: pd.DataFrame, margin: float = MARGIN) -> Growth:
         "falls": two_sided(found.p_value(0, "less"), len(exponents)),
         "flat": 0.0,
     }
-    said = {"slower": "grows", "faster": "falls", "equivalent": "flat"}.get(change["verdict"], "inconclusive")
-    p_of_both = max(change["p"], p.get(said, 1.0))
-    verdict = said if p_of_both <= ERROR else "inconclusive"
-    return Growth(centre(exponents), change, first, last, verdict, p_of_both)
+    said = {"slower": "grows", "faster": "falls", "equivalent": "flat"}.get(change.verdict, INCONCLUSIVE)
+    p_of_both = max(change.p, p.get(said, 1.0))
+    verdict = said if p_of_both <= ERROR else INCONCLUSIVE
+    return Growth(centre(exponents), replace(change, verdict=verdict, p=p_of_both), first, last)
 
 
-def linearity(processes: pd.DataFrame, within: tuple[float, float] = LINEAR_WITHIN) -> Linearity:
-    """Tell whether the time is a straight line over x, with whatever fixed cost.
+def linearity(processes: pd.DataFrame, within: tuple[float, float] = LINEAR_WITHIN) -> Ratio:
+    """Return the exponent of x over a fixed cost, which is 1 for a straight line, and whether it is one.
 
     Fits time = a + b x^exponent with the least relative error in each block (variable projection: a and b are
     linear, the exponent is searched on a fine grid); the interval is over the blocks. `linear` if it lies
@@ -92,14 +90,16 @@ def linearity(processes: pd.DataFrame, within: tuple[float, float] = LINEAR_WITH
     curves = np.exp(block_curves(processes).dropna())
     x = curves.columns.to_numpy(dtype=float)
     if len(x) < 4 or len(curves) == 0:
-        return Linearity(Interval(np.nan, -np.inf, np.inf), len(curves), "inconclusive", 1.0)
+        return Ratio(what=EXPONENT, low=-np.inf, blocks=len(curves), within=within)
     exponents = seen(_offset_exponents(x / x.max(), curves.to_numpy()))
     found = measure(exponents)
     inside = max(found.p_value(within[0], "greater"), found.p_value(within[1], "less"))
     outside = min(found.p_value(within[0], "less"), found.p_value(within[1], "greater"))
     p = two_sided(min(inside, outside), len(exponents))
-    verdict = "inconclusive" if p > ERROR else "linear" if inside < outside else "not linear"
-    return Linearity(centre(exponents), len(exponents), verdict, p)
+    verdict = INCONCLUSIVE if p > ERROR else "linear" if inside < outside else "not linear"
+    ratio, low, high = centre(exponents)
+    known = Ratio(what=EXPONENT, ratio=ratio, low=low, high=high, within=within)
+    return replace(known, blocks=len(exponents), p=p, verdict=verdict)
 
 
 def minimum(processes: pd.DataFrame, margin: float = MARGIN) -> Minimum:
@@ -118,10 +118,11 @@ def minimum(processes: pd.DataFrame, margin: float = MARGIN) -> Minimum:
     curves = Curves(rows.to_numpy(dtype=float))
     verdict, p = curves.shape(np.log1p(margin)) if len(whole) >= FEWEST else (TOO_FEW_BLOCKS, 1.0)
     if len(whole) >= FEWEST and p > ERROR:
-        verdict = "inconclusive"
+        verdict = INCONCLUSIVE
     ends = (curves.interval_above_lowest(end) for end in (0, len(x) - 1))
-    fall, rise = (verdict_row(end, len(whole), p, verdict) for end in ends)
-    return Minimum(break_point(x, np.exp(whole.to_numpy())), float(x[curves.lowest]), fall, rise, verdict, p)
+    told = {"blocks": len(whole), "p": p, "verdict": verdict, "within": within_margin(margin)}
+    fall, rise = (ratio_of(end, **told) for end in ends)
+    return Minimum(break_point(x, np.exp(whole.to_numpy())), float(x[curves.lowest]), fall, rise)
 
 
 def _block_exponents(processes: pd.DataFrame) -> Floats:
@@ -147,3 +148,140 @@ def _offset_exponents(x: Floats, curves: Floats) -> Floats:
         design = np.column_stack([np.ones_like(x), x**exponent]) * weights[:, None]
         errors[row] = ((weighted - design @ (np.linalg.pinv(design) @ weighted)) ** 2).sum(axis=0)
     return candidates[errors.argmin(axis=0)]
+
+
+SHAPES = ("falls then rises", "rises only", "falls only", "flat")
+"""Of these at most one is true of a curve."""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """The logarithms of a curve's points, blocks x points, in the order of time, of a planned look.
+
+    A difference of two points has the noise of those two points alone: an end may be several times as noisy
+    as the rest, and what a block suffers cancels.
+    """
+
+    logs: Floats
+
+    @property
+    def points(self) -> int:
+        """How many points the curve has."""
+        return self.logs.shape[1]
+
+    @cached_property
+    def means(self) -> Floats:
+        """The mean of each point over the blocks."""
+        return self.logs.mean(axis=0)
+
+    @property
+    def lowest(self) -> int:
+        """The point of the least mean."""
+        return int(self.means.argmin())
+
+    def interval_above_lowest(self, point: int) -> Interval:
+        """Return how far a point lies above the lowest, which was found by looking: the intervals of an end
+        against all others hold together, those of both ends, and of all looks, in 95 % of studies
+        (Bonferroni).
+        """
+        if point == self.lowest:
+            return Interval(0.0, 0.0, 0.0)
+        level = 1 - ERROR * share(len(self.logs)) / max(1, 2 * (self.points - 1))
+        return self._difference(point, self.lowest).interval(level)
+
+    def shape(self, bound: float) -> tuple[str, float]:
+        """Return which of `SHAPES` is best supported, by differences of more than `bound`, and its p-value
+        over all looks and shapes.
+
+        *falls then rises*: some point inside lies below both ends; *rises only*: the last point lies above
+        the first, and the first above none; *falls only*: the other way round; *flat*: no two points differ.
+        What needs several differences at once has the greatest of their p-values (intersection-union: Berger,
+        Technometrics 24, 1982), what needs any one of the points inside the least times their number.
+        """
+        p = {
+            "falls then rises": self._inside(bound),
+            "rises only": self._only_away_from(0, self.points - 1, bound),
+            "falls only": self._only_away_from(self.points - 1, 0, bound),
+            "flat": max(
+                (self._p(*two, bound, "less") for two in permutations(range(self.points), 2)), default=1.0
+            ),
+        }
+        best = min(SHAPES, key=lambda shape: p[shape])
+        return best, len(SHAPES) * p[best] / share(len(self.logs))
+
+    def _inside(self, bound: float) -> float:
+        last = self.points - 1
+        found = [
+            max(self._p(0, point, bound, "greater"), self._p(last, point, bound, "greater"))
+            for point in range(1, last)
+        ]
+        return len(found) * min(found, default=1.0)
+
+    def _only_away_from(self, start: int, end: int, bound: float) -> float:
+        never = [self._p(start, point, bound, "less") for point in range(self.points) if point != start]
+        return max(self._p(end, start, bound, "greater"), *never)
+
+    def _p(self, one: int, other: int, bound: float, alternative: Literal["less", "greater"]) -> float:
+        return self._difference(one, other).p_value(bound, alternative)
+
+    def _difference(self, one: int, other: int) -> Centre:
+        first, second = sorted((one, other))
+        found = self._differences[first, second]
+        return found if one == first else found.mirrored()
+
+    @cached_property
+    def _differences(self) -> dict[tuple[int, int], Centre]:
+        pairs = combinations(range(self.points), 2)
+        return {(one, other): measure(self.logs[:, one] - self.logs[:, other]) for one, other in pairs}
+
+
+CANDIDATES = 202
+
+
+def break_point(x: Floats, curves: Floats) -> Interval:
+    """Return where the two lines through ln(time) over ln(x) meet, with its 95 % interval; NaN with fewer
+    than four x.
+
+    `curves` has a row a block. The line of two pieces (Muggeo, Stat. Med. 22, 2003) is fitted in each block,
+    and the interval is over the blocks, within the range of x; fewer than `FEWEST` blocks give none.
+    """
+    if len(x) < 4 or len(curves) == 0 or x.min() <= 0:
+        return Interval(np.nan, -np.inf, np.inf)
+    found = centre(_breaks(np.log(x), np.log(curves)))
+    if len(curves) < FEWEST:
+        return Interval(float(np.exp(found.estimate)), -np.inf, np.inf)
+    low, high = np.clip(np.exp([found.low, found.high]), x[0], x[-1])
+    return Interval(float(np.exp(found.estimate)), float(low), float(high))
+
+
+def _breaks(x: Floats, curves: Floats) -> Floats:
+    """Return for each curve the break, on a fine grid inside x, of the two-piece line of least squares."""
+    candidates = np.linspace(x[0], x[-1], CANDIDATES)[1:-1]
+    designs = np.stack(
+        [np.column_stack([np.ones_like(x), x, np.maximum(x - candidate, 0)]) for candidate in candidates]
+    )
+    fitted = designs @ (np.linalg.pinv(designs) @ curves.T)
+    return candidates[((curves.T - fitted) ** 2).sum(axis=1).argmin(axis=0)]
+
+
+FEWEST_ERRORS = 3
+"""Points that a fitted order needs: two always lie on a line and tell nothing of its error."""
+
+
+def order(step: ArrayLike, error: ArrayLike, ceiling: float) -> Interval:
+    """Return p of error = c step^p, the slope of ln(error) on ln(step), with its 95 % interval.
+
+    Only errors above 0 and below `ceiling` count, a rule fixed beforehand: above it the error is no longer
+    small and cannot follow its leading term. The interval is Student's t from the scatter about the line. NaN
+    with unbounded ends below `FEWEST_ERRORS` points.
+    """
+    dt, value = np.asarray(step, dtype=float), np.asarray(error, dtype=float)
+    fitted = (value > 0) & (value < ceiling)
+    if fitted.sum() < FEWEST_ERRORS or len(np.unique(dt[fitted])) < FEWEST_ERRORS:
+        return Interval(np.nan, -np.inf, np.inf)
+    x, y = np.log(dt[fitted]), np.log(value[fitted])
+    slope, intercept = np.polyfit(x, y, 1)
+    freedom = len(x) - 2
+    scatter = np.sum((y - intercept - slope * x) ** 2) / freedom
+    half = float(quantiles.student(0.975, freedom) * np.sqrt(scatter / np.sum((x - x.mean()) ** 2)))
+    return Interval(float(slope), float(slope) - half, float(slope) + half)

@@ -1,6 +1,10 @@
-"""Verdicts on ratios against a margin stated beforehand: faster, slower, equivalent or inconclusive."""
+"""A ratio with the interval that decides, and the verdict against a margin stated beforehand: faster, slower,
+equivalent or inconclusive.
+"""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from math import inf, isfinite, nan
 from typing import Any
 
 import numpy as np
@@ -9,43 +13,114 @@ from numpy.typing import ArrayLike
 
 from analysis.statistics.intervals import FEWEST, measure
 from analysis.statistics.looks import ERROR, seen, share
-from analysis.statistics.stopping import unstopped
+from analysis.statistics.turns import unstopped
 from analysis.support.values import Floats, Interval
 
 MARGIN = 0.02
-COLUMNS = ["ratio", "low", "high", "blocks", "p", "verdict", "alone"]
+INCONCLUSIVE = "inconclusive"
+EXPONENT = "exponent"
+
+
+def within_margin(margin: float) -> tuple[float, float]:
+    """Return the ratios between which no difference matters."""
+    return 1 / (1 + margin), 1 + margin
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ratio:
+    """A ratio, candidate / reference, of times if `what` does not name something else; NaN if it was not
+    measured. `low` and `high` are its 95 % interval, which decides and is shown, without end where none is
+    known; it rests on so many `blocks`. Between the two ratios of `within` no difference matters. `published`
+    is the same as the study tells it, NaN where it tells no number.
+
+    `p` is the smallest error at which the interval decides, over all looks and not cut at 1; in a table it is
+    corrected over the rows, and `alone` is p before that. `not_faster`, `not_slower` and `not_equivalent` are
+    those at which it has no part in what such a verdict says, whatever else it reaches into; `any_faster` and
+    `any_slower` those at which it lies wholly on that side of 1, by however little.
+    """
+
+    what: str = ""
+    ratio: float = nan
+    low: float = 0.0
+    high: float = inf
+    blocks: int = 0
+    p: float = 1.0
+    verdict: str = INCONCLUSIVE
+    alone: float = 1.0
+    not_faster: float = 1.0
+    not_slower: float = 1.0
+    not_equivalent: float = 1.0
+    any_faster: float | None = None
+    any_slower: float | None = None
+    within: tuple[float, float] = within_margin(MARGIN)
+    published: float = nan
+
+    @property
+    def is_exponent(self) -> bool:
+        """Whether it is no ratio of times but the exponent of a curve, which is 1 for a straight line."""
+        return self.what == EXPONENT
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether there are records of it."""
+        return isfinite(self.ratio)
+
+    @property
+    def has_interval(self) -> bool:
+        """Whether there were enough blocks for an interval."""
+        return isfinite(self.high)
+
+    def scaled(self, factor: float) -> "Ratio":
+        """Return it with all its p-values times a factor."""
+        known = {name: getattr(self, name) for name in _P_VALUES}
+        return replace(self, **{name: factor * p for name, p in known.items() if p is not None})
+
+
+_P_VALUES = [field.name for field in fields(Ratio) if field.name in ("p", "alone") or "_" in field.name]
+COLUMNS = [field.name for field in fields(Ratio) if field.name not in ("what", "within", "published")]
+
+
+def of_row(row: Mapping[Any, Any] | pd.Series, **more: Any) -> Ratio:  # noqa: ANN401
+    """Return a row of a table of `judge` as the ratio that it was."""
+    return Ratio(**({name: row[name] for name in COLUMNS} | more))
+
+
+def ratio_of(log_ratio: Interval, **more: Any) -> Ratio:  # noqa: ANN401
+    """Return the ratio of a logarithm with its interval."""
+    ratio, low, high = np.exp(log_ratio).tolist()
+    return Ratio(ratio=ratio, low=low, high=high, **more)
 
 
 def judge(pairs: pd.DataFrame, by: list[str], margin: float = MARGIN, error: float = ERROR) -> pd.DataFrame:
-    """Return one row a group of `by` with its ratio, interval and verdict, Holm-corrected over the whole
-    table.
-
-    Columns: `ratio` (candidate / reference) with its 95 % interval `low`, `high`, which decides and is shown,
-    `blocks`, `p`, `verdict`; `alone` is p before the correction over the rows.
+    """Return one row a group of `by`: the fields of its `Ratio`, Holm-corrected over the whole table.
 
     *faster*: the interval lies below 1 / (1 + margin); *slower*: above 1 + margin; *equivalent*: between the
     two. A verdict is wrong only where the interval misses the truth, in at most 5 % of all, wherever that
     lies: the smallest effect that matters is a region, not two tests at 5 % each (Schuirmann, J.
     Pharmacokinet. Biopharm. 15, 1987, whose 90 % interval errs in 5 % on either side; Westlake, Biometrics
-    32, 1976, whose 95 % interval is used here). `p` is the smallest error at which the interval decides; it
-    is corrected over the looks (see `looks`), as the interval is, and over the rows (Holm, Scand. J. Stat. 6,
-    1979). What is not established, and anything from fewer than `FEWEST` blocks, is *inconclusive*. The
-    pairs of a group are in the order of time. With another `error` than 5 % the intervals are of its level.
+    32, 1976, whose 95 % interval is used here). `p` is corrected over the looks (see `looks`), as the
+    interval is, and over the rows (Holm, Scand. J. Stat. 6, 1979). What is not established, and anything from
+    fewer than `FEWEST` blocks, is *inconclusive*. The pairs of a group are in the order of time. With another
+    `error` than 5 % the intervals are of its level.
     """
+    groups = pairs.groupby(by, sort=True)
     rows = [
-        dict(zip(by, key, strict=True))
-        | judge_one(group["log_ratio"], margin, error, biases=group.get("bias"), stops=group.get("stops"))
-        for key, group in pairs.groupby(by, sort=True)
+        dict(zip(by, key, strict=True)) | vars(judge_pairs(group, margin, error)) for key, group in groups
     ]
-    table = pd.DataFrame(rows, columns=[*by, *COLUMNS])
-    return corrected(table, error)
+    return corrected(pd.DataFrame(rows, columns=[*by, *COLUMNS]), error)
 
 
 def corrected(table: pd.DataFrame, error: float = ERROR) -> pd.DataFrame:
     """Return the table with p-values Holm-corrected and verdicts withdrawn where they no longer stand."""
     p = holm(table["p"])
-    verdicts = np.where(np.array(p) <= error, table["verdict"], "inconclusive")
+    verdicts = np.where(np.array(p) <= error, table["verdict"], INCONCLUSIVE)
     return table.assign(p=p, verdict=verdicts)
+
+
+def judge_pairs(pairs: pd.DataFrame, margin: float = MARGIN, error: float = ERROR) -> Ratio:
+    """Return the ratio of the rows of `pairs.log_ratios`, with what they tell of turns and stops."""
+    turns = {"biases": pairs.get("bias"), "stops": pairs.get("stops")}
+    return judge_one(pairs["log_ratio"], margin, error, **turns)
 
 
 def judge_one(
@@ -56,8 +131,8 @@ def judge_one(
     once: bool = False,
     biases: ArrayLike | None = None,
     stops: ArrayLike | None = None,
-) -> dict[str, Any]:
-    """Return the row of one comparison standing alone: the columns that `judge` adds, and `denials`.
+) -> Ratio:
+    """Return one comparison standing alone.
 
     The log ratios are in the order of time; those up to the last planned look count. `once`: how many values
     there are was settled before the first of them, and each has a seed of its own: they are looked at once,
@@ -66,7 +141,7 @@ def judge_one(
     the middle of the means of each two is more than two of its standard errors from 0, the verdict has to
     stand with and without it, and the interval reaches over both: turns of every second block begin at other
     steps, so that unlike steps leave the mean of two. `stops`: how often a run of the programs was stopped;
-    where some blocks have far more, the ratio is that of no stops at all (see `stopping`).
+    where some blocks have far more, the ratio is that of no stops at all (see `turns`).
     """
     values = np.asarray(log_ratios, dtype=float)
     values = values if once else seen(values)
@@ -91,22 +166,67 @@ def _is_sure(biases: Floats) -> bool:
     return bool(abs(np.median(biases)) > 2 * error)
 
 
-def _judged(values: Floats, margin: float, error: float, once: bool, factor: float = 1.0) -> dict[str, Any]:
-    bound, blocks = np.log1p(margin), len(values)
-    part = 1.0 if once else share(blocks)
+def _judged(values: Floats, margin: float, error: float, once: bool, factor: float = 1.0) -> Ratio:
+    part = 1.0 if once else share(len(values))
     found = measure(values, independent=once, factor=factor)
-    faster, slower = found.p_value(-bound, "less"), found.p_value(bound, "greater")
-    not_faster, not_slower = found.p_value(-bound, "greater"), found.p_value(bound, "less")
-    verdict, p = decide(faster, slower, max(not_faster, not_slower), blocks, part, error)
-    row = verdict_row(found.interval(1 - error * part), blocks, p, verdict)
-    return {**row, **denials(faster, slower, not_faster, not_slower, blocks, part)}
+    ratio = ratio_of(found.interval(1 - error * part), blocks=len(values))
+    return _decided(ratio, found.p_value, margin, part, error)
 
 
-def _both(one: dict[str, Any], other: dict[str, Any]) -> dict[str, Any]:
-    """Return the row of what both rows say: the hull of their intervals, the greater of their p-values."""
-    greater = {key: max(one[key], other[key]) for key in one if key not in ("ratio", "low", "verdict")}
-    verdict = one["verdict"] if one["verdict"] == other["verdict"] else "inconclusive"
-    return {**one, **greater, "low": min(one["low"], other["low"]), "verdict": verdict}
+def _decided(
+    ratio: Ratio, p_value: Callable[[float, Any], float], margin: float, part: float, error: float = ERROR
+) -> Ratio:
+    """Return the ratio with its verdict and its p-values over all looks, given the one-sided p-value of "it
+    is not on that side of a bound", of one look alone, which has that `part` of the error.
+
+    They are doubled: at most `error` is where the two-sided interval lies within what the verdict says.
+    """
+    bound, blocks = np.log1p(margin), ratio.blocks
+    one_sided = {"faster": p_value(-bound, "less"), "slower": p_value(bound, "greater")}
+    denied = {"not_faster": p_value(-bound, "greater"), "not_slower": p_value(bound, "less")}
+    support = {**one_sided, "equivalent": max(denied.values())}
+    best = min(support, key=lambda verdict: support[verdict])
+    p = two_sided(support[best], blocks, part)
+    others = {
+        **denied,
+        "not_equivalent": min(one_sided.values()),
+        "any_faster": p_value(0.0, "less"),
+        "any_slower": p_value(0.0, "greater"),
+    }
+    told: Any = {name: two_sided(one, blocks, part) for name, one in others.items()}
+    verdict = best if p <= error else INCONCLUSIVE
+    return replace(ratio, verdict=verdict, p=p, alone=p, within=within_margin(margin), **told)
+
+
+def _both(one: Ratio, other: Ratio) -> Ratio:
+    """Return what both say: the hull of their intervals, the greater of their p-values."""
+    greater = {name: max(getattr(one, name), getattr(other, name)) for name in ("high", *_P_VALUES)}
+    verdict = one.verdict if one.verdict == other.verdict else INCONCLUSIVE
+    return replace(one, **greater, low=min(one.low, other.low), verdict=verdict)
+
+
+def judge_unpaired(reference: ArrayLike, candidate: ArrayLike, margin: float = MARGIN) -> Ratio:
+    """Return candidate / reference from the times of a process each, of two sets that were not interleaved,
+    as on two machines.
+
+    Uses Welch's t on the logarithms. Whatever changed between the two measurements besides the programs (the
+    machine's mood on that day) is not in the interval: only interleaving can see it. `blocks` is the smaller
+    number of processes.
+    """
+    first, second = np.log(np.asarray(reference, dtype=float)), np.log(np.asarray(candidate, dtype=float))
+    fewest = min(len(first), len(second))
+    estimate = float(second.mean() - first.mean()) if fewest else nan
+    if fewest < 2:
+        return Ratio(ratio=float(np.exp(estimate)), blocks=fewest)
+    from scipy import stats  # takes half a second to load, and is seldom needed
+
+    def p_value(shift: float, alternative: str) -> float:
+        return float(stats.ttest_ind(second - shift, first, equal_var=False, alternative=alternative).pvalue)
+
+    part = share(fewest)
+    shown = stats.ttest_ind(second, first, equal_var=False).confidence_interval(1 - ERROR * part)
+    ratio = ratio_of(Interval(estimate, float(shown.low), float(shown.high)), blocks=fewest)
+    return replace(_decided(ratio, p_value, margin, part), any_faster=None, any_slower=None)
 
 
 def error_of_picked(candidates: int) -> float:
@@ -114,39 +234,6 @@ def error_of_picked(candidates: int) -> float:
     the best of them with another has picked one of all pairs. All together may err in 5 % (Bonferroni).
     """
     return ERROR / max(1, candidates * (candidates - 1) // 2)
-
-
-def verdict_row(log_ratio: Interval, blocks: int, p: float, verdict: str) -> dict[str, Any]:
-    """Return the columns that `judge` adds, of an interval of a log ratio."""
-    return dict(zip(COLUMNS, (*np.exp(log_ratio).tolist(), blocks, p, verdict, p), strict=True))
-
-
-def denials(
-    faster: float, slower: float, not_faster: float, not_slower: float, blocks: int, part: float | None = None
-) -> dict[str, float]:
-    """Return the p-values of what denies each verdict, given those of four one-sided tests: the smallest
-    error at which the interval has no part in what the verdict says, whatever else it reaches into.
-    """
-    contrary = {"not_faster": not_faster, "not_slower": not_slower, "not_equivalent": min(faster, slower)}
-    return {name: two_sided(p, blocks, part) for name, p in contrary.items()}
-
-
-def decide(
-    faster: float,
-    slower: float,
-    equivalent: float,
-    blocks: int,
-    part: float | None = None,
-    error: float = ERROR,
-) -> tuple[str, float]:
-    """Return the verdict and its p-value, given the one-sided p-value against each of the three being untrue.
-
-    They are doubled: at most `error` is where the two-sided interval lies within what the verdict says.
-    """
-    support = {"faster": faster, "slower": slower, "equivalent": equivalent}
-    best = min(support, key=lambda verdict: support[verdict])
-    p = two_sided(support[best], blocks, part)
-    return best if p <= error else "inconclusive", p
 
 
 def two_sided(p: float, blocks: int, part: float | None = None) -> float:

@@ -1,12 +1,10 @@
 """How numbers are said: one way for captions, claims, the report and the terminal."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
-import pandas as pd
-
-from analysis.support.values import Interval, Row
+from analysis.support.values import Interval
 
 NO_BREAK = "\u00a0"
 NO_INTERVAL = "(too few blocks for an interval)"
@@ -57,9 +55,9 @@ def interval(value: Interval) -> str:
     return f"{estimate} [{low}, {high}]" if math.isfinite(value.high) else f"{estimate} {NO_INTERVAL}"
 
 
-def interval_of(row: Row | pd.Series, value: str = "median") -> str:
-    """Return the columns `value`, `low`, `high` of a row as an estimate with its interval."""
-    return interval(Interval(row[value], row["low"], row["high"]))
+def interval_of(row: Any, value: str = "median") -> str:  # noqa: ANN401 - a row of a table, or a ratio
+    """Return what a row has as `value`, `low`, `high` as an estimate with its interval."""
+    return interval(Interval(getattr(row, value), row.low, row.high))
 
 
 def scene_in_words(particles: float, area_fraction: float) -> str:
@@ -67,17 +65,16 @@ def scene_in_words(particles: float, area_fraction: float) -> str:
     return f"{exact(particles)} discs at area fraction {area_fraction:.2f}"
 
 
-def change(row: Mapping[str, Any]) -> str:
-    """Return a row of `verdicts.judge` as a change with its interval, e.g. `−4.6 % [−5.1 %, −4.0 %]`."""
-    if not math.isfinite(row["high"]):
-        return f"{percent(row['ratio'] - 1)} {NO_INTERVAL}"
-    low, high = (percent(row[end] - 1) for end in ("low", "high"))
-    return f"{percent(row['ratio'] - 1)} [{low}, {high}]"
+def change(row: Any) -> str:  # noqa: ANN401 - as above
+    """Return a ratio as a change with its interval, e.g. `−4.6 % [−5.1 %, −4.0 %]`."""
+    if not math.isfinite(row.high):
+        return f"{percent(row.ratio - 1)} {NO_INTERVAL}"
+    return f"{percent(row.ratio - 1)} [{percent(row.low - 1)}, {percent(row.high - 1)}]"
 
 
-def blocks(row: Mapping[str, Any]) -> str:
-    """Return on how many pairs of processes a row rests."""
-    return count(row["blocks"], "block")
+def blocks(row: Any) -> str:  # noqa: ANN401 - as above
+    """Return on how many pairs of processes a ratio rests."""
+    return count(row.blocks, "block")
 
 
 def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

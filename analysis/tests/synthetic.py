@@ -179,6 +179,34 @@ def tags_of(experiment: str, point: Point, block: int, machine: Machine) -> dict
     return tags | point.tags | {key: value for key, value in optional.items() if value is not None}
 
 
+def process(
+    experiment: str, series: str, block: int, seconds: float, scope: str = "nothing", **told: object
+) -> dict[str, Any]:
+    """Return one record of a whole program; `told` is what it says of its process."""
+    tags: dict[str, Any] = {
+        "experiment": experiment, "series": series, "series_number": 1, "x_name": "repetition", "x": 0,
+        "block": block, "session": "s", "scale": "paper", "site": "local", "point": series,
+    }  # fmt: skip
+    own = {"command": ["./a b", series], "folder": "/", "sources": [], "exit_code": 0, "counters": {}}
+    spent = {
+        "wall_seconds": seconds,
+        "user_seconds": seconds,
+        "system_seconds": 0,
+        "peak_memory_bytes": 1 << 20,
+    }
+    return record("process", tags, block) | {
+        "axes": {"threads": 2},
+        "scene": None,
+        "warm_ups": 0,
+        "repetitions": [{"steps_seconds": seconds, "cpu_seconds": seconds}],
+        "process_seconds": seconds,
+        "process": {**own, **spent, "undisturbed": None, "time_from": "outside", **told},
+        "turns": None,
+        "check": {"verdict": "unchecked" if scope == "nothing" else "passed", "scope": scope, "reason": None},
+        "provenance": Machine().provenance("GNU 12", 2),
+    }
+
+
 def profile(
     record: dict[str, Any], shares: dict[str, float], counters: list[dict[str, Any]]
 ) -> dict[str, Any]:

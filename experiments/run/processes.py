@@ -27,7 +27,7 @@ CROWDED = "too many are compared to wait in memory side by side"
 
 SLICE_SECONDS, SHORT_SECONDS = 0.01, 0.002
 """Of a slice, and of one in every third block: from the two the analysis knows what a stop costs
-(analysis/statistics/stopping.py). The noise of a virtual machine changes within some milliseconds.
+(analysis/statistics/turns.py). The noise of a virtual machine changes within some milliseconds.
 """
 
 HINDERED_SECONDS = 0.025

@@ -22,6 +22,7 @@ from analysis.calibration.studies import (
 from analysis.calibration.tables import OURS, errors, ours_and_theirs, power
 from analysis.calibration.usual_ways import WAYS, all_ways
 from analysis.statistics.looks import looks_up_to
+from analysis.statistics.verdicts import Ratio
 from analysis.tests.statistics.unkind_noise import dependent
 from support.errors import InputError
 
@@ -90,8 +91,8 @@ def test_ten_and_then_ten_raise_alarms_where_the_machine_drifts() -> None:
 def test_a_rule_that_errs_is_seen_to_err() -> None:
     """A rule that calls everything equivalent is wrong about each true difference."""
 
-    def equivalent(_: Floats) -> dict[str, object]:
-        return {"verdict": "equivalent", "low": 1.0, "high": 1.0}
+    def equivalent(_: Floats) -> Ratio:
+        return Ratio(ratio=1.0, low=1.0, high=1.0, verdict="equivalent")
 
     row = errors(all_studies([independent(5)], equivalent), ["more"]).set_index("more")
     assert row.loc[0.0, "wrong"] == 0

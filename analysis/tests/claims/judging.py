@@ -32,6 +32,6 @@ def slowed(records: Records, factor: float, **tags: object) -> Records:
     return records
 
 
-def figures(row: pd.Series) -> dict[str, tuple[str, str]]:
+def figures(row: pd.Series) -> dict[str, list[str]]:
     """Return the published figure and ours, by what they are of."""
-    return {one.what: (one.published, one.here) for one in row["figures"]}
+    return {what: both for what, *both in row["figures"]}

@@ -33,7 +33,7 @@ def test_a_row_is_a_timed_repetition(results: Path, capsys: pytest.CaptureFixtur
     target = results / "measurements.csv"
     assert capsys.readouterr().out == f"{target}\n"
     table = pd.read_csv(target)
-    assert list(table.columns) == [column.name for column in COLUMNS]
+    assert list(table.columns) == COLUMNS
     times = load(results).times
     assert len(table) == timed_runs(times) == 36
     assert sorted(table["repetition"].unique()) == [1, 2, 3]
@@ -44,12 +44,13 @@ def test_a_row_is_a_timed_repetition(results: Path, capsys: pytest.CaptureFixtur
 
 
 def test_the_page_tells_each_column() -> None:
-    rows = re.findall(r"^\| `(\w+)` \| (.*?) \| (.*) \|$", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
-    assert [tuple(row) for row in rows] == [(one.name, one.unit, one.said) for one in COLUMNS]
+    assert (
+        re.findall(r"^\| `(\w+)` \| .*? \| .+ \|$", PAGE.read_text(encoding="utf-8"), re.MULTILINE) == COLUMNS
+    )
 
 
 def test_every_policy_has_a_column() -> None:
-    assert set(AXIS_COLUMNS) <= {one.name for one in COLUMNS}
+    assert set(AXIS_COLUMNS) <= set(COLUMNS)
 
 
 def test_the_example_of_the_page_runs(results: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 from analysis import claims
 from analysis.cli import main
 from analysis.commands.open_questions import open_questions
-from analysis.statistics.forecast import MOST_BLOCKS, blocks_to_decide
+from analysis.statistics.noise import MOST_BLOCKS, blocks_to_decide
 from analysis.statistics.verdicts import judge_one
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET, Noise
@@ -93,18 +93,18 @@ def test_the_forecast_is_right_more_often_than_not(effect: float) -> None:
     for _ in range(100):
         ratios = np.log1p(effect) + generator.normal(0, 0.02, 164)
         row = judge_one(ratios[:9])
-        needed = blocks_to_decide(row["p"], 9)
-        if row["verdict"] == "inconclusive" and needed <= len(ratios):
+        needed = blocks_to_decide(row.p, 9)
+        if row.verdict == "inconclusive" and needed <= len(ratios):
             foretold += 1
-            right += judge_one(ratios[: int(needed)])["verdict"] != "inconclusive"
+            right += judge_one(ratios[: int(needed)]).verdict != "inconclusive"
     assert foretold > 40
     assert right > 0.6 * foretold
 
 
 def test_the_forecast_grows_with_the_family_and_ends_on_the_border() -> None:
     row = judge_one([0.04, 0.05, 0.02, 0.03, 0.06, 0.05])
-    assert row["verdict"] == "inconclusive"
-    assert blocks_to_decide(row["p"], 6, family=17) > blocks_to_decide(row["p"], 6)
+    assert row.verdict == "inconclusive"
+    assert blocks_to_decide(row.p, 6, family=17) > blocks_to_decide(row.p, 6)
     assert blocks_to_decide(100.0, 6) > MOST_BLOCKS, "on the border nothing is in sight"
 
 

@@ -1,6 +1,7 @@
 """Speed against error, on records with a known order of convergence and a known Pareto front."""
 
 import re
+from collections.abc import Callable
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,8 @@ from analysis import report
 from analysis.derived import accuracy
 from analysis.derived.accuracy import MEASURES, Measure
 from analysis.figures import further
-from analysis.figures.speed_against_error import draw, front_in_words, power_of_ten, run_label
+from analysis.figures.errors import draw, front_in_words, run_label
+from analysis.figures.labels import power_of_ten
 from analysis.figures.studies import draw_all
 from analysis.figures.style import Data, Drawing
 from analysis.records import published
@@ -30,6 +32,15 @@ BY_KEY = {measure.key: measure for measure in MEASURES}
 
 def records(**more: Any) -> list[dict[str, Any]]:  # noqa: ANN401
     return study([NAME], blocks=6, noise=QUIET, seed=4, **more)
+
+
+def study_with(folder: Path, change: Callable[[dict[str, Any]], object]) -> Study:
+    """Return the study of these records, each changed."""
+    made = records()
+    for record in made:
+        change(record)
+    write(folder, made)
+    return split(load(folder))[0]
 
 
 @pytest.fixture(scope="module")
@@ -72,12 +83,11 @@ def test_measures_against_the_reference_are_relative(measured: Study) -> None:
 
 
 def test_paths_that_never_part_are_better_than_any_that_do(tmp_path: Path) -> None:
-    changed = records()
-    for record in changed:
+    def never(record: dict[str, Any]) -> None:
         if "time_to_tenth_radius" in record["errors"] and record["tags"]["x"] == 64:
             record["errors"]["time_to_tenth_radius"] = None
-    write(tmp_path, changed)
-    table = points(split(load(tmp_path))[0], BY_KEY["parting"])
+
+    table = points(study_with(tmp_path, never), BY_KEY["parting"])
     assert (table.loc[table["x"] == 64, "error"] == 0).all()
     assert (table.loc[table["x"] < 64, "error"] > 0).all()
 
@@ -127,19 +137,16 @@ def test_a_bound_that_nothing_meets_has_no_choice(measured: Study) -> None:
 
 
 def test_equal_choices_are_both_named(tmp_path: Path) -> None:
-    changed = records()
-    for record in changed:
+    def row_as_fast(record: dict[str, Any]) -> None:
         if record["tags"]["series"] == "row":
-            for repetition in record["repetitions"]:
-                repetition["steps_seconds"] /= 1.2
-    write(tmp_path, changed)
-    measured = split(load(tmp_path))[0]
+            record["repetitions"][0]["steps_seconds"] /= 1.2
+
+    measured = study_with(tmp_path, row_as_fast)
     table = points(measured, BY_KEY["path"])
     double = table[
         (table["precision"] == "double") & (table["scene_name"] == "dense") & (table["error"] < 0.01)
     ]
-    timed = accuracy.times(measured, NAME)
-    choice = accuracy.cheapest(double, accuracy.Race(timed[timed["scene_name"] == "dense"]))
+    choice = accuracy.cheapest(double, accuracy.races(measured, NAME)["dense"])
     assert choice is not None
     assert {choice.series, *(series for series, _ in choice.others)} == {"checkered", "row"}
     assert {x for _, x in choice.others} == {16}
@@ -180,25 +187,25 @@ def test_the_fitted_orders_are_stated(measured: Study, folder: Path) -> None:
 
 
 def test_errors_that_differ_between_runs_have_a_range(tmp_path: Path) -> None:
-    changed = records()
-    for record in changed:
+    first: dict[str, dict[str, Any]] = {}
+
+    def twice(record: dict[str, Any]) -> None:
+        known = first.setdefault(record["tags"]["point"], record["errors"])
         if record["tags"]["block"] == 1:
-            first = next(one for one in changed if one["tags"]["point"] == record["tags"]["point"])
-            record["errors"] = first["errors"] | {"energy_drift": 2 * first["errors"]["energy_drift"]}
-    write(tmp_path, changed)
-    measured = split(load(tmp_path))[0]
+            record["errors"] = known | {"energy_drift": 2 * known["energy_drift"]}
+
+    measured = study_with(tmp_path, twice)
     assert "Bars across are the range of the errors" in drawing(measured, "energy", tmp_path).caption
     row = points(measured, BY_KEY["energy"]).iloc[0]
     assert row["error_high"] == 2 * row["error_low"]
 
 
 def test_zero_has_a_place_on_the_axis(tmp_path: Path) -> None:
-    changed = records()
-    for record in changed:
+    def exact(record: dict[str, Any]) -> None:
         if record["tags"]["series"] == "checkered":
-            record["errors"] |= {"energy_drift": 0.0}
-    write(tmp_path, changed)
-    drawn = drawing(split(load(tmp_path))[0], "energy", tmp_path)
+            record["errors"]["energy_drift"] = 0.0
+
+    drawn = drawing(study_with(tmp_path, exact), "energy", tmp_path)
     drawn.figure.draw_without_rendering()
     assert "Errors of exactly 0 stand at the left edge" in drawn.caption
     assert drawn.figure.axes[0].get_xticklabels()[0].get_text() == "0"
@@ -215,10 +222,8 @@ def test_the_report_says_how_far_paths_go_and_what_to_use(folder: Path) -> None:
 
 
 def test_an_experiment_of_another_name_is_drawn_alike(tmp_path: Path) -> None:
-    for record in records():
-        record["tags"] |= {"experiment": "my_errors", "title": "Mine", "figure": NAME}
-        write(tmp_path, [record])
-    entries = further(split(load(tmp_path))[0])
+    told = {"experiment": "my_errors", "title": "Mine", "figure": NAME}
+    entries = further(study_with(tmp_path, lambda record: record["tags"].update(told)))
     assert [entry.name for entry in entries] == [f"my_errors-{key}" for key in BY_KEY]
     assert {entry.experiment for entry in entries} == {"my_errors"}
     assert "Mine: pressure" in [entry.title for entry in entries]
@@ -265,19 +270,11 @@ def test_the_event_driven_simulation_is_on_the_front_without_steps(tmp_path: Pat
     assert run_label(tight.series, tight.substeps) == "event-driven"
     assert tight.seconds.estimate == pytest.approx(3e-3 * 1.65, rel=0.05)
     assert "event-driven" not in set(accuracy.orders(table)["series"])
-
-
-def test_the_caption_says_what_the_error_of_the_exact_simulation_is_against(
-    tmp_path: Path, measured: Study
-) -> None:
-    stepped = records()
-    write(tmp_path, [*stepped, *exact_ones(stepped, 3.0)])
-    drawn = drawing(split(load(tmp_path))[0], "path", tmp_path)
+    drawn = drawing(found, "path", tmp_path)
     assert "event-driven: without steps" in drawn.caption
     assert "against the same in long double" in drawn.caption
-    (advice,) = (table for table in drawn.tables if "cheapest" in table.title)
-    assert "event-driven: " in advice.rows[-1][1].text
-    assert "long double" not in drawing(measured, "path", tmp_path).caption
+    (told,) = (one for one in drawn.tables if "cheapest" in one.title)
+    assert "event-driven: " in told.rows[-1][1].text
 
 
 def test_numbers_read_well() -> None:
@@ -288,11 +285,10 @@ def test_numbers_read_well() -> None:
 
 
 def test_where_the_reference_is_0_there_is_no_relative_error(tmp_path: Path) -> None:
-    variants = records()
-    for record in variants:
+    def no_wall(record: dict[str, Any]) -> None:
         if record["tags"]["scene_name"] == "dense" and "pressure_reference" in record.get("errors", {}):
             record["errors"]["pressure_reference"] = 0.0
-    write(tmp_path, variants)
-    found = split(load(tmp_path))[0]
+
+    found = study_with(tmp_path, no_wall)
     assert set(points(found, BY_KEY["pressure"])["scene_name"]) == {"dilute", "medium"}
     assert "dense" not in drawing(found, "pressure", tmp_path).caption

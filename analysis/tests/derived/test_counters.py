@@ -2,7 +2,7 @@ import pandas as pd
 import pytest
 
 from analysis.derived.counters import derived
-from analysis.figures import counters as figures
+from analysis.figures import profiles as figures
 from analysis.figures.style import Data
 
 WORK = {"experiment": "phases", "series": "checkered", "particles": 1000, "steps": 10, "substeps": 1}

@@ -11,7 +11,7 @@ import pytest
 from analysis.derived.ladder import named
 from analysis.derived.limits import against_limits
 from analysis.derived.unavoidable import PHASES, unavoidable
-from analysis.figures.limits import phases_against_limits
+from analysis.figures.profiles import phases_against_limits
 from analysis.figures.style import Data, styled
 from analysis.records import published
 from analysis.records.reading import load
@@ -42,8 +42,13 @@ def work_of(one: Study) -> pd.DataFrame:
     return unavoidable(sparse).set_index("phase")
 
 
-def test_every_phase_reads_and_writes_what_its_formula_says(tmp_path: Path) -> None:
-    work = work_of(study_of(tmp_path))
+@pytest.fixture(scope="module")
+def one(tmp_path_factory: pytest.TempPathFactory) -> Study:
+    return study_of(tmp_path_factory.mktemp("limits"))
+
+
+def test_every_phase_reads_and_writes_what_its_formula_says(one: Study) -> None:
+    work = work_of(one)
     touched = DISCS * (1 - np.exp(-2 * OVERLAPS / DISCS))
     assert list(work.index) == list(PHASES)
     assert work.loc["move", "bytes"] == 48 * DISCS
@@ -61,15 +66,15 @@ def test_float_halves_the_bytes_of_numbers_and_no_operation(tmp_path: Path) -> N
     assert work.loc["move", "operations"] == 4 * DISCS
 
 
-def test_without_overlaps_there_is_nothing_to_resolve(tmp_path: Path) -> None:
-    runs = study_of(tmp_path).runs.assign(overlaps=0, pair_resolves=0)
+def test_without_overlaps_there_is_nothing_to_resolve(one: Study) -> None:
+    runs = one.runs.assign(overlaps=0, pair_resolves=0)
     work = unavoidable(runs).set_index("phase").loc["resolve"]
     assert (work["bytes"] == 0).all()
     assert (work["operations"] == 0).all()
 
 
-def test_the_least_time_is_that_of_the_largest_copy_within_the_scene(tmp_path: Path) -> None:
-    table = table_of(study_of(tmp_path)).set_index(["scene_name", "series", "phase"]).sort_index()
+def test_the_least_time_is_that_of_the_largest_copy_within_the_scene(one: Study) -> None:
+    table = table_of(one).set_index(["scene_name", "series", "phase"]).sort_index()
     assert table.loc["sparse", "level"].eq("L3").all(), "4.4 MB are more than 4 MiB"
     assert table.loc["dense", "level"].eq("L2").all(), "1.2 MB are more than 1 MiB"
     move = table.loc[("sparse", "published", "move")]
@@ -81,23 +86,21 @@ def test_the_least_time_is_that_of_the_largest_copy_within_the_scene(tmp_path: P
     assert move["wall"] * 0.8 < move["busy"] < move["wall"] * 0.9
 
 
-def test_a_faster_variant_reaches_more_of_the_same_limit(tmp_path: Path) -> None:
-    table = table_of(study_of(tmp_path)).set_index(["scene_name", "series", "phase"]).sort_index()
+def test_a_faster_variant_reaches_more_of_the_same_limit(one: Study) -> None:
+    table = table_of(one).set_index(["scene_name", "series", "phase"]).sort_index()
     slow, fast = (table.loc[("sparse", name, "find")] for name in ("published", "strips-sorted-contacts"))
     assert fast["least"] == slow["least"]
     assert fast["reached"] / slow["reached"] == pytest.approx(2.5, rel=0.05)
 
 
-def test_arithmetic_bounds_where_it_takes_longer(tmp_path: Path) -> None:
-    one = study_of(tmp_path)
+def test_arithmetic_bounds_where_it_takes_longer(one: Study) -> None:
     slow = one.limits.assign(best=one.limits["best"].where(one.limits["limit"] == "copy", 1e6))
     table = table_of(replace(one, limits=slow))
     assert set(table["bound"]) == {"arithmetic"}
     assert (table["least"] == table["arithmetic"]).all()
 
 
-def test_limits_of_as_many_threads_are_taken_or_of_fewer(tmp_path: Path) -> None:
-    one = study_of(tmp_path)
+def test_limits_of_as_many_threads_are_taken_or_of_fewer(one: Study) -> None:
     alone = table_of(replace(one, limits=one.limits[one.limits["threads"] == 1]))
     assert alone["copy_rate"].max() == COPY["L2"][1], "the dense scene's"
     assert alone["copy_rate"].min() == COPY["L3"][1], "the sparse scene's"
@@ -105,23 +108,20 @@ def test_limits_of_as_many_threads_are_taken_or_of_fewer(tmp_path: Path) -> None
     assert table_of(replace(one, limits=more)).empty
 
 
-def test_a_scene_smaller_than_any_copy_is_compared_with_the_smallest(tmp_path: Path) -> None:
-    one = study_of(tmp_path)
+def test_a_scene_smaller_than_any_copy_is_compared_with_the_smallest(one: Study) -> None:
     larger = one.limits.assign(working_set_bytes=one.limits["working_set_bytes"] * 2**10)
     assert set(table_of(replace(one, limits=larger))["level"]) == {"L2"}
 
 
 def test_the_limits_are_those_of_the_machine(tmp_path: Path) -> None:
-    one = study_of(tmp_path)
-    assert set(one.limits["machine"]) == {one.machine}
+    measured = study_of(tmp_path)
+    assert set(measured.limits["machine"]) == {measured.machine}
     records = load(tmp_path)
-    elsewhere = records.limits.assign(machine="another: CPU")
-    (other,) = split(replace(records, limits=elsewhere))
+    (other,) = split(replace(records, limits=records.limits.assign(machine="another: CPU")))
     assert other.limits.empty
 
 
-def test_the_figure_names_the_limits_and_what_is_reached(tmp_path: Path) -> None:
-    one = study_of(tmp_path)
+def test_the_figure_names_the_limits_and_what_is_reached(tmp_path: Path, one: Study) -> None:
     with styled("limits"):
         drawing = phases_against_limits(Data(one, [one], published.load(), tmp_path), "limits", "limits")
     assert drawing is not None
@@ -132,7 +132,6 @@ def test_the_figure_names_the_limits_and_what_is_reached(tmp_path: Path) -> None
     assert sum("%" in text for text in said) == 2 * (2 * 2 * len(PHASES)), "reached, and waiting"
 
 
-def test_without_limits_nothing_is_drawn(tmp_path: Path) -> None:
-    one = study_of(tmp_path)
+def test_without_limits_nothing_is_drawn(tmp_path: Path, one: Study) -> None:
     without = replace(one, limits=one.limits.iloc[:0])
     assert phases_against_limits(Data(without, [one], published.load(), tmp_path), "limits", "limits") is None

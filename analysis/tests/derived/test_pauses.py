@@ -1,6 +1,5 @@
 """Programs in slices against the same ones without a pause."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +8,7 @@ import pytest
 from analysis.cli import main
 from analysis.derived.pauses import IN_SLICES, WITHOUT, ratios
 from analysis.records.reading import load
-from analysis.tests.figures.test_league import record
+from analysis.tests.synthetic import process, write
 from support.vocabulary import PAUSES
 
 BLOCKS = 6
@@ -27,15 +26,12 @@ def results(tmp_path: Path) -> Path:
         of_block = float(noise.uniform(0.8, 1.2))
         for number, (series, ways) in enumerate(SECONDS.items()):
             for label, seconds in ways.items():
-                made = record(series, block, seconds * of_block * float(noise.normal(1, 0.001)))
-                made["tags"] |= {
-                    "experiment": "pauses", "figure": PAUSES, "label": label, "series_number": number + 1,
-                }  # fmt: skip
+                made = process("pauses", series, block, seconds * of_block * float(noise.normal(1, 0.001)))
+                made["tags"] |= {"figure": PAUSES, "label": label, "point": f"{series}-{label}"}
+                made["tags"]["series_number"] = number + 1
                 if series == "spinning" and label != WITHOUT:
                     made["turns"] = {"contenders": 2, "seed": 1, "seconds": [seconds]}
-                path = tmp_path / "records" / "pauses" / f"{series}-{label}-b{block}.json"
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_text(json.dumps(made), encoding="utf-8")
+                write(tmp_path, [made])
     return tmp_path
 
 

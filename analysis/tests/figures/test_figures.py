@@ -8,18 +8,17 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import numpy as np
 import pandas as pd
 import pytest
 
 from analysis import figures
 from analysis.figures import FIGURES, Entry
 from analysis.figures.labels import label_ends, spread
-from analysis.figures.layout import lay_out
 from analysis.figures.pairs import ratio_panel
 from analysis.figures.studies import data_of, draw_all
 from analysis.figures.style import Data, new_figure, styled
 from analysis.figures.sweeps import level_of
+from analysis.statistics.verdicts import Ratio
 from analysis.tests.claims.judging import verdicts_of
 from analysis.tests.synthetic import Machine, write
 from analysis.tests.synthetic_noise import Noise
@@ -115,12 +114,6 @@ def test_partial_data_are_drawn_or_left_out_but_never_fail(
         drawing = entry.draw(data)
         if drawing is not None:
             drawing.figure.draw_without_rendering()
-
-
-def test_partial_data_are_marked_in_figure_and_caption(tmp_path: Path) -> None:
-    write(tmp_path, [record for record in study(["steps"], blocks=4) if record["tags"]["block"] != 2])
-    (drawn,) = draw_all(tmp_path)
-    assert drawn.caption.endswith("Partial: 30 of 40 runs.")
 
 
 def test_a_block_that_was_left_has_another_in_its_place(tmp_path: Path) -> None:
@@ -221,14 +214,6 @@ def test_the_same_records_give_the_same_svg(tmp_path: Path) -> None:
     assert draw_all(tmp_path)[0].files[0].read_bytes() == first
 
 
-def test_a_second_machine_has_files_of_its_own(tmp_path: Path) -> None:
-    write(tmp_path, study(["steps"], blocks=3))
-    write(tmp_path, study(["steps"], blocks=2, machine=Machine(host="bench-2")))
-    names = [drawn.files[0].stem for drawn in draw_all(tmp_path)]
-    assert names[0] == "steps"
-    assert names[1].startswith("bench-2-example-cpu")
-
-
 def test_several_machines_are_in_one_machine_figure(tmp_path: Path) -> None:
     for host in ("bench-1", "bench-2"):
         write(tmp_path, study(["machine"], blocks=6, machine=Machine(host=host)))
@@ -250,7 +235,7 @@ def test_labels_are_moved_apart_as_little_as_needed() -> None:
 def test_labels_of_two_lines_do_not_cover_each_other() -> None:
     figure, (axes,) = new_figure(2)
     label_ends(axes, [("g++\nactive", 0.50, "black"), ("clang++\nactive", 0.51, "black")])
-    lay_out(figure)
+    figure.draw_without_rendering()
     lower, upper = (text.get_window_extent() for text in axes.texts)
     assert lower.y1 < upper.y0
 
@@ -265,15 +250,8 @@ def test_the_level_is_where_the_published_time_is_least_if_the_sweeps_are_alike(
 
 def test_a_ratio_without_an_interval_does_not_stretch_the_axis() -> None:
     _, (axes,) = new_figure(2)
-    known: dict[str, Any] = {"ratio": 0.95, "low": 0.93, "high": 0.97, "verdict": "faster", "blocks": 9}
-    unknown: dict[str, Any] = {
-        "ratio": 0.96,
-        "low": 0.0,
-        "high": np.inf,
-        "verdict": "inconclusive",
-        "blocks": 5,
-    }
-    ratio_panel(axes, known, unknown, ("one", "other"))
+    known = Ratio(ratio=0.95, low=0.93, high=0.97, verdict="faster", blocks=9)
+    ratio_panel(axes, known, Ratio(ratio=0.96, blocks=5), ("one", "other"))
     low, high = axes.get_xlim()
     assert -15 < low < -7
     assert high < 15

@@ -71,41 +71,21 @@ def test_every_kind_is_drawn_without_a_published_series(tmp_path: Path, kind: st
         assert "<!-- published" not in drawn.files[0].read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(("kind", "known"), LIKE)
-@pytest.mark.parametrize(
-    "kept", [pytest.param(slice(0, 1), marks=pytest.mark.slow), slice(None, None, 3)], ids=["one", "a third"]
-)
-def test_partial_data_never_fail(tmp_path: Path, kind: str, known: str, kept: slice) -> None:
-    write(tmp_path, unknown(known, kind)[kept])
-    draw_all(tmp_path)
-
-
 def test_a_trend_has_a_curve_and_a_sentence_a_series(tmp_path: Path) -> None:
     drawn = drawn_of(tmp_path, unknown("row", "trend"))
     assert "checkered: The time grows" in drawn.caption
     assert "row: The time grows" in drawn.caption
 
 
-def test_scaling_draws_several_series(tmp_path: Path) -> None:
-    one, other = (unknown("threads", "scaling", series=name) for name in ("one", "other"))
-    for record in other:
-        record["tags"]["point"] += "-other"
-    drawn = drawn_of(tmp_path, [*one, *other])
-    assert "Greatest speed-up of one" in drawn.caption
-    assert "Greatest speed-up of other" in drawn.caption
-    assert "scalability" not in drawn.caption
-
-
-def test_scaling_draws_a_curve_a_scene(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("tag", "names"), [("series", ("one", "other")), ("scene_name", ("small", "large"))])
+def test_scaling_draws_a_curve_a_series_and_scene(tmp_path: Path, tag: str, names: tuple[str, str]) -> None:
     records = []
-    for scene in ("small", "large"):
-        records += [
-            record | {"tags": record["tags"] | {"point": f"{record['tags']['point']}-{scene}"}}
-            for record in unknown("threads", "scaling", scene_name=scene)
-        ]
-    drawn = drawn_of(tmp_path, records)
-    assert "Greatest speed-up of small" in drawn.caption
-    assert "Greatest speed-up of large" in drawn.caption
+    for name in names:
+        for record in unknown("threads", "scaling", **{tag: name}):
+            records.append(record | {"tags": record["tags"] | {"point": f"{record['tags']['point']}-{name}"}})
+    caption = drawn_of(tmp_path, records).caption
+    assert all(f"Greatest speed-up of {name}" in caption for name in names)
+    assert "scalability" not in caption
 
 
 def test_a_name_that_is_a_file_of_another_figure_takes_nothing_away(tmp_path: Path) -> None:

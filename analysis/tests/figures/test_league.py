@@ -1,82 +1,34 @@
 """A comparison of programs: whole processes, a table in order, who failed, who was not checked."""
 
-import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from analysis.cli import main
 from analysis.figures.studies import draw_all
-from analysis.report import write
-from analysis.tests.synthetic import Machine
+from analysis.report import write as write_report
+from analysis.tests.synthetic import failure, process, write
 
-BLOCKS = 6
 MEANS = {"anna": 1.0, "bob": 1.001, "carl": 1.4}
 SCOPES = {
     "anna": "trajectory of its own program, steps 0 to 20",
     "carl": "trajectory of another command: right.py",
 }
-
-
-def tags(series: str, block: int) -> dict[str, Any]:
-    return {
-        "experiment": "hand_ins", "series": series, "series_number": 1, "x_name": "repetition", "x": 0,
-        "block": block, "session": "s", "scale": "paper", "site": "local", "figure": "comparison",
-        "title": "Who is fastest",
-    }  # fmt: skip
-
-
-def record(series: str, block: int, seconds: float) -> dict[str, Any]:
-    return {
-        "schema_version": 1,
-        "kind": "process",
-        "recorded_at": f"2024-01-01T00:00:{block:02d}Z",
-        "tags": tags(series, block),
-        "axes": {"threads": 2},
-        "scene": None,
-        "warm_ups": 0,
-        "repetitions": [{"steps_seconds": seconds, "cpu_seconds": seconds}],
-        "process_seconds": seconds,
-        "process": {
-            "command": ["./a b", series],
-            "folder": "/",
-            "sources": [],
-            "exit_code": 0,
-            "wall_seconds": seconds,
-            "user_seconds": seconds,
-            "system_seconds": 0,
-            "peak_memory_bytes": 1 << 20,
-            "undisturbed": "it sleeps" if series == "bob" else None,
-            "time_from": "the program" if series == "carl" else "outside",
-            "counters": {},
-        },
-        "turns": None,
-        "check": {
-            "verdict": "passed" if series in SCOPES else "unchecked",
-            "scope": SCOPES.get(series, "nothing"),
-            "reason": None,
-        },
-        "provenance": Machine().provenance("GNU 12", 2),
-    }
+TOLD = {"bob": {"undisturbed": "it sleeps"}, "carl": {"time_from": "the program"}}
 
 
 @pytest.fixture
 def results(tmp_path: Path) -> Path:
     generator = np.random.default_rng(7)
-    folder = tmp_path / "records" / "hand_ins"
-    folder.mkdir(parents=True)
-    for block in range(BLOCKS):
+    for block in range(6):
         for series, mean in MEANS.items():
-            one = record(series, block, mean * float(np.exp(0.003 * generator.standard_normal())))
-            (folder / f"{series}-b{block}.json").write_text(json.dumps(one))
-    failure = {
-        "schema_version": 1, "kind": "failure", "tags": tags("dora", 0), "command": ["./dora"],
-        "exit_code": 9, "reason": "exit code 9: no room", "recorded_at": "2024-01-01T00:00:00Z",
-    }  # fmt: skip
-    (tmp_path / "failures" / "hand_ins").mkdir(parents=True)
-    (tmp_path / "failures" / "hand_ins" / "dora-b0.json").write_text(json.dumps(failure))
+            seconds = mean * float(np.exp(0.003 * generator.standard_normal()))
+            scope = SCOPES.get(series, "nothing")
+            record = process("hand_ins", series, block, seconds, scope, **TOLD.get(series, {}))
+            record["tags"] |= {"figure": "comparison", "title": "Who is fastest"}
+            write(tmp_path, [record])
+    write(tmp_path, [failure("hand_ins", "dora", "exit code 9: no room")])
     (tmp_path / "claims.toml").write_text("")
     return tmp_path
 
@@ -101,7 +53,7 @@ def test_the_table_is_in_order_with_brackets_checks_and_failures(results: Path) 
 
 
 def test_the_report_names_commands_and_claims_nothing(results: Path) -> None:
-    html = write(results)
+    html = write_report(results)
     text = html.read_text(encoding="utf-8")
     assert "&#39;./a b&#39; anna" in text or "'./a b' anna" in text
     assert "of programs whose results are not checked" in text
@@ -110,7 +62,7 @@ def test_the_report_names_commands_and_claims_nothing(results: Path) -> None:
 
 def test_the_report_repeats_questions_of_another_folder(results: Path) -> None:
     (results / "claims.toml").write_text('questions = "my questions"\n')
-    html = write(results)
+    html = write_report(results)
     assert "SCALE=paper QUESTIONS=&#39;my questions&#39;" in html.read_text(encoding="utf-8")
 
 

@@ -43,7 +43,3 @@ def test_a_file_that_is_no_timeline_is_named_and_left_out(
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1
     assert "broken.json: skipped: not a timeline" in lines[0]
-
-
-def test_no_folder_is_no_timeline(tmp_path: Path) -> None:
-    assert timelines.load(tmp_path) == []

@@ -13,15 +13,6 @@ from support.errors import InputError
 GOOD = "0 0 1 2 0.5 0\n0 1 3 4 0 -1e-3\n1 0 1.5 2 0.5 0\n1 1 3 3.999 0 -1e-3\n"
 
 
-def test_states_discs_and_columns(tmp_path: Path) -> None:
-    path = tmp_path / "trajectory"
-    path.write_text(GOOD)
-    found = read_trajectory(path)
-    assert found.steps == 1
-    assert found.positions.tolist() == [[[1, 2], [3, 4]], [[1.5, 2], [3, 3.999]]]
-    assert found.velocities.tolist() == [[[0.5, 0], [0, -0.001]]] * 2
-
-
 @pytest.mark.parametrize(
     ("text", "said"),
     [

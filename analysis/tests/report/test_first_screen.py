@@ -8,14 +8,13 @@ from pathlib import Path
 import pytest
 
 from analysis import claims, report
-from analysis.claims.effects import Effect
 from analysis.claims.summary import both_in_short, change_in_short, published_in_short
 from analysis.cli import main
 from analysis.figures import titles
 from analysis.figures.studies import data_of
 from analysis.report import answers
 from analysis.report.all_claims import LOWEST, NARROW, WIDE, Layout, all_claims, draw
-from analysis.support.values import Interval
+from analysis.statistics.verdicts import Ratio
 from analysis.tests.report.test_as_read import nav_of
 from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write
@@ -135,8 +134,8 @@ def test_a_missing_interval_does_not_stretch_the_axis(refuted: Path, layout: Lay
     table = claims.evaluate(data)
     plain = all_claims(table, layout)
     assert plain is not None
-    wide = Effect("x", Interval(0.9, 1e-9, 1e9), 0.95)
-    none = Effect("y", Interval(1.05, -math.inf, math.inf))
+    wide = Ratio(what="x", ratio=0.9, low=1e-9, high=1e9, published=0.95)
+    none = Ratio(what="y", ratio=1.05)
     stretched = table.assign(effects=[(*row, wide, none) for row in table["effects"]])
     drawn = all_claims(stretched, layout)
     assert drawn is not None
@@ -164,16 +163,16 @@ def test_the_figure_is_a_file_like_others(refuted: Path, capsys: pytest.CaptureF
 
 
 def test_effects_in_words() -> None:
-    effect = Effect("four against nine", Interval(0.9, 0.853, 0.95), 0.954)
+    effect = Ratio(what="four against nine", ratio=0.9, low=0.853, high=0.95, published=0.954)
     assert change_in_short(effect) == "−10.0\u00a0% [−14.7, −5.0]"
     assert published_in_short(effect) == "−4.6\u00a0%"
-    assert change_in_short(replace(effect, here=Interval(5.27, 5.24, 5.3))) == "+427\u00a0% [+424, +430]"
-    few = replace(effect, here=Interval(0.9, -math.inf, math.inf))
+    assert change_in_short(replace(effect, ratio=5.27, low=5.24, high=5.3)) == "+427\u00a0% [+424, +430]"
+    few = Ratio(ratio=0.9, published=0.954)
     assert change_in_short(few) == "−10.0\u00a0% (too few blocks for an interval)"
-    assert change_in_short(Effect("exponent", Interval(1.0, 0.98, 1.02))) == "1.00 [0.980, 1.02]"
+    assert change_in_short(Ratio(what="exponent", ratio=1.0, low=0.98, high=1.02)) == "1.00 [0.980, 1.02]"
     assert both_in_short(few).endswith("interval) here, −4.6\u00a0% published")
     assert both_in_short(replace(effect, published=math.nan)).endswith("here, no number published")
-    assert change_in_short(Effect("x")) == published_in_short(Effect("x")) == "–"
+    assert change_in_short(Ratio()) == published_in_short(Ratio()) == "–"
 
 
 def test_effects_agree_with_the_verdicts(tmp_path: Path) -> None:
@@ -185,6 +184,6 @@ def test_effects_agree_with_the_verdicts(tmp_path: Path) -> None:
     for row in table[~table["missing"]].itertuples():
         (effect,) = row.effects
         assert effect.has_interval
-        lies_below, lies_within = effect.here.high < effect.within[0], effect.here.low > effect.within[0]
+        lies_below, lies_within = effect.high < effect.within[0], effect.low > effect.within[0]
         if row.said.startswith("holds at"):
-            assert lies_below or (lies_within and effect.here.high < effect.within[1]), row.id
+            assert lies_below or (lies_within and effect.high < effect.within[1]), row.id

@@ -12,16 +12,6 @@ def summary_of(table: pd.DataFrame) -> pd.Series:
     return summarise(table, ["series"]).iloc[0]
 
 
-def test_the_median_is_that_of_the_processes_and_nothing_is_dropped() -> None:
-    table = times_table({"a": 1.0}, 5, 3, Noise(), seed=4)
-    row = summary_of(table)
-    assert row["median"] == pytest.approx(
-        samples_table({"a": 1.0}, 5, 3, Noise(), seed=4).groupby("file")["steps_seconds"].median().median()
-    )
-    assert (row["sessions"], row["processes"], row["samples"]) == (1, 5, 15)
-    assert row["low"] <= row["median"] <= row["high"]
-
-
 def test_repetitions_of_one_process_do_not_count_as_processes() -> None:
     noise = Noise(process=0.05, repetition=0.001, burst_rate=0, drift=0)
     narrow = Noise(process=0.001, repetition=0.05, burst_rate=0, drift=0)
@@ -47,34 +37,6 @@ def test_the_interval_covers_the_median_at_about_its_rate(processes: int) -> Non
     tables = [times_table({"a": 1.0}, processes, 2, noise, seed) for seed in range(150)]
     covered = sum(row["low"] <= 1.0 <= row["high"] for row in map(summary_of, tables))
     assert covered >= 0.93 * 150
-
-
-def test_fewer_than_four_processes_have_no_interval() -> None:
-    row = summary_of(times_table({"a": 1.0}, 3, 5, Noise(), seed=1))
-    assert np.isnan([row["low"], row["high"]]).all()
-
-
-def test_the_same_data_give_the_same_interval() -> None:
-    table = times_table({"a": 1.0}, 5, 3, Noise(), seed=9)
-    pd.testing.assert_series_equal(summary_of(table), summary_of(table))
-
-
-def test_unequal_repetitions_and_a_single_process() -> None:
-    table = samples_table({"a": 1.0}, 3, 4, Noise(), seed=5)
-    ragged = table[~((table["block"] == 1) & (table["repetition"] > 0))]
-    assert summary_of(of_processes(ragged))["samples"] == 9
-    single = summary_of(of_processes(table[(table["block"] == 0) & (table["repetition"] == 0)]))
-    assert single["processes"] == 1
-    assert np.isnan([single["low"], single["high"]]).all()
-
-
-def test_sessions_of_unequal_length_lose_no_process() -> None:
-    table = times_table({"a": 1.0}, 7, 2, Noise(), seed=6)
-    resumed = table.assign(session=np.where(table["block"] >= 5, "second", "first"))
-    row = summary_of(resumed)
-    assert (row["sessions"], row["processes"]) == (2, 7)
-    assert row["median"] == summary_of(table)["median"]
-    assert row["low"] <= row["median"] <= row["high"]
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 6, 7])

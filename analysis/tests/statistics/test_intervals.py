@@ -4,8 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from analysis.statistics import ranks
-from analysis.statistics.intervals import FEWEST, RANKS_FROM, centre, measure
+from analysis.statistics.intervals import FEWEST, RANKS_FROM, centre, measure, rank_p_value
 from analysis.statistics.looks import ERROR, share
 
 
@@ -76,7 +75,7 @@ def test_the_ranks_are_those_of_scipy() -> None:
     first, second = np.triu_indices(len(values))
     positive = ((values[first] + values[second]) > 0).sum()
     expected = stats.wilcoxon(values, alternative="greater", method="exact").pvalue
-    assert ranks.p_value(len(values), positive) == pytest.approx(expected)
+    assert rank_p_value(len(values), positive) == pytest.approx(expected)
 
 
 def test_no_error_is_smaller_than_what_ranks_tell() -> None:

@@ -1,6 +1,6 @@
 import numpy as np
 
-from analysis.statistics.levels import levels, shifting
+from analysis.statistics.noise import levels, shifting
 
 
 def test_a_machine_that_switches_has_two_speeds() -> None:

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from analysis.statistics.intervals import centre
 from analysis.statistics.looks import ERROR, LOOKS, last_look, next_look, share
 from analysis.statistics.verdicts import MARGIN, judge_one
 
@@ -47,7 +46,7 @@ def decide(logs: Floats) -> list[tuple[str, int]]:
 
 def _decide_one(row: Floats) -> tuple[str, int]:
     for look in LOOKS:
-        verdict = str(judge_one(row[:look])["verdict"])
+        verdict = str(judge_one(row[:look]).verdict)
         if verdict != "inconclusive":
             break
     return verdict, look
@@ -71,7 +70,7 @@ def settled(logs: Floats) -> list[str]:
     said = []
     for row in logs:
         rows = (judge_one(row[:look]) for look in LOOKS)
-        found = ((one["verdict"] == "faster", one["not_faster"] <= ERROR) for one in rows)
+        found = ((one.verdict == "faster", one.not_faster <= ERROR) for one in rows)
         holds, denied = next((one for one in found if any(one)), (False, False))
         said.append("holds" if holds else "does not hold" if denied else "open")
     return said
@@ -95,27 +94,14 @@ def test_a_claim_is_denied_where_equivalent_and_slower_are_not_told_apart() -> N
     assert settled(logs).count("does not hold") >= 195
 
 
-def test_intervals_that_forget_the_looks_err_more_often_than_they_say() -> None:
-    """What the shares are for: the same looks, each at 95 % as if it were the only one."""
-    generator = np.random.default_rng(6)
-    logs = generator.normal(0, 0.03, (2000, LAST))
-
-    def misses(level: float | None) -> float:
-        looks = ([centre(row[:look], level) for look in LOOKS] for row in logs)
-        return float(np.mean([any(not one.low < 0 < one.high for one in found) for found in looks]))
-
-    assert misses(None) <= ERROR
-    assert misses(0.95) > 5 * misses(None)
-
-
 def test_what_is_looked_at_once_has_the_whole_of_the_error() -> None:
     logs = np.random.default_rng(10).normal(0, 0.03, (1000, 60))
     once = [judge_one(row, once=True) for row in logs]
-    misses = np.mean([not one["low"] < 1 < one["high"] for one in once])
+    misses = np.mean([not one.low < 1 < one.high for one in once])
     assert 0.03 <= misses <= 0.065
     among_looks = judge_one(logs[0])
-    assert once[0]["low"] > among_looks["low"]
-    assert once[0]["not_faster"] < among_looks["not_faster"] * share(48), "none depends on another"
+    assert once[0].low > among_looks.low
+    assert once[0].not_faster < among_looks.not_faster * share(48), "none depends on another"
 
 
 def test_the_shares_of_all_looks_are_a_whole() -> None:

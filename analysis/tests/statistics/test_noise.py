@@ -32,7 +32,7 @@ def test_with_the_blocks_needed_equal_variants_come_out_equivalent(deviation: fl
     blocks = int(blocks_needed(deviation))
     generator = np.random.default_rng(7)
     ratios = generator.normal(0, deviation * np.sqrt(2), (300, blocks))
-    verdicts = [judge_one(row)["verdict"] for row in ratios]
+    verdicts = [judge_one(row).verdict for row in ratios]
     assert verdicts.count("equivalent") >= 0.91 * 300
 
 

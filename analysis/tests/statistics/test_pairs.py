@@ -4,10 +4,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.claims.alternatives import alternatives
-from analysis.statistics.location import location
-from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import join_replicates, log_ratios, scaled, without_partner
+from analysis.statistics.turns import location
 
 OTHERS = 16
 REPLICATES = 4
@@ -80,11 +78,6 @@ def test_replicates_are_one_sample_of_their_block() -> None:
     assert join_replicates(single) is single
 
 
-def test_replicates_of_the_choice_leave_less_open_in_the_same_time() -> None:
-    """Sixteen others, a margin from being faster: 21 blocks of 20 processes take the time of 24 of 17."""
-    assert unsettled(REPLICATES, blocks=21) < 0.8 * unsettled(1, blocks=24)
-
-
 def test_replicates_of_the_choice_halve_the_deviation_from_the_average_of_the_others() -> None:
     several, single = (
         comparisons(replicates, 3000, seed=1).groupby("block")["log_ratio"].mean().std()
@@ -100,12 +93,6 @@ def comparisons(replicates: int, blocks: int, seed: int) -> pd.DataFrame:
         processes(generator.normal(0, 0.015, (blocks, number))) for number in (replicates, *[1] * OTHERS)
     )
     return pd.concat(log_ratios(choice, one).assign(name=str(k)) for k, one in enumerate(others))
-
-
-def unsettled(replicates: int, blocks: int) -> int:
-    """Return of how many others, over all studies, it is not settled that they are no faster."""
-    tables = [alternatives(comparisons(replicates, blocks, seed)).table for seed in range(STUDIES)]
-    return sum(int((table["behind"] > ERROR).sum()) for table in tables)
 
 
 def measured(*rows: tuple[str, float, int, str]) -> pd.DataFrame:

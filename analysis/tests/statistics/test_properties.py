@@ -11,7 +11,7 @@ from analysis.statistics.bootstrap import summarise
 from analysis.statistics.intervals import FEWEST
 from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import log_ratios, without_partner
-from analysis.statistics.verdicts import MARGIN, holm, judge_one
+from analysis.statistics.verdicts import MARGIN, judge_one
 from analysis.tests.synthetic_noise import of_processes
 
 RATIOS = st.lists(st.floats(-3, 3), min_size=1, max_size=20)
@@ -36,24 +36,24 @@ def processes(rows: list[list[float]]) -> pd.DataFrame:
 @settings(max_examples=200, deadline=None)
 def test_a_verdict_is_that_of_its_interval_and_mirrored_by_changing_sides(values: list[float]) -> None:
     row, other = judge_one(values), judge_one([-value for value in values])
-    assert other["verdict"] == MIRRORED.get(row["verdict"], row["verdict"])
-    assert other["ratio"] == pytest.approx(1 / row["ratio"])
-    assert other["p"] == pytest.approx(row["p"])
-    assert row["low"] <= row["ratio"] <= row["high"]
+    assert other.verdict == MIRRORED.get(row.verdict, row.verdict)
+    assert other.ratio == pytest.approx(1 / row.ratio)
+    assert other.p == pytest.approx(row.p)
+    assert row.low <= row.ratio <= row.high
     lowest, highest = 1 / (1 + MARGIN), 1 + MARGIN
-    if row["verdict"] == "faster":
-        assert row["high"] <= lowest + 1e-9
-    elif row["verdict"] == "slower":
-        assert row["low"] >= highest - 1e-9
-    elif row["verdict"] == "equivalent":
-        assert lowest - 1e-9 <= row["low"] <= row["high"] <= highest + 1e-9
+    if row.verdict == "faster":
+        assert row.high <= lowest + 1e-9
+    elif row.verdict == "slower":
+        assert row.low >= highest - 1e-9
+    elif row.verdict == "equivalent":
+        assert lowest - 1e-9 <= row.low <= row.high <= highest + 1e-9
     if len(values) < FEWEST:
         return
-    denied = {name: row[f"not_{name}"] <= ERROR for name in ("faster", "slower", "equivalent")}
-    assert denied["faster"] == (row["low"] >= lowest) or row["low"] == pytest.approx(lowest)
-    assert denied["slower"] == (row["high"] <= highest) or row["high"] == pytest.approx(highest)
-    assert denied["equivalent"] == (row["verdict"] in ("faster", "slower"))
-    assert not denied.get(row["verdict"], False)
+    denied = {name: getattr(row, f"not_{name}") <= ERROR for name in ("faster", "slower", "equivalent")}
+    assert denied["faster"] == (row.low >= lowest) or row.low == pytest.approx(lowest)
+    assert denied["slower"] == (row.high <= highest) or row.high == pytest.approx(highest)
+    assert denied["equivalent"] == (row.verdict in ("faster", "slower"))
+    assert not denied.get(row.verdict, False)
 
 
 @given(st.lists(st.tuples(SECONDS, SECONDS), min_size=2, max_size=8), st.floats(1e-3, 1e3))
@@ -85,16 +85,6 @@ def test_a_bootstrap_interval_stands_about_the_median_of_enough_processes(
     assert len(rows) < FEWEST_PROCESSES or row["high"] >= row["median"] * (1 - 1e-12)
     found = (row["sessions"], row["processes"], row["samples"])
     assert found == (len(set(sessions)), len(rows), sum(map(len, rows)))
-
-
-@given(st.lists(st.floats(0, 1), min_size=1, max_size=12), st.randoms())
-def test_holm_only_raises_keeps_the_order_and_does_not_ask_for_it(p: list[float], random: object) -> None:
-    adjusted = holm(p)
-    assert all(before <= after <= 1 for before, after in zip(p, adjusted, strict=True))
-    assert adjusted[int(np.argmin(p))] == pytest.approx(min(1, len(p) * min(p)))
-    order = list(range(len(p)))
-    random.shuffle(order)  # type: ignore[attr-defined]
-    assert [adjusted[index] for index in order] == pytest.approx(holm([p[index] for index in order]))
 
 
 @given(st.lists(st.tuples(*[st.sampled_from(["", "1", "2", "3"])] * 2), min_size=1, max_size=8))

@@ -35,7 +35,7 @@ def against_the_least(logs: Floats) -> Floats:
 
 def is_called_better(logs: Floats) -> bool:
     error = error_of_picked(len(logs))
-    return any(judge_one(row, error=error)["verdict"] == "slower" for row in against_the_least(logs))
+    return any(judge_one(row, error=error).verdict == "slower" for row in against_the_least(logs))
 
 
 @pytest.mark.parametrize("noise", [quiet, two_speeds])
@@ -55,7 +55,7 @@ def test_the_farthest_off_of_equals_has_an_interval_with_the_truth(noise: Noise)
         differences = ratios[:, 0] - ratios[:, 1]
         farthest = differences[np.abs(differences.mean(axis=1)).argmax()]
         row = judge_one(farthest, error=ERROR / EQUALS)
-        missed += not row["low"] < 1 < row["high"]
+        missed += not row.low < 1 < row.high
     assert missed <= (0.05 + CHANCE) * STUDIES
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from analysis.statistics.looks import LOOKS
-from analysis.statistics.stopping import unstopped
+from analysis.statistics.turns import unstopped
 from analysis.statistics.verdicts import judge_one
 from analysis.support.values import Floats
 
@@ -35,10 +35,10 @@ def test_equal_programs_of_which_one_needs_its_caches_are_not_called_slower() ->
     random = np.random.default_rng(3)
     stops = stops_of(21)
     values = 0.0008 * stops + 0.003 * random.standard_normal(21)
-    assert judge_one(values)["verdict"] == "inconclusive", "from 1.6 % to 8 % by the length of the slices"
+    assert judge_one(values).verdict == "inconclusive", "from 1.6 % to 8 % by the length of the slices"
     row = judge_one(values, stops=stops)
-    assert row["low"] < 1 < row["high"]
-    assert row["verdict"] == "equivalent"
+    assert row.low < 1 < row.high
+    assert row.verdict == "equivalent"
 
 
 @pytest.mark.parametrize("noise", ["normal", "lognormal"])
@@ -55,5 +55,5 @@ def test_the_interval_of_all_looks_misses_as_seldom_as_it_says(noise: str) -> No
     for _ in range(STUDIES):
         values = 0.02 * (draw(LOOKS[-1]) - centre) + 0.0004 * stops
         rows = [judge_one(values[:look], stops=stops[:look]) for look in LOOKS]
-        missed += any(not row["low"] <= 1 <= row["high"] for row in rows)
+        missed += any(not row.low <= 1 <= row.high for row in rows)
     assert 0 < missed <= 0.055 * STUDIES

@@ -5,8 +5,7 @@ from numpy.typing import NDArray
 
 from analysis.records import published
 from analysis.statistics import scalability
-from analysis.statistics.breaks import break_point
-from analysis.statistics.trends import growth, linearity, minimum
+from analysis.statistics.trends import break_point, growth, linearity, minimum
 from analysis.tests.synthetic_noise import Noise, times_table
 
 Floats = NDArray[np.float64]
@@ -28,7 +27,7 @@ def of_published(experiment: str) -> pd.DataFrame:
 def test_the_exponent_of_a_power_law_is_found(exponent: float) -> None:
     quiet = Noise(process=0.01, repetition=0.005, burst_rate=0, drift=0)
     trend = growth(curve({x: x**exponent for x in (1.0, 2.0, 4.0, 8.0, 16.0)}, noise=quiet))
-    assert trend.verdict == ("grows" if exponent > 0 else "falls")
+    assert trend.change.verdict == ("grows" if exponent > 0 else "falls")
     assert trend.exponent.low - 0.01 <= exponent <= trend.exponent.high + 0.01
 
 
@@ -49,7 +48,7 @@ def test_a_curve_of_two_sessions_is_none() -> None:
 
 def test_a_constant_time_is_flat_or_undecided_and_never_a_trend() -> None:
     verdicts = [
-        growth(curve(dict.fromkeys((1.0, 2.0, 4.0), 1.0), 21, seed=seed)).verdict for seed in range(40)
+        growth(curve(dict.fromkeys((1.0, 2.0, 4.0), 1.0), 21, seed=seed)).change.verdict for seed in range(40)
     ]
     assert set(verdicts) <= {"flat", "inconclusive"}
     assert verdicts.count("flat") >= 20
@@ -66,20 +65,20 @@ def test_linear_with_a_fixed_cost_is_told_from_curved(power: float, verdict: str
 
 def test_the_published_steps_are_linear_and_the_sides_nearly() -> None:
     steps, sides = of_published("steps"), of_published("grid_length")
-    assert linearity(steps).exponent.estimate == pytest.approx(1.0, abs=0.05)
-    assert linearity(sides[sides["x"] >= 20_000]).exponent.estimate == pytest.approx(1.0, abs=0.1)
+    assert linearity(steps).ratio == pytest.approx(1.0, abs=0.05)
+    assert linearity(sides[sides["x"] >= 20_000]).ratio == pytest.approx(1.0, abs=0.1)
 
 
 def test_too_few_points_leave_linearity_open() -> None:
     line = linearity(curve({1.0: 1.0, 2.0: 2.0, 3.0: 3.0}))
-    assert np.isnan(line.exponent.estimate)
+    assert np.isnan(line.ratio)
     assert line.verdict == "inconclusive"
 
 
 def test_the_turn_is_found_with_its_break_point() -> None:
     times = {float(r): 0.14 * np.exp(abs(np.log(r / 35)) * (0.5 if r < 35 else 1.5)) for r in range(5, 51, 5)}
     least = minimum(curve(times))
-    assert least.verdict == "falls then rises"
+    assert least.fall.verdict == "falls then rises"
     assert least.lowest == 35
     assert least.break_point.low <= 35.5
     assert least.break_point.high >= 34.5
@@ -88,14 +87,16 @@ def test_the_turn_is_found_with_its_break_point() -> None:
 
 @pytest.mark.parametrize(("power", "verdict"), [(1.0, "rises only"), (-1.0, "falls only")])
 def test_a_monotone_curve_has_no_minimum_inside(power: float, verdict: str) -> None:
-    assert minimum(curve({float(x): float(x) ** power for x in (1, 2, 4, 8)})).verdict == verdict
+    assert minimum(curve({float(x): float(x) ** power for x in (1, 2, 4, 8)})).fall.verdict == verdict
 
 
 @pytest.mark.parametrize(("blocks", "slow_points"), [(6, 2.0), (9, 1.0)])
 def test_a_flat_curve_rises_or_falls_in_at_most_one_study_in_twenty(blocks: int, slow_points: float) -> None:
     generator = np.random.default_rng(blocks)
     noise = 0.05 * np.where(np.arange(10) % 2, slow_points, 1.0)
-    verdicts = [minimum(table(np.exp(generator.normal(0, noise, (blocks, 10))))).verdict for _ in range(150)]
+    verdicts = [
+        minimum(table(np.exp(generator.normal(0, noise, (blocks, 10))))).fall.verdict for _ in range(150)
+    ]
     assert set(verdicts) <= {"inconclusive", "flat", "rises only", "falls only", "falls then rises"}
     assert 150 - verdicts.count("inconclusive") - verdicts.count("flat") <= 7
 
@@ -103,7 +104,7 @@ def test_a_flat_curve_rises_or_falls_in_at_most_one_study_in_twenty(blocks: int,
 @pytest.mark.parametrize("blocks", [1, 2, 3])
 def test_too_few_blocks_have_no_shape_and_no_break_point(blocks: int) -> None:
     least = minimum(curve({float(x): 1.0 + abs(x - 4) for x in range(1, 8)}, blocks=blocks))
-    assert least.verdict == "too few blocks"
+    assert least.fall.verdict == "too few blocks"
     assert least.lowest == 4
     assert (least.break_point.low, least.break_point.high) == (-np.inf, np.inf)
 

@@ -1,10 +1,12 @@
-"""Time against error: a figure an error measure, a panel a scene, all from the same records."""
+"""Errors: time against error, a figure an error measure, a panel a scene; and the hard cases, how far each
+variant stays from the bound of each, with the table of all verdicts.
+"""
 
 import re
-from collections.abc import Mapping
-from functools import partial as bound
+from collections.abc import Iterable, Mapping
 from itertools import groupby
 from operator import itemgetter
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -12,17 +14,36 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from analysis.derived import accuracy
+from analysis.derived import hard_cases as cases
 from analysis.derived.accuracy import SMALL, Choice, Measure, Race
+from analysis.derived.hard_cases import AT_CONTACT, FAILS, HOLDS, LIMIT, UNMEASURED
 from analysis.figures.captions import opening
-from analysis.figures.hover import Told, tell
-from analysis.figures.labels import HOLLOW_SIGNS, SIGNS, key, label_points, logarithmic_ticks, plain_ticks
-from analysis.figures.layout import when_laid_out
-from analysis.figures.style import FAINT, INK, Data, Drawing, Look, lighten, looks, new_grid
-from analysis.support.values import Cell, Interval, Row, Table, table_of
-from analysis.support.wording import NO_BREAK, exact, interval, number
-
-Label = tuple[str, float, float]
-"""A text beside a point: the text, and the point's x and y."""
+from analysis.figures.labels import (
+    HOLLOW_SIGNS,
+    SIGNS,
+    key,
+    label_points,
+    logarithmic_ticks,
+    name_rows,
+    plain_ticks,
+    power_of_ten,
+)
+from analysis.figures.style import (
+    BLUE,
+    FAINT,
+    INK,
+    VERMILLION,
+    Data,
+    Drawing,
+    Look,
+    lighten,
+    looks,
+    new_figure,
+    new_grid,
+    point,
+)
+from analysis.support.values import Cell, Interval, Table, table_of
+from analysis.support.wording import NO_BREAK, count, interval, number
 
 MOST_POWERS = 5
 """Of ten that have room below a panel."""
@@ -30,6 +51,15 @@ MOST_POWERS = 5
 MILLI = 1e3
 OTHERS = 2
 """How many of the choices that may be as cheap a table names."""
+
+COLOURS = {"double": BLUE, "float": VERMILLION}
+MARKS = {HOLDS: "holds", FAILS: "fails", LIMIT: "open", UNMEASURED: "open"}
+VERDICT_SIGNS = {HOLDS: "✓", FAILS: "✗", LIMIT: "!", UNMEASURED: "–"}
+LABEL_WIDTH = 30
+"""Letters in a line of what a row measures."""
+
+WIDEST = 6
+"""Variants side by side in one table, so that it fits a printed page."""
 
 
 def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing | None:
@@ -44,24 +74,22 @@ def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing
     figure, [panels] = new_grid(3.0, 1, len(scenes), sharex=True, sharey=True)
     shown = _looks(table)
     zero = 10 ** np.floor(np.log10(table.loc[table["error"] > 0, "error"].min()) - 1)
-    labels: dict[str, list[Label]] = {}
     for axes, (scene, part) in zip(panels, scenes.items(), strict=True):
-        labels[str(scene)] = _front(axes, part, zero)
         for series, line in part.groupby("series"):
             _line(axes, line, zero, shown[str(series)])
         axes.set(xscale="log", yscale="log")
         corner: Any = {"xycoords": "axes fraction", "ha": "right", "va": "top"}
         axes.annotate(_panel_name(str(scene), part), (1, 1), fontsize=7, color=INK, **corner)
     _settle_limits(panels[0], (table["error"] <= 0).any(), zero)
+    for axes, part in zip(panels, scenes.values(), strict=True):
+        _front(axes, part, zero)
     panels[0].set_ylabel("time per unit of simulated time, ms")
     figure.supxlabel(measure.label, fontsize=8, color=INK)
     entries = [
         (f"{(SIGNS if look.dashes == '-' else HOLLOW_SIGNS)[look.marker]} {series}", look.colour)
         for series, look in shown.items()
     ]
-    key(panels[0], [*entries, ("▬ Pareto front (substeps)", FAINT)])
-    for axes, texts in zip(panels, labels.values(), strict=True):
-        when_laid_out(figure, bound(label_points, axes, texts, INK))
+    key(figure, [*entries, ("▬ Pareto front (substeps)", FAINT)])
     tables = [_advice(table, accuracy.races(data.study, experiment), measure)]
     if measure.converges:
         tables.append(_orders(table))
@@ -83,32 +111,29 @@ def _looks(table: pd.DataFrame) -> dict[str, Look]:
 
 def _line(axes: Axes, part: pd.DataFrame, zero: float, look: Look) -> None:
     rows = part.sort_values("x")
-    error = rows["error"].clip(lower=zero)
-    points, *_ = axes.errorbar(
-        error, MILLI * rows["median"],
-        xerr=[error - rows["error_low"].clip(lower=zero), rows["error_high"].clip(lower=zero) - error],
-        yerr=[MILLI * (rows["median"] - rows["low"]).clip(lower=0), MILLI * (rows["high"] - rows["median"])],
-        color=look.colour, linestyle=look.dashes, marker=look.marker, linewidth=0.9, elinewidth=0.9, zorder=3,
-        markerfacecolor=look.colour if look.dashes == "-" else "white",
+    axes.plot(
+        rows["error"].clip(lower=zero), MILLI * rows["median"], color=look.colour, linestyle=look.dashes,
+        linewidth=0.9, zorder=3,
     )  # fmt: skip
-    tell(points, [_told(row) for row in rows.to_dict("records")])
+    mark: Any = {"color": look.colour, "mfc": look.colour if look.dashes == "-" else "white", "zorder": 3.5}
+    for row in rows.itertuples():
+        x, y = max(row.error, zero), MILLI * row.median
+        across, up = np.maximum([row.error_low, row.error_high], zero), MILLI * np.array([row.low, row.high])
+        axes.plot(across, [y, y], color=look.colour, linewidth=0.9, zorder=3)
+        axes.plot([x, x], up, color=look.colour, linewidth=0.9, zorder=3)
+        time = f"{number(y)} [{number(up[0])}, {number(up[1])}]"
+        point(axes, x, y, look.marker, run_label(str(row.series), row.x), f"{row.error:.2g}", time, **mark)
 
 
-def _told(row: Row) -> Told:
-    """Say a point's error and time."""
-    time, low, high = (number(MILLI * row[end]) for end in ("median", "low", "high"))
-    return Told(run_label(str(row["series"]), row["x"]), f"{row['error']:.2g}", f"{time} [{low}, {high}]")
-
-
-def _front(axes: Axes, part: pd.DataFrame, zero: float) -> list[Label]:
-    """Draw the Pareto front behind the curves; return its points' substeps as labels, cheapest first."""
+def _front(axes: Axes, part: pd.DataFrame, zero: float) -> None:
+    """Draw the Pareto front behind the curves, on axes that are settled; beside its points stand their
+    substeps, the cheapest first.
+    """
     rows = part[part["on_front"]].sort_values("error")
     x, y = rows["error"].clip(lower=zero), MILLI * rows["median"]
     axes.plot(x, y, color=lighten(FAINT, 0.6), linewidth=5, solid_capstyle="round", zorder=1)
-    return [
-        (f"{substeps:g}" if substeps else series, one, other)
-        for one, other, substeps, series in zip(x, y, rows["substeps"], rows["series"], strict=True)
-    ][::-1]
+    names = (f"{row.substeps:g}" if row.substeps else row.series for row in rows.itertuples())
+    label_points(axes, list(zip(names, x, y, strict=True))[::-1], INK)
 
 
 def _panel_name(scene: str, part: pd.DataFrame) -> str:
@@ -131,14 +156,6 @@ def _settle_limits(axes: Axes, has_zero: bool, zero: float) -> None:
     axes.xaxis.set_major_formatter(
         lambda value, _: "0" if has_zero and value <= zero else power_of_ten(value)
     )
-
-
-def power_of_ten(value: float) -> str:
-    """Return a power of ten as 0.01 or 10⁻⁶, whichever is shorter to read."""
-    power = round(np.log10(value))
-    if -3 <= power <= 3:
-        return exact(value)
-    return f"10{str(power).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}"
 
 
 def _advice(points: pd.DataFrame, races: Mapping[str, Race], measure: Measure) -> Table:
@@ -232,3 +249,92 @@ def front_in_words(part: pd.DataFrame) -> str:
         noun = "substep" if listed == "1" else "substeps"
         said.append(str(series) if listed == "0" else f"{series} with {listed} {noun}")
     return ", then ".join(said)
+
+
+def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
+    """Draw the measure of every case and variant against its bound, with the table of verdicts, if any."""
+    table = cases.evaluate(data.study, experiment)
+    if table.empty or (table["verdict"] == UNMEASURED).all():
+        return None
+    expected = {one.title: one for one in cases.load()}
+    labels = {title: expected[title].label if title in expected else "" for title in table["title"]}
+    drawn = list(dict.fromkeys(table.loc[table["value"].notna(), "title"]))
+    figure, (axes,) = new_figure(0.9 + 0.22 * max(1, len(drawn)))
+    _dots(axes, table, drawn)
+    _name_measures(axes, [labels[title] for title in drawn])
+    present = [precision for precision in COLOURS if (table["precision"] == precision).any()]
+    key(figure, [*((f"● {one}", COLOURS[one]) for one in present), ("| bound", INK)])
+    caption = (
+        f"{subject}: {count(table['case'].nunique(), 'case')} and "
+        f"{count(table['series'].nunique(), 'variant')}, a process for each. A dot is a variant on a case, "
+        "at the measure that the case is about; a bar is the most that it may be in the dot's precision. "
+        f"Hollow: a limit of the method, and the bar the least that it must be. {cases.summary(table)}"
+    )
+    return Drawing(figure, caption, tables=list(_tables(table, labels)))
+
+
+def _dots(axes: Axes, table: pd.DataFrame, titles: list[str]) -> None:
+    shown = table[table["title"].isin(titles) & table["value"].notna()]
+    positive = pd.concat([shown["value"], shown["bound"].dropna()])
+    positive = positive[positive > 0]
+    zero = 10.0 ** (np.floor(np.log10(positive.min())) - 1) if len(positive) else 1e-16
+    heights = {title: -number for number, title in enumerate(titles)}
+    for row in shown.itertuples():
+        colour = COLOURS.get(row.precision, INK)
+        height = heights[row.title] - (0.14 if row.precision == "float" else -0.14)
+        look: Any = {"color": colour, "mfc": "white" if row.verdict == LIMIT else colour, "zorder": 3}
+        bound = "" if pd.isna(row.bound) else f" (bound {row.bound:.1e})"
+        told = f"{row.case}, {row.series}: {row.verdict}", f"{row.value:.1e}{bound}"
+        point(axes, max(row.value, zero), height, "o", *told, markersize=3.5, **look)
+        if bound:
+            axes.plot([max(row.bound, zero)] * 2, [height - 0.14, height + 0.14], color=INK, linewidth=1.1)
+    axes.set_xscale("log")
+    name_rows(axes, [title.replace("_", " ") for title in heights], list(heights.values()))
+    axes.set_xlabel("what stands to the right of each case; relative where it has no unit")
+    powers = range(round(np.log10(zero)) + 1, int(np.floor(np.log10(axes.get_xlim()[1]))) + 1)
+    axes.set_xticks([zero, *(10.0**power for power in powers if power % 2 == 0)])
+    axes.xaxis.set_major_formatter(lambda value, _: "0" if value <= zero else power_of_ten(value))
+    axes.minorticks_off()
+    for height in heights.values():
+        axes.axhline(height - 0.5, color=FAINT, linewidth=0.3, zorder=1)
+
+
+def _name_measures(axes: Axes, labels: list[str]) -> None:
+    """Write to the right of each row what its axis measures."""
+    right = axes.twinx()
+    right.set_ylim(axes.get_ylim())
+    lines = [fill(label, LABEL_WIDTH) for label in labels]
+    right.set_yticks([-float(line) for line in range(len(lines))], lines, fontsize=6, color=FAINT)
+    right.tick_params(axis="y", length=0)
+    right.set_zorder(axes.get_zorder() - 1)
+    axes.patch.set_visible(False)
+
+
+def _tables(verdicts: pd.DataFrame, labels: dict[str, str]) -> Iterable[Table]:
+    """Yield a table for at most `WIDEST` variants of one precision and one time of impact: a row a case, a
+    cell a verdict and a number.
+    """
+    expects = {one.title: one.expects for one in cases.load()}
+    known = verdicts.fillna({"precision": ""})
+    for (precision, at_contact), alike in known.groupby(["precision", known["impact"] == AT_CONTACT]):
+        collisions = ", collisions at contact" if at_contact else ""
+        heading = f"In {precision} precision{collisions}:" if precision else "Without any record:"
+        series = list(dict.fromkeys(alike["series"]))
+        for first in range(0, len(series), WIDEST):
+            chosen = series[first : first + WIDEST]
+            part = alike[alike["series"].isin(chosen)]
+            rows: list[list[Cell | str]] = [
+                [
+                    f"{case.replace('_', ' ')}: {expects.get(title, '')}",
+                    labels.get(title, ""),
+                    *map(_verdict, group.itertuples()),
+                ]
+                for (case, title), group in part.groupby(["case", "title"], sort=False)
+            ]
+            yield table_of(heading, ["Case, and what is expected", "Number", *chosen], rows)
+
+
+def _verdict(row: Any) -> Cell:  # noqa: ANN401 - of a table
+    value = "" if pd.isna(row.value) else f" {row.value:.1e}" if row.value else " 0"
+    said = f": {row.reason}" if row.verdict in (FAILS, LIMIT) and row.reason else ""
+    return Cell(f"{VERDICT_SIGNS[row.verdict]}{value}{said}", MARKS[row.verdict])
