@@ -9,37 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from experiments.plan.point import PROCESS, Tags
-from experiments.plan.scenes import sha256_of
-from experiments.run.written import Touched, touch_of
+from experiments.run.written import Sources
 from experiments.side_by_side.contest import Entrant
 from experiments.support.digest import digest_of_hashes
-from support.errors import InputError
 
 Record = dict[str, Any]
 
 _OPENMP = ("OMP_", "GOMP_", "KMP_")
-
-
-@dataclass(frozen=True)
-class Sources:
-    """The files that make up a program, each with its SHA-256 before it ran."""
-
-    files: Sequence[Path]
-    hashes: Mapping[Path, str]
-    _touched: Mapping[Path, Touched]
-
-    @classmethod
-    def of(cls, files: Sequence[Path], written: Mapping[Path, str]) -> "Sources":
-        """`written` are those that the program is known to write itself, each with the hash that stands for
-        it, whatever it holds now. Raises InputError for a file that cannot be read.
-        """
-        hashes = {file: written.get(file) or sha256_of(file) for file in files}
-        return cls(files, hashes, {file: touch_of(file) for file in files if file not in written})
-
-    def changed(self) -> list[str]:
-        """Those that hold something else by now, the written ones left out."""
-        touched = [file for file, touch in self._touched.items() if touch_of(file) != touch]
-        return [str(file) for file in touched if _hash_or_none(file) != self.hashes[file]]
 
 
 @dataclass(frozen=True)
@@ -161,7 +137,7 @@ def _process(one: Entrant, sources: Sources) -> Record:
         "command": [*one.contender.words],
         "folder": one.contender.folder,
         "sources": [{"path": str(file), "sha256": sources.hashes[file]} for file in sources.files],
-        "changed": sources.changed(),
+        "changed": [*map(str, sources.changed())],
         "time_from": "the program" if one.stated else "outside",
         "counters": _means([said.counters for said in one.stated]),
         "library_version": one.stated[-1].library_version if one.stated else None,
@@ -193,10 +169,3 @@ def _means(all_of_them: Sequence[Mapping[str, float | None]]) -> dict[str, float
 def _mean(values: Iterable[float | None]) -> float | None:
     known = [*values]
     return None if None in known else statistics.fmean(one for one in known if one is not None)
-
-
-def _hash_or_none(path: Path) -> str | None:
-    try:
-        return sha256_of(path)
-    except InputError:
-        return None  # it is gone, which is a change

@@ -13,10 +13,10 @@ from experiments.plan.scenes import SceneFile
 from experiments.results.store import Store
 from experiments.run.behaviour import Behaviours
 from experiments.run.host_lock import host_lock
-from experiments.run.process_record import Described, Record, Sources, process_record
+from experiments.run.process_record import Described, Record, process_record
 from experiments.run.progress import warn
 from experiments.run.together import is_alike, is_left_open
-from experiments.run.written import Written, touch_of
+from experiments.run.written import Sources, Written, touch_of
 from experiments.side_by_side.contest import Contender, Contest, Entrant
 from experiments.side_by_side.sampler import Sampler, SamplerError
 from experiments.support.process import Completed
@@ -53,12 +53,13 @@ class Asked:
 @dataclass(frozen=True)
 class Left:
     """What was measured: the point, its files that are known to be written among them, its record or failure,
-    and the file that it wrote itself, if it was to write one.
+    the file that it wrote itself, if it was to write one, and its files as they were before.
     """
 
     point: Point
     record: Record
     output: Path
+    sources: Sources
 
 
 class Processes:
@@ -97,7 +98,7 @@ class Processes:
         suspected = {
             file: touch_of(file)
             for one, there in zip(asked, left, strict=True)
-            for file in self._written.changed(one.point.program, there.record)
+            for file in self._written.changed(one.point.program, there.sources)
         }
         if suspected:
             provisional = [_with_written(one, frozenset(suspected)) for one in asked]
@@ -156,7 +157,7 @@ class Processes:
         with host_lock(), Sampler(self._instrument.path) as sampler:
             contest = Contest(sampler, contenders, self._slice, seed, folder)
             return [
-                Left(one.point, self._record(sampler, ended, one, known, (len(asked), seed)), output)
+                Left(one.point, self._record(sampler, ended, one, known, (len(asked), seed)), output, known)
                 for ended, one, known, output in zip(contest.measure(), asked, sources, outputs, strict=True)
             ]
 

@@ -6,8 +6,8 @@ with the SHA-256 that it had before, so that ids stay what they were.
 """
 
 import os
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from experiments.plan.executable import is_file
@@ -29,6 +29,28 @@ def first_seen(store: Store) -> dict[str, str | None]:
     return {str(name): value for name, value in items if value is None or isinstance(value, str)}
 
 
+@dataclass(frozen=True)
+class Sources:
+    """The files that make up a program, each with its SHA-256 before it ran."""
+
+    files: Sequence[Path]
+    hashes: Mapping[Path, str]
+    _touched: Mapping[Path, Touched]
+
+    @classmethod
+    def of(cls, files: Sequence[Path], written: Mapping[Path, str]) -> "Sources":
+        """`written` are those that the program is known to write itself, each with the hash that stands for
+        it, whatever it holds now. Raises InputError for a file that cannot be read.
+        """
+        hashes = {file: written.get(file) or sha256_of(file) for file in files}
+        return cls(files, hashes, {file: touch_of(file) for file in files if file not in written})
+
+    def changed(self) -> list[Path]:
+        """Those that hold something else by now, the written ones left out."""
+        touched = [file for file, touch in self._touched.items() if touch_of(file) != touch]
+        return [file for file in touched if _hash_or_none(file) != self.hashes[file]]
+
+
 class Written:
     """What is known of a results folder's programs, and is learned while they run."""
 
@@ -40,21 +62,15 @@ class Written:
         seen = first_seen(self._store)
         return replace(program, written=frozenset(file for file in program.inputs if os.fspath(file) in seen))
 
-    def changed(self, program: Program, record: object) -> frozenset[Path]:
-        """Those of its files that are not what they were: as the record of a run tells, or without one as
-        they are found. Raises InputError if the program itself was built anew.
+    def changed(self, program: Program, sources: Sources) -> frozenset[Path]:
+        """Those of its files that are not what they were, before a run or after it. Raises InputError if the
+        program itself was built anew.
         """
         hash_of = program.hash_of
         if not hash_of:
             return frozenset()
-        match record:
-            case {"kind": "process", "process": {"sources": [*sources], "changed": [*during]}}:
-                found = {Path(one["path"]): one["sha256"] for one in sources}
-                changed = {Path(one) for one in during}
-            case _:
-                found, changed = {file: _sha256_if_any(file) for file in program.sources}, set()
-        changed |= {file for file, sha256 in found.items() if sha256 != hash_of.get(file, sha256)}
-        changed -= program.written
+        before = {file for file, sha256 in sources.hashes.items() if sha256 != hash_of.get(file, sha256)}
+        changed = (before | {*sources.changed()}) - program.written
         if not changed <= {*program.inputs}:
             raise built_anew(program.path)
         return frozenset(changed)
@@ -93,8 +109,8 @@ def touch_of(file: Path) -> Touched:
     return found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
 
 
-def _sha256_if_any(file: Path) -> str | None:
+def _hash_or_none(path: Path) -> str | None:
     try:
-        return sha256_of(file)
+        return sha256_of(path)
     except InputError:
-        return None
+        return None  # it is gone, which is a change

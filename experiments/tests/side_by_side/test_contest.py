@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from experiments.run.process_record import Described, Record, Sources, process_record
+from experiments.run.process_record import Described, Record, process_record
+from experiments.run.written import Sources
 from experiments.side_by_side.contest import Contender, Contest, Entrant, may_disagree, why_idle
 from experiments.side_by_side.run_result import RunResult
 from experiments.side_by_side.sampler import ProcessCommand, Sampler, SamplerError
@@ -411,7 +412,7 @@ def test_files_that_a_program_changed_are_told(tmp_path: Path) -> None:
     data.write_text("1\n3\n")
     touched.write_text("3\n1\n")
     gone.unlink()
-    assert sources.changed() == [str(data), str(gone)]
+    assert sources.changed() == [data, gone]
     first = sources.hashes[data]
     assert first == hashlib.sha256(b"3\n1\n").hexdigest()
     # Its own output counts by what it was when it was first seen.
