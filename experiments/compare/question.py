@@ -87,6 +87,7 @@ def _series(command: Compared, asked: Asked, case: str | None) -> Series:
         command=_plain(command.words),
         prepare=_plain(command.prepare),
         conclude=_plain(command.conclude),
+        writes=None,
         exit_codes=() if asked.exit_codes == (0,) else asked.exit_codes,
         turns=asked.turns,
         rounds=1 if case else rounds.get(command.name.removesuffix(AGAIN)),

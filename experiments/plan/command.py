@@ -3,7 +3,7 @@
 import os
 import string
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -76,13 +76,13 @@ _LATER = ("prepare", "conclude", "fresh_folder", "exit_codes", "turns", "rounds"
 
 @dataclass(frozen=True)
 class Place:
-    """Where commands are run, what takes their time, and what is written there: each file's SHA-256 when it
-    was first seen, None for one that was not there.
+    """Where commands are run, what takes their time, and the files that any of them writes: as their words
+    name them, None if each may write what it names.
     """
 
     folder: Path
     instrument: str
-    first_seen: Mapping[str, str | None] = field(default_factory=dict)
+    writes: tuple[str, ...] | None = ()
 
 
 def command_of(
@@ -114,7 +114,8 @@ def command_of(
     )  # fmt: skip
     if trajectory and command.writes_trajectory:
         raise InputError(f"{key}.trajectory: found beside {{out}} in command, expected only one of the two")
-    return _resolved(command, series, key, place)
+    writes = place.writes and placed(_filled(place.writes, f"{key}.writes", of_run))
+    return _resolved(command, series, key, replace(place, writes=writes))
 
 
 def _unit_seconds(series: Series) -> float | None:
@@ -141,10 +142,11 @@ def _resolved(command: Command, series: Series, key: str, place: Place) -> tuple
         resolved[name] = (_literal(os.fspath(found(first, place.folder))), *words[1:])
     made_of = {name: placed(words) for name, words in resolved.items()}
     trajectory, folder = made_of.pop("trajectory", ()), None if command.fresh_folder else place.folder
+    writes = None if place.writes is None else {place.folder / word for word in place.writes}
     try:
-        program = program_of([*made_of.values()], place.folder, folder, place.first_seen)
+        program = program_of([*made_of.values()], place.folder, folder, writes)
         if trajectory:
-            resolved["checker"] = program_of([trajectory], place.folder, folder, place.first_seen)
+            resolved["checker"] = program_of([trajectory], place.folder, folder, writes)
             resolved["another"] = _another(placed(command.words), trajectory, place.folder)
     except InputError as error:
         if series.is_one_of_many:

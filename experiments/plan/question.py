@@ -83,6 +83,12 @@ class Question:
     blocks: Blocks = Blocks()
 
     @property
+    def writes(self) -> tuple[str, ...] | None:
+        """The files that its programs write; None where any of them may write what it names."""
+        said = [one.writes for one in self.series]
+        return None if None in said else tuple(word for words in said for word in words or ())
+
+    @property
     def programs(self) -> frozenset[str]:
         """The builds of the program that it cannot do without."""
         return frozenset(one.program for one in self.series if not one.is_foreign and not one.optional)

@@ -2,6 +2,7 @@
 
 import glob
 import os
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
@@ -9,12 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from experiments.plan.benchmark_cases import cases
-from experiments.plan.pattern import PatternError, groups_of
 from support.errors import InputError, quoted
 
 SECONDS_OF_UNIT = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
 
-WORDS = ("command", "trajectory", "prepare", "conclude")
+WORDS = ("command", "trajectory", "prepare", "conclude", "writes")
 """The keys of a series whose words have placeholders."""
 
 
@@ -52,6 +52,8 @@ class Series:
     prepare: tuple[str, ...] = ()
     conclude: tuple[str, ...] = ()
     """Commands that are run, untimed, before and after each run."""
+    writes: tuple[str, ...] | None = ()
+    """The files among its words that it writes; None if it may write any of them."""
     fresh_folder: bool = False
     """Each run has a new folder to itself."""
     exit_codes: tuple[int, ...] = ()
@@ -129,7 +131,8 @@ def _require_kind(key: str, table: Mapping[str, Any]) -> None:
 _ONLY_FOR = {
     "variant": ("program", "find_chunk", "resolve_chunk", "optional"),
     "command": (
-        "trajectory", "time", "commands", "prepare", "conclude", "fresh_folder", "exit_codes", "turns",
+        "trajectory", "time", "commands", "prepare", "conclude", "writes", "fresh_folder", "exit_codes",
+        "turns",
     ),
     "benchmark": (),
 }  # fmt: skip
@@ -171,12 +174,11 @@ def _require_no_zero_byte(key: str, value: object) -> None:
 
 
 def require_one_group(key: str, pattern: str) -> None:
-    """Raises InputError, which begins with `key`, for a pattern that is not allowed or has not one group."""
+    """Raises InputError, which begins with `key`, for a pattern that is none or has not one group."""
     try:
-        groups = groups_of(pattern)
-    except PatternError as error:
-        told = f"expected a regular expression that is allowed: found {error}"
-        raise InputError(f"{key}: found {quoted(pattern)}, {told}") from error
+        groups = re.compile(pattern).groups
+    except (re.error, OverflowError, RecursionError) as error:
+        raise InputError(f"{key}: found {quoted(pattern)}, expected a regular expression: {error}") from error
     if groups != 1:
         told = f"with {groups} groups, expected one around the number"
         raise InputError(f"{key}: found {quoted(pattern)} {told}")

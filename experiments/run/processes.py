@@ -3,7 +3,7 @@
 import json
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,6 @@ from experiments.run.behaviour import Behaviours
 from experiments.run.host_lock import run_alone
 from experiments.run.progress import warn
 from experiments.run.together import is_alike, is_left_open
-from experiments.run.written import Written, touch_of
 from experiments.support.process import Completed
 from support.files import read_json, write_json
 from support.record_schema import is_record
@@ -58,8 +57,8 @@ class Asked:
 
 @dataclass(frozen=True)
 class Left:
-    """What was measured: the point, its files that are known to be written among them, the file with its
-    record or failure, if there is one, and the one that it wrote itself, if it was to write one.
+    """What was measured: the point, the file with its record or failure, if there is one, and the one that it
+    wrote itself, if it was to write one.
     """
 
     point: Point
@@ -87,37 +86,17 @@ class Processes:
         self._tells = tells
         self._slice = SLICE_SECONDS
         self._behaviours = Behaviours(store)
-        self._written = Written(store)
 
     def measure(
         self, asked: Sequence[Asked], seed: int, slice_seconds: float
     ) -> tuple[Completed, list[Left]]:
         """How it went, and what is left of each; the shortest runs for so many seconds before the next does.
 
-        Where a file among the words changed, all are measured a second time: only then is it known whether
-        a program writes it. So they are where one turns out to mind being stopped and others were in slices:
-        on a busy machine a program takes another time in slices than as a whole. Raises InputError if
-        somebody built a program anew meanwhile.
+        All are measured a second time where one turns out to mind being stopped and others were in slices: on
+        a busy machine a program takes another time in slices than as a whole.
         """
-        asked = [replace(one, point=self._known(one.point)) for one in asked]
         self._slice = slice_seconds
         done, left = self._run(asked, seed)
-        suspected = {
-            file: touch_of(file)
-            for one, there in zip(asked, left, strict=True)
-            for file in self._written.changed(one.point.program, read_json(there.record))
-        }
-        if suspected:
-            provisional = [_with_written(one, frozenset(suspected)) for one in asked]
-            done, left = self._run(provisional, seed)
-            self._written.learn([one.point.program for one in asked], suspected)
-            for file in sorted(suspected):
-                warn(
-                    f"{file}: is written by what is measured: each run finds what the last one left; "
-                    "`prepare` of a series can restore it"
-                )
-            asked = provisional
-        self._written.learn_created([one.point.program for one in asked])
         found = self._learn(asked, left)
         if any(found) and any(map(_was_sliced, asked, left)):
             done, left = self._run(asked, seed)
@@ -158,9 +137,6 @@ class Processes:
             case {"kind": "process"}:
                 return Completed(words, 0, "", "")
         return Completed(words, done.exit_code or 1, "", done.error or "left no record")
-
-    def _known(self, point: Point) -> Point:
-        return replace(point, program=self._written.known(point.program)) if point.command else point
 
     def _run(self, asked: Sequence[Asked], seed: int) -> tuple[Completed, list[Left]]:
         folder = self._folder()
@@ -288,9 +264,3 @@ def _write_why(left: Left, why: str, temporary: Path) -> None:
 def _commands(command: Command | None) -> int:
     """How many commands a run consists of."""
     return 1 if command is None else 1 + bool(command.prepare) + bool(command.conclude)
-
-
-def _with_written(one: Asked, more: frozenset[Path]) -> Asked:
-    program = one.point.program
-    written = program.written | (more & {*program.inputs})
-    return replace(one, point=replace(one.point, program=replace(program, written=written)))

@@ -10,9 +10,9 @@ from rich.table import Table
 from experiments.plan.plan import Experiment
 from experiments.plan.site import what_limits
 from experiments.results.store import Store
-from experiments.run.given import given_before
+from experiments.run.costs import Costs
+from experiments.run.schedule import Part
 from experiments.run.study import Settings, Study, summary
-from experiments.run.whole_blocks import WholeBlocks
 
 
 @dataclass(frozen=True)
@@ -46,23 +46,20 @@ class Row:
 
 def rows(store: Store, experiments: Sequence[Experiment]) -> list[Row]:
     """The state of each experiment, read from the files alone."""
-    found = {experiment.name: store.find(experiment) for experiment in experiments}
-    decided = given_before(store, experiments, found)
     result = []
     for experiment in experiments:
-        one = found[experiment.name]
-        given = decided.get(experiment.name, experiment.question.blocks.minimum)
+        one = store.find(experiment)
+        part = Part(experiment, store, one, Costs())
         # A run that was told how many blocks to make may have made more than the question asks for.
-        given = max(WholeBlocks(experiment, given, one, store.session).whole, given)
-        keys = WholeBlocks(experiment, given, one, store.session).keys
-        failed_points = {point for point, _ in one.failures}
+        part.give(part.blocks.whole)
+        keys, failed_points = part.blocks.keys, {point for point, _ in one.failures}
         result.append(
             Row(
                 name=experiment.name,
                 points=len(experiment.points),
-                blocks=given,
+                blocks=part.given,
                 planned=len(keys),
-                decided=experiment.name in decided,
+                decided=part.is_begun,
                 done=sum(key in one.seconds for key in keys),
                 failed=sum(key not in one.seconds and key[0] in failed_points for key in keys),
                 stale=len(one.stale),
@@ -112,10 +109,8 @@ def show_plan(settings: Settings) -> int:
         schedule = study.schedule(study.runner(), settle=False)
     table = new_table("experiment", "points", "blocks", "to be run", "figure", "claim", "title")
     for experiment in study.experiments:
-        blocks = schedule.given[experiment.name]
-        missing = len(schedule.left(experiment))
-        question = experiment.question
-        counts = (len(experiment.points), blocks, missing)
+        part, question = schedule.parts[experiment.name], experiment.question
+        counts = (len(experiment.points), part.given, len(part.left))
         told = (question.figure, question.claim or "-", question.title)
         table.add_row(experiment.name, *map(str, counts), *told)
     console = new_console()
