@@ -67,9 +67,9 @@ def _is_case(lines_of: Callable[[str], Sequence[str]], name: str, noise: int) ->
 
 
 def _matches(pattern: str, line: str) -> bool:
-    """Whether a filter matches, as far as that is known here."""
+    """Whether a filter matches, as far as Python's regular expressions are those of the library."""
     try:
-        return re.search(pattern, line) is not None
+        return "(?" in pattern or "[[" in pattern or re.search(pattern, line) is not None
     except re.error:
         return True
 

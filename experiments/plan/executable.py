@@ -16,13 +16,15 @@ _LONGEST_FIRST_LINE = 4096
 
 
 class UnfitError(Exception):
-    """Why a file cannot be run, as the rest of a sentence about it."""
+    """Why a file, the `word` of a `part` of a command, cannot be run: the rest of a sentence about it."""
 
-    def told(self, word: str) -> str:
-        """The reason, with what was expected where a word names nothing."""
-        if str(self) != "is not there":
-            return str(self)
-        return f"is not there; expected {'a program' if '/' in word else 'a program on PATH'}"
+    word = part = ""
+
+    @property
+    def told(self) -> str:
+        """What was found, with what was expected where the word names nothing."""
+        where = "; expected a program" + ("" if "/" in self.word else " on PATH")
+        return f'found "{self.word}", which {self}{where if str(self) == "is not there" else ""}'
 
 
 def found(word: str, folder: Path) -> Path:

@@ -83,10 +83,9 @@ class Question:
     blocks: Blocks = Blocks()
 
     @property
-    def writes(self) -> tuple[str, ...] | None:
-        """The files that its programs write; None where any of them may write what it names."""
-        said = [one.writes for one in self.series]
-        return None if None in said else tuple(word for words in said for word in words or ())
+    def writes(self) -> tuple[str, ...]:
+        """The files that its programs write."""
+        return tuple(word for one in self.series for word in one.writes)
 
     @property
     def programs(self) -> frozenset[str]:

@@ -3,6 +3,7 @@
 import glob
 import os
 import re
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
@@ -52,16 +53,14 @@ class Series:
     prepare: tuple[str, ...] = ()
     conclude: tuple[str, ...] = ()
     """Commands that are run, untimed, before and after each run."""
-    writes: tuple[str, ...] | None = ()
-    """The files among its words that it writes; None if it may write any of them."""
+    writes: tuple[str, ...] = ()
+    """The files among its words that it writes."""
     fresh_folder: bool = False
     """Each run has a new folder to itself."""
     exit_codes: tuple[int, ...] = ()
     """Those that are fine; without any it is 0."""
     turns: bool | None = None
     """Whether it is stopped while others run; without a word it is found out."""
-    rounds: int | None = None
-    """How often it runs in a block, each time by itself; without a number once, or in turns."""
     time: PrintedTime | None = None
     benchmark: Benchmark | None = None
     label: str | None = None
@@ -174,10 +173,11 @@ def _require_no_zero_byte(key: str, value: object) -> None:
 
 
 def require_one_group(key: str, pattern: str) -> None:
-    """Raises InputError, which begins with `key`, for a pattern that is none or has not one group."""
+    """Raises InputError, which begins with `key`, for what is no regular expression with one group."""
     try:
-        groups = re.compile(pattern).groups
-    except (re.error, OverflowError, RecursionError) as error:
+        with warnings.catch_warnings(action="error"):
+            groups = re.compile(pattern, re.ASCII).groups
+    except (re.error, RecursionError, OverflowError, FutureWarning) as error:
         raise InputError(f"{key}: found {quoted(pattern)}, expected a regular expression: {error}") from error
     if groups != 1:
         told = f"with {groups} groups, expected one around the number"
