@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 
-from experiments.plan.claims import LARGE_SCALE_CLAIMS
+from experiments.plan.claims import published_claims
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.results.store import Found, Store
@@ -234,6 +234,6 @@ class Schedule:
 def may_decide(experiment: Experiment, scale: str) -> bool:
     """Whether a claim, or a verdict on a difference, may come of it at that scale."""
     claim = experiment.question.claim
-    if claim in LARGE_SCALE_CLAIMS and scale == "quick":
+    if scale not in published_claims().get(str(claim), {scale}):
         return False
     return claim is not None or experiment.question.kind in DECIDING
