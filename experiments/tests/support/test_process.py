@@ -137,6 +137,11 @@ def marked(mark: str) -> list[str]:
     return found
 
 
+def test_a_child_that_ignores_the_wish_to_end_is_ended() -> None:
+    code = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(600)"
+    assert run(python(code), time_limit=0.3).exit_code == TIMED_OUT
+
+
 def test_what_was_there_before_is_left_alone() -> None:
     with subprocess.Popen(["sleep", "600"]) as other:
         assert run(python("pass")).exit_code == 0
