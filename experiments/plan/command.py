@@ -63,16 +63,11 @@ class Command:
 
     @property
     def content(self) -> dict[str, object]:
-        """What of it is part of an id: not where it is, and nothing that a later field does not say, so that
-        other ids are what they were before there was that field.
-        """
-        unsaid = {name for name in _LATER if getattr(self, name) == getattr(Command, name)}
-        told = vars(self) | {"folder": None}
-        return {name: value for name, value in told.items() if name not in _NO_CONTENT | unsaid}
+        """What of it is part of an id: not where it is."""
+        return {name: value for name, value in vars(self).items() if name not in _NO_CONTENT}
 
 
-_NO_CONTENT = frozenset(("refused", "checker", "another"))
-_LATER = ("prepare", "conclude", "fresh_folder", "exit_codes", "turns", "rounds")
+_NO_CONTENT = frozenset(("folder", "refused", "checker", "another"))
 
 
 @dataclass(frozen=True)

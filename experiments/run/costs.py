@@ -23,10 +23,7 @@ NOTE = "costs.json"
 PROBE = Scene(particles=10000, side=3162, radius=16, steps=10, min_velocity=2, max_velocity=5)
 
 _SECONDS_PER_DISC_READ = 7e-7
-_RUNS_BESIDES = 3
-"""Runs of the steps in a profile, a check, or what measures errors."""
-_SLOWED_BY_CACHEGRIND = 60
-"""Between the 20 and the 100 times of Valgrind's manual."""
+_RUNS_OF_A_PROFILE = 3
 _HARD_CASE = 0.4
 """Seconds of one on average: most take none, and one takes three."""
 _UNKNOWN_PROGRAM = 1.0
@@ -107,21 +104,6 @@ class Costs:
             return min(max(0.0, seconds - sum(runs)) for seconds, runs in measured)
         return max(0.0, self.point(point) - point.repetitions * self.run(point))
 
-    def check(self, point: Point) -> float:
-        """The verification of every step of the point's variant on its scene."""
-        if point.command is not None:
-            return _UNKNOWN_PROGRAM if point.is_checked else 0.0
-        return self._start(point) + _RUNS_BESIDES * self._foretold_run(point)
-
-    def besides(self, point: Point) -> float:
-        """What the point's first process does besides: measuring errors, counting under cachegrind."""
-        run, scene = self._foretold_run(point), point.scene
-        seconds = _RUNS_BESIDES * run if point.errors else 0.0
-        if point.simulated:
-            counted = min(point.simulated / scene.steps, 1.0) if isinstance(scene, Scene) else 1.0
-            seconds += _SLOWED_BY_CACHEGRIND * (run * counted + _reading(scene))
-        return seconds
-
     def runs(self, group: Sequence[Point]) -> int:
         """How many timed runs the next process of these points makes, by what is known of their times; one
         where nothing is known of a point.
@@ -150,7 +132,7 @@ class Costs:
             self._correction = statistics.median(self._ratios.values())
 
     def _foretold(self, point: Point) -> float:
-        runs = point.warm_up + (_RUNS_BESIDES if point.verb == "profile" else point.repetitions)
+        runs = point.warm_up + (_RUNS_OF_A_PROFILE if point.verb == "profile" else point.repetitions)
         return self._start(point) + runs * self._foretold_run(point)
 
     def _start(self, point: Point) -> float:

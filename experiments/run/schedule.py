@@ -13,12 +13,14 @@ from experiments.run.progress import Status
 from experiments.run.runner import ProcessResult, Task
 from experiments.run.together import together
 from experiments.run.verdicts import Verdicts
-from experiments.run.verify import representative
 from experiments.run.whole_blocks import WholeBlocks
 from support.vocabulary import CONTROL, PLAN
 
 FIRST_LOOK = 6
 """Blocks of the first planned look (analysis/statistics/looks.py)."""
+
+BESIDES = 2.0
+"""About how many times as long as a process what it does but once takes. It counts until it was measured."""
 
 DECIDING = ("comparison", "schedule", CONTROL)
 """Kinds of questions that have verdicts, also where no claim is about them."""
@@ -148,17 +150,6 @@ class Part:
         """About what a block of it takes."""
         return sum(self._seconds_by_point.values())
 
-    @cached_property
-    def _once(self) -> dict[str, float]:
-        """What each point costs once, besides: its check, if it is the first of its kind, errors, counts."""
-        costs, checked, seconds = self._costs, set(), {}
-        for point in self.experiment.points:
-            first = representative(self.experiment, point)
-            key = (first.program.sha256, first.variant, first.scene)
-            seconds[point.id] = costs.besides(point) + (0.0 if key in checked else costs.check(first))
-            checked.add(key)
-        return seconds
-
     def seconds_of(self, blocks: int) -> float:
         """About what it takes until it has so many blocks, checks included."""
         done = len(self.found.seconds) / max(1, len(self.experiment.points))
@@ -171,9 +162,10 @@ class Part:
 
     @property
     def _seconds_once(self) -> float:
+        """What the first process of each point that has none takes besides: checks, errors, counts."""
         measured = {point for point, _ in self.found.seconds}
-        built = [one for one in self.experiment.points if one.program.sha256 is not None]
-        return sum(self._once[one.id] for one in built if one.id not in measured)
+        each = self._seconds_by_point.items()
+        return BESIDES * sum(seconds for point, seconds in each if point not in measured)
 
     @cached_property
     def status(self) -> Status:

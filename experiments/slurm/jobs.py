@@ -72,7 +72,7 @@ def read_job(path: Path) -> Job:
         kept = {key: _like(default, content[key]) for key, default in defaults.items()}
         tasks = tuple(tuple((str(name), int(block)) for name, block in task) for task in content["tasks"])
         settings = Settings(**_OF_ONE_RUN, **kept)
-        made_of = {str(name): str(word) for name, word in content.get("made_of", {}).items()}
+        made_of = {str(name): str(word) for name, word in content["made_of"].items()}
         return Job(content["name"], content["partition"], settings, tasks, content["submitted_at"], made_of)
     except (TypeError, KeyError, ValueError, AttributeError):
         raise InputError(f"{path}: is not the list of blocks of a job") from None

@@ -71,6 +71,7 @@ class Workplace:
 
     def build(self, name: str = "gcc", extra: str = "") -> Path:
         """Put the fake program in its place; `extra` makes it another program."""
+        self.behave(FAKE_RECORDS=str(FAKE.with_name("fake_records.json")))
         path = self.root / "build" / name / "carom"
         path.parent.mkdir(parents=True, exist_ok=True)
         text = FAKE.read_text(encoding="utf-8")
@@ -172,7 +173,7 @@ def empty_workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workplac
     monkeypatch.setattr(subprocess, "Popen", Forking)
     monkeypatch.setattr(os, "fsync", lambda _: None)
     place.build()
-    place.behave(FAKE_LOG=str(tmp_path / "log"), FAKE_RECORDS=str(FAKE.with_name("fake_records.json")))
+    place.behave(FAKE_LOG=str(tmp_path / "log"))
     return place
 
 

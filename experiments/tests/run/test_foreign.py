@@ -45,18 +45,6 @@ def test_each_of_these_makes_another_point_and_none_leaves_the_id_as_it_was(
         found += ids(empty_workplace)
     assert len(set(found[: len(lines)])) == len(lines)
     assert {*found[len(lines) :]} == {found[0]}
-    content = content_of(empty_workplace, plain)
-    assert set(content) == {
-        "words", "folder", "instrument", "trajectory", "pattern", "unit_seconds", "benchmark",
-    }  # fmt: skip
-
-
-def content_of(place: Workplace, lines: str) -> dict[str, object]:
-    place.question("asked", HEAD + series("a", lines) + BLOCKS)
-    [experiment] = Study(place.settings).experiments
-    command = experiment.points[0].command
-    assert command is not None
-    return command.content
 
 
 def test_a_fresh_folder_makes_a_program_run_twice_that_cannot_otherwise(empty_workplace: Workplace) -> None:
