@@ -110,11 +110,13 @@ class Workplace:
 
 
 def damage(path: Path, kind: str) -> None:
-    """Put something else in the place of a record: `torn`, `foreign`, `of another kind` or `a folder`."""
+    """Put something else in the place of a record, as one of `DAMAGES` says."""
     record = json.loads(path.read_text(encoding="utf-8"))
     path.unlink()
     if kind == "a folder":
         path.mkdir()
+    elif kind == "a link to itself":
+        path.symlink_to(path)
     elif kind == "torn":
         path.write_text(json.dumps(record)[:99], encoding="utf-8")
     else:
@@ -122,7 +124,7 @@ def damage(path: Path, kind: str) -> None:
         path.write_text(json.dumps(record | other), encoding="utf-8")
 
 
-DAMAGES = ("torn", "foreign", "of another kind", "a folder")
+DAMAGES = ("torn", "foreign", "of another kind", "a folder", "a link to itself")
 
 
 def generated(point: Point) -> Scene:

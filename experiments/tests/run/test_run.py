@@ -192,13 +192,6 @@ def test_more_blocks_keep_those_that_are_there(workplace: Workplace) -> None:
     assert (row.blocks, row.done, row.missing) == (4, 8, 0), "more than the question asks for"
 
 
-def test_without_any_program_there_is_one_line(workplace: Workplace) -> None:
-    workplace.program.unlink()
-    with pytest.raises(InputError, match=r"carom: is not built; build it with `make build`$"):
-        run(workplace.settings)
-    assert not workplace.results.exists()
-
-
 def test_a_program_that_changes_under_the_study_stops_it(
     workplace: Workplace, monkeypatch: pytest.MonkeyPatch
 ) -> None:

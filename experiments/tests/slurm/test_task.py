@@ -70,14 +70,6 @@ def test_two_copies_of_one_task_tear_nothing(workplace: Workplace) -> None:
         jsonschema.validate(json.loads(content), json.loads(SCHEMA_FILE.read_text()))
 
 
-def test_what_is_measured_is_not_measured_again(workplace: Workplace) -> None:
-    manifest = job_of(workplace)
-    assert work(manifest, 0) == 0
-    before = records(workplace)
-    assert work(manifest, 0) == 0
-    assert records(workplace) == before
-
-
 def test_the_signal_ahead_of_the_time_limit_keeps_what_is_finished(workplace: Workplace) -> None:
     workplace.behave(FAKE_SECONDS="0.3")
     process = start_task(job_of(workplace), 0)
@@ -229,20 +221,6 @@ def test_a_client_that_hangs_is_given_up(workplace: Workplace, monkeypatch: pyte
         scheduler.queue()
     with pytest.raises(InputError, match="scontrol: slurm_load_ctl_conf error: no route"):
         scheduler.max_array_size()
-
-
-def test_a_refused_job_leaves_nothing_to_wait_for(workplace: Workplace) -> None:
-    answers(
-        workplace,
-        squeue="true",
-        scontrol="echo 'MaxArraySize = 1001'",
-        sbatch="echo 'sbatch: error: invalid partition specified: xs' >&2; exit 1",
-    )
-    process = workplace.start("submit", "--site", site(workplace.root))
-    _, error = process.communicate(timeout=60)
-    assert process.returncode == 1
-    assert error == "carom: sbatch: error: invalid partition specified: xs\n"
-    assert not list(workplace.results.rglob("jobs/*.*"))
 
 
 def test_variables_of_the_shell_do_not_overrule_the_script(workplace: Workplace) -> None:
