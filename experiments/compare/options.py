@@ -2,8 +2,9 @@
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
+from typing import Any
 
 from experiments.compare import values
 from experiments.compare.benchmarks import call_of, common_cases, quick
@@ -117,24 +118,16 @@ def asked_of(options: argparse.Namespace, commands: tuple[Compared, ...], refere
         if has_lists and file is not None and named_in([str(file)]):
             raise InputError(f"{_option(option)}: found {file}, expected one file for all commands")
     setup, cleanup = (_once(getattr(options, what), commands, f"--{what}") for what in ("setup", "cleanup"))
+    same: dict[str, Any] = {
+        one.name: getattr(options, one.name) for one in fields(Asked) if hasattr(options, one.name)
+    }
+    same.update(commands=commands, reference=reference, setup=setup, cleanup=cleanup)
+    same.update(turns=turns, slice_seconds=slice_seconds)
     return Asked(
-        commands=commands,
-        reference=reference,
-        margin=options.margin,
-        error=options.error,
-        seconds=options.time,
-        most_seconds=options.timeout or max(LEAST_TIMEOUT, 5 * options.time),
-        warm_up=options.warmup,
+        **same,
+        most_seconds=options.timeout or max(LEAST_TIMEOUT, 5 * options.seconds),
         exit_codes=tuple(sorted({0, *options.ignore_exit})),
-        unit=options.unit,
-        turns=turns,
-        slice_seconds=slice_seconds,
-        threads=options.threads,
-        fixed_layout=options.fixed_layout,
-        setup=setup,
-        cleanup=cleanup,
         exports=exports,
-        quiet=options.quiet,
     )
 
 
@@ -203,10 +196,24 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
     add(
         "--error", type=values.fraction, default=0.05, metavar="5%", help="how often any verdict may be wrong"
     )
-    add("--time", type=values.duration, default=60.0, metavar="60s", help="the longest time to measure")
+    add(
+        "--time",
+        type=values.duration,
+        dest="seconds",
+        default=60.0,
+        metavar="60s",
+        help="the longest time to measure",
+    )
     told = "stop a run that takes longer (default: five times --time, a minute at least)"
     add("--timeout", type=values.duration, metavar="300s", help=told)
-    add("--warmup", type=values.count, default=0, metavar="N", help="untimed runs before each timed one")
+    add(
+        "--warmup",
+        type=values.count,
+        dest="warm_up",
+        default=0,
+        metavar="N",
+        help="untimed runs before each timed one",
+    )
     add("--setup", metavar="COMMAND", help="a command line for a shell that runs once, before everything")
     add("--cleanup", metavar="COMMAND", help="the same after everything, whatever happened")
     told = "exit codes that are fine beside 0"

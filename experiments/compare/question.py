@@ -1,16 +1,20 @@
 """The commands as an experiment: one block runs each of them once, and the reference under a second name."""
 
 import os
-from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from experiments.compare.commands import Compared
 from experiments.compare.options import Asked
-from experiments.plan.plan import Experiment, Surroundings, plan
-from experiments.plan.point import Point
-from experiments.plan.question import NamedScene, Question
+from experiments.plan.benchmark_cases import filter_of
+from experiments.plan.command import Command, Place, literal, resolved
+from experiments.plan.executable import UnfitError
+from experiments.plan.plan import Experiment, Surroundings
+from experiments.plan.point import PROCESS, Point
+from experiments.plan.program import GENERATOR, Program
+from experiments.plan.question import Question
 from experiments.plan.scenes import NoScene
-from experiments.plan.series import Benchmark, PrintedTime, Series
+from experiments.plan.series import SECONDS_OF_UNIT
 from support.errors import InputError
 from support.vocabulary import AGAIN
 
@@ -30,13 +34,12 @@ _OPENMP = ("OMP_", "GOMP_", "KMP_")
 
 def experiment_of(asked: Asked, around: Surroundings) -> Experiment:
     """What is run. Raises InputError for a command that is not there or cannot be run."""
-    commands = (*asked.commands, again(asked))
     points = [
-        _point(one, number, (case, name), asked, around)
-        for number, one in enumerate(commands, start=1)
-        for case, name in enumerate(asked.cases or [None])
+        _point(one, number, case, asked, around)
+        for number, one in enumerate((*asked.commands, again(asked)), start=1)
+        for case in enumerate(asked.cases or [None])
     ]
-    question = _question(commands, asked)
+    question = Question(NAME, Path(NAME), "Commands compared", "comparison", "comparison", (), ())
     return Experiment(question, tuple(points), f"{around.seed} {NAME}")
 
 
@@ -46,53 +49,49 @@ def again(asked: Asked) -> Compared:
     return replace(first, name=first.name + AGAIN)
 
 
-def _question(commands: Sequence[Compared], asked: Asked, case: str | None = None) -> Question:
-    return Question(
-        name=NAME,
-        file=commands[0].folder / NAME,
-        title="Commands compared",
-        kind="comparison",
-        figure="comparison",
-        scenes=(NamedScene(NoScene()),),
-        series=tuple(_series(one, asked, case) for one in commands),
-        margin=asked.margin,
-        error=asked.error,
-        reference=asked.reference,
-        verb="process",
-        threads=asked.threads or "hardware_threads",
-        warm_up=asked.warm_up,
-    )
-
-
 def _point(
-    command: Compared, number: int, case: tuple[int, str | None], asked: Asked, around: Surroundings
+    one: Compared, number: int, case: tuple[int, str | None], asked: Asked, around: Surroundings
 ) -> Point:
     """That of one command, which has a folder of its own, or of a case of it, with its number."""
-    try:
-        [point] = plan(_question([command], asked, case[1]), around).points
-    except InputError as error:
-        # What is wrong with a series of a file here is wrong with a command.
-        wrong = str(error).replace(f"{command.folder / NAME}: series[1].", f"{command.called}: ")
-        raise InputError(in_options(wrong.replace(": command: ", ": "))) from error
-    environment = _environment(asked, point.openmp, command.environment)
-    return replace(point, series_number=number, openmp=environment, x=case[0], x_name="case")
+    threads = min(asked.threads or around.machine.hardware_threads, around.machine.hardware_threads)
+    bound = around.site.binding.environment(threads, around.machine)
+    command, program = _command(one, case[1], asked, around)
+    return Point(
+        experiment=NAME, kind="comparison", figure="comparison", claim=None, scale=around.scale.name,
+        margin=asked.margin, error=asked.error, reference=asked.reference,
+        series=one.name, series_number=number, scene_name=None, x_name="case", x=case[0],
+        label=one.name, replicate=1, site=around.site.name, machine=around.machine, verb=PROCESS,
+        program=program, command=command, scene=NoScene(), variant=None, find_chunk=None, resolve_chunk=None,
+        threads=threads, substeps=1, tolerance="relative",
+        warm_up=asked.warm_up, repetitions=1, errors=False, simulated=0, apart=False,
+        openmp=_environment(asked, bound, one.environment),
+    )  # fmt: skip
 
 
-def _series(command: Compared, asked: Asked, case: str | None) -> Series:
-    [named] = _plain((case or "",))
-    rounds = dict(zip((one.name for one in asked.commands), asked.rounds, strict=False))
-    return Series(
-        name=command.name,
-        label=command.name,
-        command=_plain(command.words),
-        prepare=_plain(command.prepare),
-        conclude=_plain(command.conclude),
+def _command(one: Compared, case: str | None, asked: Asked, around: Surroundings) -> tuple[Command, Program]:
+    """Its words, in which nothing is a placeholder, and its program. Each may write any file among them."""
+    words, prepare, conclude = (tuple(map(literal, each)) for each in (one.words, one.prepare, one.conclude))
+    place = Place(one.folder, str(around.programs[GENERATOR].sha256), None)
+    unit = SECONDS_OF_UNIT.get(asked.unit or "") if one.time_from else 1.0
+    rounds = dict(zip((each.name for each in asked.commands), asked.rounds, strict=False))
+    command = Command(
+        words if case is None else (*words, literal(filter_of(case))),
+        one.folder,
+        place.instrument,
+        pattern=one.time_from,
+        unit_seconds=unit,
+        benchmark=case,
+        prepare=prepare,
+        conclude=conclude,
         exit_codes=() if asked.exit_codes == (0,) else asked.exit_codes,
         turns=asked.turns,
-        rounds=1 if case else rounds.get(command.name.removesuffix(AGAIN)),
-        time=PrintedTime(command.time_from, asked.unit) if command.time_from else None,
-        benchmark=Benchmark(command.words[0], named) if case else None,
+        rounds=1 if case else rounds.get(one.name.removesuffix(AGAIN)),
     )
+    try:
+        return resolved(command, place)
+    except UnfitError as unfit:
+        option = "" if unfit.part == "command" else f"--{unfit.part}: "
+        raise InputError(f"{one.called}: {option}{unfit.told}") from unfit
 
 
 def in_options(reason: str) -> str:
@@ -102,16 +101,11 @@ def in_options(reason: str) -> str:
     return reason
 
 
-def _plain(words: tuple[str, ...]) -> tuple[str, ...]:
-    """The words, none of whose braces is a placeholder."""
-    return tuple(word.replace("{", "{{").replace("}", "}}") for word in words)
-
-
 def _environment(
-    asked: Asked, bound: tuple[tuple[str, str], ...], own: tuple[tuple[str, str], ...]
+    asked: Asked, bound: dict[str, str], own: tuple[tuple[str, str], ...]
 ) -> tuple[tuple[str, str], ...]:
     """OpenMP's variables as a study sets them where threads are asked for, else as the user's environment has
     them; and a command's own.
     """
     users = {key: value for key, value in os.environ.items() if key.startswith(_OPENMP)}
-    return tuple(sorted({**(dict(bound) if asked.threads else users), **dict(own)}.items()))
+    return tuple(sorted({**(bound if asked.threads else users), **dict(own)}.items()))

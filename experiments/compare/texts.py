@@ -22,19 +22,18 @@ def change(one: Difference) -> str:
     return f"{middle} [{percent(one.low - 1)}, {percent(one.high - 1)}]"
 
 
-def margin_said(asked: Asked) -> str:
-    """The margin as a share: `2 %`."""
-    return f"{asked.margin * 100:g} %"
+VERDICTS = {
+    "faster": ("faster by more than {}", "less time, by more than {}"),
+    "slower": ("slower by more than {}", "more time, by more than {}"),
+    "equivalent": ("equivalent: the difference is below {}", "below {}"),
+    "inconclusive": ("not settled", "not settled"),
+}
+"""What is known of a command, and of what a value changes."""
 
 
-def verdict(one: Difference, asked: Asked) -> str:
-    """What is known of a difference."""
-    return {
-        "faster": f"faster by more than {margin_said(asked)}",
-        "slower": f"slower by more than {margin_said(asked)}",
-        "equivalent": f"equivalent: the difference is below {margin_said(asked)}",
-        "inconclusive": "not settled",
-    }[one.verdict]
+def verdict(one: Difference, asked: Asked, *, of_value: bool = False) -> str:
+    """What is known of a difference, with the margin as a share: `2 %`."""
+    return VERDICTS[one.verdict][of_value].format(f"{asked.margin * 100:g} %")
 
 
 def duration(seconds: float) -> str:
@@ -101,7 +100,7 @@ def effects(found: Found) -> list[str]:
     """What the values of lists change, each in the mean over the others, and what two change together beyond
     that.
     """
-    told = [[one.name, change(one), _effect(one, found.asked)] for one in found.answer.effects]
+    told = [[one.name, change(one), verdict(one, found.asked, of_value=True)] for one in found.answer.effects]
     if not told or found.answer.is_withdrawn:
         return []
     return ["  what each value changes, and what two change together beyond what each does:", *table(told)]
@@ -115,15 +114,6 @@ def _counts(found: Found) -> list[str]:
     [other] = [one.name for one in asked.commands if one.name != asked.reference]
     rows = counted(found.runs[asked.reference, 0], found.runs[other, 0])
     return [f"  counted of each run, {asked.reference} → {other}:", *table(rows)] if rows else []
-
-
-def _effect(one: Difference, asked: Asked) -> str:
-    return {
-        "faster": f"less time, by more than {margin_said(asked)}",
-        "slower": f"more time, by more than {margin_said(asked)}",
-        "equivalent": f"below {margin_said(asked)}",
-        "inconclusive": "not settled",
-    }[one.verdict]
 
 
 def _place(one: Place) -> str:

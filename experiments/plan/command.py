@@ -3,7 +3,7 @@
 import os
 import string
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +43,7 @@ class Command:
     exit_codes: tuple[int, ...] = ()
     turns: bool | None = None
     rounds: int | None = None
+    """How often it runs in a block, each time by itself; without a number once, or in turns."""
     refused: str = ""
     """Why it is not run at all."""
     checker: Program | None = None
@@ -62,27 +63,22 @@ class Command:
 
     @property
     def content(self) -> dict[str, object]:
-        """What of it is part of an id: not where it is, and nothing that a later field does not say, so that
-        other ids are what they were before there was that field.
-        """
-        unsaid = {name for name in _LATER if getattr(self, name) == getattr(Command, name)}
-        told = vars(self) | {"folder": None}
-        return {name: value for name, value in told.items() if name not in _NO_CONTENT | unsaid}
+        """What of it is part of an id: not where it is."""
+        return {name: value for name, value in vars(self).items() if name not in _NO_CONTENT}
 
 
-_NO_CONTENT = frozenset(("refused", "checker", "another"))
-_LATER = ("prepare", "conclude", "fresh_folder", "exit_codes", "turns", "rounds")
+_NO_CONTENT = frozenset(("folder", "refused", "checker", "another"))
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where commands are run, what takes their time, and what is written there: each file's SHA-256 when it
-    was first seen, None for one that was not there.
+    """Where commands are run, what takes their time, and the files that any of them writes: as their words
+    name them, None if each may write what it names.
     """
 
     folder: Path
     instrument: str
-    first_seen: Mapping[str, str | None] = field(default_factory=dict)
+    writes: tuple[str, ...] | None = ()
 
 
 def command_of(
@@ -106,15 +102,22 @@ def command_of(
     name = None
     if series.benchmark is not None:
         [name] = placed(_filled((str(series.benchmark.name),), f"{key}.benchmark.name", of_run))
-        words = (*words, _literal(filter_of(name)))
+        words = (*words, literal(filter_of(name)))
     command = Command(
         words, place.folder, place.instrument, trajectory, series.time.stdout if series.time else None,
         _unit_seconds(series), name, prepare, conclude,
-        series.fresh_folder, series.exit_codes, series.turns, series.rounds,
+        series.fresh_folder, series.exit_codes, series.turns,
     )  # fmt: skip
     if trajectory and command.writes_trajectory:
         raise InputError(f"{key}.trajectory: found beside {{out}} in command, expected only one of the two")
-    return _resolved(command, series, key, place)
+    writes = place.writes and placed(_filled(place.writes, f"{key}.writes", of_run))
+    try:
+        return resolved(command, replace(place, writes=writes))
+    except (UnfitError, InputError) as error:
+        unfit = error if isinstance(error, UnfitError) else None
+        if series.is_one_of_many:
+            return _refused(series.name, f"{unfit.word}: {unfit}" if unfit else str(error), place)
+        raise InputError(f"{key}.{unfit.part}: {unfit.told}" if unfit else str(error)) from error
 
 
 def _unit_seconds(series: Series) -> float | None:
@@ -124,9 +127,11 @@ def _unit_seconds(series: Series) -> float | None:
     return None if series.time.unit is None else SECONDS_OF_UNIT[series.time.unit]
 
 
-def _resolved(command: Command, series: Series, key: str, place: Place) -> tuple[Command, Program]:
-    """The command with its first words found, and the program."""
-    resolved: dict[str, Any] = {}
+def resolved(command: Command, place: Place) -> tuple[Command, Program]:
+    """The command with its first words found, and the program that it runs. Raises UnfitError for a word that
+    names none, and InputError.
+    """
+    parts: dict[str, Any] = {}
     for name in ("words", "prepare", "conclude", "trajectory"):
         if not (words := getattr(command, name)):
             continue
@@ -134,23 +139,17 @@ def _resolved(command: Command, series: Series, key: str, place: Place) -> tuple
         try:
             require_executable(first, place.folder)
         except UnfitError as unfit:
-            if series.is_one_of_many:
-                return _refused(series.name, f"{first}: {unfit}", place)
-            told = "command" if name == "words" else name
-            raise InputError(f'{key}.{told}: found "{first}", which {unfit.told(first)}') from unfit
-        resolved[name] = (_literal(os.fspath(found(first, place.folder))), *words[1:])
-    made_of = {name: placed(words) for name, words in resolved.items()}
+            unfit.word, unfit.part = first, "command" if name == "words" else name
+            raise
+        parts[name] = (literal(os.fspath(found(first, place.folder))), *words[1:])
+    made_of = {name: placed(words) for name, words in parts.items()}
     trajectory, folder = made_of.pop("trajectory", ()), None if command.fresh_folder else place.folder
-    try:
-        program = program_of([*made_of.values()], place.folder, folder, place.first_seen)
-        if trajectory:
-            resolved["checker"] = program_of([trajectory], place.folder, folder, place.first_seen)
-            resolved["another"] = _another(placed(command.words), trajectory, place.folder)
-    except InputError as error:
-        if series.is_one_of_many:
-            return _refused(series.name, str(error), place)
-        raise
-    return replace(command, **resolved), program
+    writes = None if place.writes is None else {place.folder / word for word in place.writes}
+    program = program_of([*made_of.values()], place.folder, folder, writes)
+    if trajectory:
+        parts["checker"] = program_of([trajectory], place.folder, folder, writes)
+        parts["another"] = _another(placed(command.words), trajectory, place.folder)
+    return replace(command, **parts), program
 
 
 def _refused(name: str, reason: str, place: Place) -> tuple[Command, Program]:
@@ -182,11 +181,11 @@ def placed(words: Sequence[str], scene: Path | None = None, output: Path | None 
     """The words with the files in their places."""
     files = {"{scene}": scene, "{out}": output}
     for name, path in files.items():
-        words = [word if path is None else word.replace(name, _literal(os.fspath(path))) for word in words]
+        words = [word if path is None else word.replace(name, literal(os.fspath(path))) for word in words]
     return tuple(word.replace(_LITERAL, "") for word in words)
 
 
-def _literal(text: str) -> str:
+def literal(text: str) -> str:
     """The text, as one in which no placeholder is left to be filled in."""
     for name in (SCENE, OUTPUT):
         text = text.replace(f"{{{name}}}", f"{{{_LITERAL}{name}}}")
@@ -213,15 +212,15 @@ def _filled_word(word: str, key: str, known: Mapping[str, str]) -> str:
     except ValueError as error:
         raise InputError(f'{key}: found "{word}": {error}; {{{{ stands for a brace') from error
     filled, text = "", ""  # up to the last file, and since
-    for literal, name, form, conversion in parts:
-        text += literal
+    for plain, name, form, conversion in parts:
+        text += plain
         if name is None:
             continue
         if name not in known or form or conversion:
             expected = f"one of {', '.join(f'{{{one}}}' for one in known)}{nearest(name, known)}"
             raise InputError(f'{key}: found "{{{name}}}", expected {expected}')
         if name in (SCENE, OUTPUT):
-            filled, text = filled + _literal(text) + known[name], ""
+            filled, text = filled + literal(text) + known[name], ""
         else:
             text += known[name]
-    return filled + _literal(text)
+    return filled + literal(text)

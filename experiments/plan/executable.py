@@ -3,7 +3,7 @@
 import os
 import re
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from experiments.plan.program import Program
@@ -16,13 +16,15 @@ _LONGEST_FIRST_LINE = 4096
 
 
 class UnfitError(Exception):
-    """Why a file cannot be run, as the rest of a sentence about it."""
+    """Why a file, the `word` of a `part` of a command, cannot be run: the rest of a sentence about it."""
 
-    def told(self, word: str) -> str:
-        """The reason, with what was expected where a word names nothing."""
-        if str(self) != "is not there":
-            return str(self)
-        return f"is not there; expected {'a program' if '/' in word else 'a program on PATH'}"
+    word = part = ""
+
+    @property
+    def told(self) -> str:
+        """What was found, with what was expected where the word names nothing."""
+        where = "; expected a program" + ("" if "/" in self.word else " on PATH")
+        return f'found "{self.word}", which {self}{where if str(self) == "is not there" else ""}'
 
 
 def found(word: str, folder: Path) -> Path:
@@ -57,32 +59,30 @@ def program_of(
     commands: Sequence[Sequence[str]],
     folder: Path,
     where: Path | None,
-    first_seen: Mapping[str, str | None],
+    writes: Collection[Path] | None,
 ) -> Program:
     """The program that the first of these commands runs, and everything that decides what it does: the other
     commands included, each found in `folder`.
 
-    Words name files of the folder `where`; without one only those that begin with / do. Of a file that is
-    known to be written it is what it was when it was `first_seen`. Raises InputError for one that cannot be
-    read.
+    Words name files of the folder `where`; without one only those that begin with / do. What it `writes` is
+    no part of it; None if any of these files may be written, each of which counts as what it is now. Raises
+    InputError for one that cannot be read.
     """
     own = [found(words[0], folder) for words in commands]
     parts = [part for path in own for part in (path, *_found_interpreter(path))]
     named = [file for words in commands for file in _named(words[1:], where)]
-    written = {file for file in named if os.fspath(file) in first_seen}
-    # What was not there before it was run is no part of it.
-    inputs = [one for one in named if (first_seen[os.fspath(one)] if one in written else is_file(one))]
+    named = [file for file in named if file not in (writes or ())]
+    inputs = [one for one in named if is_file(one)]
     files = (*parts, *inputs)
-    hashes = tuple(first_seen.get(os.fspath(file)) or sha256_of(file) for file in files)
+    hashes = tuple(map(sha256_of, files))
     return Program(
         name=own[0].name,
         path=own[0],
         sha256=digest_of_hashes(hashes),
         files=files,
         hashes=hashes,
-        inputs=tuple(file for file in inputs if file not in parts),
-        absent=tuple(file for file in named if file not in inputs),
-        written=frozenset(file for file in inputs if file in written and file not in parts),
+        absent=() if writes is None else tuple(file for file in named if file not in inputs),
+        written=frozenset(inputs).difference(parts) if writes is None else frozenset(),
     )
 
 

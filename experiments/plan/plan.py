@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from experiments.plan.blocks import orders
@@ -28,8 +28,6 @@ class Surroundings:
     programs: Mapping[str, Program]
     scale: Scale
     seed: int = SEED
-    first_seen: Mapping[str, str | None] = field(default_factory=dict)
-    """The files that programs are known to write, with the SHA-256 that each had before."""
 
 
 @dataclass(frozen=True)
@@ -210,7 +208,7 @@ def _command(
         checked["x"] = checked["steps"]
     instrument = str(around.programs[GENERATOR].sha256)
     key = f"{question.file}: series[{number}]"
-    place = Place(question.file.parent.absolute(), instrument, around.first_seen)
+    place = Place(question.file.parent.absolute(), instrument, question.writes)
     return command_of(series, key, (values, checked), place)
 
 

@@ -57,12 +57,6 @@ class Measurement:
     def id(self) -> str:
         """`p` and 16 hexadecimal digits; equal ids are the same measurement in any figure."""
         content = {field.name: getattr(self, field.name) for field in fields(Measurement)}
-        for later in ("command", "apart"):  # so that other ids are what they were before there was this field
-            if not content[later]:
-                del content[later]
-        # Before there was that field its number stood in the label: what was measured then still fits.
-        if (replicate := content.pop("replicate")) > 1:
-            content["label"] = " ".join(part for part in (self.label, f"replicate {replicate}") if part)
         # The letter keeps the id a text: the program takes a tag that reads as a number for one.
         return "p" + digest(json.dumps(content, sort_keys=True, default=_content))
 

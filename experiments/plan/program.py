@@ -10,7 +10,6 @@ from typing import Any
 from experiments.plan.scenes import AnyScene, sha256_of
 from experiments.plan.site import Site
 from experiments.support import process
-from experiments.support.digest import digest_of_hashes
 from support.errors import InputError
 
 CHECK_FAILED = 2
@@ -35,26 +34,29 @@ class Program:
     """What it is made of, where that is more than the one file."""
     hashes: tuple[str, ...] = ()
     """Of each of these files, as it was first seen."""
-    inputs: tuple[Path, ...] = ()
-    """Those of them that it only reads or writes: neither the program nor what interprets it."""
     absent: tuple[Path, ...] = ()
-    """What it may be going to write: words that could be files, and are none."""
+    """Words that could be files, and are none: it is not to make one of them, unless that is said."""
     written: frozenset[Path] = frozenset()
-    """Files that it, or a program beside it, is known to write: what they hold now says nothing of it."""
+    """Files that may be written by what is measured: what they hold now says nothing of it."""
 
     @property
-    def hash_of(self) -> dict[Path, str]:
-        """The hash of each file that it is made of, where that is more than the one file."""
-        return dict(zip(self.files, self.hashes, strict=False))
+    def hash_of(self) -> dict[Path, str | None]:
+        """The hash of each file that it is made of."""
+        return dict(zip(self.sources, self.hashes or (self.sha256,), strict=True))
 
-    @property
-    def is_unchanged(self) -> bool:
-        """Whether its files are what they were, but for those that are written. Raises InputError if one
-        cannot be read.
-        """
-        known = self.hash_of
-        hashes = [known[file] if file in self.written else sha256_of(file) for file in self.sources]
-        return digest_of_hashes(hashes) == self.sha256
+    def require_unchanged(self) -> None:
+        """Raises InputError for the first of its files that is not what it was."""
+        for file, sha256 in self.hash_of.items():
+            if file not in self.written and sha256_of(file) != sha256:
+                told = f"{file}: was built anew while the study ran; run the study again to go on with it"
+                writes = ", or say `writes` where it is written by what is measured"
+                raise InputError(told + (writes if file != self.path else ""))
+
+    def require_nothing_made(self) -> None:
+        """Raises InputError for the first file among its words that is there now, and was not."""
+        made = next((file for file in self.absent if file.is_file()), None)
+        if made is not None:
+            raise InputError(f"{made}: is written by what is measured, expected it in `writes` of its series")
 
     @property
     def sources(self) -> tuple[Path, ...]:

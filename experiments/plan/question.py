@@ -83,6 +83,11 @@ class Question:
     blocks: Blocks = Blocks()
 
     @property
+    def writes(self) -> tuple[str, ...]:
+        """The files that its programs write."""
+        return tuple(word for one in self.series for word in one.writes)
+
+    @property
     def programs(self) -> frozenset[str]:
         """The builds of the program that it cannot do without."""
         return frozenset(one.program for one in self.series if not one.is_foreign and not one.optional)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from experiments.plan.claims import PUBLISHED_CLAIMS, known_claims
+from experiments.plan.claims import known_claims, published_claims
 from experiments.plan.kinds import what_kind_lacks
 from experiments.plan.scenes import HardCase, NoScene
 from experiments.plan.series import Series
@@ -118,7 +118,7 @@ def _what_is_measured_beside(question: "Question") -> Iterator[str]:
 def _published_tolerance(question: "Question") -> Iterator[str]:
     """A published claim is about the published program, and so about its tolerance, unless that cannot be."""
     is_published, has_reason = question.tolerance == "published", question.tolerance_reason is not None
-    if question.claim in PUBLISHED_CLAIMS and not is_published and not has_reason:
+    if question.claim in published_claims() and not is_published and not has_reason:
         yield (
             f"tolerance: found {question.tolerance} for a published claim, expected "
             '"published", or a tolerance_reason'

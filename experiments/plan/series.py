@@ -15,7 +15,7 @@ from support.errors import InputError, quoted
 
 SECONDS_OF_UNIT = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
 
-WORDS = ("command", "trajectory", "prepare", "conclude")
+WORDS = ("command", "trajectory", "prepare", "conclude", "writes")
 """The keys of a series whose words have placeholders."""
 
 
@@ -53,14 +53,14 @@ class Series:
     prepare: tuple[str, ...] = ()
     conclude: tuple[str, ...] = ()
     """Commands that are run, untimed, before and after each run."""
+    writes: tuple[str, ...] = ()
+    """The files among its words that it writes."""
     fresh_folder: bool = False
     """Each run has a new folder to itself."""
     exit_codes: tuple[int, ...] = ()
     """Those that are fine; without any it is 0."""
     turns: bool | None = None
     """Whether it is stopped while others run; without a word it is found out."""
-    rounds: int | None = None
-    """How often it runs in a block, each time by itself; without a number once, or in turns."""
     time: PrintedTime | None = None
     benchmark: Benchmark | None = None
     label: str | None = None
@@ -130,7 +130,8 @@ def _require_kind(key: str, table: Mapping[str, Any]) -> None:
 _ONLY_FOR = {
     "variant": ("program", "find_chunk", "resolve_chunk", "optional"),
     "command": (
-        "trajectory", "time", "commands", "prepare", "conclude", "fresh_folder", "exit_codes", "turns",
+        "trajectory", "time", "commands", "prepare", "conclude", "writes", "fresh_folder", "exit_codes",
+        "turns",
     ),
     "benchmark": (),
 }  # fmt: skip

@@ -10,7 +10,7 @@ from experiments.results.summary import Summary, packed, summary_of, unpacked
 from support.files import of_json, read_json, to_json
 from support.known_files import FOLDER, Stamp, files_below, is_worth_keeping, keep, kept, lasting
 
-VERSION = 4
+VERSION = 5
 
 
 @dataclass(frozen=True, slots=True)

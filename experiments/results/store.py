@@ -4,7 +4,7 @@ import contextlib
 import os
 import re
 import shutil
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -18,6 +18,8 @@ from experiments.results.summary import Summary, summary_of, unusable
 from experiments.support.process import Completed
 from support.files import locked, move, read_json, write_json
 from support.record_schema import is_record
+
+_Summaries = Mapping[str, Summary | None]
 
 Key = tuple[str, int]
 """A point's id and a block's number: one process, one record."""
@@ -84,9 +86,25 @@ class Store:
 
     def find(self, experiment: Experiment) -> Found:
         """What is there of an experiment; reads only."""
+        records, failures = (self._index.summaries(kind, experiment.name) for kind in ("records", "failures"))
+        return self._sorted(experiment, records, failures)
+
+    def find_block(self, experiment: Experiment, block: int) -> Found:
+        """What is there of one block: only files of its own names are read, however many others there are."""
+        names = [f"{point.id}-b{block}.json" for point in experiment.points]
+        records, failures = (
+            {
+                name: summary_of(read_json(place_of(self.root / kind / experiment.name, name)))
+                for name in names
+            }
+            for kind in ("records", "failures")
+        )
+        return self._sorted(experiment, records, failures)
+
+    def _sorted(self, experiment: Experiment, records: _Summaries, failures: _Summaries) -> Found:
         points = {point.id: point for point in experiment.points}
         found = Found()
-        for name, summary in self._index.summaries("records", experiment.name).items():
+        for name, summary in records.items():
             key = _key(name)
             point = points.get(key[0]) if key else None
             if key is None or point is None or unusable(summary, point, key[1]):
@@ -94,7 +112,7 @@ class Store:
             else:
                 assert summary is not None
                 found.take(key, summary)
-        for name, summary in self._index.summaries("failures", experiment.name).items():
+        for name, summary in failures.items():
             key = _key(name)
             is_failure = summary is not None and summary.kind == "failure"
             if key is None or key[0] not in points or key in found.seconds or not is_failure:
@@ -102,21 +120,6 @@ class Store:
             else:
                 assert summary is not None
                 found.failures[key] = summary.reason
-        return found
-
-    def find_block(self, experiment: Experiment, block: int) -> Found:
-        """What is there of one block: only files of its own names are read, however many others there are."""
-        found = Found()
-        for point in experiment.points:
-            key = (point.id, block)
-            summary = summary_of(read_json(self.record_path(point, block)))
-            if unusable(summary, point, block) is None:
-                assert summary is not None
-                found.take(key, summary)
-                continue
-            failure = summary_of(read_json(self.failure_path(point, block)))
-            if failure is not None and failure.kind == "failure":
-                found.failures[key] = failure.reason
         return found
 
     def has(self, point: Point, block: int) -> bool:

@@ -1,10 +1,8 @@
 """What is to be known of a record without reading it again."""
 
 from array import array
-from base64 import b64encode
-from binascii import a2b_base64
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from experiments.plan.point import Point, Tags
@@ -98,15 +96,13 @@ def unusable(found: Summary | None, point: Point, block: int) -> str | None:
 
 
 def packed(found: Summary) -> list[Any]:
-    """Return all but the tags as JSON has it, the runs as one text."""
-    runs = b64encode(array("d", found.runs).tobytes()).decode("ascii")
-    told = [found.kind, found.block, found.program, found.verdict, found.has_trajectory, found.seconds]
-    return [*told, runs, found.reason, found.owner, found.recorded_at, found.digest]
+    """Return all but the tags as JSON has it."""
+    told = {field.name: getattr(found, field.name) for field in fields(Summary) if field.name != "tags"}
+    return [*(told | {"runs": list(found.runs)}).values()]
 
 
 def unpacked(told: Any, tags: Tags) -> Summary:  # noqa: ANN401 - read from a file
-    """Return what was packed. Raises ValueError for anything else."""
-    kind, block, program, verdict, has_trajectory, seconds, text, *more = told
-    runs = array("d")
-    runs.frombytes(a2b_base64(text))
-    return Summary(kind, tags, block, program, verdict, has_trajectory, seconds, runs, *more)
+    """Return what was packed. Raises ValueError or TypeError for anything else."""
+    kind, *more = told
+    found = Summary(kind, tags, *more)
+    return replace(found, runs=array("d", found.runs))

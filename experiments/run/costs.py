@@ -1,45 +1,55 @@
-"""How long a point takes: from its own records, else from a probe of its variant and its scene's size.
+"""How long a point takes: the median of what was measured; until then as a probe of its variant foretells.
 
-What is foretold before anything is measured a first block of each question overrules. So the constants are
-round: too high costs a few blocks, too low a little more than the budget.
+A first block of each question overrules what was foretold. So the constants are round: too high costs a few
+blocks, too low a little more than the budget.
 """
 
+import contextlib
 import json
 import statistics
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
-from experiments.plan.point import Point
-from experiments.plan.scenes import AnyScene, HardCase, Scene
+from experiments.plan.point import PROCESS, Point
+from experiments.plan.scenes import AnyScene, Scene, SceneFile
+from experiments.results.store import Store
 from experiments.run.host_lock import run_alone
 from experiments.run.runner import ProcessResult
 from support.files import read_json
+from support.vocabulary import COUNTS
 
+NOTE = "costs.json"
 PROBE = Scene(particles=10000, side=3162, radius=16, steps=10, min_velocity=2, max_velocity=5)
 
 _SECONDS_PER_DISC_READ = 7e-7
-"""Generating takes about twice as long."""
-_SECONDS_OF_HARD_CASES = {"drift": 3.0}
-_SECONDS_OF_ANOTHER_HARD_CASE = 0.01
-_RUNS_BESIDES = 3
-"""Runs of the steps in a profile, a check, or what measures errors."""
-_SLOWED_BY_CACHEGRIND = 60
-"""Between the 20 and the 100 times of Valgrind's manual."""
+_RUNS_OF_A_PROFILE = 3
+_HARD_CASE = 0.4
+"""Seconds of one on average: most take none, and one takes three."""
 _UNKNOWN_PROGRAM = 1.0
 """Seconds of somebody else's program until it has run once: a guess."""
 
-_PROBED = 3
-"""Runs of a probe, of which the least counts: enough for one without a disturbance, and over in 0.1 s."""
-_STARTING = 0.02
-"""Seconds in which a process starts and ends, which no probe among others tells."""
 SECONDS_PER_PROCESS, _MOST_BESIDE = 0.03, 0.3
-"""What a process takes beside its own account of its time, until that was seen, and at most."""
+"""What a process takes beside its own account of its time, until that was seen, and at most: the first one of
+a variant comes with its check.
+"""
+
+IN_THE_CLOCK = 3.0
+"""Seconds of timed runs for each second that a process takes besides. The rounds of turns are the data, and a
+process is one draw of where its memory lies: with turns of a few steps its ratio is hardly any better from
+some hundred rounds on."""
+
+MOST_RUNS = 30
+"""In a process: more would tell of one process alone."""
+
+FIRST_RUNS = 3
+"""At most in a first block, before which what a process takes besides is a guess."""
+
+MOST_SECONDS = 3.0
+"""Of the runs of a process, unless one lasts longer: a study looks at its time between processes."""
 
 
-@dataclass(frozen=True)
-class Probe:
+class Probe(NamedTuple):
     """What one process of a variant took on the probe scene: seconds a step, and seconds beside the steps."""
 
     step: float
@@ -49,19 +59,27 @@ class Probe:
 _UNPROBED = Probe(0.01, 0.05)
 """Of a variant whose probe failed: several times what the published one takes."""
 
+Measured = tuple[float, Sequence[float]]
+"""Seconds of a whole process, and of its timed runs."""
+
 
 class Costs:
     """Estimates in seconds of wall time."""
 
     def __init__(
-        self, probes: Mapping[str, Probe], measured: Mapping[str, Sequence[tuple[float, Sequence[float]]]]
+        self,
+        probes: Mapping[str, Probe] | None = None,
+        measured: Mapping[str, Sequence[Measured]] | None = None,
     ) -> None:
-        """`measured` has, by point, the seconds of each whole process and of its timed runs."""
-        self._probes = dict(probes)
-        self._measured = {point: list(processes) for point, processes in measured.items()}
-        self._beside: dict[str, float] = {}
-        self._ratios: dict[str, list[float]] = {}
-        self._corrections: dict[str, float] = {}
+        """`measured` has by point what its processes took, by their own account."""
+        self._probes = probes or {}
+        self._measured = {
+            point: [(seconds + SECONDS_PER_PROCESS, runs) for seconds, runs in processes]
+            for point, processes in (measured or {}).items()
+        }
+        self._ratios: dict[str, float] = {}
+        self._correction = 1.0
+        """Measured over foretold, in the middle of all points of this session."""
 
     def point(self, point: Point, runs: int | None = None) -> float:
         """One process of a point, warm-up included; with so many timed runs, or as many as it has had."""
@@ -70,103 +88,76 @@ class Costs:
         if runs is not None:
             return self.fixed(point) + runs * self.run(point)
         if measured := self._measured.get(point.id):
-            return statistics.median(seconds for seconds, _ in measured) + self._beside_of(point)
-        return self._modelled(point) * self._correction(point) + self._beside_of(point)
+            return statistics.median(seconds for seconds, _ in measured)
+        return self._foretold(point) * self._correction + SECONDS_PER_PROCESS
 
     def run(self, point: Point) -> float:
         """One timed run of a point."""
         if times := [time for _, runs in self._measured.get(point.id, ()) for time in runs]:
             return statistics.median(times)
-        return self._modelled_run(point) * self._correction(point)
+        return self._foretold_run(point) * self._correction
 
     def fixed(self, point: Point) -> float:
         """What a process of a point takes without its timed runs."""
         if measured := self._measured.get(point.id):
             # The least counts, since a first process comes with its check.
-            spent = min(max(0.0, seconds - sum(runs)) for seconds, runs in measured)
-            return spent + self._beside_of(point)
+            return min(max(0.0, seconds - sum(runs)) for seconds, runs in measured)
         return max(0.0, self.point(point) - point.repetitions * self.run(point))
 
-    def check(self, point: Point) -> float:
-        """The verification of every step of the point's variant on its scene."""
-        if point.command is not None:
-            return _UNKNOWN_PROGRAM if point.is_checked else 0.0
-        return self._start(point) + _RUNS_BESIDES * self._modelled_run(point)
+    def runs(self, group: Sequence[Point]) -> int:
+        """How many timed runs the next process of these points makes, by what is known of their times; one
+        where nothing is known of a point.
+        """
+        if len(group) < 2 or group[0].verb == PROCESS or group[0].kind == COUNTS:
+            return 1
+        if not all(one.id in self._measured or probe_key(one) in self._probes for one in group):
+            return 1
+        runs = choose_runs(sum(map(self.fixed, group)), sum(map(self.run, group)))
+        return runs if all(one.id in self._measured for one in group) else min(runs, FIRST_RUNS)
 
-    def besides(self, point: Point) -> float:
-        """What one of the point's processes does besides: measuring errors, counting under cachegrind."""
-        run, scene = self._modelled_run(point), point.scene
-        seconds = _RUNS_BESIDES * run if point.errors else 0.0
-        if point.simulated:
-            counted = min(point.simulated / scene.steps, 1.0) if isinstance(scene, Scene) else 1.0
-            seconds += _SLOWED_BY_CACHEGRIND * (run * counted + self.scene(scene))
-        return seconds
-
-    def scene(self, scene: AnyScene) -> float:
-        """Generating a scene."""
-        return 2 * _reading(scene)
-
-    def has_measured(self, point: Point) -> bool:
-        """Whether a process of it has ended."""
-        return point.id in self._measured
-
-    def knows(self, point: Point) -> bool:
-        """Whether it was measured, or its variant probed."""
-        return self.has_measured(point) or probe_key(point) in self._probes
-
-    def learn_group(self, points: Sequence[Point], ended: Sequence[ProcessResult], seconds: float) -> None:
-        """Processes of a block of an experiment ended, measured in so many seconds in all."""
+    def learn(self, points: Sequence[Point], ended: Sequence[ProcessResult], seconds: float) -> None:
+        """Processes of a block ended, measured in so many seconds in all. What more runs take than were
+        foretold says nothing of what was foretold.
+        """
         own = [one.seconds for one in ended if one.seconds is not None]
+        beside = min(_MOST_BESIDE, max(0.0, seconds - sum(own)) / max(1, len(own)))
         for point, one in zip(points, ended, strict=True):
             if one.seconds is not None:
-                self.learn(point, one.seconds, one.runs)
-        if own and len(own) == len(ended):
-            self.learn_beside(points[0].experiment, max(0.0, seconds - sum(own)) / len(own))
+                is_whole = len(own) == len(ended)
+                spent = one.seconds + (beside if is_whole else SECONDS_PER_PROCESS)
+                self._measured.setdefault(point.id, []).append((spent, one.runs))
+                as_foretold = one.seconds - sum(one.runs[point.repetitions :])
+                self._ratios[point.id] = as_foretold / self._foretold(point)
+        if self._ratios:
+            self._correction = statistics.median(self._ratios.values())
 
-    def learn(self, point: Point, seconds: float, runs: Sequence[float] = ()) -> None:
-        """A process of the point took this long, of which its timed runs took these seconds. What more runs
-        take than the one of a model says nothing of the model.
-        """
-        self._measured.setdefault(point.id, []).append((seconds, runs))
-        ratios = self._ratios.setdefault(point.experiment, [])
-        ratios.append((seconds - sum(runs[point.repetitions :])) / self._modelled(point))
-        self._corrections[point.experiment] = statistics.median(ratios)
-
-    def learn_beside(self, experiment: str, seconds: float) -> None:
-        """A process of the experiment took this much longer than its own account, for each of its points."""
-        # The least counts, since the first process of a variant comes with its check.
-        self._beside[experiment] = min(seconds, self._beside.get(experiment, _MOST_BESIDE))
-
-    def _beside_of(self, point: Point) -> float:
-        return self._beside.get(point.experiment, SECONDS_PER_PROCESS)
-
-    def _correction(self, point: Point) -> float:
-        """Measured over modelled: of the point's experiment if it has any measurement, else of all others."""
-        of_all = self._corrections.values() or [1.0]
-        return self._corrections.get(point.experiment) or statistics.median(of_all)
-
-    def _modelled(self, point: Point) -> float:
-        runs = point.warm_up + (_RUNS_BESIDES if point.verb == "profile" else point.repetitions)
-        return self._start(point) + runs * self._modelled_run(point)
+    def _foretold(self, point: Point) -> float:
+        runs = point.warm_up + (_RUNS_OF_A_PROFILE if point.verb == "profile" else point.repetitions)
+        return self._start(point) + runs * self._foretold_run(point)
 
     def _start(self, point: Point) -> float:
         """A process until its first run."""
         return 0.0 if point.command is not None else self._probe(point).process + _reading(point.scene)
 
-    def _modelled_run(self, point: Point) -> float:
+    def _foretold_run(self, point: Point) -> float:
         """One run from the first step to the last."""
         if point.command is not None:
             return _UNKNOWN_PROGRAM
-        match point.scene:
-            case HardCase(case):
-                return _SECONDS_OF_HARD_CASES.get(case, _SECONDS_OF_ANOTHER_HARD_CASE)
-            case Scene() as scene:
-                per_work = self._probe(point).step / _work(PROBE)
-                return scene.steps * point.substeps * per_work * _work(scene)
-        return 0.0
+        if not isinstance(point.scene, Scene):
+            return _HARD_CASE
+        steps = point.scene.steps * point.substeps
+        return steps * self._probe(point).step * _work(point.scene) / _work(PROBE)
 
     def _probe(self, point: Point) -> Probe:
         return self._probes.get(probe_key(point), _UNPROBED)
+
+
+def choose_runs(fixed_seconds: float, run_seconds: float) -> int:
+    """How many runs a process makes, so that most of its time is in the clock; one of them takes so many
+    seconds for all contenders together.
+    """
+    one = max(run_seconds, 1e-9)
+    return max(1, round(min(IN_THE_CLOCK * fixed_seconds / one, MOST_RUNS, MOST_SECONDS / one)))
 
 
 def probe_key(point: Point) -> str:
@@ -174,49 +165,51 @@ def probe_key(point: Point) -> str:
     return f"{str(point.program.sha256)[:12]} {point.variant} {point.threads}"
 
 
-def kept_probes(kept: object) -> dict[str, Probe]:
-    """The probes that were kept; of anything else that stands in their place nothing."""
-    probes = {}
-    for key, value in kept.items() if isinstance(kept, dict) else ():
-        match value:
-            case {"step": float(step), "process": float(seconds)} if step > 0 and seconds >= 0:
-                probes[str(key)] = Probe(step, seconds)
+def probed(
+    points: Iterable[Point], store: Store, scene: Callable[[Scene], SceneFile], time_limit: float
+) -> dict[str, Probe]:
+    """The probes of the points' variants, those made that are not kept. What a probe leaves no record of is
+    left out: the run proper explains why.
+    """
+    probes = _kept(store.note(NOTE))
+    can = (point for point in points if point.program.sha256 is not None and point.command is None)
+    groups: dict[object, list[Point]] = {}
+    for key, point in {probe_key(point): point for point in can}.items():
+        if key not in probes:
+            groups.setdefault((point.program.path, point.openmp, point.threads), []).append(point)
+    for group in groups.values():
+        probes |= _probe_all(group, scene(PROBE).path, store.temporary, time_limit)
+    if groups:
+        store.keep_note(NOTE, probes)
     return probes
 
 
-def to_probe(points: Iterable[Point], known: Mapping[str, object]) -> list[Point]:
-    """One point for each probe that is still to be made."""
-    can = (point for point in points if point.program.sha256 is not None and point.command is None)
-    wanted = {probe_key(point): point for point in can}
-    return [point for key, point in wanted.items() if key not in known]
+def _kept(note: object) -> dict[str, Probe]:
+    """The probes that were kept; of anything else that stands in their place nothing."""
+    with contextlib.suppress(TypeError, ValueError):
+        found = {str(key): Probe(*map(float, one)) for key, one in dict(note).items()}  # type: ignore[call-overload]
+        return {key: one for key, one in found.items() if one.step > 0 and one.process >= 0}
+    return {}
 
 
-def probe(points: Sequence[Point], scene: Path, folder: Path, time_limit: float) -> dict[str, Probe]:
-    """Time short runs of the points' variants, of those that have a program and threads in common in one
-    process. What it leaves no record of is left out: the run proper explains why.
-    """
-    records = [[folder / f"{at}-{run}.json" for run in range(_PROBED)] for at in range(len(points))]
-    groups: dict[object, list[tuple[Point, Path]]] = {}
-    for point, several in zip(points, records, strict=True):
-        group = groups.setdefault((point.program.path, point.openmp, point.threads), [])
-        group += [(point, record) for record in several]
-    for group in groups.values():
-        words = [
-            [str(scene), "--variant", one.variant, "--threads", str(one.threads), "--record", str(record)]
-            for one, record in group
-        ]
-        contenders, first = folder / "contenders.json", group[0][0]
-        contenders.write_text(json.dumps(words), encoding="utf-8")
-        command = [str(first.program.path), "turns", str(contenders), "--counts"]
-        run_alone(command, first.openmp, time_limit)
+def _probe_all(group: Sequence[Point], scene: Path, folder: Path, time_limit: float) -> dict[str, Probe]:
+    """Time a short run of each of these variants in one process, one after the other."""
+    records = [folder / f"probe-{at}.json" for at in range(len(group))]
+    words = [
+        [str(scene), "--variant", one.variant, "--threads", str(one.threads), "--record", str(record)]
+        for one, record in zip(group, records, strict=True)
+    ]
+    contenders = folder / "probes.json"
+    contenders.write_text(json.dumps(words), encoding="utf-8")
+    command = [str(group[0].program.path), "turns", str(contenders), "--counts"]
+    run_alone(command, group[0].openmp, time_limit)
     probes = {}
-    for point, several in zip(points, records, strict=True):
-        contents = [read_json(record) for record in several]
-        if all(contents):
-            # The least of them: a probe is short, and whatever else runs can only lengthen it.
-            steps = min(float(one["repetitions"][0]["steps_seconds"]) for one in contents)
-            beside = min(float(one["process_seconds"]) for one in contents) - steps
-            probes[probe_key(point)] = Probe(steps / PROBE.steps, _STARTING + max(0.0, beside))
+    for point, record in zip(group, records, strict=True):
+        if told := read_json(record):
+            steps = float(told["repetitions"][0]["steps_seconds"])
+            process = SECONDS_PER_PROCESS + max(0.0, float(told["process_seconds"]) - steps)
+            probes[probe_key(point)] = Probe(steps / PROBE.steps, process)
+            record.unlink()
     return probes
 
 
@@ -224,14 +217,9 @@ def _reading(scene: AnyScene) -> float:
     return scene.particles * _SECONDS_PER_DISC_READ if isinstance(scene, Scene) else 0.0
 
 
-@cache
 def _work(scene: Scene) -> float:
-    """A step's work in discs, fitted to the published variant on two cores: empty boxes are looked at too,
-    dense discs resolved again and again (at 0.71, 0.80 and 0.87 of the area 0.1, 0.9 and 3.4 more; measured
-    0.2, 0.6 and 3.4), and what outgrows the caches costs more each time (a power from 0.05 to 0.24).
+    """A step's work in discs: what is crowded is resolved again and again (at 0.71, 0.80 and 0.87 of the area
+    0.1, 0.9 and 3.4 more; measured 0.2, 0.6 and 3.4 of the published variant), and empty cells are looked at.
     """
-    boxes = (scene.side / (4 * scene.radius + 1)) ** 2
-    crowding = 1 + 30 * scene.area_fraction**16
-    speed = 1 + 0.025 * (scene.min_velocity + scene.max_velocity) / 2
-    beyond = max(1.0, scene.particles / PROBE.particles) ** 0.2
-    return (scene.particles * crowding * speed + 0.1 * boxes) * beyond
+    cells = (scene.side / (4 * scene.radius + 1)) ** 2
+    return scene.particles * (1 + 30 * scene.area_fraction**16) + 0.1 * cells

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from experiments.plan.point import PROCESS, Tags
-from experiments.run.written import Sources
+from experiments.run.sources import Sources
 from experiments.side_by_side.contest import Entrant
 from experiments.support.digest import digest_of_hashes
 

@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +15,8 @@ from experiments.run.behaviour import Behaviours
 from experiments.run.host_lock import host_lock
 from experiments.run.process_record import Described, Record, process_record
 from experiments.run.progress import warn
+from experiments.run.sources import Sources
 from experiments.run.together import is_alike, is_left_open
-from experiments.run.written import Sources, Written, touch_of
 from experiments.side_by_side.contest import Contender, Contest, Entrant
 from experiments.side_by_side.sampler import Sampler, SamplerError
 from experiments.support.process import Completed
@@ -52,14 +52,11 @@ class Asked:
 
 @dataclass(frozen=True)
 class Left:
-    """What was measured: the point, its files that are known to be written among them, its record or failure,
-    the file that it wrote itself, if it was to write one, and its files as they were before.
-    """
+    """What was measured: the point, its record or failure, and what it wrote itself, if it was to."""
 
     point: Point
     record: Record
     output: Path
-    sources: Sources
 
 
 class Processes:
@@ -82,35 +79,15 @@ class Processes:
         self._tells = tells
         self._slice = SLICE_SECONDS
         self._behaviours = Behaviours(store)
-        self._written = Written(store)
 
     def measure(self, asked: Sequence[Asked], seed: int, slice_seconds: float) -> list[Left]:
         """What is left of each; the shortest runs for so many seconds before the next does.
 
-        Where a file among the words changed, all are measured a second time: only then is it known whether
-        a program writes it. So they are where one turns out to mind being stopped and others were in slices:
-        on a busy machine a program takes another time in slices than as a whole. Raises InputError if
-        somebody built a program anew meanwhile.
+        All are measured a second time where one turns out to mind being stopped and others were in slices: on
+        a busy machine a program takes another time in slices than as a whole.
         """
-        asked = [replace(one, point=self._known(one.point)) for one in asked]
         self._slice = slice_seconds
         left = self._run(asked, seed)
-        suspected = {
-            file: touch_of(file)
-            for one, there in zip(asked, left, strict=True)
-            for file in self._written.changed(one.point.program, there.sources)
-        }
-        if suspected:
-            provisional = [_with_written(one, frozenset(suspected)) for one in asked]
-            left = self._run(provisional, seed)
-            self._written.learn([one.point.program for one in asked], suspected)
-            for file in sorted(suspected):
-                warn(
-                    f"{file}: is written by what is measured: each run finds what the last one left; "
-                    "`prepare` of a series can restore it"
-                )
-            asked = provisional
-        self._written.learn_created([one.point.program for one in asked])
         found = self._learn(asked, left)
         if any(found) and any(map(_was_sliced, asked, left)):
             left = self._run(asked, seed)
@@ -142,9 +119,6 @@ class Processes:
             [ended] = Contest(sampler, [contender], self._slice, 1, self._folder()).measure()
         return Completed(words, ended.exit_code if ended.failure else 0, "", ended.failure)
 
-    def _known(self, point: Point) -> Point:
-        return replace(point, program=self._written.known(point.program)) if point.command else point
-
     def _run(self, asked: Sequence[Asked], seed: int) -> list[Left]:
         folder = self._folder()
         outputs = [folder.absolute() / f"{number}.output" for number in range(len(asked))]
@@ -157,7 +131,7 @@ class Processes:
         with host_lock(), Sampler(self._instrument.path) as sampler:
             contest = Contest(sampler, contenders, self._slice, seed, folder)
             return [
-                Left(one.point, self._record(sampler, ended, one, known, (len(asked), seed)), output, known)
+                Left(one.point, self._record(sampler, ended, one, known, (len(asked), seed)), output)
                 for ended, one, known, output in zip(contest.measure(), asked, sources, outputs, strict=True)
             ]
 
@@ -269,10 +243,5 @@ def _say_why(left: Left, why: str) -> None:
 
 
 def _sources_of(program: Program) -> Sources:
-    return Sources.of(program.sources, {file: program.hash_of[file] for file in program.written})
-
-
-def _with_written(one: Asked, more: frozenset[Path]) -> Asked:
-    program = one.point.program
-    written = program.written | (more & {*program.inputs})
-    return replace(one, point=replace(one.point, program=replace(program, written=written)))
+    known = program.hash_of
+    return Sources.of(program.sources, {file: known.get(file) or "" for file in program.written})

@@ -17,7 +17,6 @@ from experiments.run.machine_limits import MachineLimits
 from experiments.run.processes import Asked, Left, Processes, slice_of
 from experiments.run.together import have_room, is_alike
 from experiments.run.verify import Verifier, representative, scope_of
-from experiments.run.written import Written, built_anew
 from experiments.support.digest import digest
 from experiments.support.process import NOT_FOUND, Completed
 from support.errors import InputError
@@ -94,7 +93,6 @@ class Runner:
         """How long a whole program runs before the next does; see `slice_of` without it."""
         self._processes = Processes(store, generator, time_limit, tells=tells)
         self._verifier = Verifier(store, generator, self._processes, time_limit)
-        self._written = Written(store)
         self._limits = MachineLimits(store, time_limit)
 
     def run(self, tasks: Sequence[Task]) -> list[ProcessResult]:
@@ -247,6 +245,7 @@ class Runner:
         if wrong is None:
             assert summary is not None
             self._store.keep_record(task.point, task.block, scratch)
+            task.point.program.require_nothing_made()
             return ProcessResult(summary.seconds, runs=summary.runs)
         violation = _violation(record)
         if done.exit_code == CHECK_FAILED and (violation or record is None):
@@ -255,11 +254,15 @@ class Runner:
         return self._fail(task, Completed(done.command, 1, "", said))
 
     def _fail(self, task: Task, done: Completed) -> ProcessResult:
-        program = self._written.known(task.point.program)
-        if program.sha256 is not None and not task.point.refused and not program.is_unchanged:
-            raise built_anew(program.path)
+        _require_unchanged(task.point)
         self._store.keep_failure(task.point, task.block, done, task.tags(self._store.session))
         return ProcessResult(None, done.reason, done.exit_code)
+
+
+def _require_unchanged(point: Point) -> None:
+    """Raises InputError where a file of the point's program is not what it was."""
+    if point.program.sha256 is not None and not point.refused:
+        point.program.require_unchanged()
 
 
 def _path(scene: SceneFile | None) -> Path:

@@ -4,19 +4,19 @@ import json
 import math
 import time
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 
-from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.plan.site import what_limits
 from experiments.run.next_blocks import in_turns, next_blocks
 from experiments.run.progress import ProgressDisplay, warn
 from experiments.run.runner import ProcessResult, Runner, Task
-from experiments.run.schedule import FIRST_LOOK, Schedule, control_apart, may_decide
+from experiments.run.schedule import FIRST_LOOK, Part, Schedule, may_decide
 from experiments.run.study import POINTS_FAILED, REPORT_FAILED, Settings, Study, keep_claims, summary
 from experiments.run.together import together
 from experiments.run.verdicts import Verdicts, ask
 from experiments.support.process import Coprocess
+from support.vocabulary import CONTROL
 
 REPORT_LIMIT = 600.0
 """Seconds after which a report is given up."""
@@ -73,8 +73,10 @@ class Session:
         self._failures: Counter[str] = Counter()
         self._report_due = time.monotonic() + REPORT_PAUSE
         self._said: set[str] = set()
-        self._others, self._control = control_apart(study.experiments)
-        self._incomplete = [one for one in self._others if not schedule.is_complete(one)]
+        parts = schedule.parts.values()
+        self._control = schedule.parts.get(CONTROL)
+        self._others = [one for one in parts if one is not self._control]
+        self._incomplete = [one for one in self._others if not one.is_complete]
         self._has_more = bool(self._incomplete) or not study.is_finished
         self._until = self._end()
         self._control_seconds = 0.0
@@ -102,49 +104,46 @@ class Session:
         each block costs here. Before all builds are there nothing is decided: what needs the others is to
         have its part of the time.
         """
-        for experiment in self._study.experiments:
-            if self._schedule.is_complete(experiment):
-                self._schedule.begin(experiment)  # it may have fewer points than when it was completed
+        for one in self._schedule.parts.values():
+            if one.is_complete:
+                one.begin()  # it may have fewer points than when it was completed
         settings = self._study.settings
         looks = (settings.figures or bool(settings.builds)) and settings.blocks is None
         self._keep_time_to_decide()
-        deciding = [one for one in self._incomplete if self._may_decide(one)] if looks else self._incomplete
-        begun = self._first_blocks(deciding, FIRST_LOOK if looks else 0)
-        if not looks:
-            self._measure([one for one in begun if one.question.blocks.wanted > 1])
+        if looks:
+            self._first_blocks([one for one in self._incomplete if self._may_decide(one)])
+        else:
+            for one in self._incomplete:
+                self._first_block(one)
+            self._measure([one for one in self._incomplete if one.asked.wanted > 1])
         if settings.builds:
             self._study.begin(time.monotonic() - self._began)
             return self._failed()
         if self._has_more or settings.until_decided or settings.budget_seconds is not None:
             verdicts = self._decide() if looks else Verdicts()
-            if not settings.until_decided:
-                # What is still open has no time for its next look: more blocks of it come last of all.
-                self._share_out({*verdicts.settled, *verdicts.open})
-                self._share_out(verdicts.settled)
+            while not settings.until_decided and (more := self._next_of_rest(verdicts)) is not None:
+                self._measure([more])
         self._run_control(everything=True)
         self._study.finish()
         failed = self._failed()
         return self._report_all() or failed
 
-    def _first_blocks(self, experiments: Sequence[Experiment], wanted: int) -> list[Experiment]:
-        """Measure the first block of each, the cheapest first, and all of those that want no more. Returns
-        the experiments that were begun: those for which there is time for so many blocks as are wanted.
-        """
-        begun = []
-        for experiment in sorted(experiments, key=self._schedule.least_seconds) if wanted else experiments:
-            least = min(wanted, experiment.question.blocks.wanted)
-            if wanted and self._schedule.seconds_of(experiment, least) > self._time_left():
-                continue
-            begun.append(experiment)
-            self._run_control(everything=False)
-            for block in self._schedule.blocks(experiment, most=1):
-                self._block(experiment, block)
-            if experiment.question.blocks.wanted == 1:
-                self._measure([experiment])
-        return begun
+    def _first_blocks(self, parts: Sequence[Part]) -> None:
+        """Measure the first block of each, the cheapest first, as far as there is time for a first look."""
+        for one in sorted(parts, key=lambda one: one.least_seconds):
+            if one.seconds_of(min(FIRST_LOOK, one.asked.wanted)) <= self._time_left():
+                self._first_block(one)
 
-    def _may_decide(self, experiment: Experiment) -> bool:
-        return may_decide(experiment, self._study.scale.name)
+    def _first_block(self, part: Part) -> None:
+        """Measure the first block, which is all of what wants no more."""
+        self._run_control(everything=False)
+        while (block := part.blocks.next(most=1)) is not None:
+            self._block(part, block)
+        if part.asked.wanted == 1:
+            self._measure([part])
+
+    def _may_decide(self, part: Part) -> bool:
+        return may_decide(part.experiment, self._study.scale.name)
 
     def _time_left(self) -> float:
         """Seconds until measuring stops."""
@@ -162,12 +161,9 @@ class Session:
         verdicts = self._settle()
         self._until = whole
         # A block tells at least what a claim is about.
-        for experiment in sorted(
-            rest, key=lambda one: (not one.question.claim, self._schedule.least_seconds(one))
-        ):
-            if self._schedule.least_seconds(experiment) <= self._time_left():
-                self._first_blocks([experiment], 0)
-                self._measure([experiment])
+        for one in sorted(rest, key=lambda one: (not one.experiment.question.claim, one.least_seconds)):
+            if one.least_seconds <= self._time_left():
+                self._measure([one])
         return self._settle() if rest and verdicts != Verdicts() else verdicts
 
     def _settle(self) -> Verdicts:
@@ -193,68 +189,78 @@ class Session:
         """Bring what is settled at the least expense to its next look. Returns whether there was any."""
         waiting = list(self._schedule.waiting(verdicts))
         blocks = next_blocks(waiting, self._time_left(), least_seconds)
-        chosen = [one for one in self._study.experiments if one.name in blocks]
-        for experiment in chosen:
-            self._schedule.give(experiment, verdicts.open[experiment.name])
+        chosen = [one for one in self._others if one.name in blocks]
+        for one in chosen:
+            one.give(verdicts.open[one.name].next)
         self._measure(chosen)
         return bool(chosen)
 
-    def _share_out(self, enough: Collection[str]) -> None:
-        """Give the rest of the time to whatever has not enough, up to the blocks that it wants."""
-        self._schedule.share_out_time(self._time_left(), enough)
-        for experiment in self._others:
-            fits = self._schedule.least_seconds(experiment) <= self._time_left()
-            if not self._schedule.is_complete(experiment) and fits:
-                self._schedule.share_out_time(self._time_left(), enough)
-                self._measure([experiment])
+    def _next_of_rest(self, verdicts: Verdicts) -> Part | None:
+        """Who gets the rest of the time next, as far as it fits: who lacks blocks that it was given, then who
+        is furthest from the blocks that it wants. What is settled gets no more; what is open has no time for
+        its next look, and comes last.
+        """
+        left = self._time_left()
+        lacking = (one for one in self._others if not one.is_complete and one.least_seconds <= left)
+        if (first := next(lacking, None)) is not None:
+            return first
+        growing = [
+            one
+            for one in self._others
+            if one.name not in verdicts.settled and one.is_complete and one.growth
+            if one.growth * one.seconds_each <= left
+        ]
+        chosen = min(growing, key=lambda one: (one.name in verdicts.open, one.share), default=None)
+        if chosen is not None:
+            chosen.give(chosen.given + chosen.growth)
+        return chosen
 
-    def _measure(self, experiments: Sequence[Experiment]) -> None:
+    def _measure(self, parts: Sequence[Part]) -> None:
         """Run what is missing of these, a block of one and a block of another in turn."""
-        lacking = {}
-        for one in experiments:
-            self._schedule.begin(one)
-            lacking[one.name] = list(self._schedule.blocks_of(one).lacking)
-        of_name = {one.name: one for one in experiments}
-        for name in in_turns({name: len(blocks) for name, blocks in lacking.items()}):
+        for one in parts:
+            one.begin()
+        of_name = {one.name: one for one in parts}
+        for name in in_turns({one.name: len(one.blocks.lacking) for one in parts}):
             self._run_control(everything=False)
-            self._block(of_name[name], lacking[name].pop(0))
-        for one in experiments:
+            if (block := of_name[name].blocks.next()) is not None:
+                self._block(of_name[name], block)
+        for one in parts:
             # There are more where something that had failed succeeded.
-            for block in self._schedule.blocks(one):
+            while (block := one.blocks.next()) is not None:
                 self._block(one, block)
-            self._schedule.begin(one)
+            one.begin()
 
     def _run_control(self, *, everything: bool) -> None:
         """The same thing under two labels, measured all along the study, must come out equal: it has its
         share of the time by the clock, or in the end the least of its blocks.
         """
-        control, schedule = self._control, self._schedule
+        control = self._control
         if control is None or not (everything or self._is_control_due(control)):
             return
-        if schedule.is_complete(control):
+        if control.is_complete:
             if everything or self._study.settings.blocks is not None or not self._has_more:
                 return
-            schedule.one_more(control)
-        schedule.begin(control)
+            control.give(control.given + 1)
+        control.begin()
         began = time.monotonic()
-        for block in schedule.blocks(control):
+        while (block := control.blocks.next()) is not None:
             self._block(control, block)
             if not everything:
                 break
         self._control_seconds += time.monotonic() - began
 
-    def _is_control_due(self, control: Experiment) -> bool:
-        taken = self._control_seconds + self._schedule.seconds_each(control)
+    def _is_control_due(self, control: Part) -> bool:
+        taken = self._control_seconds + control.seconds_each
         is_due = taken <= CONTROL_SHARE * (time.monotonic() - self._began)
-        return is_due or not self._schedule.has_begun(control)
+        return is_due or not control.found.seconds
 
-    def _block(self, experiment: Experiment, block: int) -> None:
-        laid_out, blocks = self._schedule.blocks_of(experiment), self._schedule.promised(experiment)
+    def _block(self, part: Part, block: int) -> None:
+        laid_out, blocks, experiment = part.blocks, part.promised, part.experiment
         missing, size = laid_out.missing(block), laid_out.size(block)
-        what = f"{experiment.name}, block {laid_out.ordinal(block)} of {blocks}"
+        what = f"{part.name}, block {laid_out.ordinal(block)} of {blocks}"
         for group in together(experiment, block, missing):
             self._display.now(what, self._schedule.status)
-            runs = self._schedule.runs([point for _, point in group])
+            runs = self._schedule.costs.runs([point for _, point in group])
             tasks = [Task(experiment, point, block, at, blocks, size, runs) for at, point in group]
             began = time.monotonic()
             ended = self._runner.run(tasks)
@@ -262,9 +268,8 @@ class Session:
             for (_, point), result in zip(group, ended, strict=True):
                 if result.seconds is None:
                     self._tell(point, result)
-        if missing:
-            self._display.block(what, self._schedule.status)
-            self._report_meanwhile()
+        self._display.block(what, self._schedule.status)
+        self._report_meanwhile()
 
     def _tell(self, point: Point, failed: ProcessResult) -> None:
         where = f"{point.experiment}, {point.series}, {point.x_name} {point.x:g}"

@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from rich.console import Console
 from rich.table import Table
@@ -10,69 +9,42 @@ from rich.table import Table
 from experiments.plan.plan import Experiment
 from experiments.plan.site import what_limits
 from experiments.results.store import Store
-from experiments.run.given import given_before
+from experiments.run.costs import Costs
+from experiments.run.schedule import Part
 from experiments.run.study import Settings, Study, summary
-from experiments.run.whole_blocks import WholeBlocks
 
 
-@dataclass(frozen=True)
 class Row:
     """One experiment: its processes, its stale files, the reason of its first failure.
 
     Every process of a point that failed counts as failed until it is measured: a run does not try it further.
     """
 
-    name: str
-    points: int
-    blocks: int
-    planned: int
-    decided: bool
-    done: int
-    failed: int
-    stale: int
-    alone: int
-    """Records of blocks that are not of one session, and give no ratio."""
-    seconds: float
-    """Of its processes."""
-    in_the_clock: float
-    """Of their seconds those of timed runs."""
-    reason: str
-
-    @property
-    def missing(self) -> int:
-        """Processes that have neither a record nor a failed point."""
-        return self.planned - self.done - self.failed
+    def __init__(self, experiment: Experiment, store: Store) -> None:
+        found = store.find(experiment)
+        part = Part(experiment, store, found, Costs())
+        # A run that was told how many blocks to make may have made more than the question asks for.
+        part.give(part.blocks.whole)
+        keys, failed_points = part.blocks.keys, {point for point, _ in found.failures}
+        self.name = experiment.name
+        self.points = len(experiment.points)
+        self.blocks, self.is_decided = part.given, part.is_begun
+        self.planned = len(keys)
+        self.done = sum(key in found.seconds for key in keys)
+        self.failed = sum(key not in found.seconds and key[0] in failed_points for key in keys)
+        self.missing = self.planned - self.done - self.failed
+        self.stale = len(found.stale)
+        self.alone = len(found.seconds.keys() - set(keys))
+        """Records of blocks that are not of one session, and give no ratio."""
+        self.seconds = sum(found.seconds.values())
+        self.in_the_clock = sum(sum(runs) for runs in found.runs.values())
+        """Of the seconds of its processes those of timed runs."""
+        self.reason = next(iter(found.failures.values()), "")
 
 
 def rows(store: Store, experiments: Sequence[Experiment]) -> list[Row]:
     """The state of each experiment, read from the files alone."""
-    found = {experiment.name: store.find(experiment) for experiment in experiments}
-    decided = given_before(store, experiments, found)
-    result = []
-    for experiment in experiments:
-        one = found[experiment.name]
-        given = decided.get(experiment.name, experiment.question.blocks.minimum)
-        # A run that was told how many blocks to make may have made more than the question asks for.
-        given = max(WholeBlocks(experiment, given, one, store.session).whole, given)
-        keys = WholeBlocks(experiment, given, one, store.session).keys
-        failed_points = {point for point, _ in one.failures}
-        result.append(
-            Row(
-                name=experiment.name,
-                points=len(experiment.points),
-                blocks=given,
-                planned=len(keys),
-                decided=experiment.name in decided,
-                done=sum(key in one.seconds for key in keys),
-                failed=sum(key not in one.seconds and key[0] in failed_points for key in keys),
-                stale=len(one.stale),
-                alone=len(one.seconds.keys() - set(keys)),
-                seconds=sum(one.seconds.values()),
-                in_the_clock=sum(sum(runs) for runs in one.runs.values()),
-                reason=next(iter(one.failures.values()), ""),
-            )
-        )
-    return result
+    return [Row(experiment, store) for experiment in experiments]
 
 
 def show_status(settings: Settings) -> int:
@@ -83,7 +55,7 @@ def show_status(settings: Settings) -> int:
     )
     state = rows(study.store, study.experiments)
     for row in state:
-        blocks = str(row.blocks) if row.decided else f"{row.blocks} or more"
+        blocks = str(row.blocks) if row.is_decided else f"{row.blocks} or more"
         table.add_row(row.name, str(row.points), blocks, *_in_columns([row]))
     table.add_row("all", str(sum(row.points for row in state)), "", *_in_columns(state))
     console = new_console()
@@ -112,10 +84,8 @@ def show_plan(settings: Settings) -> int:
         schedule = study.schedule(study.runner(), settle=False)
     table = new_table("experiment", "points", "blocks", "to be run", "figure", "claim", "title")
     for experiment in study.experiments:
-        blocks = schedule.given[experiment.name]
-        missing = len(schedule.left(experiment))
-        question = experiment.question
-        counts = (len(experiment.points), blocks, missing)
+        part, question = schedule.parts[experiment.name], experiment.question
+        counts = (len(experiment.points), part.given, len(part.left))
         told = (question.figure, question.claim or "-", question.title)
         table.add_row(experiment.name, *map(str, counts), *told)
     console = new_console()

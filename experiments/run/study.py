@@ -13,17 +13,15 @@ from experiments.plan.scale import find_scale
 from experiments.plan.scenes import SceneFolder
 from experiments.plan.site import Machine
 from experiments.results.store import Store, measured_by_point, new_session
-from experiments.run.costs import PROBE, Costs, Probe, kept_probes, probe, to_probe
+from experiments.run.costs import Costs, probed
 from experiments.run.progress import about
 from experiments.run.runner import Runner
-from experiments.run.schedule import Schedule
-from experiments.run.written import first_seen
+from experiments.run.schedule import Part, Schedule
 from experiments.support.places import BUILDS, analysis
 from support.errors import InputError
 from support.files import write_text
 from support.home import ROOT
 
-COSTS = "costs.json"
 FINISHED = "finished.json"
 BEGUN = "begun.json"
 REPORT_FAILED = 1
@@ -66,8 +64,8 @@ class Study:
         if self.generator.sha256 is None:
             raise InputError(self.generator.remedy)
         self.store = Store(settings.results, new_session())
-        machine, seen = machine or site.this_machine(), first_seen(self.store)
-        around = Surroundings(self.site, machine, programs, self.scale, settings.seed, seen)
+        machine = machine or site.this_machine()
+        around = Surroundings(self.site, machine, programs, self.scale, settings.seed)
         all_questions, builds = load_questions(settings.questions, settings.study), {*settings.builds}
         questions = [one for one in all_questions if not builds or one.programs <= builds]
         report_seconds = self.scale.report_seconds if settings.figures else 0.0
@@ -93,9 +91,11 @@ class Study:
     def schedule(self, runner: Runner, *, settle: bool) -> Schedule:
         """What is there and what is to be run; `settle` moves stale records out of the way first."""
         look = self.store.settle if settle else self.store.find
-        found = {experiment.name: look(experiment) for experiment in self.experiments}
-        costs = Costs(self._probes(runner), measured_by_point(found.values()))
-        return Schedule(self.store, self.experiments, found, costs)
+        found = {one.name: look(one) for one in self.experiments}
+        points = (point for one in self.experiments for point in one.points)
+        probes = probed(points, self.store, runner.scene, self.site.time_limit_seconds)
+        costs = Costs(probes, measured_by_point(found.values()))
+        return Schedule([Part(one, self.store, found[one.name], costs) for one in self.experiments], costs)
 
     @property
     def is_finished(self) -> bool:
@@ -128,18 +128,6 @@ class Study:
     def _key(self) -> str:
         return f"{self.scale.name}: {', '.join(sorted(one.name for one in self.experiments))}"
 
-    def _probes(self, runner: Runner) -> dict[str, Probe]:
-        probes = kept_probes(self.store.note(COSTS))
-        points = [point for experiment in self.experiments for point in experiment.points]
-        wanted = to_probe(points, probes)
-        if wanted:
-            folder = self.store.temporary / "probes"
-            folder.mkdir(exist_ok=True)
-            probes |= probe(wanted, runner.scene(PROBE).path, folder, self.site.time_limit_seconds)
-            content = {key: {"step": one.step, "process": one.process} for key, one in probes.items()}
-            self.store.keep_note(COSTS, content)
-        return probes
-
 
 def keep_claims(questions: Path, results: Path) -> None:
     """Let the results say what is claimed of them, where the questions are not the published ones, and where
@@ -158,8 +146,8 @@ def keep_claims(questions: Path, results: Path) -> None:
 def summary(schedule: Schedule, budget_seconds: float) -> str:
     """What is about to be run, in one line."""
     status = schedule.status()
-    points = sum(len(experiment.points) for experiment in schedule.experiments)
-    text = f"{len(schedule.experiments)} experiments, {points} points, {status.planned} processes; "
+    points = sum(len(one.experiment.points) for one in schedule.parts.values())
+    text = f"{len(schedule.parts)} experiments, {points} points, {status.planned} processes; "
     if status.done == status.planned:
         return text + "all of them are done"
     text += f"{status.planned - status.done} of them to be run: {about(status.seconds_left)}"

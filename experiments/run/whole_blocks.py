@@ -115,14 +115,10 @@ class WholeBlocks:
         """The same of a block that somebody was told to measure, whether or not it counts."""
         return self._missing(block, self._scenes)
 
-    def following(self, block: int, most: int | None = None) -> int | None:
-        """The next block after this one in which something is missing, and from the first on after the last;
-        None if nothing is. What had failed and now does not lets an earlier block count no more, so that one
-        between may count in its place.
-        """
-        end = self.end(most)
-        lacking = [one for one in self.lacking if one < end]
-        return next((one for one in lacking if one > block), next(iter(lacking), None))
+    def next(self, most: int | None = None) -> int | None:
+        """The first block in which something is missing, or of the first so many alone; None if none is."""
+        block = next(iter(self.lacking), None)
+        return block if block is not None and block < self.end(most) else None
 
     def cut_off(self, block: int) -> bool:
         """Whether the block was begun, of some scene, and lacks what did not fail."""

@@ -1,4 +1,4 @@
-"""What was handed to Slurm: for each job array, the blocks that its tasks are to measure.
+"""What was handed to Slurm and what is lacking: for each job array, the blocks that its tasks are to measure.
 
 A job is written down before it is submitted, under the name it will have in the queue. It is never edited:
 whether its blocks are measured is told by the records alone.
@@ -8,10 +8,12 @@ import contextlib
 import hashlib
 import os
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime, timedelta
+from functools import cached_property
 from pathlib import Path
+from statistics import fmean
 from typing import Any
 
 from experiments.plan.cluster import Cluster, Partition
@@ -21,12 +23,16 @@ from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.site import Machine, Site, load_site
 from experiments.run.study import Settings, Study
 from experiments.run.whole_blocks import WholeBlocks
+from experiments.slurm.scheduler import Queue, TaskState
 from experiments.support.digest import digest
 from support.errors import InputError
-from support.files import read_json
+from support.files import of_json, read_json, to_json
 
 Unit = tuple[str, int]
 """An experiment and one of its blocks: what is measured within one allocation."""
+
+MOST_CUT_OFF = 2
+"""Blocks of an experiment that allocations may cut off, in those that the question asks for."""
 
 _OF_ONE_RUN: dict[str, Any] = {"budget_seconds": None, "figures": False}
 """Settings that no job keeps: its tasks draw nothing, and Slurm limits their time."""
@@ -66,7 +72,7 @@ def read_job(path: Path) -> Job:
         kept = {key: _like(default, content[key]) for key, default in defaults.items()}
         tasks = tuple(tuple((str(name), int(block)) for name, block in task) for task in content["tasks"])
         settings = Settings(**_OF_ONE_RUN, **kept)
-        made_of = {str(name): str(word) for name, word in content.get("made_of", {}).items()}
+        made_of = {str(name): str(word) for name, word in content["made_of"].items()}
         return Job(content["name"], content["partition"], settings, tasks, content["submitted_at"], made_of)
     except (TypeError, KeyError, ValueError, AttributeError):
         raise InputError(f"{path}: is not the list of blocks of a job") from None
@@ -174,25 +180,139 @@ def results_of(settings: Settings, site: Site) -> Path:
     return cluster_of(site).results or settings.results.absolute() / "slurm" / site.name
 
 
-def blocks_of(study: Study, experiment: Experiment, busy: Collection[int] = ()) -> WholeBlocks:
-    """The experiment's blocks as the records stand; those that are `busy` wait in a queue or run."""
-    given, found = experiment.question.blocks.minimum, study.store.find(experiment)
-    return WholeBlocks(experiment, given, found, study.store.session, busy=busy)
+class Standing:
+    """What of a study one partition has and lacks, by its records and by what Slurm still has."""
+
+    def __init__(self, folder: PartitionFolder, study: Study, queue: Queue) -> None:
+        self.folder = folder
+        self.study = study
+        self.name = folder.partition.name
+        jobs = folder.known_jobs()
+        self.is_active = any(self._tasks(jobs, queue, "lives"))
+        """Whether tasks wait or run, of this study or of one at another scale."""
+        self.jobs = [one for one in jobs if one.settings.scale == study.scale.name]
+        self.running, self.waiting = (list(self._tasks(self.jobs, queue, what)) for what in ("runs", "waits"))
+        waiting, running = (
+            {unit for _, task, _ in tasks for unit in task} for tasks in (self.waiting, self.running)
+        )
+        self.active = dict.fromkeys(waiting, "waiting") | dict.fromkeys(running, "running")
+        """What of the study waits or runs."""
+        self.found = {one.name: study.store.find(one) for one in study.experiments}
+        self.blocks = {one.name: self._blocks(one) for one in study.experiments}
+
+    @staticmethod
+    def _tasks(
+        jobs: Iterable[Job], queue: Queue, what: str
+    ) -> Iterator[tuple[Job, Sequence[Unit], TaskState]]:
+        """The tasks of jobs that Slurm says are so, with their blocks."""
+        for job in jobs:
+            for index, task in enumerate(job.tasks):
+                state = queue.get((job.name, index))
+                if state is not None and getattr(state, what):
+                    yield job, task, state
+
+    def _blocks(self, one: Experiment) -> WholeBlocks:
+        """The experiment's blocks; those that wait in a queue or run count, whatever they hold."""
+        busy = {block for name, block in self.active if name == one.name}
+        given, found = one.question.blocks.minimum, self.found[one.name]
+        return WholeBlocks(one, given, found, self.study.store.session, busy=busy)
+
+    @cached_property
+    def missing(self) -> dict[Unit, list[Point]]:
+        """What is not measured yet, by block; the first blocks of all experiments come before the second
+        ones, so that the control is spread over all.
+        """
+        ends = {name: blocks.end() for name, blocks in self.blocks.items()}
+        return {
+            (name, block): [point for _, point in missing]
+            for block in range(max(ends.values()))
+            for name, blocks in self.blocks.items()
+            if block < ends[name] and (missing := blocks.missing(block))
+        }
+
+    @cached_property
+    def too_long(self) -> dict[str, int]:
+        """The experiments of which so many blocks were cut off that no further ones are submitted, with their
+        number: else a block that is longer than its allocation would be submitted for ever.
+        """
+        found = {}
+        for one in self.study.experiments:
+            made_of = self.folder.made_of(one)
+            jobs = [job for job in self.jobs if job.made_of.get(one.name) == made_of]
+            handed_out = {unit for job in jobs for task in job.tasks for unit in task if unit[0] == one.name}
+            cut_off = sum(self.blocks[one.name].cut_off(block) for _, block in handed_out)
+            if cut_off >= MOST_CUT_OFF * one.question.blocks.minimum:
+                found[one.name] = cut_off
+        return found
+
+    @cached_property
+    def wanted(self) -> dict[Unit, int]:
+        """What is to be submitted, and the number of processes of each."""
+        return {
+            unit: len(points)
+            for unit, points in self.missing.items()
+            if unit not in self.active and unit[0] not in self.too_long
+        }
+
+    def said_of_too_long(self) -> list[str]:
+        """Lines on what is not submitted any more."""
+        return [
+            f"{self.name}: {name}: {number} blocks were cut off before they were whole; no further ones are "
+            "submitted: raise `minutes` in the site file"
+            for name, number in self.too_long.items()
+        ]
 
 
-def units(
-    study: Study, active: Collection[Unit] = ()
-) -> Iterator[tuple[Unit, Experiment, list[tuple[int, Point]]]]:
-    """Every block of the study with position and point of what is not measured yet; those of `active` units
-    are being measured.
-
-    The first blocks of all experiments come before the second ones, so that the control is spread over all.
+def tell(manifest: Path, index: int, **what: object) -> None:
+    """Let a task of a job tell a line of itself, which is whole or, where its node died, the last. Durations
+    are of its own node: nothing compares the clocks of two machines.
     """
-    found = {
-        one.name: blocks_of(study, one, {block for name, block in active if name == one.name})
-        for one in study.experiments
-    }
-    for block in range(max(blocks.end() for blocks in found.values())):
-        for one in study.experiments:
-            if block < found[one.name].end():
-                yield (one.name, block), one, found[one.name].missing(block)
+    # It only helps to foretell: a task goes on without it.
+    with contextlib.suppress(OSError), _told_by(manifest, index).open("ab") as file:
+        file.write(to_json(what) + b"\n")
+
+
+def _told_by(manifest: Path, index: int) -> Path:
+    return manifest.with_name(f"{manifest.stem}-{index}.jsonl")
+
+
+@dataclass
+class Told:
+    """What all tasks of a partition told, of one scale: the seconds of each whole block by experiment, and
+    what they ran on.
+    """
+
+    seconds: dict[str, list[float]] = field(default_factory=dict)
+    processors: set[str] = field(default_factory=set)
+
+    @property
+    def means(self) -> dict[str, float]:
+        """Seconds of a block, by experiment."""
+        return {name: fmean(values) for name, values in self.seconds.items()}
+
+    def seconds_of(self, units: Sequence[Unit]) -> float:
+        """How long blocks would take; one of an unknown experiment as long as others on average."""
+        known = self.means
+        usual = fmean(known.values()) if known else 0.0
+        return sum(known.get(name, usual) for name, _ in units)
+
+
+def read_told(jobs: Path, scale: str) -> Told:
+    """What the tasks of a folder of jobs have told so far; nothing of a line that is no JSON."""
+    told = Told()
+    for manifest in sorted(jobs.glob("*.json")):
+        job = read_job(manifest)
+        files = (_told_by(manifest, index) for index in range(len(job.tasks)))
+        for path in files if job.settings.scale == scale else ():
+            for line in path.read_bytes().splitlines() if path.exists() else ():
+                with contextlib.suppress(ValueError):
+                    _take(told, of_json(line))
+    return told
+
+
+def _take(told: Told, line: object) -> None:
+    match line:
+        case {"processor": str() as processor}:
+            told.processors.add(processor)
+        case {"block": [str() as name, int()], "seconds": float() as seconds}:
+            told.seconds.setdefault(name, []).append(seconds)

@@ -6,11 +6,21 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
-from experiments.slurm.refusal import RefusedError, words_of
 from experiments.support import process
-from experiments.support.process import Completed
+from experiments.support.process import TIMED_OUT, Completed
 from support.errors import InputError
+
+_AGAIN = "`carom study resume` tries again"
+
+_FULL = re.compile(r"temporarily un|queue (is )?full", re.IGNORECASE)
+_AWAY = re.compile(
+    r"unable to contact|connection refused|timed out|zero bytes|communication connection|receive failure",
+    re.IGNORECASE,
+)
+_POLICY = re.compile(r"\b(?:Assoc|QOS)\w*Limit\b")
+"""Which limit it was, on a line of its own before the general one."""
 
 TIME_LIMIT_SECONDS = 30.0
 DEFAULT_MAX_ARRAY_SIZE = 1001
@@ -26,6 +36,41 @@ _RUNNING = (
     *("POWER_UP_NODE", "COMPLETING"),
 )
 _SUSPENDED = ("SUSPENDED", "STOPPED")
+
+
+class RefusedError(InputError):
+    """A job that was not taken. `too_many`: fewer tasks may be taken. `is_away`: nobody answered, so that no
+    other job will be taken now. `is_unsure`: it may have been taken all the same.
+    """
+
+    def __init__(
+        self, text: str, *, too_many: bool = False, is_away: bool = False, is_unsure: bool = False
+    ) -> None:
+        super().__init__(text)
+        self.too_many = too_many
+        self.is_away = is_away
+        self.is_unsure = is_unsure
+
+    @classmethod
+    def of(cls, done: Completed) -> Self:
+        """What sbatch said."""
+        words, limit = _words_of(done), _POLICY.search(done.error)
+        if limit is not None and limit[0] not in words:
+            words += f" ({limit[0]})"
+        if "SubmitJob" in limit[0] if limit is not None else "job submit limit" in done.error:
+            return cls(
+                f"{words}; `carom study resume` submits the rest once jobs of yours have ended", too_many=True
+            )
+        if done.exit_code == TIMED_OUT:
+            # sbatch itself tries again for minutes while the cluster takes no more jobs.
+            told = f"{words}; the queue is full, or the controller is away: {_AGAIN}"
+            return cls(told, is_away=True, is_unsure=True)
+        if _AWAY.search(done.error):
+            is_unsure = "unable to contact" not in done.error.lower()
+            return cls(f"{words}; {_AGAIN} once it answers", is_away=True, is_unsure=is_unsure)
+        if _FULL.search(done.error):
+            return cls(f"{words}; the queue is full: {_AGAIN}")
+        return cls(words)
 
 
 @dataclass(frozen=True)
@@ -47,6 +92,11 @@ class TaskState:
     def runs(self) -> bool:
         """Whether it has nodes."""
         return self.state in _RUNNING
+
+    @property
+    def lives(self) -> bool:
+        """Whether Slurm still has it."""
+        return self.waits or self.runs
 
     @property
     def is_suspended(self) -> bool:
@@ -82,7 +132,7 @@ def queue() -> Queue:
         for number in _indices(index):
             # A task may be listed twice, by the job that was requeued and by its twin: what lives counts.
             known = tasks.get((name, number))
-            if known is None or not (known.waits or known.runs):
+            if known is None or not known.lives:
                 tasks[name, number] = TaskState(state.rstrip("+"), reason, _seconds(elapsed))
     return tasks
 
@@ -125,7 +175,7 @@ def _seconds(elapsed: str) -> float:
 def _ask(*command: str) -> str:
     done = _run(*command)
     if done.exit_code != 0:
-        raise InputError(words_of(done))
+        raise InputError(_words_of(done))
     return done.output
 
 
@@ -133,3 +183,9 @@ def _run(*command: str) -> Completed:
     # sbatch lets its own variables overrule the script, which is to be the one account of what was asked for.
     environment = {key: value for key, value in os.environ.items() if not key.startswith("SBATCH_")}
     return process.run(command, environment, TIME_LIMIT_SECONDS)
+
+
+def _words_of(done: Completed) -> str:
+    """What a command said last, after its name."""
+    name = done.command[0]
+    return f"{name}: {done.reason.removeprefix(f'{name}: ')}"

@@ -1,30 +1,28 @@
-"""What of a study on a cluster is measured, running, waiting, failed or missing, and why."""
+"""What of a study on a cluster is measured, running, waiting, failed or missing, why, and until when."""
 
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
+from datetime import datetime, timedelta
 from pathlib import Path
 
-from experiments.run.progress import warn
+from experiments.run.progress import about, warn
 from experiments.run.status import new_console, new_table
-from experiments.run.study import Settings, Study
+from experiments.run.study import Settings
 from experiments.slurm import scheduler
-from experiments.slurm.forecast import Tasks, progress_line, tasks_of
-from experiments.slurm.jobs import PartitionFolder, blocks_of, folders, submitted, units
+from experiments.slurm.jobs import Standing, Told, Unit, folders, read_told, submitted
 from experiments.slurm.scheduler import Queue, TaskState
-from experiments.slurm.submit import is_active, of_scale, said, too_long
-from experiments.slurm.task_log import Told, read_told
 from support.errors import InputError
 
 _STATES = ("done", "running", "waiting", "failed", "missing")
+_WIDTH = 24
+"""Of a bar."""
 
 
 @dataclass(frozen=True)
 class Row:
     """One experiment on one partition: its processes by state, and the reasons of its failures."""
 
-    partition: str
     experiment: str
     counts: Counter[str]
     reasons: Counter[str]
@@ -40,33 +38,31 @@ def show_cluster_status(settings: Settings) -> int:
     if settings.study:
         chosen = replace(chosen, study=settings.study)
     answer = _queue()
-    queue = answer or {}
     screen = new_console()
     shown = new_table("partition", "experiment", *_STATES)
     explained, lines = [], []
     for folder in folders(chosen):
-        study = folder.study(to_be_built=True)
-        state = rows(folder, study, queue)
+        one = Standing(folder, folder.study(to_be_built=True), answer or {})
+        state = rows(one)
         for row in state:
-            shown.add_row(row.partition, row.experiment, *(str(row.counts[name]) for name in _STATES))
-        told = read_told(folder.jobs, study.scale.name)
-        lines.append(
-            _progress(folder, state, told, tasks_of(folder, study, queue) if answer is not None else None)
-        )
+            shown.add_row(one.name, row.experiment, *(str(row.counts[name]) for name in _STATES))
+        told = read_told(folder.jobs, one.study.scale.name)
+        tasks = Tasks.of(one) if answer is not None else None
+        counts = sum((row.counts for row in state), Counter[str]())
+        lines.append(progress_line(one.name, counts, tasks, told, datetime.now().astimezone()))
         explained += [
-            f"{row.partition}: {row.experiment}: {number} failed: {reason}"
+            f"{one.name}: {row.experiment}: {number} failed: {reason}"
             for row in state
             for reason, number in row.reasons.items()
         ]
-        explained += _explain(folder, study, queue)
+        explained += _explain(one, answer or {})
         if len(told.processors) > 1:
             kinds = ", ".join(sorted(told.processors))
             explained.append(
-                f"{folder.partition.name}: its nodes differ, and count as {len(told.processors)} machines: "
+                f"{one.name}: its nodes differ, and count as {len(told.processors)} machines: "
                 f"{kinds}; `constraint` in the site file picks one"
             )
-        without = too_long(folder, study, is_active(folder, queue))
-        explained += [said(folder.partition.name, name, number) for name, number in without.items()]
+        explained += one.said_of_too_long()
     screen.print(shown)
     for line in (*lines, *explained):
         screen.print(line)
@@ -82,18 +78,15 @@ def _queue() -> Queue | None:
         return None
 
 
-def rows(folder: PartitionFolder, study: Study, queue: Queue) -> list[Row]:
+def rows(one: Standing) -> list[Row]:
     """The state of each experiment on one partition."""
-    active = is_active(folder, queue)
-    found = {one.name: study.store.find(one) for one in study.experiments}
-    result = {name: Row(folder.partition.name, name, Counter(), Counter()) for name in found}
-    for one in study.experiments:
-        keys = blocks_of(study, one).keys
-        result[one.name].counts["done"] = sum(key in found[one.name].seconds for key in keys)
-    for (name, block), _, points in units(study, of_scale(study, active)):
-        for _, point in points:
-            state = active.get((study.scale.name, (name, block)))
-            reason = found[name].failures.get((point.id, block))
+    result = {name: Row(name, Counter(), Counter()) for name in one.blocks}
+    for name, blocks in one.blocks.items():
+        result[name].counts["done"] = sum(key in one.found[name].seconds for key in blocks.keys)
+    for (name, block), points in one.missing.items():
+        for point in points:
+            state = one.active.get((name, block))
+            reason = one.found[name].failures.get((point.id, block))
             if state is None and reason is not None:
                 state = "failed"
                 result[name].reasons[reason] += 1
@@ -101,23 +94,21 @@ def rows(folder: PartitionFolder, study: Study, queue: Queue) -> list[Row]:
     return list(result.values())
 
 
-def _explain(folder: PartitionFolder, study: Study, queue: Queue) -> list[str]:
+def _explain(one: Standing, queue: Queue) -> list[str]:
     """Why tasks wait, and what became of those that left blocks unfinished."""
-    active = of_scale(study, is_active(folder, queue))
-    unfinished = {(study.scale.name, unit) for unit, _, points in units(study, active) if points}
+    unfinished = set(one.missing)
     told: Counter[tuple[str, str]] = Counter()
     # Of the jobs that a block was part of, the last one tells what became of it.
-    for job in reversed(folder.known_jobs()):
+    for job in reversed(one.jobs):
         number = job.name.rpartition("-")[2]
         for index, task in enumerate(job.tasks):
-            own = {(job.settings.scale, unit) for unit in task} & unfinished
+            own = unfinished.intersection(task)
             unfinished -= own
             state = queue.get((job.name, index))
             if own and not (state is not None and state.runs):
-                told[number, _fate(state, folder.jobs / f"{number}-{index}.log")] += 1
-    name = folder.partition.name
+                told[number, _fate(state, one.folder.jobs / f"{number}-{index}.log")] += 1
     return [
-        f"{name}: job {number}: {count} of the tasks {became}" for (number, became), count in told.items()
+        f"{one.name}: job {number}: {count} of the tasks {became}" for (number, became), count in told.items()
     ]
 
 
@@ -131,7 +122,59 @@ def _fate(state: TaskState | None, log: Path) -> str:
     return f"{ended} and left processes unfinished; their logs are in {log.parent}"
 
 
-def _progress(folder: PartitionFolder, state: Sequence[Row], told: Told, tasks: Tasks | None) -> str:
-    """How far the partition is, with what its tasks do now as far as that is known."""
-    counts = sum((row.counts for row in state), Counter[str]())
-    return progress_line(folder.partition.name, counts, tasks, told, datetime.now().astimezone())
+@dataclass(frozen=True)
+class Tasks:
+    """The tasks of a study that Slurm still has, each with its blocks."""
+
+    running: Sequence[tuple[TaskState, Sequence[Unit]]]
+    waiting: Sequence[tuple[TaskState, Sequence[Unit]]]
+    at_once: int
+    """How many may run at a time, of all of their arrays."""
+
+    @classmethod
+    def of(cls, one: Standing) -> "Tasks":
+        """Those of a partition."""
+        running, waiting = ([(state, task) for _, task, state in each] for each in (one.running, one.waiting))
+        arrays = {job.name for job, _, _ in (*one.running, *one.waiting)}
+        return cls(running, waiting, len(arrays) * one.folder.partition.at_once)
+
+    @property
+    def suspended(self) -> int:
+        """How many of those that run stand still."""
+        return sum(state.is_suspended for state, _ in self.running)
+
+    def seconds_left(self, told: Told) -> float:
+        """How long they will take, by what blocks have taken so far."""
+        left = [max(0.0, told.seconds_of(units) - state.seconds) for state, units in self.running]
+        left += [told.seconds_of(units) for _, units in self.waiting]
+        return max(max(left, default=0.0), sum(left) / max(1, min(self.at_once, len(left))))
+
+
+def progress_line(name: str, counts: Counter[str], tasks: Tasks | None, told: Told, now: datetime) -> str:
+    """The line of one partition, whose processes have these states. `tasks` is None where Slurm does not tell
+    them; `now` is the local time.
+    """
+    all_of_them, done = counts.total(), counts["done"]
+    share = done / all_of_them if all_of_them else 1.0
+    filled = int(_WIDTH * share)
+    parts = [f"{name}: [{'#' * filled}{'-' * (_WIDTH - filled)}] {done} of {all_of_them} processes"]
+    if tasks is None:
+        parts.append("what runs and waits is not known")
+    elif tasks.running or tasks.waiting:
+        run = "task runs" if len(tasks.running) == 1 else "tasks run"
+        parts += [f"{len(tasks.running)} {run}, {len(tasks.waiting)} wait", _end(tasks, told, now)]
+        if tasks.suspended:
+            parts.append(f"{tasks.suspended} suspended: what the pause cut through is measured again")
+    elif done < all_of_them:
+        parts.append("no task runs or waits: `carom study resume` submits what is missing")
+    return "; ".join(parts)
+
+
+def _end(tasks: Tasks, told: Told, now: datetime) -> str:
+    if not told.seconds:
+        return "when they will be done is not known: no task has ended yet"
+    seconds = tasks.seconds_left(told)
+    end = now + timedelta(seconds=seconds)
+    at = f"{end:%H:%M}" if end.date() == now.date() else f"{end:%Y-%m-%d %H:%M}"
+    together = min(tasks.at_once, len(tasks.running) + len(tasks.waiting))
+    return f"{about(seconds)} left if {together} run at a time, done at {at}"

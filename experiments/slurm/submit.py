@@ -1,33 +1,39 @@
-"""Hand what is missing of a study to Slurm: one job array for each partition."""
+"""Hand what is missing of a study to Slurm: one job array for each partition, its script from a template."""
 
+import contextlib
+import shlex
 import shutil
+import sys
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 
+import jinja2
+
+from experiments.plan.cluster import Cluster, Partition
 from experiments.plan.site import load_site
 from experiments.run.progress import warn
-from experiments.run.study import Settings, Study
+from experiments.run.study import Settings
 from experiments.slurm import scheduler
-from experiments.slurm.hand_over import hand_over, plan_job, script_of
 from experiments.slurm.jobs import (
-    PartitionFolder,
+    Job,
+    Standing,
     Unit,
-    blocks_of,
     cluster_of,
     folders,
+    read_told,
     results_of,
     submitted,
-    units,
 )
-from experiments.slurm.pack import Room
-from experiments.slurm.refusal import RefusedError
-from experiments.slurm.scheduler import DEFAULT_MAX_ARRAY_SIZE, Queue
+from experiments.slurm.scheduler import DEFAULT_MAX_ARRAY_SIZE, RefusedError
 from support.errors import InputError
-from support.files import locked
+from support.files import locked, write_json, write_text
+from support.home import ROOT
 
-MOST_CUT_OFF = 2
-"""Blocks of an experiment that allocations may cut off, in those that the question asks for."""
+COMPILERS = {"gcc": "g++", "clang": "clang++"}
+
+
+_OF_MEMORY = ("--mem", "--mem-per-cpu", "--mem-per-gpu")
 
 
 def submit(settings: Settings, *, dry_run: bool = False) -> int:
@@ -40,14 +46,22 @@ def submit(settings: Settings, *, dry_run: bool = False) -> int:
     if dry_run:
         size = _array_size_or_default()
         for folder, study in planned:
-            _print_script(folder, study, size)
+            _print_script(Standing(folder, study, {}), size)
         return 0
     site, size = load_site(settings.site), scheduler.max_array_size()
     with locked(results_of(settings, site)):
-        queue, room = scheduler.queue(), Room(cluster_of(site), Counter())
-        if room.is_limited:
-            room.queued += scheduler.in_queue()
-        _submit_all([_lacking(folder, study, queue) for folder, study in planned], room, size)
+        queue, cluster = scheduler.queue(), cluster_of(site)
+        lacking = []
+        for folder, study in planned:
+            # What is stale goes out of the way, and so does what tasks that were killed left half-written.
+            for experiment in study.experiments:
+                study.store.settle(experiment)
+            lacking.append(Standing(folder, study, queue))
+            if not lacking[-1].is_active:
+                shutil.rmtree(study.store.root / ".running", ignore_errors=True)
+        limits = (cluster.max_submitted, *(one.max_submitted for one in cluster.partitions))
+        is_limited = any(limit is not None for limit in limits)
+        _submit_all(lacking, cluster, scheduler.in_queue() if is_limited else Counter(), size)
     return 0
 
 
@@ -59,97 +73,18 @@ def resume(settings: Settings, *, dry_run: bool = False) -> int:
     return submit(chosen, dry_run=dry_run)
 
 
-def is_active(folder: PartitionFolder, queue: Queue) -> dict[tuple[str, Unit], str]:
-    """Scale and unit -> `running` or `waiting`, of all tasks of the folder's jobs that Slurm still has."""
-    active: dict[tuple[str, Unit], str] = {}
-    for job in folder.known_jobs():
-        for index, task in enumerate(job.tasks):
-            state = queue.get((job.name, index))
-            if state is not None and (state.waits or state.runs):
-                for unit in task:
-                    active[job.settings.scale, unit] = "running" if state.runs else "waiting"
-    return active
-
-
-def of_scale(study: Study, active: Collection[tuple[str, Unit]]) -> set[Unit]:
-    """The units of the study itself."""
-    return {unit for scale, unit in active if scale == study.scale.name}
-
-
-def too_long(folder: PartitionFolder, study: Study, active: Collection[tuple[str, Unit]]) -> dict[str, int]:
-    """The experiments of which so many blocks were cut off that no further ones are submitted, with their
-    number: else a block that is longer than its allocation would be submitted for ever.
-    """
-    busy, found = of_scale(study, active), {}
-    for one in study.experiments:
-        word = folder.made_of(one)
-        handed_out = {
-            block
-            for job in folder.known_jobs()
-            if job.made_of.get(one.name) == word and job.settings.scale == study.scale.name
-            for task in job.tasks
-            for name, block in task
-            if name == one.name
-        }
-        blocks = blocks_of(study, one, {block for name, block in busy if name == one.name})
-        cut_off = sum(map(blocks.cut_off, handed_out))
-        if cut_off >= MOST_CUT_OFF * one.question.blocks.minimum:
-            found[one.name] = cut_off
-    return found
-
-
-def said(partition: str, experiment: str, cut_off: int) -> str:
-    """Say that no further blocks are submitted."""
-    return (
-        f"{partition}: {experiment}: {cut_off} blocks were cut off before they were whole; no further ones "
-        "are submitted: raise `minutes` in the site file"
-    )
-
-
-@dataclass(frozen=True)
-class _Lacking:
-    """What of the study one partition lacks."""
-
-    folder: PartitionFolder
-    study: Study
-    wanted: Mapping[Unit, int]
-    """Units to submit, each with its number of processes."""
-    cut_off: Mapping[str, int]
-    """The experiments that are not submitted any more."""
-    is_active: bool
-    """Whether tasks wait or run."""
-
-    @property
-    def name(self) -> str:
-        return self.folder.partition.name
-
-    def processes(self, units: Collection[Unit]) -> int:
-        return sum(self.wanted[unit] for unit in units)
-
-
-def _lacking(folder: PartitionFolder, study: Study, queue: Queue) -> _Lacking:
-    """What is to be submitted, once what is stale and what was left half-written is out of the way."""
-    active = is_active(folder, queue)
-    for experiment in study.experiments:
-        study.store.settle(experiment)
-    if not active:
-        # What tasks that were killed left half-written.
-        shutil.rmtree(study.store.root / ".running", ignore_errors=True)
-    without = too_long(folder, study, active)
-    return _Lacking(folder, study, _missing(study, active, without), without, bool(active))
-
-
-def _submit_all(lacking: Sequence[_Lacking], room: Room, size: int) -> None:
-    """Submit what each partition lacks. What is refused to one, others may be given; the last refusal is
-    raised in the end, after a line for each of the others.
+def _submit_all(lacking: Sequence[Standing], cluster: Cluster, queued: Counter[str], size: int) -> None:
+    """Submit what each partition lacks, where so many jobs of the user are `queued` by partition. What is
+    refused to one, others may be given; the last refusal is raised in the end, after a line for each of the
+    others.
     """
     refused: list[RefusedError] = []
     for number, one in enumerate(lacking):
-        for name, cut_off in one.cut_off.items():
-            print(said(one.name, name, cut_off))
+        print(*one.said_of_too_long(), sep="\n", end="\n" if one.too_long else "")
         sharing = sum(bool(other.wanted) for other in lacking[number:])
+        room = _room(cluster, one.folder.partition, queued, sharing)
         try:
-            _submit(one, room, room.of(one.folder.partition, sharing), size)
+            queued[one.name] += _submit(one, min(size, room) if room is not None else size)
         except RefusedError as refusal:
             refused.append(refusal)
             if refusal.is_away:
@@ -160,25 +95,37 @@ def _submit_all(lacking: Sequence[_Lacking], room: Room, size: int) -> None:
         raise refused[-1]
 
 
-def _submit(lacking: _Lacking, room: Room, most_tasks: int | None, size: int) -> None:
-    name = lacking.name
-    if not lacking.wanted:
-        rest = "waits or runs" if lacking.is_active else "was cut off" if lacking.cut_off else ""
+def _room(cluster: Cluster, partition: Partition, queued: Counter[str], sharing: int) -> int | None:
+    """How many tasks may be submitted to one partition, where so many, with itself, want some, as far as the
+    site's file says; None for any number.
+    """
+    room = []
+    if cluster.max_submitted is not None:
+        room.append(-(-max(0, cluster.max_submitted - queued.total()) // max(1, sharing)))
+    if partition.max_submitted is not None:
+        room.append(max(0, partition.max_submitted - queued[partition.name]))
+    return min(room, default=None)
+
+
+def _submit(one: Standing, most_tasks: int) -> int:
+    """Submit what one partition lacks; returns in how many tasks."""
+    name = one.name
+    if not one.wanted:
+        rest = "waits or runs" if one.is_active else "was cut off" if one.too_long else ""
         print(f"{name}: nothing to submit; " + (f"the rest {rest}" if rest else "all is measured"))
-        return
+        return 0
     if most_tasks == 0:
-        blocks = len(lacking.wanted)
-        print(f"{name}: max_submitted leaves room for no task; {_left(blocks)} once jobs of yours have ended")
-        return
-    most_tasks = size if most_tasks is None else min(size, most_tasks)
-    handed = hand_over(lacking.folder, lacking.study, list(lacking.wanted), most_tasks)
-    room.take(lacking.folder.partition, len(handed.job.tasks))
-    points = lacking.processes(lacking.wanted.keys() - set(handed.left))
-    print(
-        f"{name}: job {handed.number}, {points} processes in {len(handed.job.tasks)} tasks: {handed.script}"
-    )
-    if handed.left:
-        print(f"{name}: no more fit into the time limit of so many tasks; {_left(len(handed.left))}")
+        left = _left(len(one.wanted))
+        print(f"{name}: max_submitted leaves room for no task; {left} once jobs of yours have ended")
+        return 0
+    number, job, manifest = _hand_over(one, most_tasks)
+    handed = [unit for task in job.tasks for unit in task]
+    points, script = sum(one.wanted[unit] for unit in handed), manifest.with_suffix(".sbatch")
+    print(f"{name}: job {number}, {points} processes in {len(job.tasks)} tasks: {script}")
+    if len(one.wanted) > len(handed):
+        left = _left(len(one.wanted) - len(handed))
+        print(f"{name}: no more fit into the time limit of so many tasks; {left}")
+    return len(job.tasks)
 
 
 def _left(blocks: int) -> str:
@@ -186,25 +133,82 @@ def _left(blocks: int) -> str:
     return f"`carom study resume` submits the {those} left"
 
 
-def _missing(study: Study, active: Collection[tuple[str, Unit]], without: Collection[str]) -> dict[Unit, int]:
-    """Units to submit, and the number of processes of each, `without` those of some experiments."""
-    busy = of_scale(study, active)
-    return {
-        unit: len(points)
-        for unit, experiment, points in units(study, busy)
-        if points and unit not in busy and experiment.name not in without
-    }
+def _hand_over(one: Standing, most_tasks: int) -> tuple[str, Job, Path]:
+    """Submit blocks in at most so many tasks, or in half as many, and so on, where the cluster takes fewer;
+    returns the job's number and its list of blocks. Raises RefusedError if it takes none; nothing is left
+    then.
+    """
+    while True:
+        job, manifest = _plan_job(one, most_tasks)
+        script = manifest.with_suffix(".sbatch")
+        manifest.parent.mkdir(parents=True, exist_ok=True)
+        write_text(script, _script_of(one, job, manifest), manifest.parent)
+        write_json(manifest, job.content(), manifest.parent)
+        try:
+            return scheduler.submit(script), job, manifest
+        except InputError as error:
+            refusal = error if isinstance(error, RefusedError) else None
+            is_queued = _is_queued(job) if refusal is not None and refusal.is_unsure else False
+            if is_queued:
+                return "known by its name", job, manifest
+            if is_queued is not None:
+                # A job that was never in the queue must not be taken for one that has left it.
+                manifest.unlink()
+                script.unlink()
+            if refusal is None or not refusal.too_many or len(job.tasks) == 1:
+                raise
+            most_tasks = len(job.tasks) // 2
 
 
-def _print_script(folder: PartitionFolder, study: Study, array_size: int) -> None:
-    wanted = _missing(study, (), too_long(folder, study, ()))
-    if not wanted:
-        print(f"# {folder.partition.name}: nothing to submit")
+def _is_queued(job: Job) -> bool | None:
+    """Whether the queue holds the job although nobody said so. None if nobody answers: its list of blocks
+    then stays, for its tasks or as one that has left the queue.
+    """
+    with contextlib.suppress(InputError):
+        return any(name == job.name for name, _ in scheduler.queue())
+    return None
+
+
+def _plan_job(one: Standing, most_tasks: int) -> tuple[Job, Path]:
+    """A job of the blocks, as far as they fit into so many tasks, and where its list of blocks belongs."""
+    partition = one.folder.partition
+    tasks = pack(list(one.wanted), partition.blocks_per_task, most_tasks)
+    known = read_told(one.folder.jobs, one.study.scale.name).means
+    return one.folder.next_job(one.study, within_time(tasks, partition, known))
+
+
+def pack(wanted: Sequence[Unit], blocks_per_task: int, array_size: int) -> list[list[Unit]]:
+    """Share blocks out among tasks: so many each, or more where the array would else be too long."""
+    each = max(blocks_per_task, -(-len(wanted) // array_size))
+    return [list(wanted[first : first + each]) for first in range(0, len(wanted), each)]
+
+
+def within_time(
+    tasks: Iterable[Sequence[Unit]], partition: Partition, seconds: Mapping[str, float]
+) -> list[list[Unit]]:
+    """The tasks without the blocks that would not be measured before the signal that ends them, as far as the
+    `seconds` of a block of an experiment are known. As many as the site wishes stay in any case.
+    """
+    kept = []
+    for task in tasks:
+        left, own = 60.0 * partition.minutes - partition.signal_seconds, list[Unit]()
+        for unit in task:
+            left -= seconds.get(unit[0], 0.0)
+            if left < 0 and len(own) >= partition.blocks_per_task:
+                break
+            own.append(unit)
+        kept.append(own)
+    return kept
+
+
+def _print_script(one: Standing, array_size: int) -> None:
+    if not one.wanted:
+        print(f"# {one.name}: nothing to submit")
         return
-    job, path = plan_job(folder, study, list(wanted), array_size)
-    points = sum(wanted[unit] for task in job.tasks for unit in task)
-    print(f"# {folder.partition.name}: {points} processes in {len(job.tasks)} tasks")
-    print(script_of(folder, study, job, path))
+    job, path = _plan_job(one, array_size)
+    points = sum(one.wanted[unit] for task in job.tasks for unit in task)
+    print(f"# {one.name}: {points} processes in {len(job.tasks)} tasks")
+    print(_script_of(one, job, path))
 
 
 def _array_size_or_default() -> int:
@@ -213,3 +217,84 @@ def _array_size_or_default() -> int:
     except InputError as error:
         warn(f"{error}; MaxArraySize is taken to be {DEFAULT_MAX_ARRAY_SIZE}, Slurm's default")
         return DEFAULT_MAX_ARRAY_SIZE
+
+
+def _script_of(one: Standing, job: Job, manifest: Path) -> str:
+    programs = one.study.site.programs
+    return render(job.name, one.folder.partition, manifest, len(job.tasks), programs)
+
+
+def render(job: str, partition: Partition, manifest: Path, tasks: int, programs: Mapping[str, str]) -> str:
+    """The script of an array of `tasks` tasks that work through `manifest`.
+
+    The template quotes every value that is put into it, so that no shell takes one for anything but a word.
+    Raises InputError for a program that is to be built in the job but that this project does not know how to
+    build, and for an option that would not stay within its line.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent),
+        undefined=jinja2.StrictUndefined,
+        finalize=lambda value: shlex.quote(str(value)),
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+    folder = manifest.parent.parent
+    return environment.get_template("job.sh.jinja").render(
+        partition=partition,
+        options=[_one_line(option) for option in _options(job, partition, manifest, tasks)],
+        builds=_builds(folder / "build", programs) if partition.build else [],
+        folder=folder,
+        root=ROOT,
+        python=sys.executable,
+        manifest=manifest,
+    )
+
+
+def _options(job: str, partition: Partition, manifest: Path, tasks: int) -> list[str]:
+    optional = {"account": partition.account, "qos": partition.qos, "constraint": partition.constraint}
+    # In a file name Slurm puts %a and the like in place; a % of the folder's own is written twice.
+    log = str(manifest.with_suffix("")).replace("%", "%%") + "-%a.log"
+    return [
+        f"--job-name={job}",
+        f"--partition={partition.name}",
+        *(f"--{key}={value}" for key, value in optional.items() if value is not None),
+        "--nodes=1",
+        "--ntasks=1",
+        f"--cpus-per-task={partition.cpus}",
+        "--exclusive",
+        *_memory(partition),
+        "--hint=nomultithread",
+        f"--time={partition.minutes}",
+        f"--signal=USR1@{partition.signal_seconds}",
+        f"--array=0-{tasks - 1}%{partition.at_once}",
+        "--requeue",
+        f"--chdir={ROOT}",
+        f"--output={log}",
+        "--open-mode=append",
+        *partition.arguments,
+    ]
+
+
+def _memory(partition: Partition) -> list[str]:
+    """All of the node's: even with a whole node comes no more than DefMemPerCPU for each processor."""
+    return [] if any(one.split("=")[0] in _OF_MEMORY for one in partition.arguments) else ["--mem=0"]
+
+
+def _one_line(option: str) -> str:
+    """The option, which stands in a comment that Slurm reads: at the line's end bash would go on reading."""
+    if not option.isprintable() or any(sign in option for sign in "'\"\\#"):
+        raise InputError(
+            f"{option!r}: cannot be said in a batch script; expected no quotes, backslashes, # and line ends"
+        )
+    return option
+
+
+def _builds(folder: Path, programs: Mapping[str, str]) -> list[tuple[str, Path]]:
+    """C++ compiler and build folder of each program."""
+    for name, relative in programs.items():
+        if name not in COMPILERS or relative != f"{name}/carom":
+            known = ", ".join(f'{one} = "{one}/carom"' for one in COMPILERS)
+            raise InputError(f'programs.{name}: found "{relative}"; a job can build {known}, and no others')
+    return [(COMPILERS[name], folder / name) for name in programs]

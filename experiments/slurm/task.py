@@ -1,22 +1,22 @@
 """One task of a job array: measures the blocks that are its own, within its allocation."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from experiments.plan.cluster import Partition
 from experiments.plan.plan import Experiment
+from experiments.plan.point import Point
 from experiments.plan.scenes import SceneFolder
-from experiments.plan.site import this_machine
+from experiments.plan.site import Machine, this_machine, what_limits
 from experiments.run.costs import Costs
-from experiments.run.progress import ProgressDisplay
-from experiments.run.repeats import process_runs
+from experiments.run.progress import ProgressDisplay, several
 from experiments.run.runner import ProcessResult, Runner, Task
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import together
 from experiments.run.whole_blocks import WholeBlocks
-from experiments.slurm.jobs import PartitionFolder, Unit, folders, read_job
-from experiments.slurm.processors import Processors
-from experiments.slurm.task_log import TaskLog
+from experiments.slurm.jobs import Unit, folders, read_job, tell
+from experiments.support.process import Completed
 from support.errors import InputError
 
 
@@ -31,51 +31,55 @@ def work(manifest: Path, index: int) -> int:
     job = read_job(manifest)
     if not 0 <= index < len(job.tasks):
         raise InputError(f"{manifest}: task {index}: expected a number from 0 to {len(job.tasks) - 1}")
-    partitions: dict[str, PartitionFolder] = {one.partition.name: one for one in folders(job.settings)}
+    partitions = {one.partition.name: one for one in folders(job.settings)}
     if job.partition not in partitions:
         raise InputError(f'{job.settings.site}: has no partition "{job.partition}" any more')
     folder = partitions[job.partition]
-    study, log, machine = folder.study(), TaskLog(manifest, index), this_machine()
-    log.begins(machine.name)
+    study, machine = folder.study(), this_machine()
+    tell(manifest, index, processor=machine.name)
     with study.store.shared(), ProgressDisplay() as display:
-        worker = _Worker(study, display, log, Processors(folder.partition, machine))
-        return worker.run(job.tasks[index])
+        worker = _Worker(study, display, folder.partition, machine)
+        for unit, seconds in worker.run(job.tasks[index]):
+            tell(manifest, index, block=unit, seconds=seconds)
+        return POINTS_FAILED if worker.failed else 0
 
 
 class _Worker:
-    """What one task knows while it runs."""
+    """What one task knows while it runs: the study, its partition, and the machine that it found."""
 
-    def __init__(self, study: Study, display: ProgressDisplay, log: TaskLog, processors: Processors) -> None:
+    def __init__(
+        self, study: Study, display: ProgressDisplay, partition: Partition, machine: Machine
+    ) -> None:
         self._study = study
         self._display = display
-        self._log = log
-        self._processors = processors
+        self._partition = partition
+        self._machine = machine
         store = study.store
         # Scenes of its own, since a task with another program would empty a common folder.
         scenes = SceneFolder(store.temporary / "scenes", store.temporary, str(study.generator.sha256))
         self._runner = Runner(store, scenes, study.generator, study.site.time_limit_seconds)
-        self._failed: set[tuple[str, str]] = set()
+        self.failed: set[tuple[str, str]] = set()
         # What this task has seen itself: others may measure elsewhere.
-        self._costs = Costs({}, {})
+        self._costs = Costs()
 
-    def run(self, own: Sequence[Unit]) -> int:
+    def run(self, own: Sequence[Unit]) -> Iterator[tuple[Unit, float]]:
+        """Measure what is missing of these; tells of each block that it measured whole how long that took."""
         experiments = {one.name: one for one in self._study.experiments}
         for name, block in own:
             if name in experiments:
-                began, failed = time.monotonic(), len(self._failed)
-                if self._block(experiments[name], block) and len(self._failed) == failed:
-                    self._log.measured((name, block), time.monotonic() - began)
-        return POINTS_FAILED if self._failed else 0
+                began, failed = time.monotonic(), len(self.failed)
+                if self._block(experiments[name], block) and len(self.failed) == failed:
+                    yield (name, block), time.monotonic() - began
 
     def _block(self, experiment: Experiment, block: int) -> bool:
         """Measure what is missing of a block; says whether that was all of it."""
         found = self._study.store.find_block(experiment, block)
         given, session = experiment.question.blocks.minimum, self._study.store.session
         missing = WholeBlocks(experiment, given, found, session).missing_if_given(block)
-        hopeful = [one for one in missing if (experiment.name, one[1].id) not in self._failed]
+        hopeful = [one for one in missing if (experiment.name, one[1].id) not in self.failed]
         blocks, size = experiment.question.blocks.minimum, len(experiment.points)
         for group in together(experiment, block, hopeful):
-            runs = process_runs([point for _, point in group], self._costs)
+            runs = self._costs.runs([point for _, point in group])
             tasks = [Task(experiment, point, block, at, blocks, size, runs) for at, point in group]
             self._measure([one for one in tasks if not self._study.store.has(one.point, block)])
         return len(hopeful) == size
@@ -86,13 +90,13 @@ class _Worker:
             return
         began = time.monotonic()
         ended = self._runner.run(tasks)
-        self._costs.learn_group([one.point for one in tasks], ended, time.monotonic() - began)
+        self._costs.learn([one.point for one in tasks], ended, time.monotonic() - began)
         for task, result in zip(tasks, ended, strict=True):
             self._tell(task, result)
 
     def _refuse(self, task: Task) -> bool:
         """Whether the point's threads cannot have the processors that they were planned for; says so then."""
-        refused = self._processors.refusal(task.point)
+        refused = refusal(task.point, self._partition, self._machine)
         if refused is None:
             return False
         self._study.store.keep_failure(task.point, task.block, refused, task.tags(self._study.store.session))
@@ -103,7 +107,29 @@ class _Worker:
         point = task.point
         where = f"{point.experiment}, block {task.block + 1}, {point.series}, {point.x_name} {point.x:g}"
         if result.seconds is None:
-            self._failed.add((point.experiment, point.id))
+            self.failed.add((point.experiment, point.id))
             self._display.line(f"{where}: failed: {result.reason}")
         else:
             self._display.line(f"{where}: measured in {result.seconds:.3g} s")
+
+
+def refusal(point: Point, said: Partition, found: Machine) -> Completed | None:
+    """Why a point is not measured on a node of which the site's file `said` one thing and a task `found`
+    another: its threads would share what each was planned to have alone. None if it is. An affinity mask, a
+    control group, or a node without hyperthreads may leave less than is said. A sweep may want more threads
+    than the node is said to have; then all of those are to be there.
+    """
+    threads = point.threads
+    short_of_threads = found.hardware_threads < min(threads, said.hardware_threads)
+    short_of_cores = found.cores < threads <= said.cpus
+    if said.oversubscribed or not (short_of_threads or short_of_cores):
+        return None
+    command = (str(point.program.path), point.verb) if point.command is None else point.command.words
+    limits = what_limits()
+    reason = (
+        f"{several(threads, 'thread')} on {several(found.cores, 'core')} with "
+        f"{several(found.hardware_threads, 'hardware thread')}, all that the task may use"
+        f"{f' ({limits})' if limits else ''}; the site file says cpus = {said.cpus} and "
+        f"hardware_threads = {said.hardware_threads}: correct it, or say oversubscribed = true"
+    )
+    return Completed(command, 1, "", reason)

@@ -23,115 +23,16 @@ from experiments.tests.forks import Forking, forked
 ROOT = Path(__file__).parents[2]
 FAKE = Path(__file__).with_name("fake_carom.py")
 
-SCENE = """
-[scene]
-particles = 100
-side = 1000
-radius = 5
-steps = 10
-min_velocity = 1
-max_velocity = 2
-"""
 
-CHUNKS = f"""
-title = "Chunks"
-figure = "schedule"
-{SCENE}
-[sweep]
-parameter = "find_chunk"
-x_name = "chunk"
-values = [1, 2, 3]
-quick_values = [1, 2]
+def told_in(name: str) -> str:
+    """A question of these tests, or what a site says before its partitions."""
+    return Path(__file__).with_name("questions").joinpath(f"{name}.toml").read_text(encoding="utf-8")
 
-[[series]]
-name = "guided"
-variant = "published"
 
-[blocks]
-minimum = 2
-wanted = 2
-"""
-
-FOUR_AND_NINE = """[[series]]
-name = "four"
-variant = "published"
-
-[[series]]
-name = "nine"
-variant = "nine"
-
-[blocks]
-minimum = 2
-wanted = 2
-"""
-
-ERRORS = f"""
-title = "Errors"
-figure = "speed_against_error"
-errors = true
-
-[[scenes]]
-name = "dilute"
-particles = 100
-side = 1000
-radius = 5
-steps = 10
-min_velocity = 1
-max_velocity = 2
-placement = "lattice"
-isotropic = true
-
-[[scenes]]
-case = "cradle"
-
-[sweep]
-parameter = "substeps"
-values = [1, 2]
-
-{FOUR_AND_NINE}"""
-
-CONTROL = f"""
-title = "Control"
-figure = "control"
-{SCENE}
-[[series]]
-name = "A"
-variant = "published"
-label = "A"
-
-[[series]]
-name = "A-again"
-variant = "published"
-label = "A-again"
-
-[blocks]
-minimum = 3
-wanted = 3
-"""
-
-PAIR = f"""
-title = "Pair"
-figure = "comparison"
-claim = "four_boxes"
-tolerance = "published"
-{SCENE}
-{FOUR_AND_NINE}"""
-
-SLURM_SITE = """
-kind = "slurm"
-
-[programs]
-gcc = "gcc/carom"
-
-[openmp]
-places = "cores"
-proc_bind = "close"
-proc_bind_oversubscribed = "false"
-
-[slurm]
-oversubscribed = true
-"""
-"""Up to what a cluster says of itself."""
+CHUNKS, PAIR, CONTROL, ERRORS = map(told_in, ("chunks", "pair", "control", "errors"))
+SLURM_SITE = told_in("slurm_site")
+SCENE = CHUNKS[CHUNKS.index("[scene]") : CHUNKS.index("[sweep]")]
+FOUR_AND_NINE = PAIR[PAIR.index("[[series]]") :]
 
 
 @dataclass(frozen=True)
@@ -173,6 +74,7 @@ class Workplace:
 
     def build(self, name: str = "gcc", extra: str = "") -> Path:
         """Put the fake program in its place; `extra` makes it another program."""
+        self.behave(FAKE_RECORDS=str(FAKE.with_name("fake_records.json")))
         path = self.root / "build" / name / "carom"
         path.parent.mkdir(parents=True, exist_ok=True)
         text = FAKE.read_text(encoding="utf-8")
@@ -211,11 +113,13 @@ class Workplace:
 
 
 def damage(path: Path, kind: str) -> None:
-    """Put something else in the place of a record: `torn`, `foreign`, `of another kind` or `a folder`."""
+    """Put something else in the place of a record, as one of `DAMAGES` says."""
     record = json.loads(path.read_text(encoding="utf-8"))
     path.unlink()
     if kind == "a folder":
         path.mkdir()
+    elif kind == "a link to itself":
+        path.symlink_to(path)
     elif kind == "torn":
         path.write_text(json.dumps(record)[:99], encoding="utf-8")
     else:
@@ -223,7 +127,7 @@ def damage(path: Path, kind: str) -> None:
         path.write_text(json.dumps(record | other), encoding="utf-8")
 
 
-DAMAGES = ("torn", "foreign", "of another kind", "a folder")
+DAMAGES = ("torn", "foreign", "of another kind", "a folder", "a link to itself")
 
 
 def generated(point: Point) -> Scene:

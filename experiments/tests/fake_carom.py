@@ -203,6 +203,12 @@ def sha256(path: str) -> str:
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
+def template(name: str) -> dict[str, Any]:
+    """What is the same in all records, by its part."""
+    file = Path(os.environ["FAKE_RECORDS"])
+    return dict(json.loads(file.read_text(encoding="utf-8"))[name])
+
+
 def make_record(verb: str, scene: str, options: Options, wrong: bool) -> dict[str, Any]:
     seconds = 0.001 + float(os.environ.get("FAKE_SECONDS", "0"))
     runs = int(options.get("repetitions", 1)) if verb == "bench" else 1
@@ -213,15 +219,8 @@ def make_record(verb: str, scene: str, options: Options, wrong: bool) -> dict[st
         "repetitions": [] if wrong else [{"steps_seconds": seconds, "cpu_seconds": seconds}] * runs,
         "parse_seconds": 0.001,
         "process_seconds": runs * seconds + 0.01,
-        "work": {
-            "steps": scene_of(scene)["steps"],
-            "overlaps": 5,
-            "pair_resolves": 4,
-            "wall_resolves": 3,
-            "pair_attempts": 6,
-            "sweeps": 2,
-        },
-        "errors": errors("errors" in options),
+        "work": template("work") | {"steps": scene_of(scene)["steps"]},
+        "errors": template("all_errors" if "errors" in options else "errors"),
         "check": {
             "verdict": "failed" if wrong else "passed",
             "scope": "last-step",
@@ -255,84 +254,29 @@ def any_record(kind: str, options: Options) -> dict[str, Any]:
 
 
 def make_limits(options: Options) -> dict[str, Any]:
-    rate = {"best": 2e9, "median": 1e9, "repetitions": 5}
     threads = {"threads": int(options["threads"])}
-    copy = {"level": "memory", "working_set_bytes": 1 << 20, **threads, "bytes_per_second": rate}
-    arithmetic = {"lanes": 2, **threads, "operations_per_second": rate}
-    return any_record("limits", options) | {"limits": {"copy": [copy], "arithmetic": [arithmetic]}}
+    limits = {kind: [one | threads for one in found] for kind, found in template("limits").items()}
+    return any_record("limits", options) | {"limits": limits}
 
 
 def axes(options: Options) -> dict[str, Any]:
-    return {
-        "variant": options["variant"],
-        "neighbourhood": "four",
-        "order": "checkered",
-        "self_contained": "on",
-        "direction": "reverse",
-        "find_schedule": "guided_chunk",
-        "resolve_schedule": "guided_chunk",
-        "find_chunk": int(options.get("find-chunk", 4)),
-        "resolve_chunk": int(options.get("resolve-chunk", 5)),
-        "threads": int(options["threads"]),
-        "substeps": int(options.get("substeps", 1)),
-        "tolerance": options.get("tolerance", "relative"),
-        "storage": "numbered",
-        "prefetch": "on",
-        "box_side": "wide",
-        "overlaps": "lists",
-        "search": "exact",
-        "worklist": "all",
-        "impact": "step_end",
-        "precision": "double",
-    }
-
-
-def errors(asked: bool) -> dict[str, Any]:
-    always = {"energy_drift": 0.0, "discs_outside": 0, "unresolved_pairs": 0}
-    if not asked:
-        return always
-    numbers = (
-        "momentum_drift", "penetration_worst", "penetration_mean", "collision_rate", "pressure",
-        "collision_rate_reference", "pressure_reference", "speed_distance",
-    )  # fmt: skip
-    absent = dict.fromkeys(("pressure_reason", "time_to_tenth_radius", "reference_reason"))
-    trajectory = [{"time": 1, "rms_distance": 0.01}]
-    return {**always, **dict.fromkeys(numbers, 0.0), **absent, "trajectory": trajectory}
+    said = {"variant": options["variant"], "tolerance": options.get("tolerance", "relative")}
+    numbers = {"find-chunk": 4, "resolve-chunk": 5, "threads": 1, "substeps": 1}
+    said |= {name.replace("-", "_"): int(options.get(name, number)) for name, number in numbers.items()}
+    return template("policies") | said
 
 
 def provenance() -> dict[str, Any]:
-    openmp = {key: value for key, value in os.environ.items() if key.startswith(("OMP_", "GOMP_", "KMP_"))}
-    slurm = {key: value for key, value in os.environ.items() if key.startswith(("SLURM_", "SLURMD_"))}
-    return {
+    def said(*beginnings: str) -> dict[str, str]:
+        return {key: value for key, value in os.environ.items() if key.startswith(beginnings)}
+
+    told = template("provenance")
+    return told | {
         "host": os.uname().nodename,
         "cpu_model": os.environ.get("FAKE_CPU_MODEL", "none"),
-        "cores": 2,
-        "hardware_threads": 2,
-        "affinity": "0-1",
-        "affinity_count": 2,
-        "cpu_quota": None,
-        "oversubscribed": False,
-        "memory_bytes": 1 << 30,
-        "virtualised": False,
-        "governor": None,
-        "operating_system": "none",
-        "openmp": {
-            "runtime": "none",
-            "version": 201511,
-            "max_threads": 2,
-            "dynamic": False,
-            "proc_bind": "close",
-            "places": 2,
-            "environment": openmp,
-        },
-        "compiler": "none",
-        "compiler_flags": "",
-        "build_type": "Release",
-        "commit": None,
-        "dirty": None,
-        "diff_sha256": None,
+        "openmp": told["openmp"] | {"environment": said("OMP_", "GOMP_", "KMP_")},
         "binary_sha256": sha256(__file__),
-        "slurm": slurm or None,
+        "slurm": said("SLURM_", "SLURMD_") or None,
     }
 
 

@@ -77,8 +77,8 @@ MISTAKES = {
     "study": (["run", "--study", "pears"], r'study: found "pears", expected the name of a question; did .*'),
     "no study": (["run", "--study", "x"], r'study: found "x", expected names out of chunks, control, pair'),
     "site": (
-        ["plan", "--site", "moon"],
-        r'site: found "moon", expected one of example-slurm, local or a file \*\.toml',
+        ["plan", "--site", "lokal"],
+        r'site: found "lokal", expected one of example-slurm, local or .*; did you mean "local"\?',
     ),
     "blocks": (["run", "--blocks", "0"], r"argument --blocks: found 0, expected a whole number of at .*"),
     "budget": (["run", "--budget", "-1"], r"argument --budget: found -1, expected a number of minutes .*"),

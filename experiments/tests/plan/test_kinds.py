@@ -7,7 +7,7 @@ import pytest
 from experiments.plan.kinds import KINDS
 from experiments.plan.plan import plan
 from experiments.plan.question import FOLDER, load_question
-from experiments.tests.conftest import CHUNKS, ERRORS, Workplace
+from experiments.tests.conftest import CHUNKS, Workplace
 from experiments.tests.plan.test_plan import surroundings
 from support.vocabulary import COUNTS
 
@@ -40,12 +40,6 @@ def test_a_kind_is_no_part_of_an_id(workplace: Workplace) -> None:
         for head in ("", 'kind = "comparison"\n')
     )
     assert [point.id for point in alone] == [point.id for point in named]
-
-
-def test_several_scenes_are_for_kinds_that_tell_them_apart(workplace: Workplace) -> None:
-    question = load_question(workplace.question("errors", ERRORS))
-    assert KINDS[question.kind].scenes
-    assert len(question.scenes) > 1
 
 
 def test_every_kind_can_be_asked_for_and_its_usual_figure_is_its_own() -> None:

@@ -90,7 +90,7 @@ def another(name: str, value: object) -> st.SearchStrategy[Any]:
     return (CONTENT | SHOWN)[name].filter(lambda other: bool(other != value))
 
 
-@settings(max_examples=20)
+@settings(max_examples=20, deadline=None)
 @given(CONTENTS, SHOWN_AS, st.data())
 def test_whatever_changes_the_measurement_changes_the_id_and_nothing_else_does(
     content: dict[str, Any], shown: dict[str, Any], data: st.DataObject
@@ -146,8 +146,6 @@ def test_what_all_others_are_compared_with_is_measured_several_times(workplace: 
     assert [point.tags["replicate"] for point in replicates] == [1, 2, 3, 4]
     assert {point.tags.get("label") for point in replicates} == {None}
     assert len({point.id for point in points}) == len(points) == 17 + 3
-    said = [replace(replicates[0], label=f"replicate {number}").id for number in (2, 3, 4)]
-    assert [point.id for point in replicates[1:]] == said, "what was measured before still fits"
     assert {point.id for point in alone} <= {point.id for point in points}
     few = plan(question, surroundings(workplace, "quick")).points
     assert [point.x for point in few] == [1, 2]

@@ -227,13 +227,6 @@ def test_unreadable_files_are_named(tmp_path: Path) -> None:
         load_question(tmp_path / "latin.toml")
 
 
-def test_study_names_are_checked(workplace: Workplace) -> None:
-    with pytest.raises(
-        InputError, match=r'study: found "pear", expected the name of a question; did you mean "pair"\?'
-    ):
-        load_questions(workplace.root / "questions", ["pear"])
-
-
 def test_the_control_is_part_of_every_choice(workplace: Workplace) -> None:
     folder = workplace.root / "questions"
     assert [one.name for one in load_questions(folder, ["pair"])] == ["pair", "control"]
@@ -276,10 +269,3 @@ def test_one_line_for_a_mistake_in_a_site(tmp_path: Path, text: str, expected: s
     with pytest.raises(InputError) as error:
         load_site(str(path))
     assert str(error.value).startswith(f"{path}: {expected}")
-
-
-def test_an_unknown_site_is_named() -> None:
-    with pytest.raises(
-        InputError, match=r'site: found "lokal", expected one of example-slurm, local.*did you mean "local"\?'
-    ):
-        load_site("lokal")

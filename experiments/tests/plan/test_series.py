@@ -96,12 +96,13 @@ def test_a_changed_program_is_another_point(
     text = f'{HEAD}[[series]]\nname = "mine"\ncommand = ["./mine", "input.txt", "other"]\n{BLOCKS}'
     [before] = points(empty_workplace, text)
     assert {path.name for path in before.program.files} == {"mine", "own-interpreter", "input.txt"}
-    assert before.program.is_unchanged
+    before.program.require_unchanged()
     with files[changed].open("a", encoding="utf-8") as file:
         file.write("# changed\n")
     [after] = points(empty_workplace, text)
     assert after.id != before.id
-    assert not before.program.is_unchanged
+    with pytest.raises(InputError, match=f"{files[changed].name}: was built anew while the study ran"):
+        before.program.require_unchanged()
 
 
 def test_a_pattern_makes_a_series_of_each_file(empty_workplace: Workplace) -> None:

@@ -43,13 +43,6 @@ def test_a_failed_point_is_recorded_and_the_others_go_on(
     assert "16 of 16" not in told.out, "what failed is not done"
 
 
-def test_a_wrong_variant_is_never_timed(workplace: Workplace) -> None:
-    workplace.behave(FAKE_CHECK_FAILS="nine")
-    run(workplace.settings)
-    timed = [call["words"] for call in workplace.calls() if "--tag" in call["words"]]
-    assert not any("nine" in words for words in timed)
-
-
 def test_what_was_suspended_is_measured_again_together(workplace: Workplace) -> None:
     reason = "was suspended for some time while it was measured; measure it again"
     workplace.behave(FAKE_SUSPENDED="turns")
@@ -107,12 +100,3 @@ def test_what_one_build_can_measure_comes_before_the_other_is_built(
     assert "the study is complete" in capsys.readouterr().out
     assert len(workplace.records("pair")) == 4
     assert len(workplace.records("control")) == 6, "the control goes on beside the rest"
-
-
-def test_a_failed_point_is_tried_again_by_the_next_run(workplace: Workplace) -> None:
-    workplace.behave(FAKE_BENCH_CRASHES="nine")
-    run(workplace.settings)
-    workplace.behave(FAKE_BENCH_CRASHES="none")
-    assert run(workplace.settings) == 0
-    assert workplace.is_whole()
-    assert not workplace.failures()

@@ -45,18 +45,6 @@ def test_each_of_these_makes_another_point_and_none_leaves_the_id_as_it_was(
         found += ids(empty_workplace)
     assert len(set(found[: len(lines)])) == len(lines)
     assert {*found[len(lines) :]} == {found[0]}
-    content = content_of(empty_workplace, plain)
-    assert set(content) == {
-        "words", "folder", "instrument", "trajectory", "pattern", "unit_seconds", "benchmark",
-    }  # fmt: skip
-
-
-def content_of(place: Workplace, lines: str) -> dict[str, object]:
-    place.question("asked", HEAD + series("a", lines) + BLOCKS)
-    [experiment] = Study(place.settings).experiments
-    command = experiment.points[0].command
-    assert command is not None
-    return command.content
 
 
 def test_a_fresh_folder_makes_a_program_run_twice_that_cannot_otherwise(empty_workplace: Workplace) -> None:
@@ -77,7 +65,7 @@ def test_in_a_fresh_folder_only_whole_paths_name_files(empty_workplace: Workplac
     lines = 'command = ["sort", "in.txt", "{folder}/in.txt", "-o", "out.txt"]'
     place.question("asked", HEAD + series("a", lines, "fresh_folder = true") + BLOCKS)
     [experiment] = Study(place.settings).experiments
-    assert experiment.points[0].program.inputs == (place.root / "questions" / "in.txt",)
+    assert experiment.points[0].program.files[1:] == (place.root / "questions" / "in.txt",)
     assert experiment.points[0].program.absent == ()
 
 
@@ -166,65 +154,59 @@ def test_who_times_itself_joins_the_others_as_a_whole(empty_workplace: Workplace
 
 
 SORT = 'command = ["sort", "-o", "data.txt", "data.txt"]'
-BOTH = series("up", SORT) + series("down", SORT.replace('"-o"', '"-r", "-o"'))
+BOTH = series("up", SORT, 'writes = ["data.txt"]') + series("down", SORT.replace('"-o"', '"-r", "-o"'))
 
 
-def data(place: Workplace, text: str = "b\na\nc\n") -> Path:
-    path = place.root / "questions" / "data.txt"
-    path.parent.mkdir(exist_ok=True)
-    path.write_text(text)
-    return path
+@pytest.fixture
+def sorting(empty_workplace: Workplace) -> Workplace:
+    """A workplace with a file to be sorted, and a program that writes."""
+    script(empty_workplace, "sim", "echo more >> data.txt; exit 4")
+    script(empty_workplace, "own", "echo '# new' >> own")
+    (empty_workplace.root / "questions" / "data.txt").write_text("b\na\nc\n")
+    return empty_workplace
 
 
 @pytest.mark.parametrize("head", [HEAD, "turns = false\n" + HEAD], ids=["in turns", "one after the other"])
-@pytest.mark.parametrize(
-    "text", [BOTH, series("up", SORT)], ids=["two programs", "one that ends in the same"]
-)
-def test_a_program_may_write_a_file_among_its_words(
-    empty_workplace: Workplace, text: str, head: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    place = empty_workplace
-    path = data(place)
-    place.question("asked", head + text + BLOCKS)
-    before = ids(place)
-    assert run(place.settings) == 0
-    assert ids(place) == before, "what it wrote makes no other point of it"
-    assert f"{path}: is written by what is measured: each run finds" in capsys.readouterr().err
-    records = place.records("asked")
+def test_a_program_may_write_what_its_question_says(sorting: Workplace, head: str) -> None:
+    sorting.question("asked", head + BOTH + BLOCKS)
+    before = ids(sorting)
+    assert run(sorting.settings) == 0
+    assert ids(sorting) == before, "what it wrote makes no other point of it, nor of others"
+    records = sorting.records("asked")
     assert len(records) == 2 * len(before)
-    assert run(place.settings) == 0
-    assert place.records("asked") == records, "nothing is measured twice"
-    place.question("asked", head + text + BLOCKS.replace("2", "3"))
-    assert run(place.settings) == 0
-    assert len(place.records("asked")) == 3 * len(before)
+    assert run(sorting.settings) == 0
+    assert sorting.records("asked") == records, "nothing is measured twice"
+    sorting.question("asked", head + BOTH + BLOCKS.replace("2", "3"))
+    assert run(sorting.settings) == 0
+    assert len(sorting.records("asked")) == 3 * len(before)
 
 
-@pytest.mark.parametrize("file", ["data.txt", "sim"])
-def test_what_is_built_anew_is_still_noticed(empty_workplace: Workplace, file: str) -> None:
-    """The program stands for a user here who builds it anew, once, while it is measured."""
-    place = empty_workplace
-    data(place)
-    script(place, "sim", f"test -e done || {{ echo '# new' >> {file}; touch done; }}")
-    place.question("asked", HEAD + series("a", 'command = ["./sim", "data.txt"]') + BLOCKS)
-    with pytest.raises(InputError, match=f"{file}: was built anew while the study ran"):
-        run(place.settings)
+UNSAID = {
+    "a file that it reads, too": (
+        SORT,
+        "data.txt: was built anew while .*, or say `writes` where it is written",
+    ),
+    "a file that it creates": (
+        SORT.replace('-o", "data', '-o", "out'),
+        "out.txt: is written by what is measured",
+    ),
+    "and fails": ('command = ["./sim", "data.txt"]', "data.txt: was built anew while the study ran"),
+    "itself": (
+        'command = ["./own"]',
+        "own: was built anew while the study ran; run the study again to go on",
+    ),
+}
 
 
-def test_what_a_program_creates_is_no_part_of_it(empty_workplace: Workplace) -> None:
-    place = empty_workplace
-    data(place)
-    command = 'command = ["sort", "-o", "out.txt", "data.txt"]'
-    place.question("asked", HEAD + series("a", command) + BLOCKS)
-    before = ids(place)
-    assert run(place.settings) == 0
-    assert (place.root / "questions" / "out.txt").is_file()
-    assert ids(place) == before
+@pytest.mark.parametrize(("command", "said"), UNSAID.values(), ids=UNSAID.keys())
+def test_what_it_writes_unsaid_ends_the_study_in_a_line(sorting: Workplace, command: str, said: str) -> None:
+    sorting.question("asked", HEAD + series("a", command) + BLOCKS)
+    with pytest.raises(InputError, match=said):
+        run(sorting.settings)
 
 
-def test_a_program_that_fails_may_write_as_well(empty_workplace: Workplace) -> None:
-    place = empty_workplace
-    data(place)
-    script(place, "sim", "echo more >> data.txt; exit 4")
-    place.question("asked", HEAD + series("a", 'command = ["./sim", "data.txt"]') + BLOCKS)
-    assert run(place.settings) == POINTS_FAILED
-    assert [one["reason"] for one in place.failures()] == ["exit code 4 without a word; " + NO_TERMINAL]
+def test_a_program_that_fails_may_write_as_well(sorting: Workplace) -> None:
+    lines = ('command = ["./sim", "data.txt"]', 'writes = ["data.txt"]')
+    sorting.question("asked", HEAD + series("a", *lines) + BLOCKS)
+    assert run(sorting.settings) == POINTS_FAILED
+    assert [one["reason"] for one in sorting.failures()] == ["exit code 4 without a word; " + NO_TERMINAL]

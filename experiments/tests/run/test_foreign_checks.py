@@ -12,9 +12,9 @@ CHECKED = {
     "its own program": ('["./sim", "/dev/null"]', '["./sim", "{out}"]', OWN),
     "another": ('["true"]', '["./sim", "{out}"]', "trajectory of another command: sim"),
     "another script": (
-        '["sh", "other", "x"]', '["sh", "sim", "{out}"]', "trajectory of another command: sh sim",
+        '["sh", "other", "/dev/null"]', '["sh", "sim", "{out}"]', "trajectory of another command: sh sim",
     ),
-    "the same script": ('["sh", "sim", "x"]', '["sh", "sim", "{out}"]', OWN),
+    "the same script": ('["sh", "sim", "/dev/null"]', '["sh", "sim", "{out}"]', OWN),
 }  # fmt: skip
 
 

@@ -1,5 +1,6 @@
 """The limits of the machine: measured once, before anything is compared with them, and never in vain."""
 
+import os
 from dataclasses import replace
 
 import pytest
@@ -72,4 +73,4 @@ def test_damaged_ones_are_put_aside_and_measured_again(place: Workplace, kind: s
     assert run(replace(place.settings, blocks=4)) == 0
     (record,) = place.records(FOLDER).values()
     assert record["kind"] == "limits"
-    assert (place.results / "stale" / "records" / FOLDER / path.name).exists()
+    assert os.path.lexists(place.results / "stale" / "records" / FOLDER / path.name)

@@ -49,11 +49,6 @@ def test_a_share_of_the_time_is_planned_ahead() -> None:
     assert list(next_blocks(long, float("inf"), 1.0)) == ["0", "1"]
 
 
-def test_nothing_waits() -> None:
-    assert next_blocks([], 100.0, 1.0) == {}
-    assert in_turns({}) == []
-
-
 @given(st.dictionaries(st.text(max_size=3), st.integers(0, 30), max_size=6))
 def test_blocks_are_spread_over_the_whole(blocks: dict[str, int]) -> None:
     order = in_turns(blocks)

@@ -25,6 +25,8 @@ def test_a_study_leaves_a_record_for_every_point_and_block(workplace: Workplace)
     }
     for record in workplace.records().values():
         jsonschema.validate(record, SCHEMA)
+    files = workplace.results.glob("records/**/*.json")
+    assert all(file.parent.name == file.name[:3] for file in files), "no folder holds all of an experiment"
     assert not (workplace.results / ".running").exists()
     assert not workplace.failures()
 
@@ -190,13 +192,6 @@ def test_more_blocks_keep_those_that_are_there(workplace: Workplace) -> None:
     assert (row.blocks, row.done, row.missing) == (4, 8, 0), "more than the question asks for"
 
 
-def test_without_any_program_there_is_one_line(workplace: Workplace) -> None:
-    workplace.program.unlink()
-    with pytest.raises(InputError, match=r"carom: is not built; build it with `make build`$"):
-        run(workplace.settings)
-    assert not workplace.results.exists()
-
-
 def test_a_program_that_changes_under_the_study_stops_it(
     workplace: Workplace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -215,14 +210,6 @@ def test_a_part_of_the_study_leaves_the_rest_alone(workplace: Workplace) -> None
     workplace.build(extra="# a change")
     run(replace(workplace.settings, study=("pair",)))
     assert workplace.records("chunks") == chunks
-
-
-def test_running_again_measures_nothing_twice(workplace: Workplace) -> None:
-    run(workplace.settings)
-    before = workplace.records()
-    assert run(workplace.settings) == 0
-    assert workplace.measured() == len(before)
-    assert workplace.records() == before
 
 
 def test_what_has_lost_its_partners_is_run_again_with_them(workplace: Workplace) -> None:

@@ -44,7 +44,7 @@ def finish(
     given_up: set[str] = set()
     ran, failed = [], {}
     now = WholeBlocks(experiment, blocks, found, session)
-    block = now.following(-1)
+    block = now.next()
     while block is not None:
         for _, point in now.missing(block):
             key = (point.id, block)
@@ -56,7 +56,7 @@ def finish(
                 found.seconds[key], found.sessions[key] = 1.0, session
                 found.failures.pop(key, None)
         now = WholeBlocks(experiment, blocks, found, session, given_up)
-        block = now.following(block)
+        block = now.next()
     assert not any(now.missing(block) for block in range(now.end()))
     found.failures |= failed
     return now, ran

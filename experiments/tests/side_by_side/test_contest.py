@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from experiments.run.process_record import Described, Record, process_record
-from experiments.run.written import Sources
+from experiments.run.sources import Sources
 from experiments.side_by_side.contest import Contender, Contest, Entrant, may_disagree, why_idle
 from experiments.side_by_side.run_result import RunResult
 from experiments.side_by_side.sampler import ProcessCommand, Sampler, SamplerError

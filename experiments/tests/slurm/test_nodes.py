@@ -14,8 +14,7 @@ from experiments.plan.site import Machine
 from experiments.results.collect import collect
 from experiments.slurm import task
 from experiments.slurm.jobs import folders
-from experiments.slurm.processors import Processors
-from experiments.slurm.task import work
+from experiments.slurm.task import refusal, work
 from experiments.tests.conftest import PAIR, SCENE, Workplace
 from experiments.tests.slurm.test_script import site
 from experiments.tests.slurm.test_task import APART, folder_of, job_of
@@ -111,7 +110,7 @@ def test_what_was_refused_is_measured_once_a_node_has_the_processors(threads: Wo
 
 def test_the_processors_of_this_machine_are_what_a_task_may_use(threads: Workplace) -> None:
     point: Point = folder_of(threads).study().experiments[0].points[-1]
-    refused = Processors(Partition("xs", 4096, 4096), Machine("none", 2, 2)).refusal(point)
+    refused = refusal(point, Partition("xs", 4096, 4096), Machine("none", 2, 2))
     assert refused is not None
     assert refused.command == (str(point.program.path), "bench")
     assert refused.reason.startswith(

@@ -11,8 +11,7 @@ import pytest
 from experiments.plan.cluster import Partition
 from experiments.plan.site import load_site
 from experiments.run.study import Study
-from experiments.slurm.pack import pack
-from experiments.slurm.script import render
+from experiments.slurm.submit import pack, render
 from experiments.tests.conftest import SLURM_SITE, Workplace
 from support.errors import InputError
 

@@ -7,11 +7,10 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from experiments.slurm.forecast import Tasks, progress_line
-from experiments.slurm.jobs import Unit
+from experiments.slurm.jobs import Told, Unit, read_told
 from experiments.slurm.scheduler import TaskState
+from experiments.slurm.status import Tasks, progress_line
 from experiments.slurm.task import work
-from experiments.slurm.task_log import Told, read_told
 from experiments.tests.conftest import Workplace
 from experiments.tests.slurm.fake_slurm import FakeSlurm
 from experiments.tests.slurm.test_script import site

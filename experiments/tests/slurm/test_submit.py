@@ -11,10 +11,8 @@ import pytest
 from experiments.plan.cluster import Partition
 from experiments.slurm import scheduler
 from experiments.slurm.jobs import Unit
-from experiments.slurm.pack import within_time
-from experiments.slurm.refusal import RefusedError
-from experiments.slurm.scheduler import Queue
-from experiments.slurm.submit import submit
+from experiments.slurm.scheduler import Queue, RefusedError
+from experiments.slurm.submit import submit, within_time
 from experiments.tests.conftest import Workplace, finish
 from experiments.tests.slurm.fake_slurm import FakeSlurm
 from experiments.tests.slurm.test_script import site

@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import subprocess
-from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,8 +11,8 @@ import jsonschema
 import pytest
 
 from experiments.slurm import scheduler
-from experiments.slurm.jobs import PartitionFolder, Unit, folders, units
-from experiments.slurm.submit import too_long
+from experiments.slurm.jobs import PartitionFolder, Standing, Unit, folders
+from experiments.slurm.scheduler import TaskState
 from experiments.slurm.task import work
 from experiments.tests.conftest import PAIR, ROOT, Workplace, start
 from experiments.tests.slurm.test_script import site
@@ -31,9 +30,8 @@ def folder_of(workplace: Workplace) -> PartitionFolder:
 def job_of(workplace: Workplace, tasks: int = 1, folder: PartitionFolder | None = None) -> Path:
     """Write the list of blocks of a job, dealt out to so many tasks."""
     folder = folder or folder_of(workplace)
-    study = folder.study()
-    wanted = [unit for unit, _, points in units(study) if points]
-    job, path = folder.next_job(study, [wanted[first::tasks] for first in range(tasks)])
+    wanted = [*Standing(folder, folder.study(), {}).missing]
+    job, path = folder.next_job(folder.study(), [wanted[first::tasks] for first in range(tasks)])
     path.parent.mkdir(parents=True, exist_ok=True)
     write_json(path, job.content(), path.parent)
     return path
@@ -70,14 +68,6 @@ def test_two_copies_of_one_task_tear_nothing(workplace: Workplace) -> None:
     assert len(records(workplace)) == 16
     for content in records(workplace).values():
         jsonschema.validate(json.loads(content), json.loads(SCHEMA_FILE.read_text()))
-
-
-def test_what_is_measured_is_not_measured_again(workplace: Workplace) -> None:
-    manifest = job_of(workplace)
-    assert work(manifest, 0) == 0
-    before = records(workplace)
-    assert work(manifest, 0) == 0
-    assert records(workplace) == before
 
 
 def test_the_signal_ahead_of_the_time_limit_keeps_what_is_finished(workplace: Workplace) -> None:
@@ -131,8 +121,7 @@ def test_a_task_that_the_job_does_not_have_is_refused(workplace: Workplace) -> N
 
 
 def test_the_control_is_spread_over_the_tasks(workplace: Workplace) -> None:
-    order = [unit for unit, _, _ in units(folder_of(workplace).study())]
-    assert order == [
+    assert [*missing(workplace)] == [
         *(("chunks", 0), ("control", 0), ("pair", 0)),
         *(("chunks", 1), ("control", 1), ("pair", 1)),
         ("control", 2),
@@ -150,10 +139,16 @@ def cut_off(workplace: Workplace, *lost: int) -> None:
             path.unlink()
 
 
-def missing(workplace: Workplace, active: Collection[Unit] = ()) -> dict[Unit, int]:
-    """How many processes are to be submitted, by block, while these are being measured."""
-    found = units(folder_of(workplace).study(), active)
-    return {unit: len(points) for unit, _, points in found if points and unit not in active}
+def standing(workplace: Workplace, folder: PartitionFolder | None = None, *, runs: bool = False) -> Standing:
+    """What there is and is not, while all tasks of the last job run, or none of any."""
+    folder = folder or folder_of(workplace)
+    last = folder.known_jobs()[-1:] if runs else []
+    return Standing(folder, folder.study(), {(one.name, 0): TaskState("RUNNING", "") for one in last})
+
+
+def missing(workplace: Workplace, *, runs: bool = False) -> dict[Unit, int]:
+    """How many processes are to be submitted, by block."""
+    return standing(workplace, runs=runs).wanted
 
 
 def test_a_block_that_was_cut_off_is_left_and_another_one_submitted(workplace: Workplace) -> None:
@@ -164,7 +159,7 @@ def test_a_block_that_was_cut_off_is_left_and_another_one_submitted(workplace: W
     cut_off(workplace, 1)
     before = records(workplace)
     assert missing(workplace) == {("pair", 2): 2}
-    assert missing(workplace, active=[("pair", 1)]) == {}, "whoever measures it may go on with it"
+    assert missing(workplace, runs=True) == {}, "whoever measures it may go on with it"
     assert work(manifest, 0) == 0
     assert records(workplace) == before, "a task that was started again leaves it, too"
     assert work(job_of(workplace), 0) == 0
@@ -188,16 +183,14 @@ def test_blocks_that_never_fit_their_allocation_come_to_an_end(workplace: Workpl
     workplace.question("pair", APART)
     submitted = 0
     while wanted := missing(workplace):
-        folder, study = folder_of(workplace), folder_of(workplace).study()
-        if too_long(folder, study, ()):
-            break
         assert work(job_of(workplace), 0) == 0
         submitted += len(wanted)
         cut_off(workplace, *(block for name, block in wanted if name == "pair"))
-    assert too_long(folder, study, ()) == {"pair": 4}, "twice the two blocks that the question asks for"
+    assert standing(workplace).too_long == {"pair": 4}, "twice the two blocks that the question asks for"
     assert submitted == 7 + 2
+    settings = folder_of(workplace).settings
     site(workplace.root, "# own", "minutes = 90")
-    assert too_long(folders(folder.settings)[0], study, ()) == {}, "with more time they may be whole"
+    assert standing(workplace, folders(settings)[0]).too_long == {}, "with more time they may be whole"
 
 
 def test_a_point_that_failed_is_tried_again_before_its_partners_are(workplace: Workplace) -> None:
@@ -228,20 +221,6 @@ def test_a_client_that_hangs_is_given_up(workplace: Workplace, monkeypatch: pyte
         scheduler.queue()
     with pytest.raises(InputError, match="scontrol: slurm_load_ctl_conf error: no route"):
         scheduler.max_array_size()
-
-
-def test_a_refused_job_leaves_nothing_to_wait_for(workplace: Workplace) -> None:
-    answers(
-        workplace,
-        squeue="true",
-        scontrol="echo 'MaxArraySize = 1001'",
-        sbatch="echo 'sbatch: error: invalid partition specified: xs' >&2; exit 1",
-    )
-    process = workplace.start("submit", "--site", site(workplace.root))
-    _, error = process.communicate(timeout=60)
-    assert process.returncode == 1
-    assert error == "carom: sbatch: error: invalid partition specified: xs\n"
-    assert not list(workplace.results.rglob("jobs/*.*"))
 
 
 def test_variables_of_the_shell_do_not_overrule_the_script(workplace: Workplace) -> None:

@@ -1,0 +1,196 @@
+"""What a point is said to take: before anything is measured, after it, and how many runs pay."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from experiments.plan.plan import Experiment, Surroundings, plan
+from experiments.plan.point import Point
+from experiments.plan.program import Program
+from experiments.plan.question import FOLDER, Blocks, load_question
+from experiments.plan.scale import SCALES
+from experiments.plan.site import Machine, load_site
+from experiments.run.costs import (
+    IN_THE_CLOCK,
+    MOST_RUNS,
+    MOST_SECONDS,
+    PROBE,
+    SECONDS_PER_PROCESS,
+    Costs,
+    Probe,
+    choose_runs,
+    probe_key,
+)
+from experiments.run.progress import about
+from experiments.run.runner import ProcessResult
+from experiments.run.study import Study
+from experiments.run.verify import representative
+from experiments.tests.conftest import Workplace, generated
+
+
+def points(name: str) -> tuple[Point, ...]:
+    return planned(name).points
+
+
+def planned(name: str) -> Experiment:
+    program = Program("gcc", Path("carom"), "0" * 64)
+    missing = Program("clang", Path("carom"), None)
+    around = Surroundings(
+        load_site("local"), Machine("test", 2, 2), {"gcc": program, "clang": missing}, SCALES["paper"]
+    )
+    return plan(load_question(FOLDER / f"{name}.toml"), around)
+
+
+@pytest.fixture(autouse=True)
+def _every_variant_exists(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("experiments.plan.plan.variants", lambda _: AnyName())
+
+
+class AnyName(tuple[str, ...]):
+    def __contains__(self, name: object) -> bool:
+        return True
+
+
+def test_a_point_without_records_is_estimated_from_its_probe() -> None:
+    point = points("threads")[1]
+    costs = Costs({probe_key(point): Probe(step=0.003, process=0.02)})
+    size = generated(point).particles / PROBE.particles
+    steps = generated(point).steps * 0.003 * size
+    assert costs.point(point) == pytest.approx(steps, rel=0.2)
+    assert costs.fixed(point) + costs.run(point) == pytest.approx(costs.point(point))
+    assert costs.fixed(point) > 0.02
+
+
+def test_the_start_of_a_process_counts_once() -> None:
+    point = points("hard_cases")[0]
+    idle, slow = (Costs({probe_key(point): Probe(step=0.0, process=process)}) for process in (0.0, 1.0))
+    assert slow.point(point) == pytest.approx(idle.point(point) + 1)
+
+
+@pytest.mark.parametrize(("minimum", "least"), [(1, 1), (2, 1), (3, 1), (6, 1), (24, 6)])
+def test_at_quick_scale_the_budget_decides_from_fewer_blocks_on(minimum: int, least: int) -> None:
+    asked = replace(load_question(FOLDER / "compiler.toml"), blocks=Blocks(minimum, 30))
+    assert SCALES["quick"].question(asked).blocks == Blocks(least, 30)
+    assert SCALES["paper"].question(asked) == asked
+
+
+def test_what_leaves_the_budget_no_choice_is_the_same_at_quick_scale() -> None:
+    control = load_question(FOLDER / "control.toml")
+    assert SCALES["quick"].question(control) == control
+
+
+@pytest.mark.parametrize("name", ["particles", "steps"])
+def test_larger_scenes_cost_more(name: str) -> None:
+    estimates = [Costs().point(point) for point in points(name)]
+    assert estimates == sorted(estimates)
+    assert estimates[0] < estimates[-1]
+
+
+def test_empty_cells_and_crowded_discs_cost_more() -> None:
+    estimates = [Costs().point(point) for point in points("grid_length")]
+    assert min(estimates) < estimates[0]
+    assert min(estimates) < estimates[-1]
+
+
+def test_records_overrule_the_estimate() -> None:
+    point = points("control")[0]
+    costs = Costs({}, {point.id: [(2.0, [1.5]), (4.0, [1.5, 1.5]), (2.4, [1.9])]})
+    assert costs.point(point) == 2.4 + SECONDS_PER_PROCESS
+    assert costs.run(point) == 1.5
+    assert costs.fixed(point) == pytest.approx(0.5 + SECONDS_PER_PROCESS)
+    assert costs.point(point, runs=4) == pytest.approx(6.5 + SECONDS_PER_PROCESS)
+
+
+def test_what_is_learnt_counts_with_what_a_process_takes_beside_its_own_account() -> None:
+    pair = points("control")[:2]
+    costs = Costs()
+    for seconds in (99.0, 4.4):
+        costs.learn(pair, [ProcessResult(2.0, runs=(1.5,))] * 2, seconds)
+    assert costs.fixed(pair[0]) == pytest.approx(0.5 + 0.2), "the first process came with its check"
+
+
+def test_what_is_learnt_about_one_point_corrects_the_others() -> None:
+    first, second, *_ = points("particles")
+    costs = Costs()
+    before = [costs.point(one) - SECONDS_PER_PROCESS for one in (first, second)]
+    costs.learn([first], [ProcessResult(5 * before[0])], 5 * before[0])
+    assert costs.point(second) == pytest.approx(5 * before[1] + SECONDS_PER_PROCESS)
+
+
+def test_a_missing_program_costs_nothing() -> None:
+    missing, built = points("compiler")
+    assert Costs().point(built) > 0
+    assert Costs().point(missing) == 0
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0, "about 1 s"),
+        (59.6, "about 60 s"),
+        (100, "about 2 min"),
+        (2400, "about 40 min"),
+        (7500, "about 2 h 05 min"),
+    ],
+)
+def test_durations_in_words(seconds: float, words: str) -> None:
+    assert about(seconds) == words
+
+
+def test_a_variant_is_checked_on_the_beginning_of_the_first_scene_of_its_name() -> None:
+    experiment = planned("ladder")
+    published = [point for point in experiment.points if point.variant == "published"]
+    assert {generated(point).steps for point in published} == {40, 20, 100, 4}
+    assert {point.scene_name: generated(representative(experiment, point)).steps for point in published} == {
+        "100k at 0.80": 20,
+        "100k at 0.91": 20,
+        "10k at 0.88": 20,
+        "1M at 0.80": 4,
+    }
+    sweep = planned("particles")
+    assert len({representative(sweep, point).scene for point in sweep.points}) == 1
+
+
+def test_a_hard_case_is_checked_to_its_end() -> None:
+    experiment = planned("hard_cases")
+    assert all(representative(experiment, point).scene is point.scene for point in experiment.points)
+
+
+def test_three_quarters_of_a_process_are_in_the_clock() -> None:
+    assert choose_runs(0.2, 0.04) == IN_THE_CLOCK * 5
+    assert choose_runs(0.01, 0.04) == 1
+    assert choose_runs(10.0, 0.04) == MOST_RUNS
+    assert choose_runs(4.0, 1.0) == MOST_SECONDS
+
+
+@given(st.floats(0, 10), st.floats(0, 100))
+def test_the_number_of_runs_keeps_its_bounds(fixed: float, run: float) -> None:
+    runs = choose_runs(fixed, run)
+    assert 1 <= runs <= MOST_RUNS
+    assert runs == 1 or runs * run <= 1.5 * MOST_SECONDS
+
+
+@pytest.fixture
+def both(workplace: Workplace) -> tuple[Point, ...]:
+    """Two points that take turns."""
+    return next(one.points for one in Study(workplace.settings).experiments if one.name == "pair")
+
+
+ENDED = ProcessResult(0.01, runs=(0.01,))
+
+
+def test_who_has_seen_nothing_of_a_group_makes_one_run_then_what_pays(both: tuple[Point, ...]) -> None:
+    costs = Costs()
+    assert costs.runs(both) == 1
+    costs.learn(both, [ENDED, ENDED], 0.2)
+    assert costs.runs(both) > 1, "a process costs more than its run"
+    assert costs.runs(both[:1]) == 1, "nobody to take turns with"
+
+
+def test_a_process_that_failed_tells_nothing(both: tuple[Point, ...]) -> None:
+    costs = Costs()
+    costs.learn(both, [ENDED, ProcessResult(None, "crashed")], 9.0)
+    assert costs.runs(both) == 1
