@@ -12,6 +12,7 @@
 #include "kernels/scene.hpp"
 #include "kernels/state.hpp"
 #include "kernels/step.hpp"
+#include "kernels/tests/all_pairs.hpp"
 
 namespace carom {
 
@@ -41,6 +42,16 @@ template <Policies policies> Outcome simulate(const Scene& scene, const Tuning& 
         work += carom::step<policies>(state, tuning, probe);
     }
     return {discs_by_number(state), work};
+}
+
+/// The same by the reference.
+inline Outcome simulate_all_pairs(const Scene& scene, const Policies& policies, const Tuning& tuning = {}) {
+    AllPairs reference(scene, policies, tuning);
+    Tally work;
+    for (int step = 0; step < scene.steps * tuning.substeps; ++step) {
+        work += reference.step();
+    }
+    return {reference.discs(), work};
 }
 
 inline bool same_bits(double one, double two) {

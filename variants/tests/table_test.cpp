@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -17,6 +18,15 @@ testing::AssertionResult in_table(const Policies& policies) {
         return testing::AssertionSuccess();
     }
     return testing::AssertionFailure() << name_of(policies).view() << " is not in the table";
+}
+
+TEST(Table, StartsWithThePublishedBest) {
+    EXPECT_EQ(table[0].neighbourhood, Neighbourhood::four);
+    EXPECT_EQ(table[0].order, Order::checkered);
+    EXPECT_EQ(table[0].self_contained, SelfContained::on);
+    EXPECT_EQ(table[0].direction, Direction::reverse);
+    EXPECT_EQ(table[0].find_schedule, Schedule::guided_chunk);
+    EXPECT_EQ(table[0].resolve_schedule, Schedule::guided_chunk);
 }
 
 TEST(Table, HasEverySingleFlipOfThePublishedBest) {
@@ -43,6 +53,13 @@ TEST(Table, HasWhatThePublishedGraphsCompare) {
     }
     for (const Order order : {Order::checkered, Order::row, Order::track, Order::repeat, Order::once}) {
         EXPECT_TRUE(in_table({.order = order, .direction = Direction::forward}));
+    }
+}
+
+TEST(Table, HoldsOnlyPossibleCombinationsEachOnce) {
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        EXPECT_EQ(impossible(table[i]), "") << name_of(table[i]).view();
+        EXPECT_EQ(std::ranges::count(table, table[i]), 1) << name_of(table[i]).view();
     }
 }
 
@@ -129,6 +146,14 @@ TEST(Ladder, ClimbsFromThePublishedBestOnePolicyARung) {
     }
     EXPECT_EQ(below.impact, Impact::step_end) << "the published step is what is climbed with";
     EXPECT_EQ(below.precision, Precision::double_) << "accuracy is not for sale";
+}
+
+TEST(Vary, CrossesACombinationWithTheValuesOfAnAxis) {
+    constexpr auto varied =
+        vary({.order = Order::row}, &Policies::direction, Direction::forward, Direction::reverse);
+    static_assert(varied.size() == 2);
+    EXPECT_EQ(varied[0], (Policies{.order = Order::row, .direction = Direction::forward}));
+    EXPECT_EQ(varied[1], (Policies{.order = Order::row, .direction = Direction::reverse}));
 }
 
 } // namespace

@@ -54,12 +54,47 @@ TEST(Generate, TakesTheLargestSeed) {
     EXPECT_EQ(state_hash(generate(arguments).discs), "f427abf1d782ca32");
 }
 
+TEST(Generate, GivesAnotherSceneForAnotherSeedAndTheSameForTheSame) {
+    EXPECT_TRUE(same_bits(generate(small(5)).discs, generate(small(5)).discs));
+    EXPECT_FALSE(same_bits(generate(small(5)).discs, generate(small(6)).discs));
+}
+
 TEST(Generate, PassesOnTheOtherArguments) {
     const Scene scene = generate(small(1));
     EXPECT_EQ(scene.side, 100);
     EXPECT_EQ(scene.radius, 1);
     EXPECT_EQ(scene.steps, 9);
     EXPECT_EQ(scene.discs.size(), 3u);
+}
+
+TEST(Generate, FillsTheRangesThatItIsGiven) {
+    GeneratorArguments arguments = small(2);
+    arguments.count = 20'000;
+    double sum_x = 0;
+    double sum_vx = 0;
+    for (const Disc& disc : generate(arguments).discs) {
+        for (const double position : {disc.x, disc.y}) {
+            ASSERT_GE(position, 0);
+            ASSERT_LT(position, 100);
+        }
+        for (const double velocity : {disc.vx, disc.vy}) {
+            ASSERT_GE(velocity, -2);
+            ASSERT_LE(velocity, 5);
+        }
+        sum_x += disc.x;
+        sum_vx += disc.vx;
+    }
+    EXPECT_NEAR(sum_x / arguments.count, 50, 1);
+    EXPECT_NEAR(sum_vx / arguments.count, 1.5, 0.07);
+}
+
+TEST(Generate, GivesEveryDiscTheSameVelocityInAnEmptyRange) {
+    GeneratorArguments arguments = small(3);
+    arguments.least_velocity = arguments.largest_velocity = 0.1;
+    for (const Disc& disc : generate(arguments).discs) {
+        EXPECT_EQ(disc.vx, 0.1);
+        EXPECT_EQ(disc.vy, 0.1);
+    }
 }
 
 } // namespace

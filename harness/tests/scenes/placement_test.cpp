@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -66,6 +67,18 @@ TEST(RandomPlacement, SaysWhatItReachedBeyondItsLimit) {
     EXPECT_LT(reached, 0.56);
 }
 
+TEST(RandomPlacement, SpreadsDiscsUniformly) {
+    const Scene scene = generate(at_fraction(0.3, 4000, Placement::random));
+    int left = 0;
+    int low = 0;
+    for (const Disc& disc : scene.discs) {
+        left += disc.x < scene.side / 2;
+        low += disc.y < scene.side / 2;
+    }
+    EXPECT_NEAR(left, 2000, 130);
+    EXPECT_NEAR(low, 2000, 130);
+}
+
 TEST(LatticePlacement, KeepsDiscsApartFromDiluteToDense) {
     for (const double fraction : {0.001, 0.3, 0.6, 0.8, 0.88}) {
         for (const int count : {1, 2, 3, 7, 100, 3000}) {
@@ -93,6 +106,14 @@ TEST(LatticePlacement, SaysHowManyDiscsFit) {
     EXPECT_EQ(refusal(fitting), "");
 }
 
+TEST(LatticePlacement, IsJittered) {
+    GeneratorArguments arguments = at_fraction(0.3, 100, Placement::lattice);
+    const Scene one = generate(arguments);
+    arguments.seed = 6;
+    EXPECT_NE(one.discs[0].x, generate(arguments).discs[0].x);
+    EXPECT_NE(one.discs[0].y, one.discs[1].y);
+}
+
 TEST(Placement, GivesTheSameDiscsOnEveryPlatform) {
     EXPECT_EQ(state_hash(generate(at_fraction(0.3, 1000, Placement::random)).discs), "18e8a3543017171d");
     GeneratorArguments arguments = at_fraction(0.7, 1000, Placement::lattice);
@@ -105,6 +126,28 @@ TEST(Placement, TakesNoDiscs) {
         GeneratorArguments arguments = at_fraction(0.3, 10, placement);
         arguments.count = 0;
         EXPECT_TRUE(generate(arguments).discs.empty());
+    }
+}
+
+TEST(IsotropicVelocities, PointEverywhereWithSpeedsInTheRange) {
+    GeneratorArguments arguments = at_fraction(0.3, 20'000, Placement::overlapping);
+    arguments.isotropic = true;
+    double sum_vx = 0;
+    double sum_speed = 0;
+    std::vector<int> octants(8);
+    for (const Disc& disc : generate(arguments).discs) {
+        const double speed = std::hypot(disc.vx, disc.vy);
+        ASSERT_GE(speed, 1 - 1e-15);
+        ASSERT_LE(speed, 2 + 1e-15);
+        sum_vx += disc.vx;
+        sum_speed += speed;
+        const double turn = std::atan2(disc.vy, disc.vx) / (2 * std::numbers::pi) + 0.5;
+        ++octants[static_cast<std::size_t>(std::min(turn * 8, 7.0))];
+    }
+    EXPECT_NEAR(sum_vx / 20'000, 0, 0.05);
+    EXPECT_NEAR(sum_speed / 20'000, 1.5, 0.01);
+    for (const int count : octants) {
+        EXPECT_NEAR(count, 2500, 250) << "five standard deviations";
     }
 }
 
