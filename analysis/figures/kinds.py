@@ -66,10 +66,9 @@ def forest(
     else:
         shade(axes, -100 * margin, 100 * margin, 0)
         axes.spines["left"].set_visible(False)
-        ratios = pd.DataFrame([(1 + np.array([one.value, one.low, one.high]) / 100) for one in dots])
-        axes.set_xlim(
-            *(100 * (end - 1) for end in reach(ratios.set_axis(["ratio", "low", "high"], axis=1), margin))
-        )
+        rows = [[1 + end / 100 for end in (one.value, one.low, one.high)] for one in dots]
+        ratios = pd.DataFrame(rows, columns=["ratio", "low", "high"])
+        axes.set_xlim(*(100 * (end - 1) for end in reach(ratios, margin)))
     for dot in dots:
         mark = {"color": dot.look.colour, "mfc": "white" if dot.is_hollow else dot.look.colour}
         point(axes, dot.value, dot.at, dot.look.marker, dot.name, dot.told, markersize=5, zorder=4, **mark)

@@ -20,12 +20,16 @@ _NO_SOURCE = re.compile(
 )
 """The names of files that go into no program: pages, tests, examples, settings of tools."""
 
+_LEADING = ("PYTHONPATH", "LD_LIBRARY_PATH", "LD_PRELOAD")
+"""Variables by which programs find parts of themselves."""
+
 
 def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, *, is_accepted: bool) -> None:
     """Raises InputError for a file that both commits run or read: one of the user's own checkout, or one that
     their builds wrote, which has changed since a time of the file system, in nanoseconds, as all that is in
     the trees has; and, unless that `is_accepted`, for a program from elsewhere beside nothing of the trees.
     """
+    _require_own(words[0], base, head, is_accepted=is_accepted)
     own, trees = base.repository.resolve(), base.top.resolve().parent
     of_base, of_head = (set(_read(words, tree.folder)) for tree in (base, head))
     folders = {(word, Path(word).resolve()) for word in _parts(words) if word.startswith("/")}
@@ -45,6 +49,23 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
         if absolute and not (is_accepted or _is_of_the_system(absolute)):
             raise InputError(f"{told}; expected a path inside it, or --same-bytes to compare all the same")
         warn(f"carom: {told}")
+
+
+def _require_own(word: str, base: Tree, head: Tree, *, is_accepted: bool) -> None:
+    """Raises InputError for a program on PATH beside one of that name in the trees, and for variables that
+    lead programs into the user's own checkout.
+    """
+    on_path = shutil.which(word) if "/" not in word else None
+    if on_path and is_file(head.folder / word) and not is_accepted:
+        told = f"found {word}, which is {on_path} for both commits; expected ./{word}"
+        raise InputError(f"{told}, which they have, or --same-bytes to compare all the same")
+    own, trees = base.repository.resolve(), base.top.resolve().parent
+    for name in _LEADING:
+        for part in filter(None, os.environ.get(name, "").split(os.pathsep)):
+            place = Path(part).resolve()
+            if part.startswith("/") and place.is_relative_to(own) and not place.is_relative_to(trees):
+                told = f"found {name}={part}, of your own checkout: both commits would use it"
+                raise InputError(f"{told}; expected a path from the checkout on, or none")
 
 
 def _is_of_the_system(word: str) -> bool:

@@ -33,6 +33,9 @@ VERDICTS = {
 
 def verdict(one: Difference, asked: Asked, *, of_value: bool = False) -> str:
     """What is known of a difference, with the margin as a share: `2 %`."""
+    is_enough = asked.one_sided and one.high is not None and one.high < 1 + asked.margin
+    if one.verdict == "inconclusive" and is_enough:
+        return f"not slower by more than {asked.margin * 100:g} %"
     return VERDICTS[one.verdict][of_value].format(f"{asked.margin * 100:g} %")
 
 

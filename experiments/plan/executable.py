@@ -34,13 +34,13 @@ def found(word: str, folder: Path) -> Path:
 
 def require_executable(word: str, folder: Path) -> None:
     """Raises UnfitError for a first word that names nothing that can be run, as far as can be seen."""
+    if "/" not in word and shutil.which(word) is None and is_file(folder / word):
+        raise UnfitError(f"is not on PATH; expected ./{word}, if the file of the folder is meant")
     path = found(word, folder)
     try:
         is_there = path.exists()
     except OSError as error:
         raise UnfitError(f"cannot be looked at: {error.strerror}") from error
-    if not is_there and "/" not in word and is_file(folder / word):
-        raise UnfitError(f"is not on PATH; expected ./{word}, if the file of the folder is meant")
     if not is_there:
         raise UnfitError("is a link to nothing" if path.is_symlink() else "is not there")
     if path.is_dir():

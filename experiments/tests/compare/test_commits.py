@@ -264,8 +264,27 @@ PROGRAMS = {
     "nothing of the checkout, on PATH": Case(
         SLOWER,
         0,
-        ("both commits use true, and nothing that the command names lies in the checkout", PASSED),
-        run=("true",),
+        ("both commits use echo, and nothing that the command names lies in the checkout", PASSED),
+        run=("echo", "took 5 ms"),
+    ),
+    "of the checkout, and of that name on PATH": Case(
+        f"{SLOWER} mkdir HERE/on-path && cp prog.in HERE/on-path/prog && chmod +x HERE/on-path/prog",
+        1,
+        ("found prog, which is HERE/on-path/prog for both commits; expected ./prog",),
+        run=("prog",),
+        env={"PATH": f"HERE/on-path:{os.environ['PATH']}"},
+    ),
+    "built in the user's own checkout, by its bare name": Case(
+        f"{SLOWER} echo prog >.git/info/exclude && cp prog.in prog && chmod +x prog",
+        1,
+        (': found "prog", which is not on PATH; expected ./prog',),
+        run=("prog",),
+    ),
+    "a variable that leads into the user's own checkout": Case(
+        SLOWER,
+        1,
+        ("found PYTHONPATH=HERE/a repository/src, of your own checkout: both commits would use it",),
+        env={"PYTHONPATH": "HERE/a repository/src"},
     ),
     "installed, one commit": Case(START, 0, (PASSED,), build=INSTALL, run=("HERE/fixed/prog",)),
     "installed on PATH": Case(
