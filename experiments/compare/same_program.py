@@ -11,6 +11,7 @@ from experiments.compare.commands import words_in, words_of_script
 from experiments.compare.worktrees import Tree, git
 from experiments.plan.executable import is_file
 from experiments.run.progress import warn
+from experiments.support.process import run
 from support.errors import InputError
 
 _NO_SOURCE = re.compile(
@@ -37,8 +38,10 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
         if path.exists() and path.is_relative_to(own) and not path.is_relative_to(trees):
             told = "of your own checkout: both commits would use it"
             raise InputError(f"found {word}, {told}; expected a path inside the checkout, such as ./prog")
-    for word, path in sorted(of_head):
-        if (word, path) in of_base and path.stat().st_ctime_ns > since:
+    loaded = {one for _, path in of_head if path.is_relative_to(trees) for one in _libraries(path)}
+    elsewhere = {(str(path), path) for path in loaded if not path.is_relative_to(trees)}
+    for word, path in sorted((of_head & of_base) | elsewhere):
+        if path.stat().st_ctime_ns > since:
             found = word if word == str(path) else f"{word}, which is {path}"
             told = "written by the builds: both commits would use what was built last"
             raise InputError(f"found {found}, {told}; expected a path inside the checkout, such as ./prog")
@@ -113,6 +116,13 @@ def _read(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:
     for word, path in _named(words, folder):
         yield word, path
         yield from _named([one for one in words_of_script(path) if "/" in one], folder)
+
+
+def _libraries(path: Path) -> Iterator[Path]:
+    """The shared libraries that a program would load, as far as the loader tells."""
+    if (ldd := shutil.which("ldd")) is not None and path.read_bytes()[:4] == b"\x7fELF":
+        for file in re.findall(r"=> (/\S.*) \(", run([ldd, os.fspath(path)], time_limit=10.0).output):
+            yield Path(file).resolve()
 
 
 def _parts(words: Sequence[str]) -> list[str]:

@@ -54,6 +54,11 @@ printf '#!/bin/sh\\necho took %s ms\\n' $took >prog && chmod +x prog
 INSTALL = "mkdir -p HERE/fixed && cp prog.in HERE/fixed/prog && chmod +x HERE/fixed/prog"
 """Into a place that both builds share."""
 
+LIBRARY = """set -e; mkdir -p HERE/fixed
+echo 'int w(void) { return 0; }' | gcc -xc -shared -fPIC -o HERE/fixed/libw.so -
+echo 'int w(void); int main(void) { return w(); }' |
+    gcc -xc - -xnone -LHERE/fixed -lw -Wl,-rpath,HERE/fixed -o prog
+"""
 CURRENT = f"{COPY} && ln -sfn $PWD HERE/current"
 ONCE = f"[ -e HERE/once ] || cp prog.in HERE/once; cp HERE/once prog.in && {COPY}"
 """As with a build folder that both builds share: the second one finds nothing to do."""
@@ -330,6 +335,12 @@ PROGRAMS = {
         (f"found HERE/fixed/prog, {SHARED}",),
         build=f"{INSTALL} && {COPY}",
         run=("env", "LD_PRELOAD=HERE/fixed/prog", "./prog"),
+    ),
+    "a library that the builds install": Case(
+        f"{START} git checkout -q -b branch && prints 150 && commit slower",
+        1,
+        (f"found HERE/fixed/libw.so, {SHARED}",),
+        build=LIBRARY,
     ),
     "a link out of the tree": Case(
         SLOWER,
