@@ -16,7 +16,7 @@ def main() -> int:
     """Run a verb; returns its exit code. Bad input is one line on standard error and 1."""
     stop_at_signals()
     print_anything()
-    return exit_code_of(_run, "nothing is left behind")
+    return exit_code_of(_run, "no half-written file is left")
 
 
 def _run() -> int:

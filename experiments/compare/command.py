@@ -81,8 +81,10 @@ def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[i
         said = result(found)
         try:
             # First what is kept: the terminal may be gone.
-            earlier.keep(course.blocks, course.how)
-            exports.write(found, said, say(found.answer), lambda: draw(judge))
+            try:
+                earlier.keep(course.blocks, course.how)
+            finally:
+                exports.write(found, said, say(found.answer), lambda: draw(judge))
         finally:
             exports.tell(said, asked.exports)
     code = _exit_code(course.blocks, found, stopped)
@@ -141,7 +143,8 @@ def _remarks(course: Course, by_wall: Sequence[Difference]) -> tuple[str, ...]:
     if any(one.has_shell for one in asked.commands):
         took = duration(shell_seconds())
         remarks.append(
-            f"a shell starts lines that are more than plain words; its start takes {took}, and counts"
+            f"a shell starts lines that are more than plain words or have an input; its start takes {took}, "
+            "and counts"
         )
     return tuple(remarks)
 

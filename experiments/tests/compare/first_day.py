@@ -142,6 +142,11 @@ CASES = (
         ("--append: found a-{x}, expected one file for all commands",), code=1, not_left=("a-{x}",),
     ),
     Case(
+        LISTS, "a placeholder in a variable that nobody fills in", "refused",
+        ("-L", "x", "1,2", "--env", "A={y}", "sleep 0.0{x}"),
+        ("--env: found {y}, expected a list or range of that name",), code=1,
+    ),
+    Case(
         TIMED, "runs of one command with unlike exit codes", "not compared; how many ended with which",
         ("--ignore-exit", "4", "./a", "./b"), ("a: failed", "with exit code 0", "with exit code 4"),
         code=2, time="10s",

@@ -8,7 +8,16 @@ from pathlib import Path
 
 import pytest
 
-from experiments.tests.compare.calls import TOOK, left_behind, needs_the_program, printed, run, script
+from experiments.tests.compare.calls import (
+    CAROM,
+    TOOK,
+    left_behind,
+    needs_the_program,
+    printed,
+    run,
+    script,
+)
+from experiments.tests.small_disk import run_on_small_disk
 
 pytestmark = needs_the_program
 
@@ -80,6 +89,14 @@ def test_a_file_of_something_else_is_no_earlier_call(folder: Path, content: str,
     assert done.returncode == 1
     assert f"--append: kept.json: {told}" in done.stderr
     assert (folder / "kept.json").read_text(encoding="utf-8") == content
+
+
+def test_an_export_is_written_although_the_file_to_go_on_with_has_no_room(folder: Path) -> None:
+    words = [str(CAROM), "compare", "-q", "--time", "1ms", "./short", "./long", "--export-json", "a.json"]
+    line = 'TMPDIR=tmp "$@" --append full/kept.json; test $? = 1'
+    said = run_on_small_disk(folder / "full", "4k", folder, f"shift; {line}", *words)
+    assert "full/kept.json: No space left on device" in said
+    assert json.loads((folder / "a.json").read_text(encoding="utf-8"))["blocks"] == 1
 
 
 def test_a_page_has_the_verdict_and_its_picture(folder: Path) -> None:
