@@ -2,7 +2,8 @@
 
 import argparse
 import shlex
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,6 +12,7 @@ from experiments.compare import exports, values
 from experiments.compare.answer import Answer
 from experiments.compare.command import WITHDRAWN, measured
 from experiments.compare.commands import WORDS, Compared, split_off
+from experiments.compare.course import Line
 from experiments.compare.options import add_measuring, asked_of, read, with_cases
 from experiments.compare.same_program import require_two_files, require_two_programs
 from experiments.compare.worktrees import Commit, Repository, Tree, build, repository
@@ -74,7 +76,9 @@ def _built(options: argparse.Namespace, run: Sequence[str], stack: ExitStack) ->
     for name, commit in commits.items():
         trees[name] = stack.enter_context(where.checked_out(commit, folder / name))
         if options.build is not None:
-            build(options.build, trees[name])
+            with Line(options.quiet) as shown:
+                shown.show(_since(f"builds {name} {commit.short}"))
+                build(options.build, trees[name])
     if commits["base"].sha != commits["head"].sha:
         require_two_files(run, trees["base"], trees["head"], since, is_accepted=options.same_bytes)
         if not options.same_bytes:
@@ -84,6 +88,12 @@ def _built(options: argparse.Namespace, run: Sequence[str], stack: ExitStack) ->
         Compared(name, words, line, folder=tree.folder, time_from=pattern, called=name)
         for name, tree in ((f"{name} {tree.commit.short}", tree) for name, tree in trees.items())
     )
+
+
+def _since(what: str) -> Callable[[], str]:
+    """What is done, with the seconds since it began."""
+    began = time.monotonic()
+    return lambda: f"{what}, {time.monotonic() - began:.0f} s"
 
 
 @dataclass(frozen=True)

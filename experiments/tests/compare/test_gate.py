@@ -3,6 +3,7 @@
 import os
 import signal
 import subprocess
+import termios
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -62,6 +63,21 @@ def require_untouched(repository: Path) -> None:
     assert left_behind(repository.parent) == []
     assert git(repository, "worktree", "list").count("\n") == 0
     assert git(repository, "status", "--porcelain") == ""
+
+
+@needs_the_program
+def test_a_build_is_told_of_on_a_terminal(repository: Path) -> None:
+    ours, theirs = os.openpty()
+    termios.tcsetwinsize(theirs, (24, 80))
+    words = [CAROM, "gate", "--base", "base", "--build", "sleep 1.2; false", "--", "./program"]
+    env = {**os.environ, "TERM": "xterm", "TMPDIR": str(repository.parent / "tmp")}
+    with subprocess.Popen(words, cwd=repository / "sub", env=env, stderr=theirs) as child:
+        os.close(theirs)
+    shown = os.read(ours, 65536)
+    os.close(ours)
+    assert child.returncode == 1
+    assert b"builds base" in shown
+    assert b", 1 s" in shown
 
 
 @needs_the_program
