@@ -69,7 +69,7 @@ def require_untouched(repository: Path) -> None:
 def test_a_build_is_told_of_on_a_terminal(repository: Path) -> None:
     ours, theirs = os.openpty()
     termios.tcsetwinsize(theirs, (24, 80))
-    words = [CAROM, "gate", "--base", "base", "--build", "sleep 1.2; false", "--", "./program"]
+    words = [str(CAROM), "gate", "--base", "base", "--build", "sleep 1.2; false", "--", "./program"]
     env = {**os.environ, "TERM": "xterm", "TMPDIR": str(repository.parent / "tmp")}
     with subprocess.Popen(words, cwd=repository / "sub", env=env, stderr=theirs) as child:
         os.close(theirs)
