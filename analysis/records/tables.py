@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from analysis.records.joint_turns import PLACES
 from analysis.statistics.pairs import rounds_of, runs_of
 from analysis.statistics.turns import excess
 
@@ -53,7 +54,7 @@ CONTEXT = [
 ]  # fmt: skip
 OF_PARTS = {
     "runs": [*WORK, *ERRORS, *CHECKS],
-    "times": ["lost_by_turns", "stops", "own_seconds", "steps_seconds", _RUNS, _ROUNDS, "places"],
+    "times": ["lost_by_turns", "stops", "own_seconds", "steps_seconds", _RUNS, _ROUNDS, PLACES],
     "trajectory": ["time", "rms_distance"],
     "phases": ["phase", "wall_seconds", "serial_seconds"],
     "threads": ["phase", "thread", "busy_seconds", "waiting_seconds"],
@@ -180,7 +181,7 @@ def times(record: Record) -> Iterable[Row]:
         "steps_seconds": float(np.median(seconds)),
         _RUNS: seconds,
         _ROUNDS: np.array(turns["seconds"] if "rounds" in turns else [], dtype=float),
-        "places": np.array(turns.get("places", ()), dtype=np.int64),
+        PLACES: np.array(turns.get("places", ()), dtype=np.int64),
     }
 
 

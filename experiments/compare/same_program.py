@@ -30,10 +30,15 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
     their builds wrote, which has changed since a time of the file system, in nanoseconds, as all that is in
     the trees has; and, unless that `is_accepted`, for a program from elsewhere beside nothing of the trees.
     """
-    _require_own(words[0], base, head, is_accepted=is_accepted)
+    if not is_accepted:
+        _require_own(words[0], head)
     own, trees = base.repository.resolve(), base.top.resolve().parent
     of_base, of_head = (set(_read(words, tree.folder)) for tree in (base, head))
-    folders = {(word, Path(word).resolve()) for word in _parts(words) if word.startswith("/")}
+    led = [
+        (f"{name}={part}", part) for name in _LEADING for part in os.environ.get(name, "").split(os.pathsep)
+    ]
+    named = [*((word, word) for word in _parts(words)), *led]
+    folders = {(told, Path(path).resolve()) for told, path in named if path.startswith("/")}
     for word, path in sorted(of_head | folders):
         if path.exists() and path.is_relative_to(own) and not path.is_relative_to(trees):
             told = "of your own checkout: both commits would use it"
@@ -46,29 +51,20 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
             told = "written by the builds: both commits would use what was built last"
             raise InputError(f"found {found}, {told}; expected a path inside the checkout, such as ./prog")
     absolute = next((word for word, _ in sorted(of_head) if word.startswith("/")), None)
-    named = absolute or next((word for word, _ in sorted(of_head)), None)
-    if named and not any(path.is_relative_to(trees) for _, path in of_head):
-        told = f"both commits use {named}, and nothing that the command names lies in the checkout"
+    first = absolute or next((word for word, _ in sorted(of_head)), None)
+    if first and not any(path.is_relative_to(trees) for _, path in of_head):
+        told = f"both commits use {first}, and nothing that the command names lies in the checkout"
         if absolute and not (is_accepted or _is_of_the_system(absolute)):
             raise InputError(f"{told}; expected a path inside it, or --same-bytes to compare all the same")
         warn(f"carom: {told}")
 
 
-def _require_own(word: str, base: Tree, head: Tree, *, is_accepted: bool) -> None:
-    """Raises InputError for a program on PATH beside one of that name in the trees, and for variables that
-    lead programs into the user's own checkout.
-    """
+def _require_own(word: str, tree: Tree) -> None:
+    """Raises InputError for a program on PATH beside one of that name in a tree."""
     on_path = shutil.which(word) if "/" not in word else None
-    if on_path and is_file(head.folder / word) and not is_accepted:
+    if on_path and is_file(tree.folder / word):
         told = f"found {word}, which is {on_path} for both commits; expected ./{word}"
         raise InputError(f"{told}, which they have, or --same-bytes to compare all the same")
-    own, trees = base.repository.resolve(), base.top.resolve().parent
-    for name in _LEADING:
-        for part in filter(None, os.environ.get(name, "").split(os.pathsep)):
-            place = Path(part).resolve()
-            if part.startswith("/") and place.is_relative_to(own) and not place.is_relative_to(trees):
-                told = f"found {name}={part}, of your own checkout: both commits would use it"
-                raise InputError(f"{told}; expected a path from the checkout on, or none")
 
 
 def _is_of_the_system(word: str) -> bool:

@@ -17,8 +17,9 @@ _MINUTE, _HOUR = 60.0, 3600.0
 _LARGER = (
     r"(?:([0-9]+)[ \t]*(?:h|hrs?|hours?)(?:[ \t,]|and)*)?"
     r"(?:([0-9]+)[ \t]*(?:m|mins?|minutes?)(?:[ \t,]|and)*)?"
+    r"(?:([0-9]+)[ \t]*s(?:ec(?:ond)?s?)?[ \t]*)?"
 )
-"""Whole hours and minutes in front of what is left."""
+"""Whole hours, minutes and seconds in front of what is left."""
 _BEFORE_SECONDS, _BEFORE_GROUP = re.compile(f"{_LARGER}(?=[0-9])"), re.compile(f"{_LARGER}$")
 _CLOCK = re.compile(r"[1-9][0-9]*:(?:[0-9]+:)?[0-9]{2}(?:[.,][0-9]+)?$")
 
@@ -147,23 +148,24 @@ def _read_number(text: str) -> _Reading:
 
 
 def _seconds_of_larger_units(found: re.Match[str] | None) -> float:
-    return 0.0 if found is None else _HOUR * float(found[1] or 0) + _MINUTE * float(found[2] or 0)
+    if found is None:
+        return 0.0
+    hours, minutes, seconds = (float(one or 0) for one in found.groups())
+    return _HOUR * hours + _MINUTE * minutes + seconds
 
 
 def _read_time(text: str) -> _Reading:
-    """Of hours, minutes and seconds in a row, their sum."""
+    """Of hours, minutes, seconds and less in a row, their sum."""
     larger = _BEFORE_SECONDS.match(text)
     if larger and larger[0]:
         last = _read_number(text[larger.end() :])
-        if last.value is not None and last.unit and 1 <= last.unit < (_MINUTE if larger[2] else _HOUR):
+        least, below = (0.0, 1.0) if larger[3] else (1.0, _MINUTE if larger[2] else _HOUR)
+        if last.value is not None and last.unit and least <= last.unit < below:
             # What may be thousands are decimals here, as bash's time prints them where a locale has commas.
             value = last.value / (1000 if _AMBIGUOUS.fullmatch(last.number) else 1)
             seconds = _seconds_of_larger_units(larger) + value * last.unit
             return _Reading(last.rest, larger[0] + last.number, seconds, 1.0)
     one = _read_number(text)
-    smaller = _read_number(one.rest.lstrip(" \t"))
-    if one.unit and smaller.unit and smaller.unit < one.unit:  # 2 s 300 ms
-        return replace(one, number=f"{one.number} and more")
     if text.endswith(f"m{one.rest}"):  # metres, for all we know
         return replace(one, rest=text[len(one.number) :], unit=None)
     return one
@@ -200,15 +202,15 @@ def _is_cut(group: _Group, read: _Reading, behind: str, pattern: str) -> bool:
     """Whether what the group takes is only a part of a longer number, or of a longer time. `behind` is what
     may go on, nothing if the pattern says what does.
     """
-    has_larger_units = _seconds_of_larger_units(_BEFORE_GROUP.search(group.before)) > 0 or _CLOCK.search(
-        group.before + read.number
-    )
+    before = _BEFORE_GROUP.search(group.before)
+    is_of_seconds = (read.unit or 1.0) >= 1.0 or (before is not None and before[3] is not None)
+    is_last = _seconds_of_larger_units(before) > 0 or _CLOCK.search(group.before + read.number)
     return bool(
         len(read.number) > len(group.text)
         or (len(read.number) == len(group.text) and _GOES_ON.match(behind))
         or (_HAS_BEGUN.search(group.before) and not _says(pattern, group.before[-1], is_before=True))
         or _may_have_thousands(group, read.number, pattern)
-        or ((read.unit or 1.0) >= 1.0 and has_larger_units)
+        or (is_of_seconds and is_last)
     )
 
 

@@ -152,7 +152,7 @@ def finish(process: "subprocess.Popen[str]") -> tuple[int, str, str]:
 
 def hear_every_signal() -> None:
     """Tests may themselves run under `nohup`, or in the background of a shell."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(number, signal.SIG_DFL)
 
 

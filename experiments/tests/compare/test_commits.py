@@ -286,7 +286,7 @@ PROGRAMS = {
         run=("prog",),
     ),
     "a variable that leads into the user's own checkout": Case(
-        SLOWER,
+        f"{SLOWER} mkdir src",
         1,
         ("found PYTHONPATH=HERE/a repository/src, of your own checkout: both commits would use it",),
         env={"PYTHONPATH": "HERE/a repository/src"},
