@@ -29,7 +29,7 @@ from experiments.support.descendants import children, end_all_but
 from experiments.support.places import BUILDS, analysis
 from experiments.support.process import Coprocess
 from experiments.support.vanishing import marked, vanishing_folder
-from support.errors import InputError
+from support.errors import InputError, Interrupted
 from support.vocabulary import AGAIN, ASKED, WALL
 
 COMMAND_FAILED, WITHDRAWN = 2, 5
@@ -165,6 +165,10 @@ def _set_up(asked: Asked, folder: Path) -> Iterator[None]:
 
 def _once(option: str, lines: Sequence[str], folder: Path) -> None:
     for line in lines:
-        done = process.run(("sh", "-c", line), marked(os.environ, folder), ends_all=False)
+        try:
+            done = process.run(("sh", "-c", line), marked(os.environ, folder), ends_all=False)
+        except Interrupted:
+            warn(f"carom: {option}: {line}: was stopped before its end")
+            raise
         if done.exit_code != 0:
             raise InputError(f"{option}: {line}: {done.reason}")

@@ -158,6 +158,8 @@ def _names(options: argparse.Namespace, written: Sequence[_Written]) -> list[str
     else:
         told = f"found {number} names for {several(len(written), 'command')}, expected one for each"
         raise InputError(told)
+    for name in names:
+        require_filled("-n", name)
     _require_names(names, "-n: found")
     return names
 

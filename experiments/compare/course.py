@@ -135,6 +135,9 @@ class Course:
         """One run of each by itself, which tells how they are to be measured; it counts where that is so."""
         asked, blocks = self.asked, self.blocks
         require_alike(asked)
+        if asked.warm_up:
+            runs = (asked.warm_up + 1) * len(blocks.experiment.points)
+            warn(f"carom: --warmup: the first block is {runs} runs, however long they take")
         line.show(lambda: f"one run of each, {blocks.seconds:.0f} s")
         for name in unstoppable(asked):
             warn(f"carom: {name}: runs as another user, so that it can be neither stopped nor ended here")
@@ -194,7 +197,9 @@ class Course:
         left = asked.seconds - blocks.seconds
         told = f"{several(blocks.done, 'block')}, {blocks.seconds:.0f} s"
         if not answer.commands:
-            return f"{told}; a first interval in {about((answer.next - blocks.done) * blocks.seconds_each)}"
+            until = (answer.next - blocks.done) * blocks.seconds_each
+            kept = f"; --time leaves {about(max(0.0, left))}" if until > left else ""
+            return f"{told}; a first interval in {about(until)}{kept}"
         worst = min(answer.commands, key=lambda one: one.is_settled)
         known = f"{told}; {asked.cases[worst.case] if asked.cases else worst.name} {change(worst)}"
         if answer.needed is None:

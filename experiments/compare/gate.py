@@ -16,6 +16,7 @@ from experiments.compare.course import Line
 from experiments.compare.options import add_measuring, asked_of, read, with_cases
 from experiments.compare.same_program import require_two_files, require_two_programs
 from experiments.compare.worktrees import Commit, Repository, Tree, build, repository
+from experiments.plan.executable import found
 from experiments.run.progress import warn
 from experiments.support.vanishing import vanishing_folder
 from support.command_line import Parser
@@ -55,12 +56,14 @@ def gate(arguments: Sequence[str]) -> int:
 def _commits(options: argparse.Namespace, where: Repository) -> dict[str, Commit]:
     """What is compared with, and what is judged; says what may be unexpected of them. Raises InputError."""
     base, head = where.commit(options.base, "--base"), where.commit(options.head, "--head")
+    committed = ""
     if base.sha == head.sha:
         warn(f"carom: {base.name} and {head.name} are the same commit, {head.short}: it is measured twice")
+        committed = f": commit it first, then --base {head.short}"
     elif not options.base_exactly:
         base = where.merge_base(base, head)
     if where.is_changed:
-        warn("carom: what is not committed is not measured")
+        warn(f"carom: what is not committed is not measured{committed}")
     return {"base": base, "head": head}
 
 
@@ -79,6 +82,9 @@ def _built(options: argparse.Namespace, run: Sequence[str], stack: ExitStack) ->
             with Line(options.quiet) as shown:
                 shown.show(_since(f"builds {name} {commit.short}"))
                 build(options.build, trees[name])
+        elif not found(run[0], trees[name].folder).exists():
+            told = f"found {run[0]}, which is not there; expected --build LINE if it is to be built"
+            raise InputError(f"{name} {commit.short}: {told}")
     if commits["base"].sha != commits["head"].sha:
         require_two_files(run, trees["base"], trees["head"], since, is_accepted=options.same_bytes)
         if not options.same_bytes:

@@ -221,7 +221,7 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
     told = "a regular expression with one group: the time that a command prints, in the unit that it prints"
     add("--time-from", metavar="REGEX", help=told)
     told = "of printed times that have no unit: ns, us, ms, s, min or h"
-    add("--unit", choices=tuple(SECONDS_OF_UNIT), metavar="UNIT", help=told)
+    add("--unit", type=values.unit, choices=tuple(SECONDS_OF_UNIT), metavar="UNIT", help=told)
     told = "the commands are Google Benchmarks, whose cases are paired by name (default: it is found out)"
     add("--gb", action=argparse.BooleanOptionalAction, help=told)
     add("--filter", metavar="REGEX", help="the cases whose names match (default: all)")

@@ -42,7 +42,7 @@ def verdict(one: Difference, asked: Asked, *, of_value: bool = False) -> str:
 def duration(seconds: float) -> str:
     """A time with three digits in the unit that suits it."""
     size, unit = next(((size, unit) for size, unit in _UNITS if seconds >= size), _UNITS[-1])
-    return f"{seconds / size:.3g} {unit}"
+    return f"{seconds / size:.3g} {unit}" if seconds < 999.5 else f"{seconds:.0f} {unit}"
 
 
 def memory(amount: float) -> str:
@@ -57,10 +57,7 @@ def result(found: Found) -> list[str]:
     lines += [f"  {_control(found)}"] if answer.controls else []
     lines.append(f"  {_how_long(found)}")
     if asked.cases and not answer.commands:
-        first = {case: found.runs[asked.reference, case] for case in range(len(asked.cases))}
-        lines += table(
-            [[asked.cases[at], duration(one.median("seconds"))] for at, one in first.items() if one.seconds]
-        )
+        lines += table([[name, *_times(found, case)] for case, name in enumerate(asked.cases)])
     if not asked.cases:
         measured = [one.name for one in asked.commands if found.runs[one.name, 0].seconds]
         lines += table([[name, *_resources(found.runs[name, 0])] for name in measured])
@@ -88,6 +85,12 @@ def row(one: Difference, found: Found) -> list[str]:
     times = [duration(found.runs[name, one.case].median("seconds")) for name in (asked.reference, one.name)]
     whose = f" ({one.name})" if len(asked.commands) > 2 else ""
     return [asked.cases[one.case] + whose, " → ".join(times), change(one), said]
+
+
+def _times(found: Found, case: int) -> list[str]:
+    """The time of a case by each command that has one."""
+    of_all = ((one.name, found.runs[one.name, case]) for one in found.asked.commands)
+    return [f"{name} {duration(runs.median('seconds'))}" for name, runs in of_all if runs.seconds]
 
 
 def hindered(by_wall: Sequence[Difference]) -> str:

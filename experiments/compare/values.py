@@ -67,6 +67,11 @@ def turns(text: str) -> tuple[bool | None, float | None]:
     return True, seconds
 
 
+def unit(text: str) -> str:
+    """A unit with the letter u where it is written with a Greek one."""
+    return re.sub("[\N{MICRO SIGN}\N{GREEK SMALL LETTER MU}]", "u", text)
+
+
 def count(text: str, least: int = 0) -> int:
     """A whole number, of at most six digits."""
     if not (text.isascii() and text.isdigit()) or len(text) > _MOST_DIGITS or int(text) < least:

@@ -40,7 +40,7 @@ def cases(
         candidates = [line for line in dict.fromkeys(listed) if line not in noise]
         names = [line for line in candidates if _is_case(lines, line, len(noise))]
     if not names:
-        beside = f"; it prints {quoted(noise[0])} whatever the filter" if noise else ""
+        beside = f"; it prints {quoted(noise[0])} whatever the filter" if noise else _broken(pattern)
         raise InputError(f"{key}.filter: found {quoted(pattern)}, which no case matches{beside}")
     for name in names:
         if "\N{REPLACEMENT CHARACTER}" in name:
@@ -72,6 +72,15 @@ def _matches(pattern: str, line: str) -> bool:
         return "(?" in pattern or "[[" in pattern or re.search(pattern, line) is not None
     except re.error:
         return True
+
+
+def _broken(pattern: str) -> str:
+    """What is wrong with a filter, by Python's rules; nothing of one that is right."""
+    try:
+        re.compile(pattern)
+    except re.error as error:
+        return f": as a regular expression it has a fault: {error}"
+    return ""
 
 
 def _lines(

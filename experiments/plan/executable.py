@@ -29,7 +29,8 @@ class UnfitError(Exception):
 
 def found(word: str, folder: Path) -> Path:
     """The file that a first word names: below the folder if it has a slash, else on PATH."""
-    return (folder / word if "/" in word else Path(shutil.which(word) or word)).absolute()
+    on_path = None if "/" in word else shutil.which(word)
+    return (Path(on_path) if on_path else folder / word).absolute()
 
 
 def require_executable(word: str, folder: Path) -> None:

@@ -27,7 +27,9 @@ _NUMBER = re.compile(r"(?:[0-9]+(?:[.,][0-9]+)*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _MICRO = "\N{MICRO SIGN}\N{GREEK SMALL LETTER MU}\N{REPLACEMENT CHARACTER}"
 """Of Latin-1 it is a byte that is no UTF-8."""
 _BLANK = "[ \t\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{THIN SPACE}]"
-_UNIT = re.compile(f"{_BLANK}*([{_MICRO}]?[A-Za-z]+)(?![A-Za-z_0-9\u00c0-\u00ff])")
+_SPREAD = rf"(?:{_BLANK}*(?:\N{{PLUS-MINUS SIGN}}|\+/?-){_BLANK}*[0-9.,]+)?"
+"""What may stand between a number and its unit: 12 ± 3 ms."""
+_UNIT = re.compile(rf"{_SPREAD}{_BLANK}*[(\[]?([{_MICRO}]?[A-Za-z]+)(?![A-Za-z_0-9\u00c0-\u00ff])[)\]]?")
 _SECOND = "s(?:ec(?:ond)?s?)?"
 _UNITS = (
     (_SECOND, 1.0), (f"m(?:illi)?{_SECOND}", 1e-3), (f"(?:u|micro|[{_MICRO}]){_SECOND}", 1e-6),
@@ -47,7 +49,7 @@ _ONE_TO_THREE, _THREE_MORE = re.compile(r"[1-9][0-9]{0,2}"), re.compile(r" [0-9]
 _BLANK_BEFORE_GROUP, _BLANK_BEHIND_GROUP = re.compile(r"(?: |\\s)[+*]?\("), re.compile(r"\)(?: |\\s)")
 
 _OTHER_UNIT = re.compile(
-    r"[ \t]*(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b|[mMuUnN]?[sS]\b|[mMhHdD]\b|(?:days?|weeks?)\b)"
+    rf"{_SPREAD}[ \t]*[(\[]?(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b|[mMuUnN]?[sS]\b|[mMhHdD]\b|(?:days?|weeks?)\b)"
 )
 """What is no time, or none that is understood: a capital makes another unit of a short one."""
 _LETTERS = re.compile("([A-Za-z]{1,3})(?![A-Za-z])")

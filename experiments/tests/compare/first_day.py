@@ -117,6 +117,25 @@ CASES = (
         ("found '1' within a longer number in 'took 1 234 ms'",), code=2,
         files=_prints("1 234 ms", "1 234 ms"),
     ),
+    _read("a unit behind a spread, and --unit", "500\u00b120 ms", "1 s", "+100.0", "--unit", "h"),
+    _read("--unit with a Greek letter", "1", "2", "+100.0", "--unit", "\u00b5s"),
+    Case(
+        LISTS, "a name with a placeholder that nobody fills in", "refused",
+        ("-n", "x {g}", "-n", "y", "true", "ls"), ("-n: found {g}, expected a list or range of that name",),
+        code=1,
+    ),
+    Case(
+        TIME, "runs that come before each timed one", "how many the first block has is said before it",
+        ("--warmup", "2", "true", "ls"), ("--warmup: the first block is 9 runs, however long they take",),
+        code=None,
+    ),
+    Case(
+        ENDS, "a signal while --cleanup runs", "a line that says that it was stopped",
+        ("--cleanup", "touch began; sleep 20; touch ended", "true", "ls"),
+        ("carom: --cleanup: touch began; sleep 20; touch ended: was stopped before its end", "  true  "),
+        code=143, left=("began",), not_left=("ended",), time="1ms",
+        through='"$@" & while ! [ -e began ]; do sleep 0.1; done; kill -TERM $!; wait $!',
+    ),
     Case(
         WRITTEN, "an export into a folder that is not there", "refused before anything is measured",
         ("--export-csv", "nowhere/x", "true", "ls"),

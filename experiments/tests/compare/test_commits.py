@@ -114,6 +114,11 @@ COMMITS = {
         f"{FASTER} git checkout -q --detach main~1", 3, (FAILED,), ("--base-exactly",)
     ),
     "one commit": Case(START, 0, ("main and HEAD are the same commit, ", ": it is measured twice", PASSED)),
+    "one commit, and something that is not committed": Case(
+        f"{START} echo x >>prog.in",
+        0,
+        ("what is not committed is not measured: commit it first, then --base ", PASSED),
+    ),
     "nothing in common": Case(
         f"{SLOWER} git checkout -q --orphan other && commit other",
         1,
@@ -285,6 +290,19 @@ PROGRAMS = {
         (': found "prog", which is not on PATH; expected ./prog',),
         run=("prog",),
     ),
+    "in the user's own checkout alone, by its bare name": Case(
+        f"{SLOWER} echo prog >.git/info/exclude && cp prog.in prog && chmod +x prog",
+        1,
+        (': found "prog", which is not there; expected a program on PATH',),
+        build="true",
+        run=("prog",),
+    ),
+    "not built": Case(
+        f"{SLOWER} echo prog >.git/info/exclude && cp prog.in prog && chmod +x prog",
+        1,
+        (": found ./prog, which is not there; expected --build LINE if it is to be built",),
+        build="",
+    ),
     "a variable that leads into the user's own checkout": Case(
         f"{SLOWER} mkdir src",
         1,
@@ -405,7 +423,8 @@ def test_what_is_done_is_answered(tmp_path: Path, case: Case) -> None:
     )
     folder = Path(made.stdout.splitlines()[-1])
     before = state(tmp_path, env)
-    words = ["gate", "--base", "main", *case.options, "--build", case.build, *TOOK, "--", *case.run]
+    build = ("--build", case.build) if case.build else ()
+    words = ["gate", "--base", "main", *case.options, *build, *TOOK, "--", *case.run]
     env_of_case = {name: value.replace("HERE", str(tmp_path)) for name, value in case.env.items()}
     words = [word.replace("HERE", str(tmp_path)) for word in words]
     said = run(folder, *words, env={**env, **env_of_case}, tmp=tmp_path / "tmp")
