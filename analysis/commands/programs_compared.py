@@ -117,7 +117,8 @@ def _row(row: Any) -> dict[str, Any]:  # noqa: ANN401 - of a table
     told = {"series": str(row.series), "verdict": row.verdict, "x": int(row.x), "blocks": int(row.blocks)}
     numbers = {key: float(getattr(row, key)) for key in ("ratio", "alone", "p")}
     differs = bool(np.isfinite(row.high) and not row.low <= 1 <= row.high)
-    return {**told, **numbers, "low": _end(row.low), "high": _end(row.high), "differs": differs}
+    ends = {name: _end(getattr(row, name)) for name in ("low", "high", "totals", "start", "round")}
+    return {**told, **numbers, **ends, "differs": differs}
 
 
 def _end(value: float) -> float | None:

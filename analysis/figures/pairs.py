@@ -66,7 +66,7 @@ def pair_drawing(
     figure, axes = new_figure(2.3, len(widths), widths)
     # Of several scenes of a sweep, one value a block.
     pairs = log_ratios(reference, candidate, match=("x",)).groupby(PAIR, as_index=False, sort=False)
-    pairs = pairs[["log_ratio", "bias", "stops"]].mean()
+    pairs = pairs.mean(numeric_only=True)
     row = row or judge_pairs(pairs, by.margin, by.error)
     runs = data.published.experiment(sides.experiment)
     named = dict(zip(sides.series, sides.names, strict=True))

@@ -10,14 +10,17 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from analysis.claims.summary import change_in_short, colour_of, mark, published_in_short, verdict_in_short
 from analysis.records.reading import Records, load
 from analysis.report.content import content
-from analysis.support.wording import NO_BREAK, blocks, change
+from analysis.support.wording import NO_BREAK, blocks, change, in_all, spreads
 from support.files import replacing
 
 TEMPLATE = "report.html.jinja"
 WORDS = {
     one.__name__: one
-    for one in (blocks, change, change_in_short, colour_of, mark, published_in_short, verdict_in_short)
-}
+    for one in (
+        blocks, change, change_in_short, colour_of, in_all, mark, published_in_short, spreads,
+        verdict_in_short,
+    )
+}  # fmt: skip
 """What the template says of a claim or a ratio."""
 
 

@@ -3,11 +3,14 @@
 import numpy as np
 import pandas as pd
 
-from analysis.statistics.turns import bias, location
+from analysis.statistics.turns import bias, location, spread
 from analysis.support.values import Floats
 
 PAIR = ["node", "block", "session"]
 """What two records of a pair have in common: nothing else was measured together."""
+
+_FEWEST_ROUNDS = 3
+"""Of which a spread is made."""
 
 
 def scaled(times: pd.DataFrame, value: str, factor: pd.Series) -> pd.DataFrame:
@@ -49,9 +52,10 @@ def log_ratios(
     by: tuple[str, ...] = (),
 ) -> pd.DataFrame:
     """Return a row a pair, in the order of time: the columns of `by` and of `match`, those of `PAIR`,
-    `log_ratio` = ln(candidate / reference), `bias`, by how much turns make it too great, and `stops`, how
-    often a run of whole programs was stopped (NaN where not known). Each group of candidates that the columns
-    `by` tell apart is compared on its own.
+    `log_ratio` = ln(candidate / reference), `bias`, by how much turns make it too great, `stops`, how
+    often a run of whole programs was stopped, `round`, the standard deviation of the log ratio of a round, of
+    which it has so many `rounds` (NaN where not known), and the seconds of a run of either, all of its turns.
+    Each group of candidates that the columns `by` tell apart is compared on its own.
 
     Takes a row a process on either side. Where the two took turns, each turn of the one stands beside that of
     the other in the same round, and Huber's location of the rounds' log ratios is the block's: a burst of
@@ -67,9 +71,12 @@ def log_ratios(
     ratios = list(map(_block_ratio, joined["logs_reference"], joined["logs_candidate"]))
     biases = list(map(bias, joined["lost_reference"], joined["lost_candidate"]))
     stops = (joined["stops_reference"] + joined["stops_candidate"]) / 2
+    spreads = list(map(_round_spread, joined["logs_reference"], joined["logs_candidate"]))
+    seconds = joined[["seconds_reference", "seconds_candidate"]]
     found = joined[[*by, *keys, "at_reference"]].assign(
-        log_ratio=np.array(ratios, dtype=float), bias=biases, stops=stops
-    )
+        log_ratio=np.array(ratios, dtype=float), bias=biases, stops=stops, round=spreads,
+        rounds=joined["logs_candidate"].map(len), **seconds,
+    )  # fmt: skip
     return found.sort_values(["at_reference", *PAIR], kind="stable").drop(columns="at_reference")
 
 
@@ -128,19 +135,20 @@ def without_partner(runs: pd.DataFrame) -> pd.DataFrame:
 
 def _per_block(processes: pd.DataFrame, keys: list[str], value: str) -> pd.DataFrame:
     """Return what each block has beside its `keys`: `logs` of its rounds, or of its runs, the time `at` which
-    it was recorded, the share of its time `lost` by turns, and its `stops`.
+    it was recorded, the `seconds` of a run, the share of its time `lost` by turns, and its `stops`.
     """
     runs = processes.get(runs_of(value), processes[value])
     rounds = processes.get(rounds_of(value), runs)
     parts = [one if len(np.atleast_1d(one)) else run for one, run in zip(rounds, runs, strict=True)]
     logs = [np.log(np.atleast_1d(np.asarray(one, dtype=float))) for one in parts]
+    seconds = [float(np.mean(one)) for one in runs]
     at = processes.get("recorded_at", processes["block"])
     told = {"lost": processes.get("lost_by_turns", np.nan), "stops": processes.get("stops", np.nan)}
-    table = processes[keys].assign(logs=logs, at=at, **told)
+    table = processes[keys].assign(logs=logs, at=at, seconds=seconds, **told)
     if not table.duplicated(keys).any():
         return table
-    table = table.groupby(keys).agg({"logs": _of_replicates, "at": "min", "lost": "mean", "stops": "mean"})
-    return table.reset_index()
+    means = dict.fromkeys(("seconds", "lost", "stops"), "mean")
+    return table.groupby(keys).agg({"logs": _of_replicates, "at": "min", **means}).reset_index()
 
 
 def _of_replicates(logs: pd.Series) -> Floats:
@@ -154,6 +162,15 @@ def _block_ratio(reference: Floats, candidate: Floats) -> float:
     if len(reference) == len(candidate):
         return location(candidate - reference)
     return _middle(candidate) - _middle(reference)
+
+
+def _round_spread(reference: Floats, candidate: Floats) -> float:
+    """Return the robust standard deviation of the log ratio of a round; NaN of fewer than three."""
+    if min(len(reference), len(candidate)) < _FEWEST_ROUNDS:
+        return np.nan
+    if len(reference) == len(candidate):
+        return spread(candidate - reference)
+    return float(np.hypot(spread(reference), spread(candidate)))
 
 
 def _middle(logs: Floats) -> float:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from analysis.statistics.intervals import FEWEST, measure
 from analysis.statistics.looks import ERROR, seen, share
-from analysis.statistics.turns import unstopped
+from analysis.statistics.turns import spread, unstopped
 from analysis.support.values import Floats, Interval
 
 MARGIN = 0.02
@@ -54,6 +54,12 @@ class Ratio:
     any_slower: float | None = None
     within: tuple[float, float] = within_margin(MARGIN)
     published: float = nan
+    totals: float = nan
+    """The ratio of all the time that the two took, in which rare slow turns count in full."""
+    start: float = nan
+    """The standard deviation of a block's log ratio, beyond what its rounds explain: what a start draws."""
+    round: float = nan
+    """That of a round's log ratio."""
 
     @property
     def is_exponent(self) -> bool:
@@ -120,7 +126,15 @@ def corrected(table: pd.DataFrame, error: float = ERROR) -> pd.DataFrame:
 def judge_pairs(pairs: pd.DataFrame, margin: float = MARGIN, error: float = ERROR) -> Ratio:
     """Return the ratio of the rows of `pairs.log_ratios`, with what they tell of turns and stops."""
     turns = {"biases": pairs.get("bias"), "stops": pairs.get("stops")}
-    return judge_one(pairs["log_ratio"], margin, error, **turns)
+    found = judge_one(pairs["log_ratio"], margin, error, **turns)
+    if "round" not in pairs or len(pairs) < FEWEST:
+        return found
+    pairs = pairs.iloc[: found.blocks]
+    totals = pairs["seconds_candidate"].sum() / pairs["seconds_reference"].sum()
+    of_round = float(np.sqrt((pairs["round"] ** 2).median()))
+    explained = (pairs["round"] ** 2 / pairs["rounds"]).median()
+    start = float(np.sqrt(max(0.0, spread(np.asarray(pairs["log_ratio"])) ** 2 - explained)))
+    return replace(found, totals=float(totals), round=of_round, start=start if of_round == of_round else nan)
 
 
 def judge_one(

@@ -72,6 +72,16 @@ def change(row: Any) -> str:  # noqa: ANN401 - as above
     return f"{percent(row.ratio - 1)} [{percent(row.low - 1)}, {percent(row.high - 1)}]"
 
 
+def in_all(row: Any) -> str:  # noqa: ANN401 - as above
+    """Return by how much all time together differs; an en dash where that is not known."""
+    return percent(row.totals - 1) if math.isfinite(row.totals) else "–"
+
+
+def spreads(row: Any) -> str:  # noqa: ANN401 - as above
+    """Return by how much one start differs from the next, and one round."""
+    return f"{share(row.start, 1)}, {share(row.round, 1)}" if math.isfinite(row.round) else "–"
+
+
 def blocks(row: Any) -> str:  # noqa: ANN401 - as above
     """Return on how many pairs of processes a ratio rests."""
     return count(row.blocks, "block")

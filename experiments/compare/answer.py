@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,13 @@ class Difference:
     differs: bool
     low_of_all: float | None = None
     """The lower end of the interval that holds together with those of all others, in all calls."""
+    totals: float | None = None
+    """The ratio of all their time, in which rare slow runs count in full; None where it is not known."""
+    start: float | None = None
+    """By how much the ratio differs from one block to the next, beyond what its runs explain: a standard
+    deviation of the logarithm."""
+    round: float | None = None
+    """The same from one run to the next."""
     case: int = 0
     needed: int | None = None
 
@@ -137,6 +144,5 @@ def _asked(analysis: Coprocess, line: str) -> str:
 
 
 def _difference(row: dict[str, Any]) -> Difference:
-    told = {key: row[key] for key in ("ratio", "low", "high", "verdict", "blocks", "differs")}
-    needed, low_of_all = row.get("needed"), row.get("low_of_all")
-    return Difference(name=row["series"], case=row["x"], needed=needed, low_of_all=low_of_all, **told)
+    told = {one.name: row[one.name] for one in fields(Difference) if one.name in row}
+    return Difference(name=row["series"], case=row["x"], **told)

@@ -49,7 +49,8 @@ _ONE_TO_THREE, _THREE_MORE = re.compile(r"[1-9][0-9]{0,2}"), re.compile(r" [0-9]
 _BLANK_BEFORE_GROUP, _BLANK_BEHIND_GROUP = re.compile(r"(?: |\\s)[+*]?\("), re.compile(r"\)(?: |\\s)")
 
 _OTHER_UNIT = re.compile(
-    rf"{_SPREAD}[ \t]*[(\[]?(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b|[mMuUnN]?[sS]\b|[mMhHdD]\b|(?:days?|weeks?)\b)"
+    rf"{_SPREAD}[ \t]*[(\[]?"
+    r"(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b|[mMuUnN]?[sS]\b|[mMhHdD]\b|(?:days?|weeks?)\b)"
 )
 """What is no time, or none that is understood: a capital makes another unit of a short one."""
 _LETTERS = re.compile("([A-Za-z]{1,3})(?![A-Za-z])")

@@ -106,6 +106,14 @@ def test_make_appendix_asks_what_the_table_says() -> None:
     assert study_of.split(",") == list(dict.fromkeys(asked))
 
 
+def test_all_time_and_what_differs_stand_in_the_table_of_verdicts(tmp_path: Path) -> None:
+    write(tmp_path, study(["neighbourhood"], blocks=6, noise=QUIET))
+    text = text_of(report.render(tmp_path))
+    head = "Difference, with 95 % interval All time together One start, one round differ by From Verdict"
+    row = r"four boxes against nine boxes −4\.5 % \[[^]]+\] −4\.[0-9] % (–|\S+ %, \S+ %) 6 blocks"
+    assert re.search(f"{head} {row}", text)
+
+
 def test_the_box_on_noise_agrees_with_the_verdicts(tmp_path: Path) -> None:
     noisy = Noise(process=0.03, repetition=0, burst_rate=0, drift=0)
     far, near = (study([name], blocks=14, noise=noisy) for name in ("self_contained_track", "neighbourhood"))

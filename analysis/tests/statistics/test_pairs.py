@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from analysis.statistics.pairs import join_replicates, log_ratios, scaled, without_partner
 from analysis.statistics.turns import location
+from analysis.statistics.verdicts import judge_pairs
 
 OTHERS = 16
 REPLICATES = 4
@@ -121,3 +122,28 @@ def test_scenes_are_no_partners() -> None:
     runs = measured(("a", 0.0, 0, "1"), ("b", 0.0, 0, "1"), ("a", 0.0, 1, "1"), ("b", 0.0, 1, "1"))
     named = runs.assign(scene_name=["one", "one", "one", "other"])
     assert list(without_partner(named).index) == [2]
+
+
+def test_what_a_start_draws_and_what_a_round_does_are_told_apart() -> None:
+    generator = np.random.default_rng(5)
+    sides: list[list[pd.DataFrame]] = [[], []]
+    for block, start in enumerate(generator.normal(0, 0.1, 48)):
+        sides[0].append(in_rounds(np.ones(24), block))
+        sides[1].append(in_rounds(np.exp(0.05 + start + generator.normal(0, 0.02, 24)), block))
+    found = judge_pairs(log_ratios(*map(pd.concat, sides)))
+    assert 0.07 < found.start < 0.13
+    assert 0.015 < found.round < 0.025
+    steady = judge_pairs(log_ratios(*(pd.concat(one) for one in (sides[0], _unlike(generator)))))
+    assert steady.start < 0.01, "rounds explain all of it"
+
+
+def _unlike(generator: np.random.Generator) -> list[pd.DataFrame]:
+    return [in_rounds(np.exp(generator.normal(0, 0.02, 24)), block) for block in range(48)]
+
+
+def test_the_ratio_of_all_time_counts_rare_slow_rounds_in_full() -> None:
+    steady = pd.concat([in_rounds(np.ones(24), block) for block in range(6)])
+    lumps = pd.concat([in_rounds(np.append(np.ones(23), 13.0), block) for block in range(6)])
+    found = judge_pairs(log_ratios(steady, lumps))
+    assert np.isclose(found.ratio, 1)
+    assert np.isclose(found.totals, 1.5)

@@ -119,6 +119,23 @@ def test_what_is_counted_stands_beside_the_times(folder: Path) -> None:
         assert len(one["counts"]["minor_page_faults"]) == told["blocks"]
 
 
+def test_all_time_and_what_differs_stand_beside_the_difference(folder: Path) -> None:
+    counting = "echo x >>$0.n; n=$(wc -l <$0.n); echo took $((n % 6 ? 100 : 400)) ms"
+    script(folder / "lumps", counting)
+    script(folder / "steady", "echo took 100 ms")
+    words = ("-n", "steady", "-n", "lumps", "./steady", "./lumps", *TOOK, "--time", "4s")
+    done = run(folder, "compare", *words, "--export-json", "a.json")
+    [told] = json.loads((folder / "a.json").read_text(encoding="utf-8"))["differences"]
+    assert told["totals"] > told["ratio"]
+    assert f"all time together: +{100 * told['totals'] - 100:.1f} %" in done.stdout
+    words = ("-n", "a", "-n", "b", "./short", "./short", "--time", "4s", "--export-json", "b.json")
+    short = run(folder, "compare", *words).stdout
+    spreads = r"; one block differs from the next by \S+ %, one run by \S+ %"
+    # Of a busy machine no run is known without what it waited for a processor.
+    by_wall = json.loads((folder / "b.json").read_text(encoding="utf-8"))["clock"] == "wall"
+    assert re.search(f"all time together: \\S+ %{spreads if by_wall else ''}\n", short)
+
+
 def test_three_commands_are_a_league(folder: Path) -> None:
     for name, time_taken in (("a", 100), ("b", 50), ("c", 50)):
         script(folder / name, f"echo took {time_taken} ms")
