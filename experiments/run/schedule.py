@@ -101,9 +101,7 @@ class Part:
             if result.seconds is None:
                 self._given_up.add(task.point.id)
                 continue
-            self.found.seconds[key], self.found.runs[key] = result.seconds, result.runs
-            self.found.sessions[key] = self._store.session
-            self.found.failures.pop(key, None)
+            self.found.take(key, result.seconds, result.runs, self._store.session)
         self.forget()
 
     def waiting(self, verdicts: Verdicts) -> Waiting | None:
