@@ -5,7 +5,6 @@ import statistics
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from pathlib import Path
 from typing import Any
 
 from experiments.plan.point import PROCESS, Tags
@@ -24,8 +23,6 @@ class Described:
 
     tags: Tags
     axes: Mapping[str, object]
-    threads: int
-    scene: Path | None = None
     checked: str = ""
     """How its result was checked beforehand; empty if it was not."""
     build: Mapping[str, Any] | None = None

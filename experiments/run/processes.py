@@ -143,8 +143,6 @@ class Processes:
         its = Described(
             one.tags,
             {key: value for key, value in point.axes.items() if value is not None},
-            point.threads,
-            scene,
             one.checked,
             build_of(point.program) if is_other_build else None,
         )
@@ -244,4 +242,4 @@ def _say_why(left: Left, why: str) -> None:
 
 def _sources_of(program: Program) -> Sources:
     known = program.hash_of
-    return Sources.of(program.sources, {file: known.get(file) or "" for file in program.written})
+    return Sources(program.sources, {file: known.get(file) or "" for file in program.written})
