@@ -13,7 +13,8 @@ from support.errors import InputError, nearest
 
 FOLDER = Path(__file__).parents[1] / "sites"
 
-_OPENMP_VARIABLES = ("OMP_", "GOMP_", "KMP_")
+OPENMP_VARIABLES = ("OMP_", "GOMP_", "KMP_")
+"""How their names begin."""
 
 
 _LOOK_OUT = {"GOMP_SPINCOUNT": "300000", "KMP_BLOCKTIME": "8"}
@@ -124,7 +125,7 @@ def clean_environment(openmp: Mapping[str, str]) -> dict[str, str]:
 
     A stray OMP_SCHEDULE of the user's shell would otherwise decide what is measured.
     """
-    inherited = {key: value for key, value in os.environ.items() if not key.startswith(_OPENMP_VARIABLES)}
+    inherited = {key: value for key, value in os.environ.items() if not key.startswith(OPENMP_VARIABLES)}
     return {**inherited, **openmp}
 
 

@@ -8,13 +8,12 @@ from datetime import UTC, datetime
 from typing import Any
 
 from experiments.plan.point import PROCESS, Tags
+from experiments.plan.site import OPENMP_VARIABLES
 from experiments.run.sources import Sources
 from experiments.side_by_side.contest import Entrant
 from experiments.support.digest import digest_of_hashes
 
 Record = dict[str, Any]
-
-_OPENMP = ("OMP_", "GOMP_", "KMP_")
 
 
 @dataclass(frozen=True)
@@ -88,7 +87,7 @@ def _number_or_text(value: str | float) -> str | int | float:
 def _provenance(told: Record, its: Described, environment: Mapping[str, str], sources: Sources) -> Record:
     """That of the program which measured it, but for build, environment and the hash of the program."""
     build = its.build or {}
-    openmp = {key: value for key, value in environment.items() if key.startswith(_OPENMP)}
+    openmp = {key: value for key, value in environment.items() if key.startswith(OPENMP_VARIABLES)}
     return {
         **told,
         **build,

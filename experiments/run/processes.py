@@ -52,9 +52,8 @@ class Asked:
 
 @dataclass(frozen=True)
 class Left:
-    """What was measured: the point, its record or failure, and what it wrote itself, if it was to."""
+    """What was measured of a point: its record or failure, and what it wrote itself, if it was to."""
 
-    point: Point
     record: Record
     output: Path
 
@@ -131,7 +130,7 @@ class Processes:
         with host_lock(), Sampler(self._instrument.path) as sampler:
             contest = Contest(sampler, contenders, self._slice, seed, folder)
             return [
-                Left(one.point, self._record(sampler, ended, one, known, (len(asked), seed)), output)
+                Left(self._record(sampler, ended, one, known, (len(asked), seed)), output)
                 for ended, one, known, output in zip(contest.measure(), asked, sources, outputs, strict=True)
             ]
 

@@ -3,7 +3,7 @@
 import json
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from experiments.plan.plan import Experiment
@@ -172,8 +172,7 @@ class Runner:
             asked, seed_of(first), self.slice_seconds or slice_of(first.point, first.block)
         )
         return [
-            self._keep_process(replace(task, point=there.point), scene, there)
-            for (task, scene), there in zip(ready, left, strict=True)
+            self._keep_process(task, scene, there) for (task, scene), there in zip(ready, left, strict=True)
         ]
 
     def _keep_process(self, task: Task, scene: SceneFile | None, left: Left) -> ProcessResult:
