@@ -28,7 +28,14 @@ def cases(
     """
 
     def lines(of_filter: str) -> Sequence[str]:
-        return _lines(words, of_filter, key, folder, environment)
+        """What it prints for a filter, without blank lines."""
+        asked = [*words, "--benchmark_list_tests=true", f"--benchmark_filter={of_filter}"]
+        done = process.run(asked, environment, _LIST_SECONDS, folder)
+        if done.exit_code != 0:
+            raise InputError(f"{key}: {done.reason}")
+        if done.dropped:
+            raise InputError(f"{key}: found a list of cases that is far too long, expected some MB at most")
+        return [line.removesuffix("\r") for line in done.output.split("\n") if line.strip()]
 
     listed = lines(pattern)
     noise = lines(_OF_NO_CASE) if listed else []
@@ -81,20 +88,3 @@ def _broken(pattern: str) -> str:
     except re.error as error:
         return f": as a regular expression it has a fault: {error}"
     return ""
-
-
-def _lines(
-    command: Sequence[str],
-    pattern: str,
-    key: str,
-    folder: Path | None,
-    environment: Mapping[str, str] | None,
-) -> Sequence[str]:
-    """What it prints for a filter, without blank lines."""
-    words = [*command, "--benchmark_list_tests=true", f"--benchmark_filter={pattern}"]
-    done = process.run(words, environment, _LIST_SECONDS, folder)
-    if done.exit_code != 0:
-        raise InputError(f"{key}: {done.reason}")
-    if done.dropped:
-        raise InputError(f"{key}: found a list of cases that is far too long, expected some MB at most")
-    return [line.removesuffix("\r") for line in done.output.split("\n") if line.strip()]

@@ -1,9 +1,12 @@
 """What a site file says of a Slurm cluster: its partitions, and what their jobs ask for."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from support.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -48,13 +51,20 @@ class Cluster:
     max_submitted: int | None = None
 
 
-def read_cluster(table: Mapping[str, Any]) -> Cluster:
-    """The table `slurm` of a valid site file; what it says outside the partitions holds for all of them."""
-    of_all = ("partitions", "results", "max_submitted")
-    common = {key: value for key, value in table.items() if key not in of_all}
-    results = Path(table["results"]) if "results" in table else None
-    partitions = tuple(_partition({**common, **own}) for own in table["partitions"])
-    return Cluster(partitions, results, table.get("max_submitted"))
+def read_cluster(path: Path, document: Mapping[str, Any]) -> Cluster | None:
+    """The table `slurm` of a valid site file; what it says outside the partitions holds for all of them. None
+    for a site that is no cluster. Raises InputError for a partition that is named twice.
+    """
+    if document["kind"] != "slurm":
+        return None
+    common = dict(document["slurm"])
+    tables, results = common.pop("partitions"), common.pop("results", None)
+    most = common.pop("max_submitted", None)
+    partitions = tuple(_partition({**common, **own}) for own in tables)
+    (name, times), *_ = Counter(partition.name for partition in partitions).most_common()
+    if times > 1:
+        raise InputError(f'{path}: slurm.partitions: found "{name}" twice, expected each name once')
+    return Cluster(partitions, Path(results) if results is not None else None, most)
 
 
 def _partition(table: dict[str, Any]) -> Partition:

@@ -105,7 +105,7 @@ def command_of(
         words = (*words, literal(filter_of(name)))
     command = Command(
         words, place.folder, place.instrument, trajectory, series.time.stdout if series.time else None,
-        _unit_seconds(series), name, prepare, conclude,
+        SECONDS_OF_UNIT.get(series.time.unit or "") if series.time else 1.0, name, prepare, conclude,
         series.fresh_folder, series.exit_codes, series.turns,
     )  # fmt: skip
     if trajectory and command.writes_trajectory:
@@ -118,13 +118,6 @@ def command_of(
         if series.is_one_of_many:
             return _refused(series.name, f"{unfit.word}: {unfit}" if unfit else str(error), place)
         raise InputError(f"{key}.{unfit.part}: {unfit.told}" if unfit else str(error)) from error
-
-
-def _unit_seconds(series: Series) -> float | None:
-    """Of a printed number without a unit; None where it must have one."""
-    if series.time is None:
-        return 1.0
-    return None if series.time.unit is None else SECONDS_OF_UNIT[series.time.unit]
 
 
 def resolved(command: Command, place: Place) -> tuple[Command, Program]:

@@ -1,6 +1,5 @@
 """The kinds of questions: what is measured of each point, how that is judged, and how it can be drawn."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -68,18 +67,3 @@ def kind_and_figure(file: Path, kind: str | None, figure: str | None) -> tuple[s
     if drawn not in can:
         raise InputError(f"{file}: figure: found {drawn} for kind {name}, expected one of {', '.join(can)}")
     return name, drawn
-
-
-def what_kind_lacks(kind: str, figure: str, errors: bool, sweep: str | None, scenes: int) -> Iterator[str]:
-    """What a question of the kind must not be: it asks for `errors` or not, sweeps a parameter or none, and
-    has so many scenes.
-    """
-    of = KINDS[kind]
-    if of.errors and not errors:
-        yield f"errors: missing; expected true for kind {kind}"
-    if of.sweep not in (None, sweep):
-        yield f"sweep.parameter: expected {of.sweep} for kind {kind}"
-    for key, name in (("kind", kind), ("figure", figure)):
-        if scenes != 1 and not KINDS[name].scenes:
-            several = ", ".join(sorted(name for name, kind in KINDS.items() if kind.scenes))
-            yield f"scenes: found several for {key} {name}, expected one, or one of the kinds {several}"

@@ -10,7 +10,7 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from experiments.plan.claims import known_claims, published_claims
-from experiments.plan.kinds import what_kind_lacks
+from experiments.plan.kinds import KINDS
 from experiments.plan.scenes import HardCase, NoScene
 from experiments.plan.series import Series
 from support.errors import InputError, nearest, quoted
@@ -111,8 +111,16 @@ def _what_is_measured_beside(question: "Question") -> Iterator[str]:
     for key, verb in (("errors", "bench"), ("simulated", "profile")):
         if getattr(question, key) and question.verb != verb:
             yield f"{key}: found for verb {question.verb}, expected for {verb} only"
-    sweep, scenes = question.sweep.parameter, len(question.scenes)
-    yield from what_kind_lacks(question.kind, question.figure, question.errors, sweep, scenes)
+    kind = KINDS[question.kind]
+    if kind.errors and not question.errors:
+        yield f"errors: missing; expected true for kind {question.kind}"
+    if kind.sweep not in (None, question.sweep.parameter):
+        yield f"sweep.parameter: expected {kind.sweep} for kind {question.kind}"
+    for key in ("kind", "figure"):
+        name = getattr(question, key)
+        if len(question.scenes) != 1 and not KINDS[name].scenes:
+            several = ", ".join(sorted(name for name, kind in KINDS.items() if kind.scenes))
+            yield f"scenes: found several for {key} {name}, expected one, or one of the kinds {several}"
 
 
 def _published_tolerance(question: "Question") -> Iterator[str]:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from experiments.plan.question import NamedScene, Question
-from experiments.plan.scenes import AnyScene, Scene
+from experiments.plan.scenes import Scene
 from experiments.plan.series import Series
 from support import vocabulary
 from support.errors import InputError, nearest
@@ -46,15 +46,15 @@ class Scale:
         kept = (one for one in question.scenes if self.divisor == 1 or not one.paper_only)
         if question.kind == COUNTS:
             return tuple(kept)  # nothing is timed: the question says itself how much is counted
-        return tuple(replace(one, scene=self._scene(one.scene)) for one in kept)
+        return tuple(
+            # A hard case has one size only.
+            replace(one, scene=one.scene.shrunk(self.divisor)) if isinstance(one.scene, Scene) else one
+            for one in kept
+        )
 
     def values(self, series: Series) -> tuple[float, ...]:
         """A series' values at this scale."""
         return series.values if self.divisor == 1 else series.quick_values
-
-    def _scene(self, scene: AnyScene) -> AnyScene:
-        """A hard case has one size only."""
-        return scene.shrunk(self.divisor) if isinstance(scene, Scene) else scene
 
 
 _PAPER = Scale(

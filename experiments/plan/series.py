@@ -90,14 +90,11 @@ def read_series(
     path: Path, tables: Sequence[Mapping[str, Any]], of_sweep: Mapping[str, tuple[float, ...]]
 ) -> tuple[Series, ...]:
     """The series of a question's file, those of patterns included. Raises InputError with one line."""
-    keys = [f"{path}: series[{number}]" for number, _ in enumerate(tables, start=1)]
-    found = [
-        series
-        for key, table in zip(keys, tables, strict=True)
-        for series in _of_table(path, key, _with_values(table, of_sweep))
-    ]
-    for key, table in zip(keys, tables, strict=True):
+    found: list[Series] = []
+    for number, table in enumerate(tables, start=1):
+        key = f"{path}: series[{number}]"
         _require_kind(key, table)
+        found += _of_table(path, key, _with_values(table, of_sweep))
     return tuple(found)
 
 
@@ -148,9 +145,9 @@ def _of_table(path: Path, key: str, table: dict[str, Any]) -> Iterator[Series]:
     series = Series(**{"name": "", **table, **words}, time=time, benchmark=benchmark, exit_codes=fine)
     if time is not None:
         require_one_group(f"{key}.time.stdout", time.stdout)
-    if time is not None and series.turns:
-        told = "found true for a program that times itself, which would count its pauses; expected false"
-        raise InputError(f"{key}.turns: {told}")
+        if series.turns:
+            told = "found true for a program that times itself, which would count its pauses; expected false"
+            raise InputError(f"{key}.turns: {told}")
     if pattern is not None:
         yield from _of_pattern(path, key, series, pattern)
     elif benchmark is not None:

@@ -2,11 +2,9 @@
 
 import os
 import platform
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from experiments.plan.cluster import Cluster, read_cluster
 from experiments.plan.cpu_quota import read_cpu_quota
@@ -15,7 +13,8 @@ from support.errors import InputError, nearest
 
 FOLDER = Path(__file__).parents[1] / "sites"
 
-_OPENMP_VARIABLES = ("OMP_", "GOMP_", "KMP_")
+OPENMP_VARIABLES = ("OMP_", "GOMP_", "KMP_")
+"""How their names begin."""
 
 
 _LOOK_OUT = {"GOMP_SPINCOUNT": "300000", "KMP_BLOCKTIME": "8"}
@@ -87,22 +86,8 @@ def load_site(name_or_path: str) -> Site:
         programs=document["programs"],
         binding=Binding(**document["openmp"]),
         time_limit_seconds=document.get("time_limit_seconds", 600.0),
-        cluster=_cluster(path, document),
+        cluster=read_cluster(path, document),
     )
-
-
-def _cluster(path: Path, document: Mapping[str, Any]) -> Cluster | None:
-    """The table `slurm`, with what a schema cannot say: each partition is named once."""
-    if document["kind"] != "slurm":
-        return None
-    cluster = read_cluster(document["slurm"])
-    (name, times), *_ = Counter(partition.name for partition in cluster.partitions).most_common()
-    if times > 1:
-        raise InputError(f'{path}: slurm.partitions: found "{name}" twice, expected each name once')
-    if cluster.results is not None and not cluster.results.is_absolute():
-        told = f'found "{cluster.results}", expected a path that begins with /'
-        raise InputError(f"{path}: slurm.results: {told}")
-    return cluster
 
 
 def this_machine() -> Machine:
@@ -140,7 +125,7 @@ def clean_environment(openmp: Mapping[str, str]) -> dict[str, str]:
 
     A stray OMP_SCHEDULE of the user's shell would otherwise decide what is measured.
     """
-    inherited = {key: value for key, value in os.environ.items() if not key.startswith(_OPENMP_VARIABLES)}
+    inherited = {key: value for key, value in os.environ.items() if not key.startswith(OPENMP_VARIABLES)}
     return {**inherited, **openmp}
 
 

@@ -87,9 +87,7 @@ def _take(store: Store, found: Sequence[_Found]) -> int:
         earlier, target = there.get(one.path), store.root / one.path
         if earlier is not None and earlier.summary.recorded_at >= one.summary.recorded_at:
             continue
-        if earlier is not None:
-            store.retire(earlier.file)
-        elif target.exists():
+        if target.exists():
             store.retire(target)
         write_json(target, read_json(one.file), store.temporary)
         there[one.path] = _Found(target, one.summary, one.path)

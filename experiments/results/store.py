@@ -17,7 +17,6 @@ from experiments.results.index import Index
 from experiments.results.summary import Summary, summary_of, unusable
 from experiments.support.process import Completed
 from support.files import locked, move, read_json, write_json
-from support.record_schema import is_record
 
 _Summaries = Mapping[str, Summary | None]
 
@@ -40,11 +39,10 @@ class Found:
     stale: list[Path] = field(default_factory=list)
     """Files that no longer belong to the plan."""
 
-    def take(self, key: Key, summary: Summary) -> None:
-        """Count a process by what its record says."""
-        self.seconds[key] = summary.seconds
-        self.runs[key] = summary.runs
-        self.sessions[key] = str(summary.tags.get("session", ""))
+    def take(self, key: Key, seconds: float, runs: Sequence[float], session: str) -> None:
+        """Count a process that was measured."""
+        self.seconds[key], self.runs[key], self.sessions[key] = seconds, runs, session
+        self.failures.pop(key, None)
 
 
 class Store:
@@ -111,7 +109,7 @@ class Store:
                 found.stale.append(self.root / "records" / experiment.name / name)
             else:
                 assert summary is not None
-                found.take(key, summary)
+                found.take(key, summary.seconds, summary.runs, str(summary.tags.get("session", "")))
         for name, summary in failures.items():
             key = _key(name)
             is_failure = summary is not None and summary.kind == "failure"
@@ -154,15 +152,6 @@ class Store:
         # Whoever else settles the same folder may have been faster.
         with contextlib.suppress(FileNotFoundError):
             move(path, target)
-
-    def holds(self, path: Path, kind: str) -> bool:
-        """Whether a record of that kind is there; whatever else stands in its place is put aside."""
-        record = read_json(path)
-        if is_record(record) and record["kind"] == kind:
-            return True
-        if os.path.lexists(path):
-            self.retire(path)
-        return False
 
     def keep_record(self, point: Point, block: int, scratch: Path) -> None:
         """Take in a finished record; an earlier failure of the same process is history then."""

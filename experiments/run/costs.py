@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from experiments.plan.point import PROCESS, Point
-from experiments.plan.scenes import AnyScene, Scene, SceneFile
+from experiments.plan.scenes import Scene, SceneFile
 from experiments.results.store import Store
 from experiments.run.host_lock import run_alone
 from experiments.run.runner import ProcessResult
@@ -133,11 +133,12 @@ class Costs:
 
     def _foretold(self, point: Point) -> float:
         runs = point.warm_up + (_RUNS_OF_A_PROFILE if point.verb == "profile" else point.repetitions)
-        return self._start(point) + runs * self._foretold_run(point)
-
-    def _start(self, point: Point) -> float:
-        """A process until its first run."""
-        return 0.0 if point.command is not None else self._probe(point).process + _reading(point.scene)
+        seconds = runs * self._foretold_run(point)
+        if point.command is None:
+            seconds += self._probe(point).process
+            if isinstance(point.scene, Scene):
+                seconds += point.scene.particles * _SECONDS_PER_DISC_READ
+        return seconds
 
     def _foretold_run(self, point: Point) -> float:
         """One run from the first step to the last."""
@@ -211,10 +212,6 @@ def _probe_all(group: Sequence[Point], scene: Path, folder: Path, time_limit: fl
             probes[probe_key(point)] = Probe(steps / PROBE.steps, process)
             record.unlink()
     return probes
-
-
-def _reading(scene: AnyScene) -> float:
-    return scene.particles * _SECONDS_PER_DISC_READ if isinstance(scene, Scene) else 0.0
 
 
 def _work(scene: Scene) -> float:

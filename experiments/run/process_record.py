@@ -5,17 +5,15 @@ import statistics
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from pathlib import Path
 from typing import Any
 
 from experiments.plan.point import PROCESS, Tags
+from experiments.plan.site import OPENMP_VARIABLES
 from experiments.run.sources import Sources
 from experiments.side_by_side.contest import Entrant
 from experiments.support.digest import digest_of_hashes
 
 Record = dict[str, Any]
-
-_OPENMP = ("OMP_", "GOMP_", "KMP_")
 
 
 @dataclass(frozen=True)
@@ -24,8 +22,6 @@ class Described:
 
     tags: Tags
     axes: Mapping[str, object]
-    threads: int
-    scene: Path | None = None
     checked: str = ""
     """How its result was checked beforehand; empty if it was not."""
     build: Mapping[str, Any] | None = None
@@ -91,7 +87,7 @@ def _number_or_text(value: str | float) -> str | int | float:
 def _provenance(told: Record, its: Described, environment: Mapping[str, str], sources: Sources) -> Record:
     """That of the program which measured it, but for build, environment and the hash of the program."""
     build = its.build or {}
-    openmp = {key: value for key, value in environment.items() if key.startswith(_OPENMP)}
+    openmp = {key: value for key, value in environment.items() if key.startswith(OPENMP_VARIABLES)}
     return {
         **told,
         **build,

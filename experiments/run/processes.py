@@ -52,9 +52,8 @@ class Asked:
 
 @dataclass(frozen=True)
 class Left:
-    """What was measured: the point, its record or failure, and what it wrote itself, if it was to."""
+    """What was measured of a point: its record or failure, and what it wrote itself, if it was to."""
 
-    point: Point
     record: Record
     output: Path
 
@@ -131,7 +130,7 @@ class Processes:
         with host_lock(), Sampler(self._instrument.path) as sampler:
             contest = Contest(sampler, contenders, self._slice, seed, folder)
             return [
-                Left(one.point, self._record(sampler, ended, one, known, (len(asked), seed)), output)
+                Left(self._record(sampler, ended, one, known, (len(asked), seed)), output)
                 for ended, one, known, output in zip(contest.measure(), asked, sources, outputs, strict=True)
             ]
 
@@ -143,8 +142,6 @@ class Processes:
         its = Described(
             one.tags,
             {key: value for key, value in point.axes.items() if value is not None},
-            point.threads,
-            scene,
             one.checked,
             build_of(point.program) if is_other_build else None,
         )
@@ -244,4 +241,4 @@ def _say_why(left: Left, why: str) -> None:
 
 def _sources_of(program: Program) -> Sources:
     known = program.hash_of
-    return Sources.of(program.sources, {file: known.get(file) or "" for file in program.written})
+    return Sources(program.sources, {file: known.get(file) or "" for file in program.written})

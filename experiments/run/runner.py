@@ -3,7 +3,7 @@
 import json
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from experiments.plan.plan import Experiment
@@ -13,7 +13,7 @@ from experiments.plan.scenes import AnyScene, NoScene, SceneFile, SceneFolder
 from experiments.results.store import Store
 from experiments.results.summary import summary_of, unusable
 from experiments.run.host_lock import run_alone
-from experiments.run.machine_limits import MachineLimits
+from experiments.run.machine_limits import measure_limits
 from experiments.run.processes import Asked, Left, Processes, slice_of
 from experiments.run.together import have_room, is_alike
 from experiments.run.verify import Verifier, representative, scope_of
@@ -93,7 +93,6 @@ class Runner:
         """How long a whole program runs before the next does; see `slice_of` without it."""
         self._processes = Processes(store, generator, time_limit, tells=tells)
         self._verifier = Verifier(store, generator, self._processes, time_limit)
-        self._limits = MachineLimits(store, time_limit)
 
     def run(self, tasks: Sequence[Task]) -> list[ProcessResult]:
         """Verify the points' variants as far as that is still to be done, then measure the points: several of
@@ -147,7 +146,7 @@ class Runner:
             verdict = self._verifier.check(representative(task.experiment, point), checked)
             if verdict.exit_code != 0:
                 return self._fail(task, verdict)
-        failed = self._limits.ensure(point)
+        failed = measure_limits(self._store, point, self._time_limit)
         return self._fail(task, failed) if failed is not None else scene
 
     def scene(self, scene: AnyScene) -> SceneFile:
@@ -173,8 +172,7 @@ class Runner:
             asked, seed_of(first), self.slice_seconds or slice_of(first.point, first.block)
         )
         return [
-            self._keep_process(replace(task, point=there.point), scene, there)
-            for (task, scene), there in zip(ready, left, strict=True)
+            self._keep_process(task, scene, there) for (task, scene), there in zip(ready, left, strict=True)
         ]
 
     def _keep_process(self, task: Task, scene: SceneFile | None, left: Left) -> ProcessResult:

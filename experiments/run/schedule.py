@@ -66,11 +66,6 @@ class Part:
         """Whether nothing of it is still to be run."""
         return not self.blocks.lacking
 
-    @property
-    def promised(self) -> int:
-        """The blocks that it gets for certain: those decided, until then the least."""
-        return self.given if self.is_begun else self.asked.minimum
-
     def give(self, blocks: int) -> None:
         """Give it so many blocks; it loses none."""
         self.given = max(self.given, blocks)
@@ -101,9 +96,7 @@ class Part:
             if result.seconds is None:
                 self._given_up.add(task.point.id)
                 continue
-            self.found.seconds[key], self.found.runs[key] = result.seconds, result.runs
-            self.found.sessions[key] = self._store.session
-            self.found.failures.pop(key, None)
+            self.found.take(key, result.seconds, result.runs, self._store.session)
         self.forget()
 
     def waiting(self, verdicts: Verdicts) -> Waiting | None:
@@ -154,11 +147,6 @@ class Part:
         """About what it takes until it has so many blocks, checks included."""
         done = len(self.found.seconds) / max(1, len(self.experiment.points))
         return self._seconds_once + max(0.0, blocks - done) * self.seconds_each
-
-    @property
-    def least_seconds(self) -> float:
-        """About what it takes until it has the blocks that it was given."""
-        return self.status.seconds_left
 
     @property
     def _seconds_once(self) -> float:

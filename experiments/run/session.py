@@ -130,7 +130,7 @@ class Session:
 
     def _first_blocks(self, parts: Sequence[Part]) -> None:
         """Measure the first block of each, the cheapest first, as far as there is time for a first look."""
-        for one in sorted(parts, key=lambda one: one.least_seconds):
+        for one in sorted(parts, key=lambda one: one.status.seconds_left):
             if one.seconds_of(min(FIRST_LOOK, one.asked.wanted)) <= self._time_left():
                 self._first_block(one)
 
@@ -161,8 +161,8 @@ class Session:
         verdicts = self._settle()
         self._until = whole
         # A block tells at least what a claim is about.
-        for one in sorted(rest, key=lambda one: (not one.experiment.question.claim, one.least_seconds)):
-            if one.least_seconds <= self._time_left():
+        for one in sorted(rest, key=lambda one: (not one.experiment.question.claim, one.status.seconds_left)):
+            if one.status.seconds_left <= self._time_left():
                 self._measure([one])
         return self._settle() if rest and verdicts != Verdicts() else verdicts
 
@@ -201,7 +201,7 @@ class Session:
         its next look, and comes last.
         """
         left = self._time_left()
-        lacking = (one for one in self._others if not one.is_complete and one.least_seconds <= left)
+        lacking = (one for one in self._others if not one.is_complete and one.status.seconds_left <= left)
         if (first := next(lacking, None)) is not None:
             return first
         growing = [
@@ -255,7 +255,7 @@ class Session:
         return is_due or not control.found.seconds
 
     def _block(self, part: Part, block: int) -> None:
-        laid_out, blocks, experiment = part.blocks, part.promised, part.experiment
+        laid_out, blocks, experiment = part.blocks, part.given, part.experiment
         missing, size = laid_out.missing(block), laid_out.size(block)
         what = f"{part.name}, block {laid_out.ordinal(block)} of {blocks}"
         for group in together(experiment, block, missing):

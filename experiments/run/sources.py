@@ -1,7 +1,6 @@
 """The files that make up a program, and which of them another hand changed while it ran."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from experiments.plan.scenes import sha256_of
@@ -11,21 +10,16 @@ Touched = tuple[int, int, int, int] | None
 """What tells that a file was written, if only what it held before: None if it is not there."""
 
 
-@dataclass(frozen=True)
 class Sources:
     """The files that make up a program, each with its SHA-256 before it ran."""
 
-    files: Sequence[Path]
-    hashes: Mapping[Path, str]
-    _touched: Mapping[Path, Touched]
-
-    @classmethod
-    def of(cls, files: Sequence[Path], written: Mapping[Path, str]) -> "Sources":
+    def __init__(self, files: Sequence[Path], written: Mapping[Path, str]) -> None:
         """`written` are those that the program is known to write itself, each with the hash that stands for
         it, whatever it holds now. Raises InputError for a file that cannot be read.
         """
-        hashes = {file: written.get(file) or sha256_of(file) for file in files}
-        return cls(files, hashes, {file: touch_of(file) for file in files if file not in written})
+        self.files = files
+        self.hashes = {file: written.get(file) or sha256_of(file) for file in files}
+        self._touched = {file: touch_of(file) for file in files if file not in written}
 
     def changed(self) -> list[Path]:
         """Those that hold something else by now, the written ones left out."""

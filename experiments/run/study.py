@@ -80,13 +80,10 @@ class Study:
         asked = ["--study", ",".join(self.settings.study)] if self.settings.study else []
         return analysis("follow", "--results", str(self.store.root), *asked)
 
-    def scenes(self) -> SceneFolder:
-        """The generated scenes; the results folder must be held."""
-        return SceneFolder(self.store.root / "scenes", self.store.temporary, str(self.generator.sha256))
-
     def runner(self) -> Runner:
         """What runs one task; the results folder must be held."""
-        return Runner(self.store, self.scenes(), self.generator, self.site.time_limit_seconds)
+        scenes = SceneFolder(self.store.root / "scenes", self.store.temporary, str(self.generator.sha256))
+        return Runner(self.store, scenes, self.generator, self.site.time_limit_seconds)
 
     def schedule(self, runner: Runner, *, settle: bool) -> Schedule:
         """What is there and what is to be run; `settle` moves stale records out of the way first."""

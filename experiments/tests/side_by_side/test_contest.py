@@ -361,8 +361,8 @@ def test_the_record_says_what_was_run_and_what_became_of_it(
     )  # fmt: skip
     ended = measure(often, scripted("echo it took 250 ms", pattern="took ([0-9]+)"), seed=9)
     build = {"compiler": "GNU 1", "openmp": {"runtime": "none"}}
-    its = Described({"a": "1", "b": "x"}, {"threads": 3}, 3, None, "trajectory", build)
-    sources = Sources.of([Path("/bin/sh")], {})
+    its = Described({"a": "1", "b": "x"}, {"threads": 3}, "trajectory", build)
+    sources = Sources([Path("/bin/sh")], {})
 
     def record_of(one: Entrant) -> Record:
         record = process_record(one, its, sources, sampler.surroundings(3, None), (2, 9))
@@ -399,8 +399,8 @@ def test_the_record_says_what_was_run_and_what_became_of_it(
 def test_the_most_memory_of_all_runs_is_told(sampler: Sampler, measure: Measure, tmp_path: Path) -> None:
     large = "head -c 200000000 /dev/zero | tail -n 1 > /dev/null"
     ended = measure(scripted(f"mkdir {tmp_path}/once 2> /dev/null && {large}; exit 0", rounds=2))
-    its = Described({}, {"threads": 1}, 1)
-    record = process_record(ended[0], its, Sources.of([CAROM], {}), sampler.surroundings(1, None), (1, 1))
+    its = Described({}, {"threads": 1})
+    record = process_record(ended[0], its, Sources([CAROM], {}), sampler.surroundings(1, None), (1, 1))
     assert record["process"]["peak_memory_bytes"] > 150_000_000
 
 
@@ -408,7 +408,7 @@ def test_files_that_a_program_changed_are_told(tmp_path: Path) -> None:
     data, touched, gone = (tmp_path / name for name in ("data", "touched", "gone"))
     for file in (data, touched, gone):
         file.write_text("3\n1\n")
-    sources = Sources.of([data, touched, gone], {})
+    sources = Sources([data, touched, gone], {})
     data.write_text("1\n3\n")
     touched.write_text("3\n1\n")
     gone.unlink()
@@ -416,7 +416,7 @@ def test_files_that_a_program_changed_are_told(tmp_path: Path) -> None:
     first = sources.hashes[data]
     assert first == hashlib.sha256(b"3\n1\n").hexdigest()
     # Its own output counts by what it was when it was first seen.
-    written = Sources.of([data], {data: first})
+    written = Sources([data], {data: first})
     data.write_text("9\n")
     assert (written.changed(), written.hashes[data]) == ([], first)
 
