@@ -40,52 +40,38 @@ class Said:
     rest: str = ""
 
 
-def sentences(
-    study: Study, rows: Sequence[Mapping[str, Any]], drawn: Sequence[Drawn], anchors: Mapping[str, str]
-) -> list[Said]:
+def sentences(study: Study, rows: Sequence[Mapping[Any, Any]], drawn: Sequence[Drawn]) -> list[Said]:
     """Return a sentence for each verdict that changed something: what does not hold first; what holds as
-    published one by one if it is little, else in one sentence; what is open in one.
+    published one by one if it is little, else in one sentence; what is open in one. Each row has the `anchor`
+    that it leads to.
     """
     decided = [row for row in rows if row["verdict"] in DECIDED]
     changed = [row for row in decided if colour_of(row) != "holds"]
     changed.sort(key=lambda row: colour_of(row) != "fails")
     holds = [row for row in decided if colour_of(row) == "holds"]
-    said = [_of_claim(row, anchors) for row in changed]
-    if len(holds) <= _ONE_BY_ONE:
-        said += [_of_claim(row, anchors) for row in holds]
-    else:
-        said.append(_of_all(holds, anchors))
+    said = [_of_claim(row) for row in changed]
+    said += [_of_claim(row) for row in holds] if len(holds) <= _ONE_BY_ONE else [_of_all(holds)]
     fastest = [one.removesuffix(" (faster)") for one in headlines(study) if one.endswith("(faster)")]
     said += [Said("✓", "faster", "holds", f"The fastest variant: {fastest[0]}.")] if fastest else []
     if not rows:
         said += _of_comparisons(drawn)
-    return [*_shortened(said), *_open(rows)]
+    left = len(said) - MOST_SENTENCES
+    more = [Said("…", "", "plain", f"{count(left, 'more verdict')} below.")] if left > 0 else []
+    return [*said[:MOST_SENTENCES], *more, *_open(rows)]
 
 
-def _of_all(holds: Sequence[Mapping[str, Any]], anchors: Mapping[str, str]) -> Said:
+def _of_all(holds: Sequence[Mapping[Any, Any]]) -> Said:
     elsewhere = sum(mark(row).startswith("(") for row in holds)
     where = f", {elsewhere} of them on other threads or at another scale than claimed" if elsewhere else ""
-    links = [_link(row, anchors) for row in holds]
+    links = [(row["anchor"], row["name"]) for row in holds]
     return Said("✓", "holds", "holds", f"{count(len(holds), 'claim')}{where}:", links, ".")
 
 
-def _shortened(said: list[Said]) -> list[Said]:
-    left = len(said) - MOST_SENTENCES
-    if left <= 0:
-        return said
-    more = Said("…", "", "plain", f"{count(left, 'more verdict')} below.")
-    return [*said[:MOST_SENTENCES], more]
-
-
-def _of_claim(row: Mapping[str, Any], anchors: Mapping[str, str]) -> Said:
+def _of_claim(row: Mapping[Any, Any]) -> Said:
     effect = first_effect(row)
     told = "." if effect is None else f": {both_in_short(effect)}."
-    claim = (anchors[row["id"]], str(row["claim"]).rstrip("."))
+    claim = (row["anchor"], row["claim"].rstrip("."))
     return Said(mark(row), verdict_in_short(row), colour_of(row), "", [claim], told)
-
-
-def _link(row: Mapping[str, Any], anchors: Mapping[str, str]) -> tuple[str, str]:
-    return anchors[row["id"]], str(row["name"])
 
 
 def _of_comparisons(drawn: Sequence[Drawn]) -> list[Said]:
@@ -99,7 +85,7 @@ def _of_comparisons(drawn: Sequence[Drawn]) -> list[Said]:
     ]
 
 
-def _open(rows: Sequence[Mapping[str, Any]]) -> list[Said]:
+def _open(rows: Sequence[Mapping[Any, Any]]) -> list[Said]:
     still_open = [row for row in rows if row["verdict"] not in DECIDED and not row["missing"]]
     if not still_open:
         return []
@@ -130,9 +116,7 @@ def _machine(study: Study) -> str:
 
 def _time(study: Study) -> str:
     """Return the days of the first and the last record, and how long the processes took."""
-    days = sorted(
-        {str(one)[:10] for one in (study.runs["recorded_at"].min(), study.runs["recorded_at"].max())}
-    )
+    days = dict.fromkeys(str(end)[:10] for end in study.runs["recorded_at"].agg(["min", "max"]))
     minutes = float(study.runs["process_seconds"].sum()) / 60
     return f"{' to '.join(days)}; {number(minutes, 2)} min of processes; {study.scale} scale"
 
@@ -152,9 +136,8 @@ def control_of(study: Study) -> tuple[str, Ratio]:
 def control_in_short(study: Study) -> str:
     """Return what came of the control in a few words."""
     verdict, row = control_of(study)
-    if not verdict:
-        return "– not measured: nothing vouches for the rest"
     said = {
+        "": "– not measured: nothing vouches for the rest",
         "inconclusive": f"? not decided: {change(row)}",
         "equivalent": f"✓ no difference found: {change(row)}",
         "off": f"✗ off: {change(row)}, within the margin",
