@@ -1,7 +1,6 @@
 """The first screen of a study: what was decided, in sentences, and beside the figure what it rests on."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from analysis.claims.missing import DECIDED
@@ -16,6 +15,7 @@ from analysis.claims.summary import (
 from analysis.derived.ladder import headlines
 from analysis.figures import Drawn
 from analysis.records.studies import Study
+from analysis.report.answers import Answer
 from analysis.statistics.pairs import log_ratios
 from analysis.statistics.verdicts import Ratio, judge_one
 from analysis.support.wording import change, count, exact, number
@@ -26,21 +26,7 @@ _ONE_BY_ONE = 3
 """Claims that hold are told one by one up to so many."""
 
 
-@dataclass(frozen=True)
-class Said:
-    """A sentence with its sign and word, whose class in the style sheet is `look`: links, anchors and texts,
-    after what comes `before` them, and then the rest.
-    """
-
-    sign: str
-    word: str
-    look: str
-    before: str = ""
-    links: Sequence[tuple[str, str]] = ()
-    rest: str = ""
-
-
-def sentences(study: Study, rows: Sequence[Mapping[Any, Any]], drawn: Sequence[Drawn]) -> list[Said]:
+def sentences(study: Study, rows: Sequence[Mapping[Any, Any]], drawn: Sequence[Drawn]) -> list[Answer]:
     """Return a sentence for each verdict that changed something: what does not hold first; what holds as
     published one by one if it is little, else in one sentence; what is open in one. Each row has the `anchor`
     that it leads to.
@@ -52,32 +38,32 @@ def sentences(study: Study, rows: Sequence[Mapping[Any, Any]], drawn: Sequence[D
     said = [_of_claim(row) for row in changed]
     said += [_of_claim(row) for row in holds] if len(holds) <= _ONE_BY_ONE else [_of_all(holds)]
     fastest = [one.removesuffix(" (faster)") for one in headlines(study) if one.endswith("(faster)")]
-    said += [Said("✓", "faster", "holds", f"The fastest variant: {fastest[0]}.")] if fastest else []
+    said += [Answer("✓", "faster", "holds", f"The fastest variant: {fastest[0]}.")] if fastest else []
     if not rows:
         said += _of_comparisons(drawn)
     left = len(said) - MOST_SENTENCES
-    more = [Said("…", "", "plain", f"{count(left, 'more verdict')} below.")] if left > 0 else []
+    more = [Answer("…", "", "plain", f"{count(left, 'more verdict')} below.")] if left > 0 else []
     return [*said[:MOST_SENTENCES], *more, *_open(rows)]
 
 
-def _of_all(holds: Sequence[Mapping[Any, Any]]) -> Said:
+def _of_all(holds: Sequence[Mapping[Any, Any]]) -> Answer:
     elsewhere = sum(mark(row).startswith("(") for row in holds)
     where = f", {elsewhere} of them on other threads or at another scale than claimed" if elsewhere else ""
     links = [(row["anchor"], row["name"]) for row in holds]
-    return Said("✓", "holds", "holds", f"{count(len(holds), 'claim')}{where}:", links, ".")
+    return Answer("✓", "holds", "holds", f"{count(len(holds), 'claim')}{where}:", links=links, rest=".")
 
 
-def _of_claim(row: Mapping[Any, Any]) -> Said:
+def _of_claim(row: Mapping[Any, Any]) -> Answer:
     effect = first_effect(row)
     told = "." if effect is None else f": {both_in_short(effect)}."
     claim = (row["anchor"], row["claim"].rstrip("."))
-    return Said(mark(row), verdict_in_short(row), colour_of(row), "", [claim], told)
+    return Answer(mark(row), verdict_in_short(row), colour_of(row), links=[claim], rest=told)
 
 
-def _of_comparisons(drawn: Sequence[Drawn]) -> list[Said]:
+def _of_comparisons(drawn: Sequence[Drawn]) -> list[Answer]:
     """Return a sentence for each comparison that came out faster or slower, without claims about any."""
     return [
-        Said("✓", row.verdict, "holds", f"{row.name}: {change(row)} of time.")
+        Answer("✓", row.verdict, "holds", f"{row.name}: {change(row)} of time.")
         for one in drawn
         if one.verdicts is not None and one.entry.experiment != CONTROL
         for row in one.verdicts.itertuples()
@@ -85,13 +71,13 @@ def _of_comparisons(drawn: Sequence[Drawn]) -> list[Said]:
     ]
 
 
-def _open(rows: Sequence[Mapping[Any, Any]]) -> list[Said]:
+def _open(rows: Sequence[Mapping[Any, Any]]) -> list[Answer]:
     still_open = [row for row in rows if row["verdict"] not in DECIDED and not row["missing"]]
     if not still_open:
         return []
     one = len(still_open) == 1
     text = f"{count(len(still_open), 'claim')} {'is' if one else 'are'} measured, and pale below."
-    return [Said(UNDECIDED, "not decided", "open", text)]
+    return [Answer(UNDECIDED, "not decided", "open", text)]
 
 
 def beside(study: Study, states: Mapping[str, int]) -> list[tuple[str, str]]:
