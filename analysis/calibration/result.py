@@ -10,7 +10,7 @@ from analysis.calibration.streams import load
 from analysis.calibration.studies import all_studies
 from analysis.calibration.tables import FOUND_WITHIN_SECONDS, STREAM, TO_BE_FOUND
 from analysis.calibration.usual_ways import all_ways
-from analysis.figures.labels import key
+from analysis.figures.labels import key, name_rows
 from analysis.figures.style import BAND, BLUE, INK, VERMILLION, Drawing, new_figure, save, styled
 from analysis.support.values import Row
 from analysis.support.wording import markdown_table
@@ -32,15 +32,15 @@ def write(folder: Path) -> tuple[str, list[Path]]:
 
     Raises InputError where there are no streams, or none with enough blocks for a single look.
     """
-    calibration = load(folder)
-    studies = all_studies(calibration.streams)
+    streams, origin = load(folder)
+    studies = all_studies(streams)
     if studies.empty:
         raise InputError(f"{folder}: no stream has enough blocks for a verdict, expected a longer time")
-    compared = tables.ours_and_theirs(studies, all_ways(calibration.streams), calibration.streams)
+    compared = tables.ours_and_theirs(studies, all_ways(streams), streams)
     of_first = studies[studies["reference"] == 0].sort_values("more", kind="stable")
     text = "\n\n".join(
         [
-            calibration.origin,
+            origin,
             _errors(tables.errors(studies, STREAM)),
             _truths(tables.errors(of_first, ["more"])),
             _power(tables.power(studies)),
@@ -50,7 +50,7 @@ def write(folder: Path) -> tuple[str, list[Path]]:
     target = folder / f"{NAME}.md"
     with replacing(target) as part:
         part.write_text(text, encoding="utf-8")
-    return text, [target, *save(draw(compared, calibration.origin), folder, NAME)]
+    return text, [target, *save(draw(compared, origin), folder, NAME)]
 
 
 def _errors(table: pd.DataFrame) -> str:
@@ -125,9 +125,8 @@ def draw(compared: pd.DataFrame, origin: str) -> Drawing:
             axes.set_xlim(-2, 102)
             axes.set_ylim(len(ways) - 0.5, -0.5)
             axes.set_xlabel(f"{label}, % of comparisons")
-            axes.tick_params(axis="y", length=0)
             axes.spines["left"].set_visible(False)
-            axes.set_yticks(range(len(ways)), ways if axes is panels[0] else [""] * len(ways))
+            name_rows(axes, ways if axes is panels[0] else [""] * len(ways))
         key(figure, [(one, colours.get(one, INK)) for one in conditions])
     told = "Three kinds of contenders; exact 95 % intervals, of as many comparisons as would not overlap"
     return Drawing(figure, f"False alarms and findings. {told}. {origin}.")

@@ -1,7 +1,6 @@
 """The file that `experiments calibrate` leaves: streams of rounds, and where they were measured."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -46,16 +45,10 @@ class Stream:
         return float(self.wall_seconds * share / self.blocks)
 
 
-@dataclass(frozen=True)
-class Calibration:
-    """All streams of one file, with a line that says where, when and of what they are."""
-
-    streams: Sequence[Stream]
-    origin: str
-
-
-def load(folder: Path) -> Calibration:
-    """Read a folder's streams. Raises InputError where there is no file that `make calibrate` has written."""
+def load(folder: Path) -> tuple[list[Stream], str]:
+    """Return a folder's streams, and a line that says where, when and of what they are. Raises InputError
+    where there is no file that `make calibrate` has written.
+    """
     path = folder / FILE
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
@@ -67,8 +60,7 @@ def load(folder: Path) -> Calibration:
     try:
         if content["schema_version"] != SCHEMA_VERSION:
             raise ValueError(f"schema_version {content['schema_version']}, expected {SCHEMA_VERSION}")
-        streams = [_stream(one) for one in content["streams"]]
-        return Calibration(streams, _origin(content))
+        return [_stream(one) for one in content["streams"]], _origin(content)
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
         told = f"{type(error).__name__}: {error}"
         raise InputError(f"{path}: found {told}, expected streams as `make calibrate` writes them") from None

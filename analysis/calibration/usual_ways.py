@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from analysis.calibration.streams import Stream
-from analysis.calibration.studies import comparisons
 from analysis.support.values import Floats
 
 Said = NDArray[np.int64]
@@ -118,10 +117,8 @@ def all_ways(streams: Sequence[Stream]) -> pd.DataFrame:
         for way in WAYS:
             places = max(0, len(flat) - way.rounds + 1)
             starts = range(0, places, max(1, places // MOST_STARTS))
-            for one in comparisons(stream.more):
-                if one.reference != 0:
-                    continue
-                said = way.studies(flat[:, [0, one.candidate]], starts) if starts else np.zeros(0)
+            for candidate, more in list(enumerate(stream.more))[1:]:
+                said = way.studies(flat[:, [0, candidate]], starts) if starts else np.zeros(0)
                 counted = (len(said), int((said > 0).sum()), int((said < 0).sum()), len(flat) // way.rounds)
-                rows.append((stream.kind, stream.condition, way.name, one.more, *counted))
+                rows.append((stream.kind, stream.condition, way.name, more, *counted))
     return pd.DataFrame(rows, columns=COUNTED)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import pandas as pd
 
@@ -93,7 +93,10 @@ def _tested(evidence: Evidence, claim: Claim) -> Outcome:
 def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[str, object]:
     runs = study.runs[study.runs["experiment"].isin(claim.experiments)]
     tested = tuple(sorted(int(number) for number in runs["threads"].unique()))
-    outcome = _with_failures(_elsewhere(outcome, claim, tested, study.scale), claim, study)
+    # What those would have shown that failed is not known.
+    failed = int(study.failures["experiment"].isin(claim.experiments).sum())
+    lost = f"{count(failed, 'process')} failed and left no time" if failed else ""
+    outcome = _because(_elsewhere(outcome, claim, tested, study.scale), lost)
     if not math.isnan(wanted):
         outcome = _because(outcome, missing.said(study, claim, outcome.blocks, wanted))
     figures = (*_setting(claim, tested, runs), *outcome.figures)
@@ -105,9 +108,8 @@ def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[st
         "experiments": list(claim.experiments),
         "tested_threads": tested,
         "said": _said(outcome, claim, tested, study.scale),
-        **asdict(replace(outcome, figures=(), effects=())),
+        **vars(outcome),
         "name": claim.name,
-        "effects": outcome.effects,
         "figures": figures if len(runs) else (),
     }
 
@@ -130,17 +132,9 @@ def _on_its_threads(claim: Claim, tested: tuple[int, ...]) -> bool:
 
 def _at_scale(outcome: Outcome, claim: Claim, scale: str) -> Outcome:
     """A scale that says nothing of a claim leaves what was measured, and no verdict."""
-    if claim.speaks_of(scale) or (outcome.verdict == OPEN and not outcome.measured):
+    if scale in (*claim.scales, *claim.smaller_scales) or (outcome.verdict == OPEN and not outcome.measured):
         return outcome
     return replace(outcome, verdict=Verdict.OTHER_SCALE, why=claim.other_scales, p=None, blocks=0)
-
-
-def _with_failures(outcome: Outcome, claim: Claim, study: Study) -> Outcome:
-    """Say how many points have no time because they failed: what they would have shown is not known."""
-    failed = study.failures[study.failures["experiment"].isin(claim.experiments)]
-    if failed.empty:
-        return outcome
-    return _because(outcome, f"{count(len(failed), 'process')} failed and left no time")
 
 
 def _said(outcome: Outcome, claim: Claim, tested: tuple[int, ...], scale: str) -> str:
@@ -158,11 +152,8 @@ def _said(outcome: Outcome, claim: Claim, tested: tuple[int, ...], scale: str) -
     if _on_its_threads(claim, tested):
         return f"{plain}{at_scale}"
     comma = "," if at_scale else ""
-    return f"{plain}{at_scale}{comma} at {_threads(tested)} (claimed at {claim.published.threads})"
-
-
-def _threads(tested: tuple[int, ...]) -> str:
-    return count(tested[0], "thread") if len(tested) == 1 else f"{listed(tested)} threads"
+    threads = count(tested[0], "thread") if len(tested) == 1 else f"{listed(tested)} threads"
+    return f"{plain}{at_scale}{comma} at {threads} (claimed at {claim.published.threads})"
 
 
 def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> tuple[Compared, ...]:

@@ -58,10 +58,6 @@ class Claim:
         """The claim in few words, or its id."""
         return self.short or self.id.replace("_", " ")
 
-    def speaks_of(self, scale: str) -> bool:
-        """Tell whether records of a scale settle the claim, or its question at that scale."""
-        return scale in self.scales or scale in self.smaller_scales
-
     @property
     def experiments(self) -> Sequence[str]:
         """The experiments on whose records the test looks."""

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import pandas as pd
 
@@ -16,11 +17,16 @@ from analysis.support.wording import listed, number
 
 @dataclass(frozen=True)
 class Measured:
-    """One machine's processes, with its greatest clock in GHz if known."""
+    """One machine's processes, with the machine of the study that has the same processor, if one has."""
 
     machine: str
-    gigahertz: float | None
+    published: Any
     processes: pd.DataFrame
+
+    @property
+    def gigahertz(self) -> float | None:
+        """Its greatest clock, if known: that of the study's machine."""
+        return self.published and float(self.published.maximum_gigahertz)
 
     @property
     def threads(self) -> set[int]:
@@ -94,19 +100,13 @@ def _undecidable(machines: Sequence[Measured]) -> str:
 def _figures(published: Published, experiment: str, machines: Sequence[Measured]) -> tuple[Compared, ...]:
     """Return a row a machine, of the study or of ours, where both have it one row."""
     times = published.experiment(experiment).groupby("series")["seconds"].median()
+    ours = {one.published.machine: one.seconds for one in reversed(machines) if one.published}
     rows = []
     for row in published.machines.itertuples():
-        cpus = ((one, str(one.processes["cpu_model"].iloc[0])) for one in machines if one.gigahertz)
-        ours = next((one.seconds for one, cpu in cpus if _names(str(row.processor), cpu)), "–")
         theirs = f"{number(float(times[row.machine]))} s" if row.machine in times else "–"
-        rows.append((f"{row.machine}, {row.maximum_gigahertz} GHz", theirs, ours))
+        rows.append((f"{row.machine}, {row.maximum_gigahertz} GHz", theirs, ours.get(row.machine, "–")))
     others = [(one.machine, "–", one.seconds) for one in machines if not one.gigahertz]
     return (*rows, *others)
-
-
-def _names(processor: str, cpu_model: str) -> bool:
-    """Tell whether a published processor is the one that a CPU model names."""
-    return processor.split()[-1].lower() in cpu_model.lower()
 
 
 def _machines(evidence: Evidence, experiment: str) -> list[Measured]:
@@ -115,14 +115,7 @@ def _machines(evidence: Evidence, experiment: str) -> list[Measured]:
     for other in (evidence.study, *evidence.studies):
         processes = other.times_of(experiment)
         if other.scale == evidence.study.scale and not processes.empty:
-            speed = gigahertz(str(processes["cpu_model"].iloc[0]), evidence.published)
-            machines.setdefault(other.machine, Measured(other.machine, speed, processes))
+            cpu, known = str(processes["cpu_model"].iloc[0]).lower(), evidence.published.machines.itertuples()
+            published = next((row for row in known if row.processor.lower().split()[-1] in cpu), None)
+            machines.setdefault(other.machine, Measured(other.machine, published, processes))
     return list(machines.values())
-
-
-def gigahertz(cpu_model: str, published: Published) -> float | None:
-    """Return the greatest clock of a CPU of the published study; None for any other."""
-    for row in published.machines.itertuples():
-        if _names(str(row.processor), cpu_model):
-            return float(row.maximum_gigahertz)
-    return None

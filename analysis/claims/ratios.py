@@ -41,14 +41,13 @@ def pair(
     value `at` of its parameter and nowhere else.
     """
     found = [_one_pair(evidence, one, (axis, candidate, reference), expected, at) for one in experiments]
-    if len(found) == 1:
-        return both(found)
-    names = (one.rpartition("_")[2] for one in experiments)
-    named = [
-        replace(one, effects=tuple(replace(each, what=name) for each in one.effects))
-        for name, one in zip(names, found, strict=True)
-    ]
-    return both(named)
+    if len(found) > 1:
+        names = (one.rpartition("_")[2] for one in experiments)
+        found = [
+            replace(one, effects=tuple(replace(each, what=name) for each in one.effects))
+            for name, one in zip(names, found, strict=True)
+        ]
+    return both(found)
 
 
 def _one_pair(

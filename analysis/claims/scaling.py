@@ -1,7 +1,7 @@
 """The claim about threads: what the curve does up to the cores, to the hardware threads, and beyond."""
 
 from dataclasses import dataclass, replace
-from math import nan
+from itertools import zip_longest
 
 import pandas as pd
 
@@ -39,7 +39,9 @@ class Stretch:
     needs: str
 
     def judge(self, processes: pd.DataFrame) -> Ratio:
-        """Return the time at its end against that at its start."""
+        """Return the time at its end against that at its start; of one that there is not no ratio."""
+        if not self.start < self.end:
+            return unmeasured(self.what, margin=self.margin)
         return judge_one(ratios_of(processes, "x", self.start, self.end)["log_ratio"], self.margin)
 
     def same_binding(self, processes: pd.DataFrame) -> bool:
@@ -106,18 +108,14 @@ def _beside(
     size = evidence.published.machines.set_index("machine").loc[machine]
     theirs = _stretches(curve, int(size["cores"]), int(size["hardware_threads"]), MARGIN)
     figures, effects = [], []
-    for number, their in enumerate(theirs):
-        our = ours[number] if ours else None
-        published = their.judge(curve) if their.start < their.end else None
-        row = our.judge(processes) if our is not None and our.start < our.end else None
+    for their, our in zip_longest(theirs, ours):
+        published, row = their.judge(curve), our.judge(processes) if our else unmeasured("")
         figures.append((f"time {their.what}", _said(their, published), _said(our, row)))
-        nothing = unmeasured("", margin=MARGIN if our is None else our.margin)
-        told = nan if published is None else published.ratio
-        effects.append(replace(row or nothing, what=their.what, published=told))
+        effects.append(replace(row, what=their.what, published=published.ratio))
     return tuple(figures), tuple(effects)
 
 
-def _said(stretch: Stretch | None, row: Ratio | None) -> str:
-    if stretch is None or row is None:
+def _said(stretch: Stretch | None, row: Ratio) -> str:
+    if stretch is None or not row.is_measured:
         return "–"
     return f"{factor(row.ratio)} from {exact(stretch.start)} to {exact(stretch.end)}"

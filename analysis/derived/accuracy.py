@@ -5,9 +5,9 @@ come from the one that measured them, since every run of a point ends in the sam
 simulation takes no steps: it is a point with 0 substeps.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache
 
 import numpy as np
 import pandas as pd
@@ -31,29 +31,24 @@ SMALL = 0.1
 
 @dataclass(frozen=True)
 class Measure:
-    """An error measure: its name, the axis it is drawn on, what it means; `converges` if it falls with dt."""
+    """An error measure: its name, the axis it is drawn on, what it means, and the `column` it is worked out
+    from, relative to that of the reference or not; `converges` if it falls with dt.
+    """
 
     key: str
     title: str
     label: str
     meaning: str
-    value: Callable[[pd.DataFrame], pd.Series]
+    column: str
     converges: bool
+    is_relative: bool = False
 
-
-def _column(name: str, runs: pd.DataFrame) -> pd.Series:
-    return runs[name].abs()
-
-
-def _against_reference(name: str, runs: pd.DataFrame) -> pd.Series:
-    # Relative to 0, as where the exact run meets no wall, there is no error.
-    return (runs[name] / runs[f"{name}_reference"].replace(0, np.nan) - 1).abs()
-
-
-def _parting(runs: pd.DataFrame) -> pd.Series:
-    """1 / time; 0 where the paths never part, NaN where there was no reference to part from."""
-    never = runs["path"].notna() & runs["time_to_tenth_radius"].isna()
-    return (1 / runs["time_to_tenth_radius"]).mask(never, 0.0)
+    def value(self, runs: pd.DataFrame) -> pd.Series:
+        """Return it of each run; NaN relative to 0, as where the exact run meets no wall."""
+        values = runs[self.column]
+        if self.is_relative:
+            values = values / runs[f"{self.column}_reference"].replace(0, np.nan) - 1
+        return values.abs()
 
 
 MEASURES = [
@@ -61,53 +56,53 @@ MEASURES = [
         "path", "distance of the paths from the exact ones",
         "RMS distance from the exact paths at time 1, radii",
         "the root mean square over all discs of the distance to the event-driven reference at time 1",
-        partial(_column, "path"), converges=True,
+        "path", converges=True,
     ),
     Measure(
         "parting", "when the paths part from the exact ones",
         "1 / time until the paths are 0.1 radii off",
         "one over the first time at which that distance passes a tenth of a radius; 0 if it never does",
-        _parting, converges=False,
+        "parting", converges=False,
     ),
     Measure(
         "penetration_worst", "worst penetration", "worst penetration, radii",
         "the deepest overlap of any pair that was apart at the start",
-        partial(_column, "penetration_worst"), converges=True,
+        "penetration_worst", converges=True,
     ),
     Measure(
         "penetration_mean", "mean penetration", "mean penetration, radii",
         "the mean depth over all overlaps of pairs that were apart at the start",
-        partial(_column, "penetration_mean"), converges=True,
+        "penetration_mean", converges=True,
     ),
     Measure(
         "collision_rate", "collision rate", "relative error of the collision rate",
         "collisions of pairs per disc and unit of time against those of the reference",
-        partial(_against_reference, "collision_rate"), converges=True,
+        "collision_rate", converges=True, is_relative=True,
     ),
     Measure(
         "pressure", "pressure", "relative error of the pressure",
         "the impulse on the walls per length and time against that of the reference",
-        partial(_against_reference, "pressure"), converges=True,
+        "pressure", converges=True, is_relative=True,
     ),
     Measure(
         "speeds", "distribution of speeds", "greatest distance of the speeds' distributions",
         "the Kolmogorov-Smirnov distance between the distributions of speeds of run and reference at the end",
-        partial(_column, "speed_distance"), converges=False,
+        "speed_distance", converges=False,
     ),
     Measure(
         "energy", "drift of energy", "relative drift of energy",
         "the change of kinetic energy from start to end; collisions conserve it, so that this is rounding",
-        partial(_column, "energy_drift"), converges=False,
+        "energy_drift", converges=False,
     ),
     Measure(
         "momentum", "unexplained momentum", "momentum that no wall explains, relative",
         "the change of momentum that the walls' impulses do not account for, over the sum of all speeds",
-        partial(_column, "momentum_drift"), converges=False,
+        "momentum_drift", converges=False,
     ),
     Measure(
         "unresolved", "unresolved collisions", "collisions left unresolved",
         "pairs and walls left colliding at the ends of units of time",
-        partial(_column, "unresolved_pairs"), converges=False,
+        "unresolved_pairs", converges=False,
     ),
 ]  # fmt: skip
 
@@ -118,6 +113,9 @@ def errors(study: Study, experiment: str) -> pd.DataFrame:
     runs = runs[runs["has_errors"].astype(bool)]
     at_one = study.trajectory[study.trajectory["time"] == 1].set_index("file")["rms_distance"]
     runs = _without_steps(runs).assign(path=runs["file"].map(at_one))
+    # 0 where the paths never part, NaN where there was no reference to part from.
+    never = runs["path"].notna() & runs["time_to_tenth_radius"].isna()
+    runs = runs.assign(parting=(1 / runs["time_to_tenth_radius"]).mask(never, 0.0))
     return runs.assign(**{measure.key: measure.value(runs) for measure in MEASURES})
 
 
@@ -203,43 +201,37 @@ def advice(table: pd.DataFrame, races: Mapping[str, "Race"]) -> list[tuple[float
 
 
 class Race:
-    """The times of one scene's points. All that it says of them holds together in 95 % of studies, whoever is
-    chosen by looking at them, for whichever measure and bound. What it has said it remembers.
+    """The times of one scene's points. All that is said of them holds together in 95 % of studies, whoever is
+    chosen by looking at them, for whichever measure and bound.
     """
 
     def __init__(self, timed: pd.DataFrame) -> None:
-        timed = narrow(timed, "series", "x", value="seconds")
-        self._all = timed
-        self._timed = dict(iter(timed.groupby(["series", "x"])))
-        self._seconds: dict[Entrant, Interval] = {}
-        self._ratios: dict[Entrant, dict[Entrant, pd.Series]] = {}
-        self._slower: dict[tuple[Entrant, Entrant], bool] = {}
+        self.all = narrow(timed, "series", "x", value="seconds")
+        self.timed = dict(iter(self.all.groupby(["series", "x"])))
 
-    def seconds(self, entrant: Entrant) -> Interval:
-        """Return the entrant's time, with an interval that holds together with those of all others."""
-        if entrant not in self._seconds:
-            level = 1 - ERROR / len(self._timed)
-            row = summarise(self._timed[entrant], ["series", "x"], "seconds", level).iloc[0]
-            self._seconds[entrant] = Interval(row["median"], row["low"], row["high"])
-        return self._seconds[entrant]
 
-    def is_slower(self, candidate: Entrant, reference: Entrant) -> bool:
-        """Whether the candidate was found slower, from ratios within blocks, as one of all pairs."""
-        key = candidate, reference
-        if key not in self._slower:
-            ratios = self._ratios_to(reference).get(candidate, pd.Series(dtype=float))
-            verdict = judge_one(ratios, error=error_of_picked(len(self._timed))).verdict
-            self._slower[key] = verdict == "slower"
-        return self._slower[key]
+@cache
+def seconds_of(race: Race, entrant: Entrant) -> Interval:
+    """Return the entrant's time, with an interval that holds together with those of all others."""
+    level = 1 - ERROR / len(race.timed)
+    row = summarise(race.timed[entrant], ["series", "x"], "seconds", level).iloc[0]
+    return Interval(row["median"], row["low"], row["high"])
 
-    def _ratios_to(self, reference: Entrant) -> dict[Entrant, pd.Series]:
-        """Return the log ratios of every entrant to one of them, taken at once."""
-        if reference not in self._ratios:
-            first = self._timed[reference].drop(columns=["series", "x"])
-            pairs = log_ratios(first, self._all, value="seconds", by=("series", "x"))
-            groups = pairs.groupby(["series", "x"])["log_ratio"]
-            self._ratios[reference] = {(str(key[0]), float(key[1])): part for key, part in groups}
-        return self._ratios[reference]
+
+@cache
+def _is_slower(race: Race, candidate: Entrant, reference: Entrant) -> bool:
+    """Whether the candidate was found slower, from ratios within blocks, as one of all pairs."""
+    ratios = _ratios_to(race, reference).get(candidate, pd.Series(dtype=float))
+    return judge_one(ratios, error=error_of_picked(len(race.timed))).verdict == "slower"
+
+
+@cache
+def _ratios_to(race: Race, reference: Entrant) -> dict[Entrant, pd.Series]:
+    """Return the log ratios of every entrant to one of them, taken at once."""
+    first = race.timed[reference].drop(columns=["series", "x"])
+    pairs = log_ratios(first, race.all, value="seconds", by=("series", "x"))
+    groups = pairs.groupby(["series", "x"])["log_ratio"]
+    return {(str(key[0]), float(key[1])): part for key, part in groups}
 
 
 @cache
@@ -260,8 +252,8 @@ def cheapest(candidates: pd.DataFrame, race: Race) -> Choice | None:
         return None
     ordered = candidates.sort_values("median", kind="stable")
     best, *entrants = zip(ordered["series"].astype(str), ordered["x"].astype(float), strict=True)
-    others = [entrant for entrant in entrants if not race.is_slower(entrant, best)]
-    return Choice(*best, race.seconds(best), others)
+    others = [entrant for entrant in entrants if not _is_slower(race, entrant, best)]
+    return Choice(*best, seconds_of(race, best), others)
 
 
 def _bounds(values: Sequence[float] | pd.Series) -> list[float]:

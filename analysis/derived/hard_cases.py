@@ -15,7 +15,10 @@ from analysis.records.studies import Study
 
 EXPECTATIONS_FILE = Path(__file__).parent / "hard_cases.toml"
 HOLDS, FAILS, LIMIT, UNMEASURED = "holds", "fails", "limit of the method", "not measured"
-COLUMNS = ["case", "title", "series", "precision", "impact", "verdict", "value", "bound", "reason"]
+COLUMNS = [
+    *("case", "title", "expects", "label", "series", "precision", "impact"),
+    *("verdict", "value", "bound", "reason"),
+]
 AT_CONTACT = "at_contact"
 
 Told = tuple[str, float | None, float | None, str | None]
@@ -76,8 +79,8 @@ def _of_table(table: dict[str, Any]) -> Iterator[Expectation]:
 
 
 def evaluate(study: Study, experiment: str) -> pd.DataFrame:
-    """Return a row a case and series: `title` of its expectation, `verdict`, `value` (of the case's measure),
-    `bound`, `reason`.
+    """Return a row a case and series: `title`, `expects` and `label` of its expectation, `verdict`, `value`
+    (of the case's measure), `bound`, `reason`.
 
     *holds*: every step passed the check and the measure is within its bound; *fails*: not so, `reason` says
     why; *limit of the method*: wrong as it must be; *not measured*: there is neither a record nor a failure.
@@ -92,12 +95,13 @@ def evaluate(study: Study, experiment: str) -> pd.DataFrame:
     impact = dict(zip(runs["series"], runs["impact"], strict=True))
     known = {expected.name: expected for expected in load()}
     measured = dict.fromkeys([*runs["scene_name"], *failures["scene_name"].dropna()])
-    others = (Expectation(name, "every step passes the check") for name in measured if name not in known)
+    others = (Expectation(name, "") for name in measured if name not in known)
     expectations = [*load(), *others]
     special = {(expected.name, expected.impact) for expected in expectations if expected.impact}
     rows = [
         (
-            *(expected.name, expected.title, one, precision.get(one), impact.get(one)),
+            *(expected.name, expected.title, expected.expects, expected.label),
+            *(one, precision.get(one), impact.get(one)),
             *_cell(expected, one, runs, failures),
         )
         for expected in expectations

@@ -88,7 +88,8 @@ def speed_up(row: Any, digits: int = 3) -> str:  # noqa: ANN401 - a ratio, or a 
 
 def claims(runs: pd.DataFrame, times: pd.DataFrame) -> list[str]:
     """Return a sentence a scene: by how much the last rung is faster than the first, with its interval."""
-    first = _name(runs, runs["series_number"].min())
+    variant = str(runs.loc[runs["series_number"].idxmin(), "variant"])
+    first = "the published best" if variant == "published" else variant
     return [
         f"{scene_title(runs, str(row.scene_name))}: {speed_up(row)} faster than {first} ({row.verdict})"
         for row in totals(times).itertuples()
@@ -111,11 +112,6 @@ def scene_title(runs: pd.DataFrame, scene: str) -> str:
     """Return what tells a scene from the others: discs and area fraction."""
     one = runs[runs["scene_name"] == scene].iloc[0]
     return scene_in_words(one["particles"], one["area_fraction"])
-
-
-def _name(runs: pd.DataFrame, rung: float) -> str:
-    variant = str(runs.loc[runs["series_number"] == rung, "variant"].iloc[0])
-    return "the published best" if variant == "published" else variant
 
 
 def _judged(times: pd.DataFrame, pairs_of: PairsOf, by: list[str]) -> pd.DataFrame:

@@ -80,16 +80,13 @@ OPERATIONS: dict[str, Callable[[Step], pd.Series]] = {
 }
 
 
-def step_of(runs: pd.DataFrame) -> Step:
-    """Return the average step of each run (rows of `tables.runs`)."""
+def unavoidable(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return one row a run (of `tables.runs`) and phase: `file`, `phase`, `bytes`, `operations` and
+    `working_set` of a step.
+    """
     steps = runs["steps"] * runs["substeps"]
     number = runs["precision"].map({"double": 8, "float": 4})
-    return Step(runs["particles"], runs["overlaps"] / steps, runs["pair_resolves"] / steps, number)
-
-
-def unavoidable(runs: pd.DataFrame) -> pd.DataFrame:
-    """Return one row a run and phase: `file`, `phase`, `bytes`, `operations` and `working_set` of a step."""
-    step = step_of(runs)
+    step = Step(runs["particles"], runs["overlaps"] / steps, runs["pair_resolves"] / steps, number)
     tables = [
         runs[["file"]].assign(
             phase=phase, bytes=BYTES[phase](step), operations=OPERATIONS[phase](step),

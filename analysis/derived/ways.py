@@ -57,9 +57,8 @@ class Comparison:
 def comparisons(study: Study, experiment: str) -> list[Comparison]:
     """Return the comparisons of an experiment that have four blocks both ways, in the order of its file."""
     times = study.times_of(experiment)
-    processes = times.assign(scene_name=times["scene_name"].fillna(""))
     spent = study.runs_of(experiment).set_index("file")["process_seconds"]
-    processes = processes.assign(seconds=processes["file"].map(spent))
+    processes = times.assign(scene_name=times["scene_name"].fillna(""), seconds=times["file"].map(spent))
     found = []
     for scene, group in processes.groupby("scene_name", sort=False):
         reference, *others = group.sort_values("series_number")["series"].drop_duplicates()

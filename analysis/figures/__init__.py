@@ -64,8 +64,9 @@ def _pair(
     experiment: str, title: str, candidate: str, reference: str, subject: str,
     names: tuple[str, str] | None = None, *, work: bool = False,
 ) -> Entry:  # fmt: skip
-    sides = pairs.Sides(experiment, candidate, reference, subject, names or (candidate, reference))
-    return Entry(experiment, experiment, title, bound(pairs.pair_drawing, sides=sides, work=work))
+    series = candidate, reference
+    named = dict(zip(series, names or series, strict=True))
+    return _of_kind(experiment, title, pairs.pair_drawing, subject, names=named, work=work)
 
 
 def _schedule(experiment: str, title: str, subject: str) -> Entry:
@@ -173,11 +174,7 @@ def draw(data: Data, wanted: Sequence[str] = (), *, pdf: bool = False) -> Iterat
     known = [*FIGURES, *further(data.study)]
     entries = [entry for entry in known if not wanted or entry.experiment in wanted]
     bias_sentence(data.study)  # before there are several processes, of which each would work it out
-
-    def drawn(number: int) -> Drawn | None:
-        return _draw(entries[number], data, pdf=pdf)
-
-    yield from filter(None, in_parallel(drawn, len(entries)))
+    yield from filter(None, in_parallel(lambda number: _draw(entries[number], data, pdf=pdf), len(entries)))
 
 
 def _draw(entry: Entry, data: Data, *, pdf: bool) -> Drawn | None:

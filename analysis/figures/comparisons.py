@@ -15,7 +15,7 @@ from analysis.derived.ways import APART, TURNS, comparisons, overall, said
 from analysis.figures.captions import PROCESSES, differing, opening, time_axis
 from analysis.figures.kinds import Dot, forest, of_medians, of_ratio
 from analysis.figures.labels import SIGNS, key, logarithmic_ticks
-from analysis.figures.pairs import Sides, pair_drawing
+from analysis.figures.pairs import pair_drawing
 from analysis.figures.style import BLUE, INK, VERMILLION, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.records.studies import Study
 from analysis.statistics.bootstrap import summarise
@@ -50,8 +50,8 @@ def comparison(
     tables = [ranked] if ranked else []
     names = sorted(times["series"].unique(), key=lambda name: name == against)
     if len(names) == 2 and times["x"].nunique() == 1:
-        sides = Sides(experiment, names[0], names[1], subject, (names[0], names[1]))
-        drawing = pair_drawing(data, sides, by=by, row=of_row(table.iloc[0]) if len(table) else None)
+        row = of_row(table.iloc[0]) if len(table) else None
+        drawing = pair_drawing(data, experiment, subject, {one: one for one in names}, by=by, row=row)
         return drawing and replace(drawing, verdicts=table, tables=tables)
     summary = summarise(times, ["series", "x"]).iloc[::-1]
     theirs = published(data, table, against) if published else {}

@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from analysis.derived import accuracy
 from analysis.derived import hard_cases as cases
 from analysis.derived.accuracy import SMALL, Choice, Measure, Race
-from analysis.derived.hard_cases import AT_CONTACT, FAILS, HOLDS, LIMIT, UNMEASURED
+from analysis.derived.hard_cases import AT_CONTACT, COLUMNS, FAILS, HOLDS, LIMIT, UNMEASURED
 from analysis.figures.captions import opening
 from analysis.figures.labels import (
     HOLLOW_SIGNS,
@@ -256,12 +256,11 @@ def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
     table = cases.evaluate(data.study, experiment)
     if table.empty or (table["verdict"] == UNMEASURED).all():
         return None
-    expected = {one.title: one for one in cases.load()}
-    labels = {title: expected[title].label if title in expected else "" for title in table["title"]}
-    drawn = list(dict.fromkeys(table.loc[table["value"].notna(), "title"]))
-    figure, (axes,) = new_figure(0.9 + 0.22 * max(1, len(drawn)))
-    _dots(axes, table, drawn)
-    _name_measures(axes, [labels[title] for title in drawn])
+    shown = table[table["value"].notna()]
+    labels = shown.drop_duplicates("title")["label"]
+    figure, (axes,) = new_figure(0.9 + 0.22 * max(1, len(labels)))
+    _dots(axes, shown)
+    _name_measures(axes, labels)
     present = [precision for precision in COLOURS if (table["precision"] == precision).any()]
     key(figure, [*((f"● {one}", COLOURS[one]) for one in present), ("| bound", INK)])
     caption = (
@@ -270,15 +269,14 @@ def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
         "at the measure that the case is about; a bar is the most that it may be in the dot's precision. "
         f"Hollow: a limit of the method, and the bar the least that it must be. {cases.summary(table)}"
     )
-    return Drawing(figure, caption, tables=list(_tables(table, labels)))
+    return Drawing(figure, caption, tables=list(_tables(table)))
 
 
-def _dots(axes: Axes, table: pd.DataFrame, titles: list[str]) -> None:
-    shown = table[table["title"].isin(titles) & table["value"].notna()]
+def _dots(axes: Axes, shown: pd.DataFrame) -> None:
     positive = pd.concat([shown["value"], shown["bound"].dropna()])
     positive = positive[positive > 0]
     zero = 10.0 ** (np.floor(np.log10(positive.min())) - 1) if len(positive) else 1e-16
-    heights = {title: -number for number, title in enumerate(titles)}
+    heights = {title: -number for number, title in enumerate(shown["title"].unique())}
     for row in shown.itertuples():
         colour = COLOURS.get(row.precision, INK)
         height = heights[row.title] - (0.14 if row.precision == "float" else -0.14)
@@ -299,7 +297,7 @@ def _dots(axes: Axes, table: pd.DataFrame, titles: list[str]) -> None:
         axes.axhline(height - 0.5, color=FAINT, linewidth=0.3, zorder=1)
 
 
-def _name_measures(axes: Axes, labels: list[str]) -> None:
+def _name_measures(axes: Axes, labels: Iterable[str]) -> None:
     """Write to the right of each row what its axis measures."""
     right = axes.twinx()
     right.set_ylim(axes.get_ylim())
@@ -310,11 +308,10 @@ def _name_measures(axes: Axes, labels: list[str]) -> None:
     axes.patch.set_visible(False)
 
 
-def _tables(verdicts: pd.DataFrame, labels: dict[str, str]) -> Iterable[Table]:
+def _tables(verdicts: pd.DataFrame) -> Iterable[Table]:
     """Yield a table for at most `WIDEST` variants of one precision and one time of impact: a row a case, a
     cell a verdict and a number.
     """
-    expects = {one.title: one.expects for one in cases.load()}
     known = verdicts.fillna({"precision": ""})
     for (precision, at_contact), alike in known.groupby(["precision", known["impact"] == AT_CONTACT]):
         collisions = ", collisions at contact" if at_contact else ""
@@ -324,12 +321,8 @@ def _tables(verdicts: pd.DataFrame, labels: dict[str, str]) -> Iterable[Table]:
             chosen = series[first : first + WIDEST]
             part = alike[alike["series"].isin(chosen)]
             rows: list[list[Cell | str]] = [
-                [
-                    f"{case.replace('_', ' ')}: {expects.get(title, '')}",
-                    labels.get(title, ""),
-                    *map(_verdict, group.itertuples()),
-                ]
-                for (case, title), group in part.groupby(["case", "title"], sort=False)
+                [f"{case.replace('_', ' ')}: {expects}", label, *map(_verdict, group.itertuples())]
+                for (case, _, expects, label), group in part.groupby(COLUMNS[:4], sort=False)
             ]
             yield table_of(heading, ["Case, and what is expected", "Number", *chosen], rows)
 

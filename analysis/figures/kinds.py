@@ -145,15 +145,6 @@ def curve(
             axes.plot([aside * row.x] * 2, [row.low, row.high], color=look.colour, linewidth=1.1, zorder=3)
 
 
-def curves(
-    axes: Axes, table: pd.DataFrame, shown: Mapping[str, Look], value: str = "median"
-) -> list[tuple[str, float, str]]:
-    """Draw the curve of each series; return the labels of their ends."""
-    for series, part in table.groupby("series"):
-        curve(axes, part, shown[str(series)], value)
-    return ends_of(table, shown, value)
-
-
 def ends_of(table: pd.DataFrame, shown: Mapping[str, Look], value: str) -> list[tuple[str, float, str]]:
     """Return the label of each series, where its last point is, and its colour."""
     last = table.loc[table.groupby("series")["x"].idxmax()]

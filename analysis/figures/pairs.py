@@ -3,7 +3,7 @@ axis, and the times of both beside it.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -25,42 +25,25 @@ MANY = 40
 """Blocks from which their marks are as small as the line."""
 
 
-@dataclass(frozen=True)
-class Sides:
-    """The two series compared: their names in the records (`candidate` / `reference`) and for the reader."""
-
-    experiment: str
-    candidate: str
-    reference: str
-    subject: str
-    names: tuple[str, str]
-
-    @property
-    def series(self) -> tuple[str, str]:
-        """Their names in the records."""
-        return self.candidate, self.reference
-
-    @property
-    def looks(self) -> dict[str, Look]:
-        """The look of both by the names that the reader is given."""
-        found = looks(self.series[::-1])
-        return {name: found[series] for name, series in zip(self.names, self.series, strict=True)}
+Names = Mapping[str, str]
+"""The two series compared, the candidate first, each with its name for the reader."""
 
 
 def pair_drawing(
-    data: Data, sides: Sides, work: bool = False, by: Stated = USUAL, row: Ratio | None = None
-) -> Drawing | None:
+    data: Data, experiment: str, subject: str, names: Names,
+    work: bool = False, by: Stated = USUAL, row: Ratio | None = None,
+) -> Drawing | None:  # fmt: skip
     """Draw the ratio of both sides with its verdict, of `row` if it is known, by what the question states.
     Below it is the published one, beside it are the times block by block. With `work` also the attempts at
     resolving a pair that each takes.
     """
-    times = data.study.times_of(sides.experiment)
-    candidate, reference = (times[times["series"] == name] for name in sides.series)
+    times = data.study.times_of(experiment)
+    candidate, reference = (times[times["series"] == name] for name in names)
     if candidate.empty or reference.empty:
         return None
     if work and (times["question_kind"] == COUNTS).all():
-        return _of_counts(data, sides)
-    theirs = data.published.ratio(sides.experiment, *sides.series)
+        return _of_counts(data, experiment, subject, names)
+    theirs = data.published.ratio(experiment, *names)
     # The ratio has most of the room.
     widths = [2.1, 1.0, *([0.9] if theirs else []), *([0.9] if work else [])]
     figure, axes = new_figure(2.3, len(widths), widths)
@@ -68,41 +51,48 @@ def pair_drawing(
     pairs = log_ratios(reference, candidate, match=("x",)).groupby(PAIR, as_index=False, sort=False)
     pairs = pairs.mean(numeric_only=True)
     row = row or judge_pairs(pairs, by.margin, by.error)
-    runs = data.published.experiment(sides.experiment)
-    named = dict(zip(sides.series, sides.names, strict=True))
-    each = [np.exp(pairs["log_ratio"].to_numpy()), _published_ratios(runs, sides)]
-    ratio_panel(axes[0], row, theirs, sides.names, by.margin, each)
-    both = _one_a_block(times[times["series"].isin(sides.series)])
-    _times(axes[1], both.assign(name=both["series"].map(named)), "steps_seconds", sides.looks)
+    runs = data.published.experiment(experiment)
+    shown, told = _looks(names), list(names.values())
+    each = [np.exp(pairs["log_ratio"].to_numpy()), _published_ratios(runs, names)]
+    ratio_panel(axes[0], row, theirs, told, by.margin, each)
+    both = _one_a_block(times[times["series"].isin(list(names))])
+    _times(axes[1], both.assign(name=both["series"].map(names)), "steps_seconds", shown)
     axes[1].set(xlabel="block", ylabel=time_axis(times), title="measured")
     if theirs:
         axes[2].set(xlabel="repetition", ylabel="time of the process, s", title="published")
-        runs = runs.assign(name=runs["series"].map(named))
-        _times(axes[2], runs, "seconds", sides.looks, published=True)
+        runs = runs.assign(name=runs["series"].map(names))
+        _times(axes[2], runs, "seconds", shown, published=True)
     if work:
-        _work(axes[-1], data, sides)
+        _work(axes[-1], data, experiment, names)
     dots = SCENES if times["x"].nunique() > 1 else PROCESSES
-    said = _sentences(row, theirs, sides, by)
-    verdicts = pd.DataFrame([{**vars(row), "name": f"{sides.names[0]} against {sides.names[1]}"}])
-    return Drawing(figure, opening(times, sides.subject, dots) + said + lost_by_turns(pairs), verdicts)
+    said = _sentences(row, theirs, told, by)
+    verdicts = pd.DataFrame([{**vars(row), "name": " against ".join(told)}])
+    return Drawing(figure, opening(times, subject, dots) + said + lost_by_turns(pairs), verdicts)
 
 
-def _published_ratios(published: pd.DataFrame, sides: Sides) -> Floats:
+def _looks(names: Names) -> dict[str, Look]:
+    """Return the look of both by the names that the reader is given."""
+    found = looks(reversed(list(names)))
+    return {name: found[series] for series, name in names.items()}
+
+
+def _published_ratios(published: pd.DataFrame, names: Names) -> Floats:
     """Return the ratio of each published repetition of both."""
     runs = published.pivot_table(index="x", columns="series", values="seconds")
-    if not set(sides.series) <= set(runs):
+    if not set(names) <= set(runs):
         return np.empty(0)
-    return np.asarray((runs[sides.candidate] / runs[sides.reference]).dropna(), dtype=float)
+    candidate, reference = (runs[series] for series in names)
+    return np.asarray((candidate / reference).dropna(), dtype=float)
 
 
-def _of_counts(data: Data, sides: Sides) -> Drawing:
+def _of_counts(data: Data, experiment: str, subject: str, names: Names) -> Drawing:
     """Draw the attempts alone. They have no verdict here: the claim about them has."""
     figure, axes = new_figure(1.6)
-    _work(axes[0], data, sides)
-    scenes = data.study.runs_of(sides.experiment)["x"].nunique()
+    _work(axes[0], data, experiment, names)
+    scenes = data.study.runs_of(experiment)["x"].nunique()
     return Drawing(
         figure,
-        f"{sides.subject}: attempts at resolving a pair, and in a stronger shade those that resolved it, of "
+        f"{subject}: attempts at resolving a pair, and in a stronger shade those that resolved it, of "
         f"one step; the median of {count(scenes, 'scene')}. They were counted in one run each, whose time "
         "is not compared.",
     )
@@ -139,7 +129,7 @@ def _times(
 
 
 def ratio_panel(
-    axes: Axes, ours: Ratio, theirs: Ratio | None, names: tuple[str, str],
+    axes: Axes, ours: Ratio, theirs: Ratio | None, names: Sequence[str],
     margin: float = MARGIN, each: Sequence[Floats] = (),
 ) -> None:  # fmt: skip
     """Draw the ratio as a dot with the interval on which the verdict rests, the published one below it, and
@@ -173,14 +163,15 @@ def ratio_panel(
     axes.xaxis.set_major_locator(MaxNLocator(6))
 
 
-def _work(axes: Axes, data: Data, sides: Sides) -> None:
+def _work(axes: Axes, data: Data, experiment: str, names: Names) -> None:
     """Draw the attempts at resolving a pair, those that resolve it in a stronger shade; medians of scenes."""
-    runs = data.study.runs_of(sides.experiment)
+    runs = data.study.runs_of(experiment)
     counts = (
         runs[["pair_resolves", "pair_attempts"]].div(runs["steps"], axis=0).groupby(runs["series"]).median()
     )
-    for height, (series, name) in enumerate(zip(sides.series[::-1], sides.names[::-1], strict=True)):
-        colour = sides.looks[name].colour
+    shown = _looks(names)
+    for height, (series, name) in enumerate(list(names.items())[::-1]):
+        colour = shown[name].colour
         resolves, attempts = counts.loc[series]
         counted = not np.isnan(attempts)
         axes.barh(height, attempts if counted else 0, color=lighten(colour, 0.5), height=0.5)
@@ -193,10 +184,10 @@ def _work(axes: Axes, data: Data, sides: Sides) -> None:
     axes.spines["left"].set_visible(False)
 
 
-def _sentences(row: Ratio, theirs: Ratio | None, sides: Sides, by: Stated) -> str:
+def _sentences(row: Ratio, theirs: Ratio | None, names: Sequence[str], by: Stated) -> str:
     published = f" Published: {change(theirs)} ({theirs.verdict})." if theirs else ""
     return (
-        f" The time of {sides.names[0]} is {change(row)} against {sides.names[1]}, from {blocks(row)} "
+        f" The time of {names[0]} is {change(row)} against {names[1]}, from {blocks(row)} "
         f"(paired log ratios): {row.verdict} with a margin of {100 * by.margin:g} % (shaded; "
         f"the bar is the {100 * (1 - by.error):g} % interval, which decides). Each stroke below is the ratio "
         f"of one block.{published}"

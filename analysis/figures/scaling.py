@@ -109,9 +109,7 @@ def oversubscription(data: Data) -> Drawing | None:
     from_zero(above)
     reference = times[times["x"] == times.loc[times["x"] <= hardware, "x"].max()]
     table = judge(log_ratios_by_x(reference, times[times["x"] > hardware]), ["x"])
-    own = pd.DataFrame(
-        [{"x": x, "ratio": 1.0} for x in reference["x"].unique()], columns=["x", "ratio", "low", "high"]
-    )
+    own = reference[["x"]].drop_duplicates().assign(ratio=1.0, low=np.nan, high=np.nan)
     ratios = pd.concat([own, table], ignore_index=True) if len(table) else own
     ratio_axis(below, ratios, "all hardware threads")
     ratio_curve(below, ratios, Look(BLUE))

@@ -35,29 +35,20 @@ class Look(NamedTuple):
     dashes: Any = "-"
 
 
-_LOOKS = [
-    Look(BLUE),
-    Look(VERMILLION, "s", "--"),
-    Look(GREEN, "^", "-."),
-    Look(PURPLE, "D", (0, (4, 1, 1, 1, 1, 1))),
-    Look(ORANGE, "v", (0, (1, 1))),
-    Look(SKY, "P", (0, (6, 2))),
-]
-_THINGS: Mapping[str, int] = {
-    name: look
-    for look, names in enumerate(
-        [
-            ("published", "checkered", "four", "four boxes", "on", "A", "guided", "forward",
-             "g++ with libomp"),
-            ("row", "nine", "nine boxes", "off", "self_contained_off", "A-again", "A again", "dynamic",
-             "clang++ with libomp", "reverse"),
-            ("fastest", "sorted", "track", "static"),
-            ("repeat", "g++ with libgomp"),
-            ("once",),
-        ]
-    )
-    for name in names
+_NAMES: Mapping[Look, Sequence[str]] = {
+    Look(BLUE): (
+        "published", "checkered", "four", "four boxes", "on", "A", "guided", "forward", "g++ with libomp",
+    ),
+    Look(VERMILLION, "s", "--"): (
+        "row", "nine", "nine boxes", "off", "self_contained_off", "A-again", "A again", "dynamic",
+        "clang++ with libomp", "reverse",
+    ),
+    Look(GREEN, "^", "-."): ("fastest", "sorted", "track", "static"),
+    Look(PURPLE, "D", (0, (4, 1, 1, 1, 1, 1))): ("repeat", "g++ with libgomp"),
+    Look(ORANGE, "v", (0, (1, 1))): ("once",),
+    Look(SKY, "P", (0, (6, 2))): (),
 }  # fmt: skip
+_LOOK_OF = {name: look for look, names in _NAMES.items() for name in names}
 """Which look a thing has in all figures; one that is not here gets the first that is left."""
 
 INK, FAINT, BAND = "#222222", "#8a8a8a", "#ececec"
@@ -84,7 +75,6 @@ SETTINGS: Any = {
     "ytick.major.width": 0.6,
     "lines.linewidth": 1.3,
     "lines.markersize": 3.5,
-    "errorbar.capsize": 0,
     "figure.constrained_layout.use": True,
     "figure.constrained_layout.h_pad": 0.06,
     "figure.constrained_layout.w_pad": 0.06,
@@ -130,12 +120,12 @@ def looks(names: Iterable[str]) -> dict[str, Look]:
     found: dict[str, Look] = {}
     unknown = []
     for name in dict.fromkeys(names):
-        look = _LOOKS[_THINGS[name]] if name in _THINGS else None
+        look = _LOOK_OF.get(name)
         if look is None or look in found.values():
             unknown.append(name)
         else:
             found[name] = look
-    left = [look for look in _LOOKS if look not in found.values()] or _LOOKS
+    left = [look for look in _NAMES if look not in found.values()] or list(_NAMES)
     return found | {name: left[number % len(left)] for number, name in enumerate(unknown)}
 
 

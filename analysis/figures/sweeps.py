@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from analysis.derived.comparisons import PUBLISHED, differences, differences_from, reference, stated
 from analysis.derived.ladder import per_disc_step, speed_up
 from analysis.figures.captions import differing, growth_sentence, minimum_sentence, opening, time_axis
-from analysis.figures.kinds import curve, curves, ends_of, line, published_curve, ratio_axis, ratio_curve
+from analysis.figures.kinds import curve, ends_of, line, published_curve, ratio_axis, ratio_curve
 from analysis.figures.labels import from_zero, label_ends, logarithmic_ticks, plain_ticks
 from analysis.figures.style import (
     BLUE,
@@ -99,7 +99,9 @@ def _several(times: pd.DataFrame, label: str, caption: str, scale: str = "", mor
     figure, (above, below) = stacked(label, height)
     value = "nanoseconds" if scale else "steps_seconds"
     summary = summarise(per_disc_step(times) if scale else times, ["series", "x"], value=value)
-    ends = curves(above, summary, shown)
+    for series, part in summary.groupby("series"):
+        curve(above, part, shown[str(series)])
+    ends = ends_of(summary, shown, "median")
     above.set_ylabel("time per disc\nand step, ns" if scale else time_axis(times))
     above.set(xscale="log" if "x" in scale else "linear", yscale="log" if "y" in scale else "linear")
     if "y" in scale:
@@ -147,9 +149,9 @@ def _against_own(axes: Axes, times: pd.DataFrame, published: pd.DataFrame, look:
         beside.set_xlabel("published", color=FAINT, fontsize=7)
     published_curve(beside, theirs["x"], theirs["ratio"], look)
     plain_ticks(beside.xaxis)
-    ends = (("measured", table, look.colour), ("published", theirs, lighten(look.colour, 0.35)))
-    last = ((name, part.loc[part["x"].idxmax(), "ratio"], colour) for name, part, colour in ends)
-    label_ends(axes, [(name, float(ratio), colour) for name, ratio, colour in last])
+    both = pd.concat([table.assign(series="measured"), theirs.assign(series="published")])
+    shown = {"measured": look, "published": look._replace(colour=lighten(look.colour, 0.35))}
+    label_ends(axes, ends_of(both.reset_index(), shown, "ratio"))
     return f"{said} Lighter: the published ratios on the same axis, to the time at {exact(at_theirs)}."
 
 
@@ -228,13 +230,12 @@ def _far_apart(x: pd.Series) -> list[float]:
 def _sentences(times: pd.DataFrame) -> str:
     """Say of each series how the time changes, and by how much each is faster than the published one."""
     first = times[times["variant"] == PUBLISHED]
-    said = []
-    for series, part in times.groupby("series"):
-        if len(first) and part["variant"].iloc[0] == PUBLISHED:
-            said.append(f" {series}:{minimum_sentence(times[times['series'] == series])}")
-            continue
-        said.append(f" {series}:{_flatness(part)}{_against(first, part)}")
-    return "".join(said)
+
+    def told(part: pd.DataFrame) -> str:
+        is_published = part["variant"].iloc[0] == PUBLISHED
+        return minimum_sentence(part) if is_published else _flatness(part) + _against(first, part)
+
+    return "".join(f" {series}:{told(part)}" for series, part in times.groupby("series"))
 
 
 def _flatness(processes: pd.DataFrame) -> str:
@@ -256,10 +257,10 @@ def _against(first: pd.DataFrame, processes: pd.DataFrame) -> str:
     shared = sorted(set(first["x"]) & set(processes["x"]))
     if not shared:
         return ""
-    said = []
-    for x in dict.fromkeys((shared[0], shared[-1])):
-        row = judge_one(log_ratios(first[first["x"] == x], processes[processes["x"] == x])["log_ratio"])
-        said.append(f"{speed_up(row)} at {exact(x)}")
+    ends = {
+        x: log_ratios(first[first["x"] == x], processes[processes["x"] == x]) for x in (shared[0], shared[-1])
+    }
+    said = (f"{speed_up(judge_one(ratios['log_ratio']))} at {exact(x)}" for x, ratios in ends.items())
     return f" It is faster than the published variant by {' and '.join(said)}."
 
 

@@ -72,10 +72,6 @@ ABOVE, RIGHT = 0.2, 0.12
 """Inches beside the axes."""
 LETTERS = 7
 """The size of names, in points."""
-SCALES = {
-    True: "change of time, %",
-    False: f"change of time, % (linear up to {LINEAR} %, logarithmic beyond)",
-}
 
 
 def all_claims(table: pd.DataFrame, layout: Layout = WIDE) -> Drawing | None:
@@ -115,7 +111,8 @@ def _axis(axes: Axes, rows: Sequence[Mapping[Any, Any]], layout: Layout, height:
     axes.set_xticks(shown, [f"{tick:+d}".replace("-", "−") if tick else "0" for tick in shown])
     axes.minorticks_off()
     axes.tick_params(labelsize=6, labeltop=True, top=True, length=2, pad=1.5)
-    axes.set_xlabel(SCALES[layout.is_narrow], fontsize=6.5, labelpad=2)
+    beyond = "" if layout.is_narrow else f" (linear up to {LINEAR} %, logarithmic beyond)"
+    axes.set_xlabel(f"change of time, %{beyond}", fontsize=6.5, labelpad=2)
     axes.axvline(0, color=FAINT, linewidth=0.7, zorder=1)
     axes.spines["left"].set_visible(False)
 

@@ -29,15 +29,17 @@ _MOST = 4
 
 @dataclass(frozen=True)
 class Answer:
-    """A sign with its word, the class of both in the style sheet, and a sentence; `verdict` is the word at
-    length, where there is more to say.
+    """A sign with its word, the class of both in the style sheet, and a sentence: links, anchors and texts,
+    may follow it, and then the rest. `verdict` is the word at length, where there is more to say.
     """
 
     sign: str
     word: str
     look: str
-    sentence: str
+    sentence: str = ""
     verdict: str = ""
+    links: Sequence[tuple[str, str]] = ()
+    rest: str = ""
 
 
 @cache

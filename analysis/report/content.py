@@ -58,7 +58,11 @@ def content(records: Records, results: Path, asked: Sequence[str] = ()) -> dict[
         "skipped": records.skipped,
         "verbs": provenance.verbs(records, questions_folder(results)),
         "scale": _scale(records.runs),
-        "commands": [row for row in provenance.commands(records.runs) if row["experiment"] not in told],
+        "commands": [
+            {"experiment": name, "commands": provenance.commands(runs)}
+            for name, runs in records.runs.groupby("experiment")
+            if name not in told
+        ],
     }
 
 
@@ -70,7 +74,9 @@ def _study(data: Data, asked: Collection[str]) -> dict[str, Any]:
     rows = table.to_dict("records")
     shown = parts(study, drawn, rows)
     places = {part.experiment: (part.anchor, part.title) for part in shown}
-    anchors = _anchors(rows, places, data.prefix)
+    for row in rows:
+        row["places"] = [places[name] for name in row["experiments"] if name in places]
+        row["anchor"] = _anchor(row, data.prefix)
     noise, settled = process_noise(study.times), _settled(table, drawn)
     return {
         "name": study.name,
@@ -84,76 +90,58 @@ def _study(data: Data, asked: Collection[str]) -> dict[str, Any]:
         "checks": provenance.checks(study),
         "partners": provenance.partners(study),
         "states": missing.tally(told),
-        **_claims(table, places, asked),
+        **_claims(rows, asked),
         "prefix": data.prefix,
-        "said": first_screen.sentences(study, rows, drawn, anchors),
-        "figure": _all_claims(all_claims.draw(data, table), rows, anchors, data.prefix),
+        "said": first_screen.sentences(study, rows, drawn),
+        "figure": _all_claims(*all_claims.draw(data, table), rows),
         "beside": first_screen.beside(study, missing.tally(told)),
         "without_records": list(told.loc[told["missing"], "id"]),
     }
 
 
-def _claims(
-    table: pd.DataFrame, places: dict[str, tuple[str, str]], asked: Collection[str]
-) -> dict[str, Any]:
-    """Return the claims that have records, those that were asked about first, each with the places of its
-    figures, and how many have each verdict.
-    """
-    rows = [
-        {**row, "places": [places[name] for name in row["experiments"] if name in places]}
-        for row in table[~table["missing"]].to_dict("records")
-    ]
-    rows.sort(key=lambda row: bool(asked) and not set(row["experiments"]) & set(asked))
-    return {"claims": rows, "tally": pd.Series([row["verdict"] for row in rows]).value_counts().to_dict()}
+def _claims(rows: Sequence[Mapping[Any, Any]], asked: Collection[str]) -> dict[str, Any]:
+    """Return the claims that have records, those asked about first, and how many have each verdict."""
+    present = [row for row in rows if not row["missing"]]
+    present.sort(key=lambda row: bool(asked) and not set(row["experiments"]) & set(asked))
+    tally = pd.Series([row["verdict"] for row in present]).value_counts().to_dict()
+    return {"claims": present, "tally": tally}
 
 
-def _anchors(
-    rows: Sequence[Mapping[str, Any]], places: Mapping[str, tuple[str, str]], prefix: str
-) -> dict[str, str]:
-    """Return where each claim leads to: the section of its first question that was drawn, or its row in the
+def _anchor(row: Mapping[Any, Any], prefix: str) -> str:
+    """Return where a claim leads to: the section of its first question that was drawn, or its row in the
     table; the whole table where it has none.
     """
-    found = {}
-    for row in rows:
-        drawn = [places[name][0] for name in row["experiments"] if name in places]
-        found[row["id"]] = (
-            drawn[0] if drawn else f"{prefix}claim{'s-table' if row['missing'] else '-' + row['id']}"
-        )
-    return found
+    if row["places"]:
+        return str(row["places"][0][0])
+    return f"{prefix}claims-table" if row["missing"] else f"{prefix}claim-{row['id']}"
 
 
 def _all_claims(
-    drawn: tuple[str, list[Path]], rows: Sequence[Mapping[str, Any]], anchors: Mapping[str, str], prefix: str
+    caption: str, files: Sequence[Path], rows: Sequence[Mapping[Any, Any]]
 ) -> dict[str, Any] | None:
     """Return the figure of all claims, wide and narrow, whose rows lead to their sections and tell their
     verdicts when the pointer rests on them.
     """
-    caption, files = drawn
     if not files:
         return None
-    said = {
-        row["id"]: escape(f"{row['claim']} {summary.mark(row)} {summary.verdict_in_short(row)}")
-        for row in rows
-    }
+    by_id = {row["id"]: row for row in rows}
 
     def link(found: re.Match[str]) -> str:
-        name = unescape(found[1])
-        return f'<a href="#{anchors[name]}"><title>{said[name]}</title>'
+        row = by_id[unescape(found[1])]
+        said = escape(f"{row['claim']} {summary.mark(row)} {summary.verdict_in_short(row)}")
+        return f'<a href="#{row["anchor"]}"><title>{said}</title>'
 
-    names = (f"{prefix}{all_claims.NAME}", f"{prefix}{all_claims.NAME}-narrow")
     pictures = []
-    for name in names:
-        svg = inline((files[0].parent / f"{name}.svg").read_text(encoding="utf-8"), name)
+    for file in files:
+        svg = inline(file.read_text(encoding="utf-8"), file.stem)
         pictures.append(Markup(re.sub(r'<a xlink:href="\.\./report\.html#claim-([^"]+)"[^>]*>', link, svg)))
-    return {"name": names[0], "caption": caption, "wide": pictures[0], "narrow": pictures[1]}
+    return {"name": files[0].stem, "caption": caption, "wide": pictures[0], "narrow": pictures[1]}
 
 
 def _settled(table: pd.DataFrame, drawn: Sequence[Drawn]) -> set[str]:
     """Return the experiments that have verdicts, in a figure or of a claim, none of which is open."""
-    decided = table[table["verdict"].isin(missing.DECIDED)]
-    still_open = table[table["needed"].notna()]
-    settled = {name for row in decided["experiments"] for name in row}
-    unsettled = {name for row in still_open["experiments"] for name in row}
+    decided, still_open = table["verdict"].isin(missing.DECIDED), table["needed"].notna()
+    settled, unsettled = (set(table.loc[rows, "experiments"].explode()) for rows in (decided, still_open))
     for figure in drawn:
         if figure.verdicts is not None and len(figure.verdicts):
             inconclusive = (figure.verdicts["verdict"] == INCONCLUSIVE).any()

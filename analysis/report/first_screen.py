@@ -1,7 +1,6 @@
 """The first screen of a study: what was decided, in sentences, and beside the figure what it rests on."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from analysis.claims.missing import DECIDED
@@ -16,6 +15,7 @@ from analysis.claims.summary import (
 from analysis.derived.ladder import headlines
 from analysis.figures import Drawn
 from analysis.records.studies import Study
+from analysis.report.answers import Answer
 from analysis.statistics.pairs import log_ratios
 from analysis.statistics.verdicts import Ratio, judge_one
 from analysis.support.wording import change, count, exact, number
@@ -26,72 +26,44 @@ _ONE_BY_ONE = 3
 """Claims that hold are told one by one up to so many."""
 
 
-@dataclass(frozen=True)
-class Said:
-    """A sentence with its sign and word, whose class in the style sheet is `look`: links, anchors and texts,
-    after what comes `before` them, and then the rest.
-    """
-
-    sign: str
-    word: str
-    look: str
-    before: str = ""
-    links: Sequence[tuple[str, str]] = ()
-    rest: str = ""
-
-
-def sentences(
-    study: Study, rows: Sequence[Mapping[str, Any]], drawn: Sequence[Drawn], anchors: Mapping[str, str]
-) -> list[Said]:
+def sentences(study: Study, rows: Sequence[Mapping[Any, Any]], drawn: Sequence[Drawn]) -> list[Answer]:
     """Return a sentence for each verdict that changed something: what does not hold first; what holds as
-    published one by one if it is little, else in one sentence; what is open in one.
+    published one by one if it is little, else in one sentence; what is open in one. Each row has the `anchor`
+    that it leads to.
     """
     decided = [row for row in rows if row["verdict"] in DECIDED]
     changed = [row for row in decided if colour_of(row) != "holds"]
     changed.sort(key=lambda row: colour_of(row) != "fails")
     holds = [row for row in decided if colour_of(row) == "holds"]
-    said = [_of_claim(row, anchors) for row in changed]
-    if len(holds) <= _ONE_BY_ONE:
-        said += [_of_claim(row, anchors) for row in holds]
-    else:
-        said.append(_of_all(holds, anchors))
+    said = [_of_claim(row) for row in changed]
+    said += [_of_claim(row) for row in holds] if len(holds) <= _ONE_BY_ONE else [_of_all(holds)]
     fastest = [one.removesuffix(" (faster)") for one in headlines(study) if one.endswith("(faster)")]
-    said += [Said("✓", "faster", "holds", f"The fastest variant: {fastest[0]}.")] if fastest else []
+    said += [Answer("✓", "faster", "holds", f"The fastest variant: {fastest[0]}.")] if fastest else []
     if not rows:
         said += _of_comparisons(drawn)
-    return [*_shortened(said), *_open(rows)]
+    left = len(said) - MOST_SENTENCES
+    more = [Answer("…", "", "plain", f"{count(left, 'more verdict')} below.")] if left > 0 else []
+    return [*said[:MOST_SENTENCES], *more, *_open(rows)]
 
 
-def _of_all(holds: Sequence[Mapping[str, Any]], anchors: Mapping[str, str]) -> Said:
+def _of_all(holds: Sequence[Mapping[Any, Any]]) -> Answer:
     elsewhere = sum(mark(row).startswith("(") for row in holds)
     where = f", {elsewhere} of them on other threads or at another scale than claimed" if elsewhere else ""
-    links = [_link(row, anchors) for row in holds]
-    return Said("✓", "holds", "holds", f"{count(len(holds), 'claim')}{where}:", links, ".")
+    links = [(row["anchor"], row["name"]) for row in holds]
+    return Answer("✓", "holds", "holds", f"{count(len(holds), 'claim')}{where}:", links=links, rest=".")
 
 
-def _shortened(said: list[Said]) -> list[Said]:
-    left = len(said) - MOST_SENTENCES
-    if left <= 0:
-        return said
-    more = Said("…", "", "plain", f"{count(left, 'more verdict')} below.")
-    return [*said[:MOST_SENTENCES], more]
-
-
-def _of_claim(row: Mapping[str, Any], anchors: Mapping[str, str]) -> Said:
+def _of_claim(row: Mapping[Any, Any]) -> Answer:
     effect = first_effect(row)
     told = "." if effect is None else f": {both_in_short(effect)}."
-    claim = (anchors[row["id"]], str(row["claim"]).rstrip("."))
-    return Said(mark(row), verdict_in_short(row), colour_of(row), "", [claim], told)
+    claim = (row["anchor"], row["claim"].rstrip("."))
+    return Answer(mark(row), verdict_in_short(row), colour_of(row), links=[claim], rest=told)
 
 
-def _link(row: Mapping[str, Any], anchors: Mapping[str, str]) -> tuple[str, str]:
-    return anchors[row["id"]], str(row["name"])
-
-
-def _of_comparisons(drawn: Sequence[Drawn]) -> list[Said]:
+def _of_comparisons(drawn: Sequence[Drawn]) -> list[Answer]:
     """Return a sentence for each comparison that came out faster or slower, without claims about any."""
     return [
-        Said("✓", row.verdict, "holds", f"{row.name}: {change(row)} of time.")
+        Answer("✓", row.verdict, "holds", f"{row.name}: {change(row)} of time.")
         for one in drawn
         if one.verdicts is not None and one.entry.experiment != CONTROL
         for row in one.verdicts.itertuples()
@@ -99,13 +71,13 @@ def _of_comparisons(drawn: Sequence[Drawn]) -> list[Said]:
     ]
 
 
-def _open(rows: Sequence[Mapping[str, Any]]) -> list[Said]:
+def _open(rows: Sequence[Mapping[Any, Any]]) -> list[Answer]:
     still_open = [row for row in rows if row["verdict"] not in DECIDED and not row["missing"]]
     if not still_open:
         return []
     one = len(still_open) == 1
     text = f"{count(len(still_open), 'claim')} {'is' if one else 'are'} measured, and pale below."
-    return [Said(UNDECIDED, "not decided", "open", text)]
+    return [Answer(UNDECIDED, "not decided", "open", text)]
 
 
 def beside(study: Study, states: Mapping[str, int]) -> list[tuple[str, str]]:
@@ -130,9 +102,7 @@ def _machine(study: Study) -> str:
 
 def _time(study: Study) -> str:
     """Return the days of the first and the last record, and how long the processes took."""
-    days = sorted(
-        {str(one)[:10] for one in (study.runs["recorded_at"].min(), study.runs["recorded_at"].max())}
-    )
+    days = dict.fromkeys(str(end)[:10] for end in study.runs["recorded_at"].agg(["min", "max"]))
     minutes = float(study.runs["process_seconds"].sum()) / 60
     return f"{' to '.join(days)}; {number(minutes, 2)} min of processes; {study.scale} scale"
 
@@ -152,9 +122,8 @@ def control_of(study: Study) -> tuple[str, Ratio]:
 def control_in_short(study: Study) -> str:
     """Return what came of the control in a few words."""
     verdict, row = control_of(study)
-    if not verdict:
-        return "– not measured: nothing vouches for the rest"
     said = {
+        "": "– not measured: nothing vouches for the rest",
         "inconclusive": f"? not decided: {change(row)}",
         "equivalent": f"✓ no difference found: {change(row)}",
         "off": f"✗ off: {change(row)}, within the margin",

@@ -31,15 +31,12 @@ def load() -> list[Graph]:
 def rows(anchors: Mapping[str, str]) -> list[dict[str, Any]]:
     """Return a row a graph for the report, its questions with their titles and, if any, their `anchors`."""
     known = titles()
-
-    def question(name: str) -> dict[str, Any]:
-        return {"name": name, "title": known[name], "anchor": anchors.get(name)}
-
     return [
         {
-            "name": graph.name,
-            "showed": graph.showed,
-            "questions": [question(name) for name in graph.questions],
+            **vars(graph),
+            "questions": [
+                {"name": name, "title": known[name], "anchor": anchors.get(name)} for name in graph.questions
+            ],
         }
         for graph in load()
     ]

@@ -12,7 +12,7 @@ from analysis.figures import HARD_CASES, OF_ERRORS, SPEED_AGAINST_ERROR, Drawn
 from analysis.records.studies import Study
 from analysis.report.answers import Answer, answer, questions
 from analysis.report.horizons import horizons
-from analysis.report.provenance import commands_of
+from analysis.report.provenance import commands
 
 PHASES = "phases"
 
@@ -70,7 +70,7 @@ def _part(study: Study, drawn: Sequence[Drawn], claims: Sequence[Mapping[str, An
         answer(study, entry.experiment, drawn, claims),
         said,
         figures,
-        commands_of(study, entry.experiment),
+        commands(study.runs_of(entry.experiment)),
     )
 
 

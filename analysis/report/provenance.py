@@ -131,21 +131,13 @@ def _study(records: Records, scale: str) -> str:
     return f" STUDY={','.join(sorted(present - {CONTROL}) or [CONTROL])}"
 
 
-def commands(runs: pd.DataFrame) -> list[dict[str, Any]]:
-    """Return per experiment the commands behind its points, each once, rebuilt from the records' own
+def commands(runs: pd.DataFrame) -> list[str]:
+    """Return the commands behind the points of one experiment, each once, rebuilt from the records' own
     fields. One process of a point measures its errors, too: the command says so.
     """
-    rows: dict[str, dict[str, None]] = {}
-    with_errors = runs.groupby(["experiment", "series", "x", "scene"])["has_errors"].transform("any")
-    ordered = runs.assign(has_errors=with_errors).sort_values(["experiment", "series", "x"], kind="stable")
-    for row in ordered.to_dict("records"):
-        rows.setdefault(row["experiment"], {}).setdefault(_command(row))
-    return [{"experiment": name, "commands": list(found)} for name, found in sorted(rows.items())]
-
-
-def commands_of(study: Study, experiment: str) -> list[str]:
-    """Return the commands behind the points of one experiment."""
-    return [line for row in commands(study.runs_of(experiment)) for line in row["commands"]]
+    with_errors = runs.groupby(["series", "x", "scene"])["has_errors"].transform("any")
+    ordered = runs.assign(has_errors=with_errors).sort_values(["series", "x"], kind="stable")
+    return list(dict.fromkeys(map(_command, ordered.to_dict("records"))))
 
 
 def _command(row: dict[str, Any]) -> str:

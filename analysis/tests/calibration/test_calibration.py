@@ -165,7 +165,7 @@ def test_tables_and_figure_say_machine_commit_and_date(tmp_path: Path) -> None:
     assert "Carom" in text
     assert [file.name for file in files] == ["calibration.md", "calibration.svg"]
     assert "a true 5 % found" in files[1].read_text(encoding="utf-8")
-    assert pd.notna(load(tmp_path).streams[0].seconds).all()
+    assert pd.notna(load(tmp_path)[0][0].seconds).all()
 
 
 @pytest.mark.parametrize(

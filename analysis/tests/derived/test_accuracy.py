@@ -159,7 +159,7 @@ def test_the_time_of_the_least_of_equals_is_within_its_interval() -> None:
         timed = times_table(dict.fromkeys("abcdefghijklmnopqrst", 1.0), 9, 1, noise, seed)
         timed = timed.rename(columns={"steps_seconds": "seconds"})
         least = timed.groupby("series")["seconds"].median().idxmin()
-        found = accuracy.Race(timed).seconds((least, 0.0))
+        found = accuracy.seconds_of(accuracy.Race(timed), (least, 0.0))
         missed += not found.low < 1 < found.high
     assert missed <= 5
 

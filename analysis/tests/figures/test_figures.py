@@ -32,8 +32,8 @@ QUESTIONS = Path(__file__).parents[3] / "experiments" / "questions"
 
 def pairs_of(entry: Entry) -> tuple[str, str] | None:
     """Return the series that a figure of two compares, None of any other figure."""
-    sides = getattr(entry.draw, "keywords", {}).get("sides")
-    return sides and (sides.candidate, sides.reference)
+    names = getattr(entry.draw, "keywords", {}).get("names")
+    return names and tuple(names)
 
 
 @pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.name)

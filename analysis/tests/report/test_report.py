@@ -48,7 +48,7 @@ def text_of(page: str) -> str:
 
 def test_the_commands_measure_what_the_records_hold(tmp_path: Path) -> None:
     write(tmp_path, study(["speed_against_error", "phases"], blocks=2))
-    found = {row["experiment"]: row["commands"] for row in commands(load(tmp_path).runs)}
+    found = {name: commands(runs) for name, runs in load(tmp_path).runs.groupby("experiment")}
     assert all(" --errors --record " in command for command in found["speed_against_error"])
     assert all(command.endswith("--warm-up 1") for command in found["phases"])
 
