@@ -58,7 +58,7 @@ def result(found: Found) -> list[str]:
     lines.append(f"  {_how_long(found)}")
     if asked.cases and not answer.commands:
         lines += table([[name, *_times(found, case)] for case, name in enumerate(asked.cases)])
-    lines += [f"  {_beside(one)}" for one in answer.commands if one.totals and len(answer.commands) == 1]
+    lines += [f"  {beside(one)}" for one in answer.commands if one.totals and len(answer.commands) == 1]
     if not asked.cases:
         measured = [one.name for one in asked.commands if found.runs[one.name, 0].seconds]
         lines += table([[name, *_resources(found.runs[name, 0])] for name in measured])
@@ -123,7 +123,7 @@ def _counts(found: Found) -> list[str]:
     return [f"  counted of each run, {asked.reference} → {other}:", *table(rows)] if rows else []
 
 
-def _beside(one: Difference) -> str:
+def beside(one: Difference) -> str:
     """What all time together says, and by how much blocks differ beyond what their runs explain, and runs."""
     in_all = f"all time together: {percent((one.totals or 1.0) - 1)} %"
     if one.start is None or one.round is None:
