@@ -115,6 +115,9 @@ def _listed(command: Compared, pattern: str | None) -> list[str]:
         require_executable(first, command.folder)
     except UnfitError as unfit:
         raise InputError(f'{command.called}: found "{first}", which {unfit}') from unfit
+    if command.has_shell and call is None:
+        told = f"{command.called}: is a line for a shell, which hands no arguments on to a Google Benchmark"
+        raise InputError(f"{told}; expected the program with its arguments alone, or --no-gb")
     around = {**os.environ, **dict(command.environment)}
     own = (call and call.filter) or around.get(_VARIABLE.rstrip("="))
     if written := [one for one in command.words if one.startswith(_OUT)]:
@@ -128,7 +131,10 @@ def _listed(command: Compared, pattern: str | None) -> list[str]:
         return cases(words, pattern or own or ".", command.called, command.folder, around)
     except InputError as error:
         raise InputError(
-            str(error).replace(f"{command.called}.filter: ", f"{command.called}: --filter: ")
+            str(error).replace(
+                f"{command.called}.filter: ",
+                f"{command.called}: {'--filter' if pattern else _FILTER.rstrip('=')}: ",
+            )
         ) from error
 
 

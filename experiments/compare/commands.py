@@ -136,6 +136,10 @@ def _written(options: argparse.Namespace, split: Sequence[Sequence[str]]) -> lis
             others = sorted(named_in(lines) - set(combined[0]))
             lacking = f" and no values for {{{others[0]}}}" if others else ""
             raise InputError(f"found values for {name}{lacking}, expected {{{name}}} in a command")
+    for name, value in ((name, value) for values in combined for name, value in values.items()):
+        if inner := named_in([value]) & set(combined[0]):
+            told = f"found {{{min(inner)}}} in a value of {name}, in which nothing is filled in"
+            raise InputError(f"{told}; expected values without placeholders")
     for one in found.values():
         for variable in options.env if combined[0] else ():
             require_filled("--env", fill(variable, one.values))

@@ -30,6 +30,11 @@ from experiments.support.process import Coprocess
 from support.errors import InputError, Interrupted
 from support.vocabulary import AGAIN
 
+_TRIALS = 6
+"""So many blocks have to find room, or nothing is stopped: to find out who minds takes as long."""
+_USUAL_WIDTH = 80
+"""Of a terminal that tells none."""
+
 
 class Course:
     """Holds what is asked, which learns how many runs count as one, and what has come of it so far."""
@@ -155,7 +160,9 @@ class Course:
             return
         if rounds:
             self._begin_again(replace(asked, turns=False, rounds=rounds))
-        elif is_open and not note_idle(asked, blocks.runs, blocks.others.idle_processors):
+            return
+        is_open &= _TRIALS * each <= asked.seconds
+        if is_open and not note_idle(asked, blocks.runs, blocks.others.idle_processors):
             self._begin_again(asked)
 
     def _block(self) -> None:
@@ -237,7 +244,7 @@ class Line:
         if not self._is_shown:
             return
         try:
-            width = os.get_terminal_size(sys.stderr.fileno()).columns
+            width = os.get_terminal_size(sys.stderr.fileno()).columns or _USUAL_WIDTH
             sys.stderr.write(f"\r\x1b[K{self._told()[: max(1, width - 1)]}")
             sys.stderr.flush()
         except OSError:

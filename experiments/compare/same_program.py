@@ -50,6 +50,10 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
             found = word if word == str(path) else f"{word}, which is {path}"
             told = "written by the builds: both commits would use what was built last"
             raise InputError(f"found {found}, {told}; expected a path inside the checkout, such as ./prog")
+    for word, path in _on_paths_of_python(words, head.folder):
+        if not (is_accepted or path.is_relative_to(trees)) and path.stat().st_ctime_ns > since:
+            told = f"found {path}, which {word} may load, written by the builds: both commits would use"
+            raise InputError(f"{told} what was built last; expected it inside the checkout, or --same-bytes")
     absolute = next((word for word, _ in sorted(of_head) if word.startswith("/")), None)
     first = absolute or next((word for word, _ in sorted(of_head)), None)
     if first and not any(path.is_relative_to(trees) for _, path in of_head):
@@ -119,6 +123,20 @@ def _libraries(path: Path) -> Iterator[Path]:
     if (ldd := shutil.which("ldd")) is not None and path.read_bytes()[:4] == b"\x7fELF":
         for file in re.findall(r"=> (/\S.*) \(", run([ldd, os.fspath(path)], time_limit=10.0).output):
             yield Path(file).resolve()
+
+
+def _on_paths_of_python(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:
+    """What lies where the Python that words name looks for modules, each with that word."""
+    code = "import sys; print(*sys.path[1:], sep=chr(10))"
+    for word, path in _named(words, folder):
+        if not re.fullmatch(r"python[0-9.]*", path.name):
+            continue
+        program = (
+            word if "/" not in word else os.fspath(folder / word)
+        )  # the link tells a virtual environment
+        for place in run([program, "-c", code], time_limit=10.0, folder=folder).output.splitlines():
+            inside = Path(place).iterdir() if Path(place).is_dir() else iter(())
+            yield from ((word, one) for one in inside if one.name != "__pycache__" and one.exists())
 
 
 def _parts(words: Sequence[str]) -> list[str]:

@@ -71,8 +71,9 @@ def combinations(asked: Sequence[str], most: int) -> list[dict[str, str]]:
     for one in asked:
         option, name, *words = one.split(chr(0))
         if not _PLACEHOLDER.fullmatch(f"{{{name}}}"):
-            expected = f"expected a name and then its values: {option} NAME A,B"
-            raise InputError(f"{option}: found {quoted(name)}, {expected}")
+            values_of = "A,B" if option in LIST else "FIRST LAST [STEP]"
+            expected = f"expected a name that begins with a letter, and then its values: {option} NAME"
+            raise InputError(f"{option}: found {quoted(name)}, {expected} {values_of}")
         if name in values:
             raise InputError(f"{option}: found {name} twice, expected one list or range of each name")
         what = f"{option} {name}"

@@ -53,6 +53,13 @@ _OTHER_UNIT = re.compile(
     r"(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b|[mMuUnN]?[sS]\b|[mMhHdD]\b|(?:days?|weeks?)\b)"
 )
 """What is no time, or none that is understood: a capital makes another unit of a short one."""
+_PER_TIME = re.compile(
+    r"\^?-1|\N{SUPERSCRIPT MINUS}\N{SUPERSCRIPT ONE}|/(?:s|sec\w*|min\w*|h|hours?|d|days?)\b"
+)
+"""What makes a rate of a time: 12 ns/day, 12 s^-1."""
+_AND_MORE = re.compile(r"(?:,? | and )?(?=[0-9])")
+_COLOURS = re.compile(rb"\x1b\[[0-9;]*m")
+"""Of a terminal."""
 _LETTERS = re.compile("([A-Za-z]{1,3})(?![A-Za-z])")
 """No word, as in 0:03.5elapsed."""
 
@@ -96,7 +103,7 @@ def printed_time(lines: Iterable[bytes], pattern: str, unit_seconds: float | Non
     for raw in lines:
         if len(raw) > LONGEST_LINE + 1:
             continue
-        line = raw.rstrip(b"\r\n").decode(errors="replace")
+        line = _COLOURS.sub(b"", raw.rstrip(b"\r\n")).decode(errors="replace")
         for at, match in enumerate(expression.finditer(line)):
             # An empty one is what (.*) leaves behind a first.
             if match[0] or at == 0:
@@ -214,7 +221,17 @@ def _is_cut(group: _Group, read: _Reading, behind: str, pattern: str) -> bool:
         or (_HAS_BEGUN.search(group.before) and not _says(pattern, group.before[-1], is_before=True))
         or _may_have_thousands(group, read.number, pattern)
         or (is_of_seconds and is_last)
+        or _has_more(read)
     )
+
+
+def _has_more(read: _Reading) -> bool:
+    """Whether a time goes on in a smaller unit, which has no more than one of the larger: 12 ms 345 us."""
+    gap = _AND_MORE.match(read.rest)
+    more = _read_number(read.rest[gap.end() :]) if gap else _Reading("")
+    if not (read.unit and more.unit and more.value):
+        return False
+    return more.value * more.unit < read.unit and more.unit < read.unit
 
 
 def _seconds_of(group: _Group, pattern: str, unit_seconds: float | None) -> float:
@@ -234,6 +251,8 @@ def _seconds_of(group: _Group, pattern: str, unit_seconds: float | None) -> floa
         has_word = is_time and not re.search("[0-9]", read.rest)
         at_most = "number, and behind it at most a unit: ns, us, ms, s, min or h"
         _refuse(group, f", expected a {at_most if has_word else 'positive number such as 1234.5'}")
+    if read.unit and (rate := _PER_TIME.match(read.rest)):
+        _refuse(group, f" with {in_quotes(rate[0])} behind its unit, expected a time")
     other = None if read.unit else _OTHER_UNIT.match(behind) or (group.ends_match and _LETTERS.match(behind))
     if other:
         _refuse(group, f" with the unit '{other[1]}', expected a time")

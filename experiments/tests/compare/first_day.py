@@ -41,6 +41,8 @@ TIMED, PRINTED, WRITTEN, LISTS, ENDS, TIME = (
 _TOOK = ("--time-from", r"took (\S+ ?[^\d\s]*)")
 _NUMBER = ("--time-from", "took ([0-9.,e'+-]+)")
 
+_TOOK_NUMBER = ("--time-from", "took ([0-9.]+)")
+
 _TABLE = "echo 'Benchmark     Time     CPU   Iterations'\n"
 _WORKS = {"short": LOOP.format(times=4000), "long": LOOP.format(times=12000)}
 _FAST = "exit 0\n"
@@ -123,6 +125,28 @@ CASES = (
         LISTS, "a name with a placeholder that nobody fills in", "refused",
         ("-n", "x {g}", "-n", "y", "true", "ls"), ("-n: found {g}, expected a list or range of that name",),
         code=1,
+    ),
+    _refused("a rate", "12.5 ns/day", "found '12.5' with '/day' behind its unit", _TOOK_NUMBER),
+    _refused("a time that goes on in a smaller unit", "12 ms 345 us", "within a longer number", _TOOK_NUMBER),
+    Case(
+        LISTS, "a placeholder in a value of a list", "refused: nothing is filled in there",
+        ("-P", "t", "1", "2", "-L", "m", "-j{t},-s", "echo {m} {t}"),
+        ("found {t} in a value of m, in which nothing is filled in",), code=1,
+    ),
+    Case(
+        LISTS, "a name of a list that begins with a digit", "what a name begins with",
+        ("-P", "1n", "1", "2", "echo {1n}"),
+        ("-P: found \"1n\", expected a name that begins with a letter", "-P NAME FIRST LAST [STEP]"), code=1,
+    ),
+    Case(
+        TIMED, "a line for a shell, with --gb", "refused: it hands no arguments on",
+        ("--gb", "./a > x", "./b > x"), ("./a > x: is a line for a shell, which hands no arguments on",),
+        code=1, files={"a": _TABLE, "b": _TABLE},
+    ),
+    Case(
+        TIME, "a terminal that tells no width", "its line is drawn for 80 columns",
+        ("true", "ls"), ("making ready",), code=None,
+        through='script -qec "$*" /dev/null </dev/null',
     ),
     Case(
         TIME, "runs that come before each timed one", "how many the first block has is said before it",
@@ -317,7 +341,7 @@ CASES = (
     ),
     Case(
         LISTS, "`=` between a name and its values", "one line that says how they are written",
-        ("-L", "n=1,2", "seq {n}"), ("expected a name and then its values: -L NAME A,B",), code=1,
+        ("-L", "n=1,2", "seq {n}"), ("and then its values: -L NAME A,B",), code=1,
     ),
     Case(
         LISTS, "a thousand values", "the option that makes them is named",

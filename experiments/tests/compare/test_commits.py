@@ -303,6 +303,14 @@ PROGRAMS = {
         (": found ./prog, which is not there; expected --build LINE if it is to be built",),
         build="",
     ),
+    "installed, for a Python": Case(
+        f"{SLOWER} mkdir HERE/modules && echo 'import mod' >bench.py && commit bench",
+        1,
+        ("found HERE/modules/mod.py, which python3 may load, written by the builds",),
+        build="echo 'x = 1' >HERE/modules/mod.py",
+        run=("python3", "bench.py"),
+        env={"PYTHONPATH": "HERE/modules"},
+    ),
     "a variable that leads into the user's own checkout": Case(
         f"{SLOWER} mkdir src",
         1,

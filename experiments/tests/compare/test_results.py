@@ -73,7 +73,7 @@ def test_a_file_goes_on_with_what_is_in_it(folder: Path) -> None:
     script(folder / "prints", 'echo took "$(($1 * $2))" ms # changed')
     done = run(folder, *words)
     assert "a new session begins" in done.stderr
-    assert "other commands, or changed programs" in done.stderr
+    assert "other commands or options, or changed programs" in done.stderr
     assert "1 block:" in done.stdout
     sessions = json.loads((folder / "kept.json").read_text(encoding="utf-8"))["sessions"]
     assert [len(one["records"]) for one in sessions] == [18, 3]

@@ -47,6 +47,8 @@ RIGHT = (
     ("took 2s300us", "took (.*)", 2.0003), ("real 0m1,234s", "real (.*)", 1.234),
     ("t 12\u00b13 ms", "t ([0-9]+)", 0.012), ("t 1.5 +/- 0.1 us", "t (.*)", 1.5e-6),
     ("t 12(ms)", "t ([0-9]+)", 0.012), ("t 12 [us]", "t (.*)", 12e-6), ("t 12 (slow)", "t ([0-9]+)", 12),
+    ("t 12 ms  345 us", "t ([0-9]+)", 0.012), ("t 12 ms 1345 us", "t ([0-9]+)", 0.012),
+    ("t 12 ns/op", "t ([0-9]+)", 12e-9), ("t \x1b[32m20.12\x1b[0m \x1b[1mms", "t (.*)", 0.02012),
     ("real 0m1.2s", "m([0-9.]+)s", 1.2), ("0:01.5 s elapsed", ":([0-9.]+)", 1.5),
     ("t 1,234.5 s", "t ([0-9.,]+)", 1234.5), ("t 1.234,5 s", "t ([0-9.,]+)", 1234.5),
     ("t 1,234,567 s", "t ([0-9.,]+)", 1234567), ("t 1.234.567 s", "t ([0-9.,]+)", 1234567),
@@ -85,7 +87,8 @@ PARTS = (
     ("took 3e-5", "took ([0-9]+)"), ("took 3-5", "took ([0-9]+)"), ("took 31", "took ([0-9])"),
     ("took 1:02.5 s", "took ([0-9.]+)"), ("took 2 s 300 ms", "took ([0-9.]+)"),
     ("took 2 s 300 ms", "took ([0-9.]+) s"),
-    ("took 2 s 300 ms", "([0-9]+) ms"),
+    ("took 2 s 300 ms", "([0-9]+) ms"), ("took 12 ms 345 us", "took ([0-9]+)"),
+    ("took 3 s, 250 ms", "took ([0-9]+)"), ("took 3 s and 250 ms", "took (.*) and"),
 )  # fmt: skip
 
 
@@ -109,6 +112,9 @@ REFUSED = (
     )),
     ("", "(.*)", f"found '', {POSITIVE}"),
     ("t 12 \u00b1 3 MB", "t ([0-9]+)", "found '12' with the unit 'MB', expected a time"),
+    ("12.5 ns/day", "([0-9.]+)", "found '12.5' with '/day' behind its unit, expected a time"),
+    ("12 s^-1", "([0-9]+) s", "found '12' with '^-1' behind its unit, expected a time"),
+    ("12 ms\u207b\u00b9", "([0-9]+)", "found '12' with '??' behind its unit, expected a time"),
     ("t 12(MB)", "t ([0-9]+)", "found '12' with the unit 'MB', expected a time"),
     ("took 5m", "took ([0-9]+)", "found '5' with the unit 'm', expected a time"),
     ("took 5kms", "took ([0-9]+)", "found '5' with the unit 'kms', expected a time"),
