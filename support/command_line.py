@@ -18,8 +18,26 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Say what is wrong and leave."""
-        print(f"carom: {message} (see `{self.prog} --help`)", file=sys.stderr)
+        tell(f"carom: {message} (see `{self.prog} --help`)")
         raise SystemExit(1)
+
+
+class Once(argparse.Action):
+    """Stores a value, and takes no second one: the first would be dropped without a word."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: object,
+        option: str | None = None,
+    ) -> None:
+        """Raises like the parser for a second value."""
+        given = vars(namespace).setdefault("given", set())
+        if option is not None and self.dest in given:
+            parser.error(f"found {option} twice, expected it once")
+        given.add(self.dest)
+        setattr(namespace, self.dest, values)
 
 
 def number_above_zero(text: str, unit: str) -> float:
@@ -37,6 +55,14 @@ def print_anything() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+
+
+def tell(text: str) -> None:
+    """One line on standard error. Where that is full, or its reader is gone, nobody is told."""
+    try:
+        print(text, file=sys.stderr, flush=True)
+    except OSError:
+        _forget(sys.stderr)
 
 
 def print_lines(lines: Iterable[str], stream: TextIO | None) -> None:
@@ -68,15 +94,15 @@ def exit_code_of(verb: Callable[[], int], kept: str = "") -> int:
             sys.stdout.flush()  # here, so that what cannot be written is told below
         return code
     except InputError as error:
-        print(f"carom: {error}", file=sys.stderr)
+        tell(f"carom: {error}")
         return 1
     except BrokenPipeError:
         _forget(sys.stdout)  # whoever read the output, say `head`, has seen enough
         return 1
     except OSError as error:
         # The disk is full, or a folder cannot be written: nothing that is finished suffers from it.
-        print(f"carom: {cannot(error)}{f'; {kept}' if kept else ''}", file=sys.stderr)
+        tell(f"carom: {cannot(error)}{f'; {kept}' if kept else ''}")
         return 1
     except Interrupted as stopped:
-        print(f"\nstopped: {kept}", file=sys.stderr)
+        tell(f"\nstopped: {kept}")
         return 128 + stopped.signal_number

@@ -19,7 +19,7 @@ from experiments.compare.worktrees import Commit, Repository, Tree, build, repos
 from experiments.plan.executable import found
 from experiments.run.progress import warn
 from experiments.support.vanishing import vanishing_folder
-from support.command_line import Parser
+from support.command_line import Once, Parser
 from support.errors import InputError
 
 SLOWER, UNDECIDED = 3, 4
@@ -150,6 +150,7 @@ def _parser() -> argparse.ArgumentParser:
         "failed command; 3 slower by more than the margin; 4 not settled in time; 5 the base differs from "
         "itself. 0 and 3 are established; after 5 nothing is certain.",
     )
+    parser.register("action", None, Once)
     add = parser.add_argument
     told = "the branch that it is to go into, such as origin/main: compared with where --head left it"
     add("--base", required=True, metavar="COMMIT", help=told)

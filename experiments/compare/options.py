@@ -12,7 +12,7 @@ from experiments.compare.commands import NEXT, Compared, commands_of, reference_
 from experiments.compare.sweeps import LIST, RANGE, fill, named_in, require_filled
 from experiments.plan.series import SECONDS_OF_UNIT, require_one_group
 from experiments.run.progress import warn
-from support.command_line import Parser
+from support.command_line import Once, Parser
 from support.errors import InputError
 
 EXPORTS = ("json", "csv", "markdown", "html")
@@ -163,6 +163,7 @@ def _parser() -> argparse.ArgumentParser:
         epilog="Exit codes: 0 measured, whatever came out; 1 wrong usage; 2 a command failed; 5 the first "
         "command differs from itself, so that nothing is certain.",
     )
+    parser.register("action", None, Once)
     add = parser.add_argument
     told = "a command line; a shell runs it only if it has more than plain words"
     add("lines", nargs="*", metavar="COMMAND", help=told)

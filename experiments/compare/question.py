@@ -97,7 +97,11 @@ def _command(one: Compared, case: str | None, asked: Asked, around: Surroundings
 def in_options(reason: str) -> str:
     """A reason in the words of the command line where it has those of a question's file."""
     for key, option in _OPTIONS.items():
-        reason = reason.replace(key, option)
+        # What a program has said stands behind other words, and stays as it is.
+        if not key.endswith(": "):
+            reason = reason.replace(key, option)
+        elif reason.startswith(key):
+            return option + in_options(reason.removeprefix(key))
     return reason
 
 

@@ -14,6 +14,9 @@ from experiments.support import process
 from experiments.support.vanishing import marked
 from support.errors import InputError
 
+_ON_ITS_WAY = "Preparing worktree"
+"""What git says where nothing is wrong."""
+
 _LAST_LINES = 12
 """Of what a build that failed has said."""
 
@@ -178,8 +181,9 @@ def _environment() -> dict[str, str]:
 
 def _reason(done: process.Completed) -> str:
     """All that git says of why it failed, in one line: the remedy stands below the reason."""
-    said = " ".join(dict.fromkeys(line.strip() for line in done.error.splitlines() if line.strip()))
-    return said.removeprefix("fatal: ") or done.reason
+    lines = (line.strip() for line in done.error.splitlines() if not line.startswith(_ON_ITS_WAY))
+    said = " ".join(dict.fromkeys(filter(None, lines)))
+    return said.removeprefix("fatal: ") or f"exit code {done.exit_code} without a word, as of a hook"
 
 
 def _borrow(folder: Path, stores: list[Path]) -> None:

@@ -1,11 +1,12 @@
 """How far the study is: a bar with the time left on a terminal, plain lines elsewhere."""
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
+
+from support.command_line import tell
 
 
 @dataclass(frozen=True)
@@ -79,4 +80,4 @@ def several(number: int, noun: str) -> str:
 
 def warn(text: str) -> None:
     """One line on standard error."""
-    print(text, file=sys.stderr, flush=True)
+    tell(text)

@@ -144,6 +144,21 @@ CASES = (
         code=1, files={"a": _TABLE, "b": _TABLE},
     ),
     Case(
+        TIMED, "an option twice that is there once for all commands", "refused: one would be dropped",
+        ("--input", "a", "--input", "b", "./a", "./b"), ("found --input twice, expected it once",), code=1,
+        files={"a": _FAST, "b": _FAST},
+    ),
+    Case(
+        TIMED, "a program that prints words of our own", "they stay as they are",
+        ("./a", "true"), ("exit code 1: prepare: no table",), ("--prepare",), code=2,
+        files={"a": "echo prepare: no table >&2; exit 1"},
+    ),
+    Case(
+        ENDS, "a full disk behind standard error", "the result, and the export",
+        ("--warmup", "1", "--export-csv", "rows.csv", "true", "ls"), ("  true  ",), code=None,
+        through='"$@" 2>/dev/full', left=("rows.csv",),
+    ),
+    Case(
         TIME, "a terminal that tells no width", "its line is drawn for 80 columns",
         ("true", "ls"), ("making ready",), code=None,
         through='script -qec "$*" /dev/null </dev/null',

@@ -311,6 +311,12 @@ PROGRAMS = {
         run=("python3", "bench.py"),
         env={"PYTHONPATH": "HERE/modules"},
     ),
+    "a hook that fails without a word": Case(
+        f"{SLOWER} cd .git/hooks && printf '#!/bin/sh\\nexit 1\\n' >post-checkout && chmod +x post-checkout"
+        " && cd ../..",
+        1,
+        ("cannot be checked out: exit code 1 without a word, as of a hook",),
+    ),
     "a variable that leads into the user's own checkout": Case(
         f"{SLOWER} mkdir src",
         1,
