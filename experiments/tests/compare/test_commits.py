@@ -438,7 +438,8 @@ def test_what_is_done_is_answered(tmp_path: Path, case: Case) -> None:
     folder = Path(made.stdout.splitlines()[-1])
     before = state(tmp_path, env)
     build = ("--build", case.build) if case.build else ()
-    words = ["gate", "--base", "main", *case.options, *build, *TOOK, "--", *case.run]
+    base = () if "--base" in case.options else ("--base", "main")
+    words = ["gate", *base, *case.options, *build, *TOOK, "--", *case.run]
     env_of_case = {name: value.replace("HERE", str(tmp_path)) for name, value in case.env.items()}
     words = [word.replace("HERE", str(tmp_path)) for word in words]
     said = run(folder, *words, env={**env, **env_of_case}, tmp=tmp_path / "tmp")

@@ -64,8 +64,8 @@ def test_a_signal_ends_it_with_what_there_is(folder: Path, number: signal.Signal
     ):
         time.sleep(0.1)
     child.send_signal(number)
-    output, _ = child.communicate(timeout=60)
-    assert child.returncode == 128 + number
+    output, error = child.communicate(timeout=60)
+    assert child.returncode == 128 + number, output + error
     assert "short   " in output
     assert left_behind(folder) == []
     assert (folder / "rows.csv").exists()

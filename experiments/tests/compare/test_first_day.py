@@ -65,8 +65,9 @@ def test_what_was_measured_is_kept_however_it_ends(tmp_path: Path, number: signa
     while time.monotonic() < until and not (tmp_path / "kept.json").exists():
         time.sleep(0.05)
     child.send_signal(number)
-    child.communicate(timeout=60)
-    assert child.returncode == (-number if number == signal.SIGKILL else 128 + number)
+    output, error = child.communicate(timeout=60)
+    ended = -number if number == signal.SIGKILL else 128 + number
+    assert child.returncode == ended, output + error
     assert '"sessions"' in (tmp_path / "kept.json").read_text(encoding="utf-8")
     last = int((tmp_path / "pid").read_text() or 0)
     while time.monotonic() < until and (left_behind(tmp_path) or is_running(last)):
