@@ -26,6 +26,7 @@ from experiments.plan.plan import Surroundings
 from experiments.results.store import Store
 from experiments.run.progress import about, several, warn
 from experiments.run.runner import Runner
+from experiments.support.interrupts import stop_if_asked
 from experiments.support.process import Coprocess
 from support.errors import InputError, Interrupted
 from support.vocabulary import AGAIN
@@ -167,6 +168,7 @@ class Course:
 
     def _block(self) -> None:
         """A block; what failed in it is left out from then on."""
+        stop_if_asked()
         blocks, asked = self.blocks, self.asked
         if blocks.run(vary_layout=not asked.fixed_layout):
             return

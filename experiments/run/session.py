@@ -15,6 +15,7 @@ from experiments.run.schedule import FIRST_LOOK, Part, Schedule, may_decide
 from experiments.run.study import POINTS_FAILED, REPORT_FAILED, Settings, Study, keep_claims, summary
 from experiments.run.together import together
 from experiments.run.verdicts import Verdicts, ask
+from experiments.support.interrupts import stop_if_asked
 from experiments.support.process import Coprocess
 from support.vocabulary import CONTROL
 
@@ -255,6 +256,7 @@ class Session:
         return is_due or not control.found.seconds
 
     def _block(self, part: Part, block: int) -> None:
+        stop_if_asked()
         laid_out, blocks, experiment = part.blocks, part.given, part.experiment
         missing, size = laid_out.missing(block), laid_out.size(block)
         what = f"{part.name}, block {laid_out.ordinal(block)} of {blocks}"

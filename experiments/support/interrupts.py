@@ -14,6 +14,10 @@ _SIGNALS = (
 )  # fmt: skip
 
 
+_asked: list[int] = []
+"""The signals that came."""
+
+
 def stop_at_signals() -> None:
     """Raise `Interrupted` at each of these signals, but for one that is ignored: `nohup` relies on that. One
     that came before, and which the program held back, is the end at once: nothing has begun.
@@ -27,6 +31,13 @@ def stop_at_signals() -> None:
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
 
 
+def stop_if_asked() -> None:
+    """Raise again what nobody has heard: Python ignores what a signal raises while it forks."""
+    if _asked:
+        raise Interrupted(_asked[-1])
+
+
 def _interrupt(number: int, frame: FrameType | None) -> None:
     del frame
+    _asked.append(number)
     raise Interrupted(number)
