@@ -164,6 +164,7 @@ class Blocks:
             for point in self._points(block):
                 self._take_in(point, block)
         self.done = self.before = whole
+        self._ran = 0.0
         return ""
 
     @property

@@ -131,9 +131,8 @@ def _on_paths_of_python(words: Sequence[str], folder: Path) -> Iterator[tuple[st
     for word, path in _named(words, folder):
         if not re.fullmatch(r"python[0-9.]*", path.name):
             continue
-        program = (
-            word if "/" not in word else os.fspath(folder / word)
-        )  # the link tells a virtual environment
+        # Not the file behind the link: by the link Python knows its virtual environment.
+        program = os.fspath(folder / word) if "/" in word else word
         for place in run([program, "-c", code], time_limit=10.0, folder=folder).output.splitlines():
             inside = Path(place).iterdir() if Path(place).is_dir() else iter(())
             yield from ((word, one) for one in inside if one.name != "__pycache__" and one.exists())

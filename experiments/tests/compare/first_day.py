@@ -159,6 +159,10 @@ CASES = (
         through='"$@" 2>/dev/full', left=("rows.csv",),
     ),
     Case(
+        TIME, "no room for six blocks", "no time goes to finding out who may be stopped",
+        ("sleep 0.3", "sleep 0.31"), ("  sleep 0.3  ",), ("never stopped",), code=None, time="2s",
+    ),
+    Case(
         TIME, "a terminal that tells no width", "its line is drawn for 80 columns",
         ("true", "ls"), ("making ready",), code=None,
         through='script -qec "$*" /dev/null </dev/null',
