@@ -58,7 +58,8 @@ def result(found: Found) -> list[str]:
     lines.append(f"  {_how_long(found)}")
     if asked.cases and not answer.commands:
         lines += table([[name, *_times(found, case)] for case, name in enumerate(asked.cases)])
-    lines += [f"  {beside(one)}" for one in answer.commands if one.totals and len(answer.commands) == 1]
+    if len(answer.commands) == 1 and answer.commands[0].totals:
+        lines.append(f"  {beside(answer.commands[0])}{_by_clock(found)}")
     if not asked.cases:
         measured = [one.name for one in asked.commands if found.runs[one.name, 0].seconds]
         lines += table([[name, *_resources(found.runs[name, 0])] for name in measured])
@@ -79,13 +80,16 @@ def in_order(found: Found) -> list[Difference]:
 def row(one: Difference, found: Found) -> list[str]:
     """What is compared, by how much it differs, and the verdict; of a case its times beside that."""
     asked = found.asked
-    by_clock = "" if found.answer.clock == WALL else ", waiting for a processor left out"
-    said = "withdrawn" if found.answer.is_withdrawn else verdict(one, asked) + by_clock
+    said = "withdrawn" if found.answer.is_withdrawn else verdict(one, asked) + _by_clock(found)
     if not asked.cases:
         return [f"{one.name} against {asked.reference}", change(one), said]
     times = [duration(found.runs[name, one.case].median("seconds")) for name in (asked.reference, one.name)]
     whose = f" ({one.name})" if len(asked.commands) > 2 else ""
     return [asked.cases[one.case] + whose, " → ".join(times), change(one), said]
+
+
+def _by_clock(found: Found) -> str:
+    return "" if found.answer.clock == WALL else ", waiting for a processor left out"
 
 
 def _times(found: Found, case: int) -> list[str]:

@@ -130,7 +130,7 @@ def test_all_time_stands_beside_the_difference(folder: Path) -> None:
     done = run(folder, "compare", *words, "--export-json", "a.json")
     [told] = json.loads((folder / "a.json").read_text(encoding="utf-8"))["differences"]
     assert told["totals"] > told["ratio"]
-    assert f"all time together: +{100 * told['totals'] - 100:.1f} %" in done.stdout
+    assert f"all time together: +{100 * told['totals'] - 100:.1f} %\n" in done.stdout
 
 
 def test_what_blocks_and_runs_differ_by_is_said_where_it_is_known() -> None:
