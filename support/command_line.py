@@ -8,7 +8,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import NoReturn, TextIO
+from typing import Any, NoReturn, TextIO
 
 from support.errors import InputError, Interrupted, cannot
 
@@ -20,6 +20,10 @@ class Parser(argparse.ArgumentParser):
         """Say what is wrong and leave."""
         tell(f"carom: {message} (see `{self.prog} --help`)")
         raise SystemExit(1)
+
+    def print_help(self, file: Any = None) -> None:  # noqa: ANN401 - as its base has it
+        """Print the help. Raises what `print_lines` does."""
+        print_lines([self.format_help().removesuffix("\n")], file or sys.stdout)
 
 
 class Once(argparse.Action):
@@ -60,9 +64,16 @@ def print_anything() -> None:
 def tell(text: str) -> None:
     """One line on standard error. Where that is full, or its reader is gone, nobody is told."""
     try:
-        print(text, file=sys.stderr, flush=True)
+        # A line that tells how far it is may stand there.
+        print(f"\r\x1b[K{text}" if can_draw() else text, file=sys.stderr, flush=True)
     except OSError:
         _forget(sys.stderr)
+
+
+def can_draw() -> bool:
+    """Whether standard error is a terminal on which a line can be drawn anew."""
+    is_terminal = sys.stderr is not None and sys.stderr.isatty()
+    return is_terminal and os.environ.get("TERM", "dumb") not in ("dumb", "")
 
 
 def print_lines(lines: Iterable[str], stream: TextIO | None) -> None:

@@ -9,13 +9,14 @@ from pathlib import Path
 from experiments.compare import exports
 from experiments.compare.answer import Answer, Difference, ask, draw
 from experiments.compare.blocks import Blocks, codes_said, keep_addresses, shell_seconds
-from experiments.compare.course import Course, Line
+from experiments.compare.course import Course, Line, since_now
 from experiments.compare.earlier import Earlier
 from experiments.compare.first_run import unlike_runs
 from experiments.compare.found import Found
 from experiments.compare.options import Asked, parse
 from experiments.compare.sweeps import contrasts
 from experiments.compare.texts import duration, hindered, result
+from experiments.compare.watch import Require, Watch
 from experiments.plan.plan import Surroundings
 from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.scale import find_scale
@@ -47,19 +48,24 @@ def compare(arguments: Sequence[str]) -> int:
     return measured(parse(arguments))[0]
 
 
-def measured(asked: Asked, say: Say = lambda _: "") -> tuple[int, Answer]:
-    """Measure and tell the result, with the line that `say` makes of it at the head of exported pages;
-    returns the exit code and what the last look found.
+def measured(asked: Asked, say: Say = lambda _: "", require: Require = lambda _: None) -> tuple[int, Answer]:
+    """Measure and tell the result, with the line that `say` makes of it at the head of exported pages, unless
+    what was loaded is not what `require` wants; returns the exit code and what the last look found.
     """
     exports.require_places(asked.exports, asked.earlier, asked.commands)
     earlier = Earlier(asked.earlier)
     if asked.fixed_layout:
         keep_addresses()
     with vanishing_folder("carom-compare-") as folder, _set_up(asked, folder):
-        return _measured(asked, earlier, folder, say)
+        try:
+            return _measured(asked, earlier, Watch(folder, require), folder, say)
+        except OSError as error:
+            if not str(error.filename).startswith(str(folder)):
+                raise
+            raise OSError(error.errno, error.strerror, str(folder.parent)) from error
 
 
-def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[int, Answer]:
+def _measured(asked: Asked, earlier: Earlier, watch: Watch, folder: Path, say: Say) -> tuple[int, Answer]:
     where = load_site("local")
     around = Surroundings(where, this_machine(), find_programs(where, BUILDS), find_scale("paper"))
     generator = around.programs[GENERATOR]
@@ -70,7 +76,7 @@ def _measured(asked: Asked, earlier: Earlier, folder: Path, say: Say) -> tuple[i
         _write_down(asked, store)
         scenes = SceneFolder(folder / "scenes", store.temporary, str(generator.sha256))
         runner = Runner(store, scenes, generator, asked.most_seconds, asked.slice_seconds, tells=False)
-        course = Course(asked, around, store, runner)
+        course = Course(asked, around, store, runner, watch)
         with Line(asked.quiet) as line:
             line.show(lambda: "making ready")
             stopped = course.run(judge, earlier, line)
@@ -135,7 +141,7 @@ def _remarks(course: Course, by_wall: Sequence[Difference]) -> tuple[str, ...]:
         for one in asked.commands:
             if (runs := course.blocks.runs[one.name, 0]).all:
                 of_both = [course.first.get((name, 0), 0.0) for name in (one.name, one.name + AGAIN)]
-                remarks += unlike_runs(one.name, max(of_both), runs)
+                remarks += unlike_runs(one, max(of_both), runs)
     codes = {one.name: course.blocks.runs[one.name, 0].codes for one in asked.commands}
     if len({tuple(one) for one in codes.values() if one}) > 1:
         told = "; ".join(f"{name}: {codes_said(one)}" for name, one in codes.items() if one)
@@ -156,17 +162,19 @@ def _set_up(asked: Asked, folder: Path) -> Iterator[None]:
     """
     known = children()
     try:
-        _once("--setup", asked.setup, folder)
+        _once("--setup", asked.setup, folder, asked.quiet)
         yield
     finally:
-        _once("--cleanup", asked.cleanup, folder)
+        _once("--cleanup", asked.cleanup, folder, asked.quiet)
         end_all_but(known)
 
 
-def _once(option: str, lines: Sequence[str], folder: Path) -> None:
+def _once(option: str, lines: Sequence[str], folder: Path, quiet: bool) -> None:
     for line in lines:
         try:
-            done = process.run(("sh", "-c", line), marked(os.environ, folder), ends_all=False)
+            with Line(quiet) as shown:
+                shown.show(since_now(f"{option}: {line}"))
+                done = process.run(("sh", "-c", line), marked(os.environ, folder), ends_all=False)
         except Interrupted:
             warn(f"carom: {option}: {line}: was stopped before its end")
             raise

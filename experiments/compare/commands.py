@@ -131,15 +131,15 @@ def _written(options: argparse.Namespace, split: Sequence[Sequence[str]]) -> lis
             text = shlex.join(words) if words else fill(line, values)
             key = (text, *(fill(one, values) for one in (*own, *of_all))) if values else at
             found.setdefault(key, _Written(text, words, (*of_line, *levels), dict(levels), at))
+    for name, value in ((name, value) for values in combined for name, value in values.items()):
+        if inner := named_in([value]) & set(combined[0]):
+            told = f"found {quoted(value)} as a value of {name}, in which {{{min(inner)}}} is not filled in"
+            raise InputError(f"{told}; expected values without placeholders, then the commands")
     for name in combined[0]:
         if not any(name in one.values for one in found.values()):
             others = sorted(named_in(lines) - set(combined[0]))
             lacking = f" and no values for {{{others[0]}}}" if others else ""
             raise InputError(f"found values for {name}{lacking}, expected {{{name}}} in a command")
-    for name, value in ((name, value) for values in combined for name, value in values.items()):
-        if inner := named_in([value]) & set(combined[0]):
-            told = f"found {{{min(inner)}}} in a value of {name}, in which nothing is filled in"
-            raise InputError(f"{told}; expected values without placeholders")
     for one in found.values():
         for variable in options.env if combined[0] else ():
             require_filled("--env", fill(variable, one.values))

@@ -3,7 +3,8 @@
 import os
 import signal
 import sys
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from experiments.compare.answer import Answer, Difference, ask
@@ -22,12 +23,16 @@ from experiments.compare.found import Found, Look
 from experiments.compare.options import Asked
 from experiments.compare.question import experiment_of
 from experiments.compare.texts import change
+from experiments.compare.watch import Watch
 from experiments.plan.plan import Surroundings
+from experiments.plan.scenes import sha256_of
 from experiments.results.store import Store
+from experiments.run.host_lock import WAITS
 from experiments.run.progress import about, several, warn
 from experiments.run.runner import Runner
 from experiments.support.interrupts import stop_if_asked
 from experiments.support.process import Coprocess
+from support.command_line import can_draw
 from support.errors import InputError, Interrupted
 from support.vocabulary import AGAIN
 
@@ -40,9 +45,14 @@ _USUAL_WIDTH = 80
 class Course:
     """Holds what is asked, which learns how many runs count as one, and what has come of it so far."""
 
-    def __init__(self, asked: Asked, around: Surroundings, store: Store, runner: Runner) -> None:
+    def __init__(
+        self, asked: Asked, around: Surroundings, store: Store, runner: Runner, watch: Watch
+    ) -> None:
         """Plans it. Raises InputError for a command that is not there or cannot be run."""
         self.asked = asked
+        self._watch = watch
+        self._loaded: Mapping[str, str] = {}
+        """The SHA-256 of each library that was loaded, where that is to be known later."""
         self._around = around
         self.blocks = Blocks(experiment_of(asked, around), store, runner, has_cases=bool(asked.cases))
         self.answer = Answer()
@@ -83,7 +93,8 @@ class Course:
     @property
     def how(self) -> How:
         """How it is measured, for a later call that goes on."""
-        return How(self.asked.rounds, self.asked.turns, tuple(self.left_out))
+        asked = self.asked
+        return How(asked.rounds, asked.turns, tuple(self.left_out), asked.fixed_layout, self._loaded)
 
     def found(self, by_wall: tuple[Difference, ...], remarks: tuple[str, ...]) -> Found:
         """What has come of it."""
@@ -110,7 +121,8 @@ class Course:
         # What the user says of turns stands; a session that was measured in another way is not gone on with.
         turns = earlier.how.turns if before.turns is None else before.turns
         self._begin_again(replace(self.asked, rounds=earlier.how.rounds, turns=turns))
-        told = earlier.go_on(self.blocks)
+        self._loaded = earlier.how.loaded
+        told = earlier.how.no_longer(self.asked.fixed_layout) or earlier.go_on(self.blocks)
         if told:
             warn(
                 f"carom: --append: a new session begins, since what was measured earlier cannot go on: {told}"
@@ -151,8 +163,9 @@ class Course:
         is_open = asked.turns is None and not asked.cases and not asked.has_printed_times
         if is_open:
             self._begin_again(replace(asked, turns=False))
-        self._block()
-        require_meant(asked, blocks.runs)
+        with self._watch.watching(asked):
+            self._block()
+        self._require_meant()
         self.first = {key: one.seconds[0] for key, one in blocks.runs.items() if one.seconds}
         if not blocks.done:
             return
@@ -165,6 +178,15 @@ class Course:
         is_open &= _TRIALS * each <= asked.seconds
         if is_open and not note_idle(asked, blocks.runs, blocks.others.idle_processors):
             self._begin_again(asked)
+
+    def _require_meant(self) -> None:
+        """Raises InputError where what ran first, or what it has loaded, is not what was meant."""
+        asked = self.asked
+        require_meant(asked, self.blocks.runs, self._watch.benchmark)
+        loaded = self._watch.loaded([one.folder for one in asked.commands])
+        self._watch.require(loaded)
+        if asked.earlier is not None:
+            self._loaded = {str(path): str(sha256_of(path)) for path in loaded}
 
     def _block(self) -> None:
         """A block; what failed in it is left out from then on."""
@@ -217,12 +239,17 @@ class Course:
         return f"{known}; {about(min(until, left))} left"
 
 
+def since_now(what: str) -> Callable[[], str]:
+    """What is done, with the seconds since now."""
+    began = time.monotonic()
+    return lambda: f"{what}, {time.monotonic() - began:.0f} s"
+
+
 class Line:
     """One line on a terminal that tells how far it is, drawn anew each second; a context manager."""
 
     def __init__(self, quiet: bool) -> None:
-        can_draw = os.environ.get("TERM", "dumb") not in ("dumb", "")
-        self._is_shown = can_draw and not quiet and sys.stderr is not None and sys.stderr.isatty()
+        self._is_shown = not quiet and can_draw()
         self._told: Callable[[], str] = str
 
     def __enter__(self) -> "Line":
@@ -247,7 +274,8 @@ class Line:
             return
         try:
             width = os.get_terminal_size(sys.stderr.fileno()).columns or _USUAL_WIDTH
-            sys.stderr.write(f"\r\x1b[K{self._told()[: max(1, width - 1)]}")
+            told = "waits for another measurement" if WAITS.is_waiting else self._told()
+            sys.stderr.write(f"\r\x1b[K{told[: max(1, width - 1)]}")
             sys.stderr.flush()
         except OSError:
             self._is_shown = False  # the terminal is closed

@@ -1,16 +1,18 @@
 """A file with what earlier calls measured: the records of each session, the last of which may go on."""
 
 import json
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from experiments.compare.blocks import Blocks
+from experiments.plan.scenes import sha256_of
 from support.errors import InputError
 from support.files import descriptor_of, read_json, replacing, require_place
 from support.record_schema import is_record
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 
 
 @dataclass(frozen=True)
@@ -22,6 +24,16 @@ class How:
     rounds: tuple[int, ...]
     turns: bool | None
     left_out: tuple[str, ...] = ()
+    fixed_layout: bool = False
+    loaded: Mapping[str, str] = field(default_factory=dict)
+    """The SHA-256 of each shared library that was loaded."""
+
+    def no_longer(self, fixed_layout: bool) -> str:
+        """Why nothing can be measured like this any more; empty if it can."""
+        if fixed_layout != self.fixed_layout:
+            return f"it was measured with{'out' * fixed_layout} --fixed-layout"
+        other = (name for name, sha256 in self.loaded.items() if _hash_of(Path(name)) != sha256)
+        return next((f"{name} is another library now" for name in other), "")
 
 
 @dataclass(frozen=True)
@@ -99,8 +111,18 @@ def _read(path: Path) -> list[Session]:
 def _session(path: Path, session: object) -> Session:
     match session:
         case {
-            "how": {"rounds": [*rounds], "turns": bool() | None as turns, "left_out": [*left_out]},
+            "how": {
+                "rounds": [*rounds],
+                "turns": bool() | None as turns,
+                "left_out": [*left_out],
+                "fixed_layout": bool() as is_fixed,
+                "loaded": dict() as loaded,
+            },
             "records": [*records],
         } if all(map(is_record, records)):
-            return Session(How(tuple(rounds), turns, tuple(left_out)), records)
+            return Session(How(tuple(rounds), turns, tuple(left_out), is_fixed, loaded), records)
     raise InputError(f"--append: {path}: is damaged, expected what an earlier call has written")
+
+
+def _hash_of(path: Path) -> str | None:
+    return sha256_of(path) if path.is_file() else None

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 
 from experiments.compare.benchmarks import call_of, names_benchmark
 from experiments.compare.blocks import Key, Runs
+from experiments.compare.commands import Compared
 from experiments.compare.options import Asked
 from experiments.compare.texts import duration
 from experiments.plan.executable import found, is_file
@@ -30,6 +31,9 @@ NOT_FOUND = re.compile(r"^(?:\S*sh|env|xargs): .*(?:not found|No such file)")
 
 _TABLE = ("Benchmark", "Time", "CPU", "Iterations")
 """The head of what a Google Benchmark prints."""
+
+
+_PIPE = re.compile(r"(?<!\|)\|(?!\|)")
 
 
 class NotMeantError(InputError):
@@ -80,10 +84,14 @@ def require_alike(asked: Asked) -> None:
             raise InputError(f"{told}; expected cases of all, or --no-gb to time whole programs")
 
 
-def require_meant(asked: Asked, runs: Mapping[Key, Runs]) -> None:
-    """Raises InputError for a Google Benchmark that would be timed as a whole although nobody said so; says
-    so of a command that has one in its line or script and does not show its table.
+def require_meant(asked: Asked, runs: Mapping[Key, Runs], benchmark: str | None) -> None:
+    """Raises InputError for a Google Benchmark that would be timed as a whole although nobody said so: one
+    that a command shows, or that was seen to run; says so of one in its line or script.
     """
+    if benchmark is not None:
+        told = f"{benchmark}: is a Google Benchmark, which repeats its cases until their time is full"
+        expected = "expected that program with its arguments alone, or --no-gb to time it as a whole"
+        raise NotMeantError(f"{told}; {expected}")
     for one in asked.commands:
         heads = (tuple(line.split()[:4]) for line in runs[one.name, 0].output.splitlines())
         if not (asked.is_whole or asked.cases) and _TABLE in heads:
@@ -95,9 +103,11 @@ def require_meant(asked: Asked, runs: Mapping[Key, Runs]) -> None:
             warn(f"carom: {told}, which repeats its cases until their time is full, however fast they are")
 
 
-def unlike_runs(name: str, first: float, runs: Runs) -> list[str]:
-    """Lines on runs that took so much longer or shorter than the others that they did something else."""
-    usual, told = runs.median("all"), []
+def unlike_runs(one: Compared, first: float, runs: Runs) -> list[str]:
+    """Lines on runs that took so much longer or shorter than the others that they did something else, and on
+    what may have failed without an exit code.
+    """
+    name, usual, told = one.name, runs.median("all"), []
     if first - usual > _LEAST and first > usual * 3:
         took = f"the first run of {name} took {duration(first)}, the others {duration(usual)}"
         told.append(
@@ -106,8 +116,10 @@ def unlike_runs(name: str, first: float, runs: Runs) -> list[str]:
         )
     if runs.left_behind and (share := statistics.median(runs.left_behind)) > 0.1:
         told.append(f"{100 * share:.0f} % of the time of {name} is of what it has left in the background")
-    if NOT_FOUND.search(runs.error):
-        told.append(f"{name} writes to standard error: {runs.error}")
+    has_pipe = one.has_shell and _PIPE.search(one.line) is not None
+    if runs.error and (has_pipe or NOT_FOUND.search(runs.error)):
+        hint = " (of commands in a pipe the last alone has an exit code)" if has_pipe else ""
+        told.append(f"{name} writes to standard error: {runs.error}{hint}")
     few = [one for one in runs.all if one < usual / 5 and usual - one > _LEAST]
     if few:
         took = f"{len(few)} of {len(runs.all)} runs of {name} took {duration(max(few))} at most"

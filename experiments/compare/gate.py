@@ -2,8 +2,7 @@
 
 import argparse
 import shlex
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,9 +11,14 @@ from experiments.compare import exports, values
 from experiments.compare.answer import Answer
 from experiments.compare.command import WITHDRAWN, measured
 from experiments.compare.commands import WORDS, Compared, split_off
-from experiments.compare.course import Line
+from experiments.compare.course import Line, since_now
 from experiments.compare.options import add_measuring, asked_of, read, with_cases
-from experiments.compare.same_program import require_two_files, require_two_programs
+from experiments.compare.same_program import (
+    require_two_files,
+    require_two_libraries,
+    require_two_programs,
+)
+from experiments.compare.watch import Require
 from experiments.compare.worktrees import Commit, Repository, Tree, build, repository
 from experiments.plan.executable import found
 from experiments.run.progress import warn
@@ -42,11 +46,11 @@ def gate(arguments: Sequence[str]) -> int:
         return verdict(answer, options.margin, accepted, options.fail_on)
 
     with ExitStack() as stack:
-        commands = _built(options, run, stack)
+        commands, require = _built(options, run, stack)
         asked = asked_of(options, commands, commands[0].name)
         asked = replace(with_cases(asked, options), one_sided=True, many=options.many)
         warn(f"carom: {promise(asked.error, options.many)}")
-        code, answer = measured(asked, lambda answer: end(answer).said)
+        code, answer = measured(asked, lambda answer: end(answer).said, require)
     if code:
         return code
     exports.tell([end(answer).said], asked.exports)
@@ -67,9 +71,11 @@ def _commits(options: argparse.Namespace, where: Repository) -> dict[str, Commit
     return {"base": base, "head": head}
 
 
-def _built(options: argparse.Namespace, run: Sequence[str], stack: ExitStack) -> tuple[Compared, ...]:
-    """The command in each of the two commits, checked out and built. Raises InputError where both would run
-    the same program.
+def _built(
+    options: argparse.Namespace, run: Sequence[str], stack: ExitStack
+) -> tuple[tuple[Compared, ...], Require]:
+    """The command in each of the two commits, checked out and built, and what is wanted of the libraries that
+    they load. Raises InputError where both would run the same program.
     """
     where = repository()
     commits = _commits(options, where)
@@ -80,7 +86,7 @@ def _built(options: argparse.Namespace, run: Sequence[str], stack: ExitStack) ->
         trees[name] = stack.enter_context(where.checked_out(commit, folder / name))
         if options.build is not None:
             with Line(options.quiet) as shown:
-                shown.show(_since(f"builds {name} {commit.short}"))
+                shown.show(since_now(f"builds {name} {commit.short}"))
                 build(options.build, trees[name])
         elif not found(run[0], trees[name].folder).exists():
             told = f"found {run[0]}, which is not there; expected --build LINE if it is to be built"
@@ -90,16 +96,16 @@ def _built(options: argparse.Namespace, run: Sequence[str], stack: ExitStack) ->
         if not options.same_bytes:
             require_two_programs(run, trees["base"], trees["head"])
     words, line, pattern = tuple(run), " ".join(run), options.time_from
-    return tuple(
+    commands = tuple(
         Compared(name, words, line, folder=tree.folder, time_from=pattern, called=name)
         for name, tree in ((f"{name} {tree.commit.short}", tree) for name, tree in trees.items())
     )
 
+    def require(loaded: Sequence[Path]) -> None:
+        if commits["base"].sha != commits["head"].sha:
+            require_two_libraries(loaded, folder, since)
 
-def _since(what: str) -> Callable[[], str]:
-    """What is done, with the seconds since it began."""
-    began = time.monotonic()
-    return lambda: f"{what}, {time.monotonic() - began:.0f} s"
+    return commands, require
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from experiments.compare.commands import words_in, words_of_script
+from experiments.compare.first_run import NotMeantError
 from experiments.compare.worktrees import Tree, git
 from experiments.plan.executable import is_file
 from experiments.run.progress import warn
@@ -43,9 +44,7 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
         if path.exists() and path.is_relative_to(own) and not path.is_relative_to(trees):
             told = "of your own checkout: both commits would use it"
             raise InputError(f"found {word}, {told}; expected a path inside the checkout, such as ./prog")
-    loaded = {one for _, path in of_head if path.is_relative_to(trees) for one in _libraries(path)}
-    elsewhere = {(str(path), path) for path in loaded if not path.is_relative_to(trees)}
-    for word, path in sorted((of_head & of_base) | elsewhere):
+    for word, path in sorted(of_head & of_base):
         if path.stat().st_ctime_ns > since:
             found = word if word == str(path) else f"{word}, which is {path}"
             told = "written by the builds: both commits would use what was built last"
@@ -61,6 +60,14 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
         if absolute and not (is_accepted or _is_of_the_system(absolute)):
             raise InputError(f"{told}; expected a path inside it, or --same-bytes to compare all the same")
         warn(f"carom: {told}")
+
+
+def require_two_libraries(loaded: Sequence[Path], trees: Path, since: int) -> None:
+    """Raises NotMeantError for a library outside the trees that was written since they were made."""
+    for path in loaded:
+        if not path.is_relative_to(trees.resolve()) and path.stat().st_ctime_ns > since:
+            told = "written by the builds and loaded: both commits use what was built last"
+            raise NotMeantError(f"found {path}, {told}; expected it inside the checkout")
 
 
 def _require_own(word: str, tree: Tree) -> None:
@@ -116,13 +123,6 @@ def _read(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:
     for word, path in _named(words, folder):
         yield word, path
         yield from _named([one for one in words_of_script(path) if "/" in one], folder)
-
-
-def _libraries(path: Path) -> Iterator[Path]:
-    """The shared libraries that a program would load, as far as the loader tells."""
-    if (ldd := shutil.which("ldd")) is not None and path.read_bytes()[:4] == b"\x7fELF":
-        for file in re.findall(r"=> (/\S.*) \(", run([ldd, os.fspath(path)], time_limit=10.0).output):
-            yield Path(file).resolve()
 
 
 def _on_paths_of_python(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:

@@ -54,6 +54,7 @@ class Waits:
 
     seconds: float = 0.0
     is_said: bool = False
+    is_waiting: bool = False
 
     def bound(self, name: str) -> socket.socket:
         """The socket of that name, once nobody else has it."""
@@ -80,9 +81,11 @@ class Waits:
             if not self.is_said:
                 warn(f"carom: waits for another measurement (process {holder or 'not known'})")
                 self.is_said = True
+            self.is_waiting = True
             try:
                 line.recv(1)
             finally:  # a signal may end it
+                self.is_waiting = False
                 self.seconds += time.monotonic() - began
         time.sleep(_AGAIN)
 

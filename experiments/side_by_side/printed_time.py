@@ -29,7 +29,7 @@ _MICRO = "\N{MICRO SIGN}\N{GREEK SMALL LETTER MU}\N{REPLACEMENT CHARACTER}"
 _BLANK = "[ \t\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{THIN SPACE}]"
 _SPREAD = rf"(?:{_BLANK}*(?:\N{{PLUS-MINUS SIGN}}|\+/?-){_BLANK}*[0-9.,]+)?"
 """What may stand between a number and its unit: 12 ± 3 ms."""
-_UNIT = re.compile(rf"{_SPREAD}{_BLANK}*[(\[]?([{_MICRO}]?[A-Za-z]+)(?![A-Za-z_0-9\u00c0-\u00ff])[)\]]?")
+_UNIT = re.compile(rf"\.?{_SPREAD}{_BLANK}*[(\[]?([{_MICRO}]?[A-Za-z]+)(?![A-Za-z_0-9\u00c0-\u00ff])[)\]]?")
 _SECOND = "s(?:ec(?:ond)?s?)?"
 _UNITS = (
     (_SECOND, 1.0), (f"m(?:illi)?{_SECOND}", 1e-3), (f"(?:u|micro|[{_MICRO}]){_SECOND}", 1e-6),
@@ -249,8 +249,9 @@ def _seconds_of(group: _Group, pattern: str, unit_seconds: float | None) -> floa
     is_time = 0 < seconds < math.inf
     if (len(read.rest) > len(behind) and not is_point) or not is_time:
         has_word = is_time and not re.search("[0-9]", read.rest)
-        at_most = "number, and behind it at most a unit: ns, us, ms, s, min or h"
-        _refuse(group, f", expected a {at_most if has_word else 'positive number such as 1234.5'}")
+        told = "a number, and behind it at most a unit: ns, us, ms, s, min or h"
+        more = "a positive number such as 1234.5 with a unit behind it, or several as in 1 min 2.5 s"
+        _refuse(group, f", expected {told if has_word else more}")
     if read.unit and (rate := _PER_TIME.match(read.rest)):
         _refuse(group, f" with {in_quotes(rate[0])} behind its unit, expected a time")
     other = None if read.unit else _OTHER_UNIT.match(behind) or (group.ends_match and _LETTERS.match(behind))

@@ -77,6 +77,8 @@ CASES = (
     _read("no unit, and --unit", "1", "2", "+100.0", "--unit", "min"),
     _read("--unit, and a unit that stands there", "1 ms", "2 ms", "+100.0", "--unit", "s"),
     _refused("no unit", "1.1", "--unit"),
+    _read("a point before the unit", "5. s", "10. s", "+100.0"),
+    _refused("a number behind a time", "3 min 20", "as in 1 min 2.5 s", ("--time-from", "took (.*)")),
     _refused("a zero", "0 ms", "expected a positive number"),
     _refused("a negative number", "-3 ms", "expected a positive number"),
     _refused("no number", "nan ms", "time-from", _TOOK),
@@ -94,6 +96,14 @@ CASES = (
         "refused: it repeats its cases until their time is full; --no-gb times it all the same",
         ("./a", "./b"), ("a: runs a Google Benchmark", "--no-gb"), code=1,
         files={"a": _TABLE, "b": _TABLE},
+    ),
+    Case(
+        TIMED, "a Google Benchmark behind a tool that hides what it prints", "refused as well",
+        ("make -s", "true"), ("/bench: is a Google Benchmark, which repeats its cases", "--no-gb"), code=1,
+        files={"Makefile": "all:\n\t$$PWD/bench --benchmark_min_time=0.01 >/dev/null 2>&1\n"},
+        setup="printf '#include <benchmark/benchmark.h>\n"
+        "static void f(benchmark::State& s) { for (auto _ : s) {} }\nBENCHMARK(f);BENCHMARK_MAIN();' "
+        "| g++ -xc++ - -lbenchmark -lpthread -o bench",
     ),
     Case(
         TIMED, "the same with --no-gb", "timed as a whole", ("--no-gb", "./a", "./b"), ("  a  ", "  b  "),
@@ -131,7 +141,11 @@ CASES = (
     Case(
         LISTS, "a placeholder in a value of a list", "refused: nothing is filled in there",
         ("-P", "t", "1", "2", "-L", "m", "-j{t},-s", "echo {m} {t}"),
-        ("found {t} in a value of m, in which nothing is filled in",), code=1,
+        ('found "-j{t}" as a value of m, in which {t} is not filled in',), code=1,
+    ),
+    Case(
+        LISTS, "a list without its values", "the command that was taken for them is named",
+        ("-L", "x", "sleep 0.{x}", "true"), ('found "sleep 0.{x}" as a value of x',), code=1,
     ),
     Case(
         LISTS, "a name of a list that begins with a digit", "what a name begins with",
@@ -168,9 +182,23 @@ CASES = (
         through='script -qec "$*" /dev/null </dev/null',
     ),
     Case(
+        TIME, "what comes before and after, on a terminal", "a line each second",
+        ("--setup", "sleep 1.2", "--cleanup", "sleep 1.2", "true", "ls"),
+        ("--setup: sleep 1.2, 1 s", "--cleanup: sleep 1.2, 1 s"), code=None,
+        through='script -qec "$1 $2 $3 $4 $5 \'$6\' $7 \'$8\' $9 ${10}" /dev/null </dev/null',
+    ),
+    Case(
         TIME, "runs that come before each timed one", "how many the first block has is said before it",
         ("--warmup", "2", "true", "ls"), ("--warmup: the first block is 9 runs, however long they take",),
         code=None,
+    ),
+    Case(
+        ENDS, "a help that finds no room", "one line", ("--help",), ("standard output: No space left",),
+        ("Exception",), code=1, through='"$1" "$2" --help >/dev/full',
+    ),
+    Case(
+        ENDS, "a first command of a pipe that fails", "what it says is told",
+        ("ls /none | true", "true"), ("cannot access", "of commands in a pipe the last alone"), code=None,
     ),
     Case(
         ENDS, "a signal while --cleanup runs", "a line that says that it was stopped",

@@ -54,11 +54,15 @@ printf '#!/bin/sh\\necho took %s ms\\n' $took >prog && chmod +x prog
 INSTALL = "mkdir -p HERE/fixed && cp prog.in HERE/fixed/prog && chmod +x HERE/fixed/prog"
 """Into a place that both builds share."""
 
+OPENS = '#include <dlfcn.h>\nint main(void) { return !dlopen("HERE/fixed/libw.so", RTLD_NOW); }'
 LIBRARY = """set -e; mkdir -p HERE/fixed
 echo 'int w(void) { return 0; }' | gcc -xc -shared -fPIC -o HERE/fixed/libw.so -
 echo 'int w(void); int main(void) { return w(); }' |
     gcc -xc - -xnone -LHERE/fixed -lw -Wl,-rpath,HERE/fixed -o prog
 """
+PLUGIN = LIBRARY.replace("int w(void); int main(void) { return w(); }", OPENS).replace(
+    "-LHERE/fixed -lw", "-ldl"
+)
 CURRENT = f"{COPY} && ln -sfn $PWD HERE/current"
 ONCE = f"[ -e HERE/once ] || cp prog.in HERE/once; cp HERE/once prog.in && {COPY}"
 """As with a build folder that both builds share: the second one finds nothing to do."""
@@ -74,6 +78,7 @@ FAILED = "gate: failed: slower"
 SHARED = (
     "written by the builds: both commits would use what was built last; expected a path inside the checkout"
 )
+LOADED = "written by the builds and loaded: both commits use what was built last; expected it inside"
 SAME = "found ./prog with the same bytes in both commits, which differ in "
 
 
@@ -371,8 +376,16 @@ PROGRAMS = {
     "a library that the builds install": Case(
         f"{START} git checkout -q -b branch && prints 150 && commit slower",
         1,
-        (f"found HERE/fixed/libw.so, {SHARED}",),
+        (f"found HERE/fixed/libw.so, {LOADED}",),
+        ("--same-bytes",),
         build=LIBRARY,
+    ),
+    "a plugin that the builds install": Case(
+        f"{START} git checkout -q -b branch && prints 150 && commit slower",
+        1,
+        (f"found HERE/fixed/libw.so, {LOADED}",),
+        ("--same-bytes",),
+        build=PLUGIN,
     ),
     "a link out of the tree": Case(
         SLOWER,

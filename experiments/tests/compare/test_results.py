@@ -4,6 +4,7 @@ import csv
 import itertools
 import json
 import re
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -79,11 +80,29 @@ def test_a_file_goes_on_with_what_is_in_it(folder: Path) -> None:
     assert [len(one["records"]) for one in sessions] == [18, 3]
 
 
+def test_a_file_does_not_go_on_with_another_library_or_layout(folder: Path) -> None:
+    def build(body: str) -> None:
+        line = f"echo 'int w(void) {{ {body} }}' | gcc -xc -shared -fPIC -o libw.so -"
+        subprocess.run(line, shell=True, cwd=folder, check=True)
+
+    build("return 0;")
+    line = "echo 'int w(void); int main(void) { return w(); }' | gcc -xc - -L. -lw -Wl,-rpath,$PWD -o uses"
+    subprocess.run(line, shell=True, cwd=folder, check=True)
+    words = ("compare", "./uses", "true", "--append", "kept.json", "--time", "1ms")
+    run(folder, *words)
+    fixed = run(folder, *words, "--fixed-layout")
+    assert "cannot go on: it was measured without --fixed-layout" in fixed.stderr
+    assert "cannot go on" not in run(folder, *words, "--fixed-layout").stderr
+    build("volatile int zero = 0; return zero;")
+    done = run(folder, *words, "--fixed-layout")
+    assert f"cannot go on: {folder}/libw.so is another library now" in done.stderr
+
+
 @pytest.mark.parametrize(
     ("content", "told"),
     [
         ('{"sessions": 1}', "is no file of an earlier call"),
-        ('{"schema_version": 1, "sessions": 1}', "found schema version 1, expected 2"),
+        ('{"schema_version": 1, "sessions": 1}', "found schema version 1, expected 3"),
     ],
 )
 def test_a_file_of_something_else_is_no_earlier_call(folder: Path, content: str, told: str) -> None:
@@ -100,6 +119,12 @@ def test_an_export_is_written_although_the_file_to_go_on_with_has_no_room(folder
     said = run_on_small_disk(folder / "full", "4k", folder, f"shift; {line}", *words)
     assert "full/kept.json: No space left on device" in said
     assert json.loads((folder / "a.json").read_text(encoding="utf-8"))["blocks"] == 1
+
+
+def test_a_temporary_folder_that_is_full_is_named(folder: Path) -> None:
+    words = [str(CAROM), "compare", "-q", "--time", "1ms", "./short", "./long"]
+    said = run_on_small_disk(folder / "full", "16k", folder, 'shift; TMPDIR=full "$@"; test $? = 1', *words)
+    assert f"carom: {folder}/full: No space left on device" in said
 
 
 def test_a_page_has_the_verdict_and_its_picture(folder: Path) -> None:
