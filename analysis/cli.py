@@ -101,31 +101,23 @@ def _figures(options: argparse.Namespace) -> int:
 
 
 def _follow(options: argparse.Namespace) -> int:
-    """Answer a line with a line of JSON: `open` with what is open; `compared N CLOCK` with what `carom
-    compare` asks, whose error N calls share; `picture` with the file of its picture; `report` with the file
-    of the report, `report HOW FAR` with that of what is there so far.
+    """Answer a line with a line of JSON: `open` with what is open; `report` with the file of the report,
+    `report HOW FAR` with that of what is there so far.
     """
     from analysis.claims import Tested
     from analysis.commands.open_questions import open_questions
-    from analysis.commands.programs_compared import programs_compared
 
     remembered: Tested = {}
     for line in sys.stdin:
         match line.split():
             case ["open"]:
                 answer: object = open_questions(options.results, remembered)
-            case ["compared", many, clock] if many.isdigit():
-                answer = programs_compared(options.results, int(many), clock)
-            case ["picture"]:
-                from analysis.commands.programs_picture import programs_picture
-
-                answer = str(programs_picture(options.results))
             case ["report", *how_far]:
                 from analysis.report import write
 
                 answer = str(write(options.results, _asked(options), " ".join(how_far)))
             case _:
-                expected = "expected `open`, `compared N CLOCK`, `picture`, `report` or `report ...`"
+                expected = "expected `open`, `report` or `report ...`"
                 raise InputError(f"follow: found {line.strip()!r}, {expected}")
         print(json.dumps(answer), flush=True)
     return 0

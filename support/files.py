@@ -18,6 +18,9 @@ import orjson
 
 from support.errors import InputError, require_text
 
+FLEETING: set[Path] = set()
+"""Folders that vanish with this process: what is in them need not outlast a failure of power."""
+
 _STREAMS = {"-": 1, "/dev/stdin": 0, "/dev/stdout": 1, "/dev/stderr": 2}
 
 
@@ -144,11 +147,18 @@ def move(source: Path, target: Path) -> None:
     """Rename a finished file into its place, folders made as needed, and make the rename last."""
     target.parent.mkdir(parents=True, exist_ok=True)
     source.replace(target)
-    folder = os.open(target.parent, os.O_RDONLY | os.O_DIRECTORY)
+    _make_last(target.parent)
+
+
+def _make_last(path: Path) -> None:
+    """Wait until it is on the disk, unless it vanishes anyway."""
+    if not FLEETING.isdisjoint((path, *path.parents)):
+        return
+    descriptor = os.open(path, os.O_RDONLY)
     try:
-        os.fsync(folder)
+        os.fsync(descriptor)
     finally:
-        os.close(folder)
+        os.close(descriptor)
 
 
 @contextlib.contextmanager
@@ -200,8 +210,7 @@ def replacing(target: Path) -> Iterator[Path]:
 def _becoming(target: Path, part: Path) -> Iterator[Path]:
     try:
         yield part
-        with part.open("rb") as file:
-            os.fsync(file.fileno())
+        _make_last(part)
         move(part, target)
     except BaseException as error:
         with contextlib.suppress(OSError):

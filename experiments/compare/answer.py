@@ -1,17 +1,14 @@
-"""What the analysis program says of the commands so far."""
+"""What the analysis says of the commands so far."""
 
-import json
+import importlib
+import time
 from collections.abc import Collection
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-from experiments.support.process import Coprocess
-from support.errors import InputError
+from experiments.support.interrupts import signals_held
 from support.vocabulary import WALL
-
-_LIMIT = 600.0
-"""Seconds after which an answer is given up."""
 
 
 @dataclass(frozen=True)
@@ -118,29 +115,27 @@ class Answer:
         return max(known, default=None) if len(known) == len(of_open) else None
 
 
-def ask(analysis: Coprocess, many: int = 1, clock: str = WALL) -> Answer:
-    """Ask it, `many` being the calls that share the error of a gate. Raises InputError with its reason where
-    it does not answer.
+def load() -> float:
+    """Load what judges, before it is asked; returns the seconds that this took."""
+    began = time.monotonic()
+    with signals_held():
+        importlib.import_module("analysis.commands.programs_compared")
+    return time.monotonic() - began
+
+
+def ask(results: Path, many: int = 1, clock: str = WALL) -> Answer:
+    """Judge what a folder of results holds, `many` being the calls that share the error of a gate. Raises
+    InputError.
     """
-    told = json.loads(_asked(analysis, f"compared {many} {clock}"))
+    from analysis.commands.programs_compared import programs_compared
+
+    told = programs_compared(results, many, clock)
     rows, controls, effects = (
         tuple(map(_difference, told[key])) for key in ("commands", "controls", "effects")
     )
     places = tuple(Place(one["series"], one["first"], one["last"], one["bracket"]) for one in told["places"])
     blocks = max((one.blocks for one in rows), default=0)
     return Answer(rows, controls, places, effects, told["next"], blocks, clock)
-
-
-def draw(analysis: Coprocess) -> Path:
-    """Let it draw the intervals and the blocks; returns the file, an SVG in the folder of results."""
-    return Path(json.loads(_asked(analysis, "picture")))
-
-
-def _asked(analysis: Coprocess, line: str) -> str:
-    done = analysis.ask(line, _LIMIT)
-    if done.exit_code != 0:
-        raise InputError(f"what was measured cannot be judged: {done.reason}")
-    return done.output
 
 
 def _difference(row: dict[str, Any]) -> Difference:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from experiments.compare import exports
-from experiments.compare.answer import Answer, Difference, ask, draw
+from experiments.compare.answer import Answer, Difference, ask
 from experiments.compare.blocks import Blocks, codes_said, keep_addresses, shell_seconds
 from experiments.compare.course import Course, Line, since_now
 from experiments.compare.earlier import Earlier
@@ -27,8 +27,8 @@ from experiments.run.progress import several, warn
 from experiments.run.runner import Runner
 from experiments.support import process
 from experiments.support.descendants import children, end_all_but
-from experiments.support.places import BUILDS, analysis
-from experiments.support.process import Coprocess
+from experiments.support.interrupts import signals_held
+from experiments.support.places import BUILDS
 from experiments.support.vanishing import marked, vanishing_folder
 from support.errors import InputError, Interrupted
 from support.vocabulary import AGAIN, ASKED, WALL
@@ -72,17 +72,17 @@ def _measured(asked: Asked, earlier: Earlier, watch: Watch, folder: Path, say: S
     if generator.sha256 is None:
         raise InputError(generator.remedy)
     store = Store(folder, new_session())
-    with store.opened(), Coprocess(analysis("follow", "--results", str(folder))) as judge:
+    with store.opened():
         _write_down(asked, store)
         scenes = SceneFolder(folder / "scenes", store.temporary, str(generator.sha256))
         runner = Runner(store, scenes, generator, asked.most_seconds, asked.slice_seconds, tells=False)
         course = Course(asked, around, store, runner, watch)
         with Line(asked.quiet) as line:
             line.show(lambda: "making ready")
-            stopped = course.run(judge, earlier, line)
+            stopped = course.run(earlier, line)
         by_wall: tuple[Difference, ...] = ()
         if course.answer.clock != WALL:
-            by_wall = ask(judge, asked.many).without(course.left_out).commands
+            by_wall = ask(folder, asked.many).without(course.left_out).commands
         found = course.found(by_wall, (*_remarks(course, by_wall), *_stopped_by(stopped)))
         said = result(found)
         try:
@@ -90,13 +90,20 @@ def _measured(asked: Asked, earlier: Earlier, watch: Watch, folder: Path, say: S
             try:
                 earlier.keep(course.blocks, course.how)
             finally:
-                exports.write(found, said, say(found.answer), lambda: draw(judge))
+                exports.write(found, said, say(found.answer), lambda: _drawn(folder))
         finally:
             exports.tell(said, asked.exports)
     code = _exit_code(course.blocks, found, stopped)
     if course.broken is not None:
         raise course.broken
     return code, found.answer
+
+
+def _drawn(results: Path) -> Path:
+    """The file of the intervals and the blocks, an SVG in the folder of results."""
+    with signals_held():
+        from analysis.commands.programs_picture import programs_picture
+    return programs_picture(results)
 
 
 def _exit_code(blocks: Blocks, found: Found, stopped: int | None) -> int:

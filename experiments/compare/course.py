@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from experiments.compare.answer import Answer, Difference, ask
+from experiments.compare.answer import Answer, Difference, ask, load
 from experiments.compare.blocks import Blocks, Key
 from experiments.compare.clock import clock_of
 from experiments.compare.earlier import Earlier, How
@@ -30,8 +30,8 @@ from experiments.results.store import Store
 from experiments.run.host_lock import WAITS
 from experiments.run.progress import about, several, warn
 from experiments.run.runner import Runner
+from experiments.run.schedule import FIRST_LOOK
 from experiments.support.interrupts import stop_if_asked
-from experiments.support.process import Coprocess
 from support.command_line import can_draw
 from support.errors import InputError, Interrupted
 from support.vocabulary import AGAIN
@@ -51,11 +51,12 @@ class Course:
         """Plans it. Raises InputError for a command that is not there or cannot be run."""
         self.asked = asked
         self._watch = watch
+        self._results = store.root
         self._loaded: Mapping[str, str] = {}
         """The SHA-256 of each library that was loaded, where that is to be known later."""
         self._around = around
         self.blocks = Blocks(experiment_of(asked, around), store, runner, has_cases=bool(asked.cases))
-        self.answer = Answer()
+        self.answer = Answer(next=FIRST_LOOK)
         self._is_known = False
         self.broken: InputError | OSError | None = None
         """What ended it early, with something measured."""
@@ -66,21 +67,22 @@ class Course:
         self._looks: list[Look] = []
         self._seconds = 0.0
 
-    def run(self, judge: Coprocess, earlier: Earlier, line: "Line") -> int | None:
+    def run(self, earlier: Earlier, line: "Line") -> int | None:
         """Measure; returns the signal that stopped it before its end, if one did."""
         self._earlier = earlier
         self._go_on(earlier)
-        # The first look takes seconds, in which the analysis loads what it needs.
-        self.answer = ask(judge, self.asked.many)
+        if self.blocks.done:
+            load()
+            self.answer = ask(self._results, self.asked.many)
         self.blocks.begin()
         stopped = None
         try:
             if not self._is_enough():
-                self._measure(judge, line)
+                self._measure(line)
         except Interrupted as interrupted:
             stopped = interrupted.signal_number
             if self.blocks.done == self.answer.next:
-                self._look(judge)
+                self._look()
         except NotMeantError:
             raise
         except (InputError, OSError) as error:
@@ -137,7 +139,7 @@ class Course:
         self.blocks.again(experiment_of(asked, self._around))
         self.blocks.leave_out(self.left_out)
 
-    def _measure(self, judge: Coprocess, line: "Line") -> None:
+    def _measure(self, line: "Line") -> None:
         blocks = self.blocks
         if not self._is_known:
             self._first_block(line)
@@ -145,7 +147,7 @@ class Course:
             line.show(self._so_far)
             self._block()
             if blocks.done == self.answer.next:
-                self._look(judge)
+                self._look()
                 if self._is_enough():
                     return
 
@@ -210,9 +212,10 @@ class Course:
         is_time = not blocks.done or blocks.seconds + blocks.seconds_each <= self.asked.seconds
         return is_time and self._can_go_on()
 
-    def _look(self, judge: Coprocess) -> None:
+    def _look(self) -> None:
+        self.blocks.began += load()
         clock = clock_of(self.asked, self.blocks)
-        self.answer = answer = ask(judge, self.asked.many, clock).without(self.left_out)
+        self.answer = answer = ask(self._results, self.asked.many, clock).without(self.left_out)
         self._earlier.keep(self.blocks, self.how)
         blocks, needed = self.blocks, answer.needed
         more = None if needed is None else (needed - blocks.done) * blocks.seconds_each

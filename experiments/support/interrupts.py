@@ -1,7 +1,9 @@
 """Signals that ask a verb to stop become an exception, so that what it has is kept and told."""
 
+import contextlib
 import os
 import signal
+from collections.abc import Iterator
 from types import FrameType
 
 from experiments.support.descendants import hear_of_ends
@@ -29,6 +31,16 @@ def stop_at_signals() -> None:
     if early := heard & signal.sigpending():
         os._exit(128 + min(early))
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
+
+
+@contextlib.contextmanager
+def signals_held() -> Iterator[None]:
+    """Let those that come inside be heard behind it: what is loaded by halves cannot be loaded again."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def stop_if_asked() -> None:

@@ -6,6 +6,8 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from support.files import FLEETING
+
 _MARK = "CAROM_FOLDER"
 _REMOVE = f"""read -r nothing
 left=50
@@ -38,6 +40,7 @@ def vanishing_folder(prefix: str, then: str = "") -> Iterator[Path]:
         remover = subprocess.Popen(
             words, cwd="/", stdin=subprocess.PIPE, stdout=nowhere, stderr=nowhere, start_new_session=True
         )
+        FLEETING.add(Path(folder))
         try:
             yield Path(folder)
         finally:

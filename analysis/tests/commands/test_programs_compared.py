@@ -4,10 +4,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
-from analysis.cli import main
 from analysis.commands.programs_compared import programs_compared
 from analysis.commands.programs_picture import programs_picture
 from analysis.tests.synthetic import write
@@ -65,13 +63,3 @@ def test_without_records_there_is_nothing_to_draw(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds no comparison to draw"):
         programs_picture(tmp_path)
     assert programs_compared(tmp_path)["next"] == 6
-
-
-def test_the_lines_of_the_conversation(
-    results: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr("sys.stdin", iter(["compared 2 wall\n", "picture\n"]))
-    assert main(["follow", "--results", str(results)]) == 0
-    first, second = capsys.readouterr().out.splitlines()
-    assert np.isfinite(json.loads(first)["commands"][0]["ratio"])
-    assert Path(json.loads(second)).is_file()

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from experiments.slurm.jobs import folders
+from experiments.support.vanishing import vanishing_folder
 from experiments.tests.conftest import ROOT, Workplace
 from experiments.tests.slurm.test_script import site
 from support.files import write_json, write_text
@@ -40,6 +41,8 @@ def test_a_file_that_cannot_be_finished_leaves_the_old_one_alone(
         write_text(path, "torn", tmp_path)
     assert json.loads(path.read_text()) == {"a": 1}
     assert list(tmp_path.iterdir()) == [path]
+    with vanishing_folder("carom-test-") as fleeting:
+        write_text(fleeting / "a.json", "no disk is waited for", fleeting)
 
 
 def test_what_a_kill_left_half_written_is_no_job(workplace: Workplace) -> None:
