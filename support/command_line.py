@@ -12,6 +12,8 @@ from typing import Any, NoReturn, TextIO
 
 from support.errors import InputError, Interrupted, cannot
 
+_RESULT = "standard output"
+
 
 class Parser(argparse.ArgumentParser):
     """Wrong usage is one line and exit code 1, as for every other bad input."""
@@ -87,7 +89,7 @@ def print_lines(lines: Iterable[str], stream: TextIO | None) -> None:
         raise InputError("standard output: its reader is gone, expected a place for the result") from error
     except OSError as error:
         _forget(stream)
-        raise OSError(error.errno, error.strerror, "standard output") from error
+        raise OSError(error.errno, error.strerror, _RESULT) from error
 
 
 def _forget(stream: TextIO) -> None:
@@ -112,7 +114,7 @@ def exit_code_of(verb: Callable[[], int], kept: str = "") -> int:
         return 1
     except OSError as error:
         # The disk is full, or a folder cannot be written: nothing that is finished suffers from it.
-        tell(f"carom: {cannot(error)}{f'; {kept}' if kept else ''}")
+        tell(f"carom: {cannot(error)}{f'; {kept}' if kept and error.filename != _RESULT else ''}")
         return 1
     except Interrupted as stopped:
         tell(f"\nstopped: {kept}")

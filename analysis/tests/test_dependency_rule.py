@@ -20,7 +20,7 @@ MAY_INCLUDE = {
     "harness": {"kernels", "variants", "harness"},
 }
 MUST_NOT_IMPORT = {
-    "experiments": {"analysis", "docs"},
+    "experiments": {"docs"},
     "analysis": {"experiments", "docs"},
     "support": {"analysis", "experiments", "docs"},
 }
@@ -47,7 +47,7 @@ def test_includes_point_one_way() -> None:
     assert list(wrong_includes(ROOT)) == []
 
 
-def test_experiments_and_analysis_never_import_each_other() -> None:
+def test_imports_point_one_way() -> None:
     assert list(wrong_imports(ROOT)) == []
 
 
@@ -217,8 +217,7 @@ BROKEN: list[tuple[Rule, str, str, str]] = [
     (wrong_includes, "harness/a.cpp", '#include "harness/gone.hpp"', "harness/a.cpp: includes harness/gone"),
     (wrong_imports, "analysis/a.py", "import experiments.plan as plan", "analysis/a.py: imports experiments"),
     (wrong_imports, "analysis/tests/a.py", "if 1:\n from experiments import plan", "tests/a.py: imports"),
-    (wrong_imports, "experiments/a.py", "from analysis.records import reading", "experiments/a.py: imports"),
-    (wrong_imports, "experiments/a.py", "importlib.import_module('analysis')", "experiments/a.py: imports"),
+    (wrong_imports, "analysis/a.py", "importlib.import_module('experiments')", "analysis/a.py: imports"),
     (wrong_imports, "support/a.py", "from analysis.support import wording", "support/a.py: imports analysis"),
     (wrong_imports, "experiments/a.py", "from docs.generate import pages", "a.py: imports docs.generate"),
     (wrong_rooms, "harness/support/a.hpp", '#include "harness/scenes/b.hpp"', "a.hpp: uses harness/scenes"),

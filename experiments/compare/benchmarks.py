@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from experiments.compare.commands import Compared, words_in, words_of_script
+from experiments.compare.commands import Compared
 from experiments.plan.benchmark_cases import cases
 from experiments.plan.executable import UnfitError, found, require_executable
 from experiments.run.progress import about, warn
@@ -67,16 +67,6 @@ def call_of(command: Compared) -> Call | None:
     call = Call(words, at)
     is_run = _is_benchmark(words[at], command.folder) and not set(call.arguments).intersection(_ELSEWHERE)
     return call if is_run and not any(one.startswith(_ELSEWHERE[0]) for one in call.arguments) else None
-
-
-def names_benchmark(command: Compared) -> str | None:
-    """A word of the command, or of the line for a shell or the script in it, that is a Google Benchmark."""
-    files = [found(word, command.folder) for word in command.words]
-    words = [part for word in command.words for part in words_in(word)]
-    for word in (*words, *(word for file in files for word in words_of_script(file))):
-        if "/" in word and _is_benchmark(word, command.folder):
-            return word
-    return None
 
 
 def _is_benchmark(word: str, folder: Path) -> bool:

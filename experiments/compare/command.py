@@ -1,8 +1,13 @@
 """The verb `compare`: blocks until all is settled or the time is over, then the result."""
 
 import contextlib
+import fcntl
 import os
+import re
 import signal
+import stat
+import sys
+import termios
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -52,6 +57,8 @@ def measured(asked: Asked, say: Say = lambda _: "", require: Require = lambda _:
     """Measure and tell the result, with the line that `say` makes of it at the head of exported pages, unless
     what was loaded is not what `require` wants; returns the exit code and what the last look found.
     """
+    if sys.stdout is None and not asked.exports and asked.earlier is None:
+        raise InputError("standard output: is closed, expected a place for the result")
     exports.require_places(asked.exports, asked.earlier, asked.commands)
     earlier = Earlier(asked.earlier)
     if asked.fixed_layout:
@@ -114,6 +121,8 @@ def _exit_code(blocks: Blocks, found: Found, stopped: int | None) -> int:
         same = [blocks.runs[key] for key in ((name, case), (name + AGAIN, case)) if key in blocks.runs]
         runs, reason = sum(one.tries for one in same), next(one.reason for one in same if one.reason)
         again = "; `--prepare` of `carom compare` puts back what a run leaves" if 0 < runs <= _FEW else ""
+        if code := re.match("exit code ([0-9]+)", reason):
+            again = f"{again}; `--ignore-exit {code[1]}` lets it count"
         well = f"{several(runs, 'run')}{' that ended well' if runs else ''}"
         whose = f"{called[name]}, {cases[case]}" if cases else called[name]
         warn(f"carom: {whose}: failed after {well}: {reason}{again}")
@@ -149,6 +158,8 @@ def _remarks(course: Course, by_wall: Sequence[Difference]) -> tuple[str, ...]:
             if (runs := course.blocks.runs[one.name, 0]).all:
                 of_both = [course.first.get((name, 0), 0.0) for name in (one.name, one.name + AGAIN)]
                 remarks += unlike_runs(one, max(of_both), runs)
+    if _has_unread():
+        remarks.append("standard input has something that no command was given: `--input FILE` gives it")
     codes = {one.name: course.blocks.runs[one.name, 0].codes for one in asked.commands}
     if len({tuple(one) for one in codes.values() if one}) > 1:
         told = "; ".join(f"{name}: {codes_said(one)}" for name, one in codes.items() if one)
@@ -160,6 +171,16 @@ def _remarks(course: Course, by_wall: Sequence[Difference]) -> tuple[str, ...]:
             "and counts"
         )
     return tuple(remarks)
+
+
+def _has_unread() -> bool:
+    """Whether somebody has put something into standard input."""
+    if sys.stdin is None:
+        return False
+    there = os.fstat(0)
+    if stat.S_ISFIFO(there.st_mode):
+        return int.from_bytes(fcntl.ioctl(0, termios.FIONREAD, bytes(4)), sys.byteorder) > 0
+    return stat.S_ISREG(there.st_mode) and os.lseek(0, 0, os.SEEK_CUR) < there.st_size
 
 
 @contextlib.contextmanager

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from experiments.compare.sweeps import LINE, Levels, combinations, fill, joined, named_in, require_filled
-from experiments.plan.executable import is_file
 from experiments.run.progress import several
 from support.errors import InputError, quoted
 from support.vocabulary import AGAIN
@@ -30,8 +29,6 @@ _OF_THE_SHELL = frozenset((
     "wait",
 ))  # fmt: skip
 """Commands that are no programs."""
-_LONGEST_SCRIPT = 1 << 16
-"""Bytes of a script whose words are looked at."""
 
 _ASSIGNMENT = re.compile(r"([A-Za-z_]\w*)=(.*)", re.DOTALL)
 
@@ -210,15 +207,6 @@ def words_in(text: str) -> list[str]:
         return text.split()
 
 
-def words_of_script(file: Path) -> list[str]:
-    """All words of a file that is a text, unless it is long; of any other file none."""
-    try:
-        content = file.read_bytes() if is_file(file) and file.stat().st_size <= _LONGEST_SCRIPT else b""
-    except OSError:
-        return []
-    return [] if b"\0" in content else words_in(content.decode("utf-8", errors="replace"))
-
-
 def _words_beside(line: str) -> tuple[str, ...]:
     """The words of a line that is run before or after; none of an empty one."""
     if not line:
@@ -319,6 +307,7 @@ def _with_input(words: tuple[str, ...], asked: Path | None, values: Mapping[str,
     if asked is None:
         return words
     file = Path(fill(str(asked), values))
+    require_filled("--input", str(file))
     if not (file.is_file() or file.is_char_device()):
         no_folder = ", no folder" if file.is_dir() else ""
         raise InputError(f"--input: found {file}, expected a file that is there{no_folder}")

@@ -7,13 +7,12 @@ import stat
 import statistics
 from collections.abc import Mapping
 
-from experiments.compare.benchmarks import call_of, names_benchmark
+from experiments.compare.benchmarks import call_of
 from experiments.compare.blocks import Key, Runs
 from experiments.compare.commands import Compared
 from experiments.compare.options import Asked
 from experiments.compare.texts import duration
 from experiments.plan.executable import found, is_file
-from experiments.run.progress import warn
 from experiments.side_by_side.contest import LEAST_IDLE, idle_told
 from support.errors import InputError
 
@@ -86,7 +85,7 @@ def require_alike(asked: Asked) -> None:
 
 def require_meant(asked: Asked, runs: Mapping[Key, Runs], benchmark: str | None) -> None:
     """Raises InputError for a Google Benchmark that would be timed as a whole although nobody said so: one
-    that a command shows, or that was seen to run; says so of one in its line or script.
+    that was seen to run, or whose table a command prints.
     """
     if benchmark is not None:
         told = f"{benchmark}: is a Google Benchmark, which repeats its cases until their time is full"
@@ -98,9 +97,6 @@ def require_meant(asked: Asked, runs: Mapping[Key, Runs], benchmark: str | None)
             told = f"{one.called}: runs a Google Benchmark, which repeats its cases until their time is full"
             expected = "expected that program with its arguments alone, or --no-gb to time it as a whole"
             raise NotMeantError(f"{told}; {expected}")
-        if not (asked.is_whole or asked.cases) and (program := names_benchmark(one)):
-            told = f"{one.called}: is timed as a whole, with the Google Benchmark {program} in it"
-            warn(f"carom: {told}, which repeats its cases until their time is full, however fast they are")
 
 
 def unlike_runs(one: Compared, first: float, runs: Runs) -> list[str]:

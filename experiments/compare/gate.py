@@ -88,9 +88,15 @@ def _built(
             with Line(options.quiet) as shown:
                 shown.show(since_now(f"builds {name} {commit.short}"))
                 build(options.build, trees[name])
-        elif not found(run[0], trees[name].folder).exists():
-            told = f"found {run[0]}, which is not there; expected --build LINE if it is to be built"
-            raise InputError(f"{name} {commit.short}: {told}")
+        is_own = options.build is None or "/" in run[0]
+        if is_own and not found(run[0], trees[name].folder).exists():
+            how = (
+                "a build that makes it in its own folder, whatever that is"
+                if options.build
+                else "--build LINE"
+            )
+            told = f"found {run[0]}, which is not there{' once it is built' * bool(options.build)}"
+            raise InputError(f"{name} {commit.short}: {told}; expected {how} if it is to be built")
     if commits["base"].sha != commits["head"].sha:
         require_two_files(run, trees["base"], trees["head"], since, is_accepted=options.same_bytes)
         if not options.same_bytes:

@@ -7,7 +7,7 @@ import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from experiments.compare.commands import words_in, words_of_script
+from experiments.compare.commands import words_in
 from experiments.compare.first_run import NotMeantError
 from experiments.compare.worktrees import Tree, git
 from experiments.plan.executable import is_file
@@ -24,6 +24,9 @@ _NO_SOURCE = re.compile(
 
 _LEADING = ("PYTHONPATH", "LD_LIBRARY_PATH", "LD_PRELOAD")
 """Variables by which programs find parts of themselves."""
+
+_LONGEST_SCRIPT = 1 << 16
+"""Bytes of a script whose words are looked at."""
 
 
 def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, *, is_accepted: bool) -> None:
@@ -122,7 +125,16 @@ def _read(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:
     """The files that words name, and those that the scripts among them do."""
     for word, path in _named(words, folder):
         yield word, path
-        yield from _named([one for one in words_of_script(path) if "/" in one], folder)
+        yield from _named([one for one in _words_of_script(path) if "/" in one], folder)
+
+
+def _words_of_script(file: Path) -> list[str]:
+    """All words of a file that is a text, unless it is long; of any other file none."""
+    try:
+        content = file.read_bytes() if is_file(file) and file.stat().st_size <= _LONGEST_SCRIPT else b""
+    except OSError:
+        return []
+    return [] if b"\0" in content else words_in(content.decode("utf-8", errors="replace"))
 
 
 def _on_paths_of_python(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:

@@ -42,6 +42,8 @@ def joined(arguments: Sequence[str]) -> list[str]:
     found, rest = [], list(arguments)
     while rest:
         word = rest.pop(0)
+        if word.startswith("--") and rest and re.match(r"-[0-9.]", rest[0]) and not {word} & {*LIST, *RANGE}:
+            word = f"{word}={rest.pop(0)}"
         least = 2 if word in LIST else 3 if word in RANGE else 0
         if len(rest) < least:
             expected = "NAME A,B" if word in LIST else "NAME FIRST LAST [STEP]"

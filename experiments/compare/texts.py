@@ -13,6 +13,9 @@ from support.vocabulary import WALL
 
 _UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
 
+_STARTS = 0.01
+"""Seconds beside which the start of a program is no longer small."""
+
 
 def change(one: Difference) -> str:
     """`−6.3 % [−7.1, −5.4]`; without the ends where there is no interval yet."""
@@ -174,7 +177,9 @@ def _how_long(found: Found) -> str:
 
 
 def _resources(runs: Runs) -> list[str]:
-    told = [duration(runs.median("seconds")), f"{runs.median('cores'):.1f} cores"]
+    seconds = runs.median("seconds")
+    # What the start of a program takes is not in its time, but in its processor time.
+    told = [duration(seconds), f"{runs.median('cores'):.1f} cores" if seconds > _STARTS else ""]
     told.append(memory(max(runs.bytes)) if runs.bytes else runs.memory.partition(",")[0])
     if runs.undisturbed:
         told.append(f"never stopped: {runs.undisturbed}")

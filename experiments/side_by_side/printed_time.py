@@ -50,9 +50,12 @@ _BLANK_BEFORE_GROUP, _BLANK_BEHIND_GROUP = re.compile(r"(?: |\\s)[+*]?\("), re.c
 
 _OTHER_UNIT = re.compile(
     rf"{_SPREAD}[ \t]*[(\[]?"
-    r"(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b|[mMuUnN]?[sS]\b|[mMhHdD]\b|(?:days?|weeks?)\b)"
+    r"(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b|[mMuUnN]?[sS]\b|[mMhHdD]\b"
+    r"|(?:days?|weeks?|fps|[kKMG]?ops|[tqr]ps|iterations?|items?|frames?|requests?|calls?|rows?)\b)"
 )
 """What is no time, or none that is understood: a capital makes another unit of a short one."""
+_IN_FRONT = re.compile(rf"[(\[]([{_MICRO}]?[A-Za-z]+)[)\]][ \t]*[:=]?[ \t]*$")
+"""A unit in brackets before a number, as in time [ms]: 12."""
 _PER_TIME = re.compile(
     r"\^?-1|\N{SUPERSCRIPT MINUS}\N{SUPERSCRIPT ONE}|/(?:s|sec\w*|min\w*|h|hours?|d|days?)\b"
 )
@@ -244,7 +247,8 @@ def _seconds_of(group: _Group, pattern: str, unit_seconds: float | None) -> floa
         _refuse(group, ", which is ambiguous (thousands, or decimals?), expected a decimal point")
     # Beyond the number it may take the unit, or the point of a whole number.
     is_point = group.text == f"{read.number}." and read.number.isdecimal()
-    unit = read.unit or unit_seconds
+    in_front = _IN_FRONT.search(group.before)
+    unit = read.unit or (in_front and _seconds_in(in_front[1])) or unit_seconds
     seconds = (read.value or 0.0) * (unit or 1.0)
     is_time = 0 < seconds < math.inf
     if (len(read.rest) > len(behind) and not is_point) or not is_time:
@@ -256,7 +260,8 @@ def _seconds_of(group: _Group, pattern: str, unit_seconds: float | None) -> floa
         _refuse(group, f" with {in_quotes(rate[0])} behind its unit, expected a time")
     other = None if read.unit else _OTHER_UNIT.match(behind) or (group.ends_match and _LETTERS.match(behind))
     if other:
-        _refuse(group, f" with the unit '{other[1]}', expected a time")
+        minutes = ", such as min where minutes are meant" if other[1] == "m" else ""
+        _refuse(group, f" with the unit '{other[1]}', expected a time{minutes}")
     if not unit:
         _refuse(group, " without a unit behind it, expected one such as ms, or --unit")
     return seconds

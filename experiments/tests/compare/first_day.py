@@ -86,6 +86,13 @@ CASES = (
     _refused("a comma that may be either", "1,234 ms", "1,234"),
     _refused("a part of a number", "1.5e3 ms", "1.5", ("--time-from", "took ([0-9.]+)")),
     _refused("a word behind the number", "5 parsecs", "at most a unit", ("--time-from", "took (.*)")),
+    _refused("a count, and --unit", "5 fps", "with the unit 'fps'", (*_NUMBER, "--unit", "ms")),
+    _refused("a letter that may be metres", "5m", "such as min where minutes are meant"),
+    Case(
+        PRINTED, "a unit in brackets before the number", "it counts, also beside --unit",
+        ("--time-from", "took .*: ([0-9]+)", "--unit", "ms", "./a", "./b"),
+        ("b against a   +100.0 % [",), files=_prints("time [s]: 1", "time (ms): 2000"), time="60s",
+    ),
     _refused("letters that are no unit", "5kms", "with the unit 'kms'", ("--time-from", "took ([0-9]+)")),
     _refused("seconds and milliseconds", "2 s 300 ms", "a longer number", ("--time-from", "took ([0-9.]+)")),
     _refused("a unit in capitals, and --unit", "12 MS", "with the unit 'MS'", (*_NUMBER, "--unit", "us")),
@@ -144,6 +151,10 @@ CASES = (
         ('found "-j{t}" as a value of m, in which {t} is not filled in',), code=1,
     ),
     Case(
+        LISTS, "a placeholder in --input that has no values", "the option that would give them",
+        ("-L", "n", "1,2", "--input", "in{zz}", "echo {n}"), ("-L zz A,B",), code=1,
+    ),
+    Case(
         LISTS, "a list without its values", "the command that was taken for them is named",
         ("-L", "x", "sleep 0.{x}", "true"), ('found "sleep 0.{x}" as a value of x',), code=1,
     ),
@@ -191,6 +202,25 @@ CASES = (
         TIME, "runs that come before each timed one", "how many the first block has is said before it",
         ("--warmup", "2", "true", "ls"), ("--warmup: the first block is 9 runs, however long they take",),
         code=None,
+    ),
+    Case(
+        TIMED, "something in standard input", "a line names --input", ("cat", "true"),
+        ("standard input has something", "--input FILE"), code=None, through='seq 9 | "$@"',
+    ),
+    Case(
+        TIMED, "nothing in standard input", "no line on it", ("cat", "true"), (), ("standard input",),
+        code=None, through='"$@" </dev/null | cat && true | "$@"',
+    ),
+    Case(
+        TIMED, "a tool whose exit code is an answer", "the option that lets it count",
+        ("grep -q a /dev/null", "true"), ("`--ignore-exit 1` lets it count",), code=2,
+    ),
+    Case(
+        TIME, "a time below zero", "it is named", ("--time", "-1s", "true", "ls"), ("found -1s",), code=1,
+    ),
+    Case(
+        ENDS, "standard output is closed, and no export is asked for", "said before anything is run",
+        ("touch ran", "true"), ("standard output: is closed",), code=1, not_left=("ran",), through='"$@" >&-',
     ),
     Case(
         ENDS, "a help that finds no room", "one line", ("--help",), ("standard output: No space left",),
@@ -492,7 +522,8 @@ CASES = (
     ),
     Case(
         ENDS, "standard output has no room", "said, and what was asked for is written",
-        ("--export-csv", "x", "true", "ls"), ("standard output: No space left",), code=1, left=("x",),
+        ("--export-csv", "x", "true", "ls"), ("standard output: No space left",), ("half-written",), code=1,
+        left=("x",),
         through='"$@" >/dev/full',
     ),
     Case(

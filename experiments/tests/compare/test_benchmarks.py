@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from experiments.compare.benchmarks import call_of, names_benchmark
+from experiments.compare.benchmarks import call_of
 from experiments.compare.commands import Compared
 from experiments.tests.compare.calls import needs_the_program, run
 
@@ -85,6 +85,3 @@ def test_benchmarks_are_known_by_what_stands_in_them(tmp_path: Path) -> None:
     for words in (["./program"], ["./script"], ["./empty"], ["./missing"], ["strip", "./benchmark"]):
         assert arguments(*words) is None
     assert arguments("./benchmark", "--benchmark_list_tests") is None
-    for words in (["./script"], ["strip", "./benchmark"], ["sh", "-c", "cd . && ./benchmark | cat"]):
-        assert names_benchmark(Compared("x", tuple(words), "", folder=tmp_path)) == "./benchmark"
-    assert names_benchmark(Compared("x", ("./program",), "", folder=tmp_path)) is None

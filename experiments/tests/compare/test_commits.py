@@ -387,6 +387,12 @@ PROGRAMS = {
         ("--same-bytes",),
         build=PLUGIN,
     ),
+    "a build in the user's own checkout": Case(
+        f"{SLOWER} echo prog >.git/info/exclude",
+        1,
+        ("found ./prog, which is not there once it is built; expected a build that makes it in its",),
+        build='cp prog.in "$(git rev-parse --path-format=absolute --git-common-dir)/../prog"',
+    ),
     "a link out of the tree": Case(
         SLOWER,
         1,
