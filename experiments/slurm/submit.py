@@ -1,6 +1,5 @@
 """Hand what is missing of a study to Slurm: one job array for each partition, its script from a template."""
 
-import contextlib
 import shlex
 import shutil
 import sys
@@ -21,7 +20,6 @@ from experiments.slurm.jobs import (
     Unit,
     cluster_of,
     folders,
-    read_told,
     results_of,
     submitted,
 )
@@ -146,35 +144,33 @@ def _hand_over(one: Standing, most_tasks: int) -> tuple[str, Job, Path]:
         write_json(manifest, job.content(), manifest.parent)
         try:
             return scheduler.submit(script), job, manifest
-        except InputError as error:
-            refusal = error if isinstance(error, RefusedError) else None
-            is_queued = _is_queued(job) if refusal is not None and refusal.is_unsure else False
-            if is_queued:
+        except RefusedError as refusal:
+            if _is_queued(job, refusal):
                 return "known by its name", job, manifest
-            if is_queued is not None:
-                # A job that was never in the queue must not be taken for one that has left it.
-                manifest.unlink()
-                script.unlink()
-            if refusal is None or not refusal.too_many or len(job.tasks) == 1:
+            # A job that was never in the queue must not be taken for one that has left it.
+            manifest.unlink()
+            script.unlink()
+            if not refusal.is_of_number or len(job.tasks) == 1:
                 raise
             most_tasks = len(job.tasks) // 2
 
 
-def _is_queued(job: Job) -> bool | None:
-    """Whether the queue holds the job although nobody said so. None if nobody answers: its list of blocks
-    then stays, for its tasks or as one that has left the queue.
+def _is_queued(job: Job, refusal: RefusedError) -> bool:
+    """Whether the queue holds the job although nobody said so. Raises the refusal if nobody answers: its list
+    of blocks then stays, for its tasks or as one that has left the queue.
     """
-    with contextlib.suppress(InputError):
+    try:
         return any(name == job.name for name, _ in scheduler.queue())
-    return None
+    except InputError:
+        refusal.is_away = True
+        raise refusal from None
 
 
 def _plan_job(one: Standing, most_tasks: int) -> tuple[Job, Path]:
     """A job of the blocks, as far as they fit into so many tasks, and where its list of blocks belongs."""
     partition = one.folder.partition
     tasks = pack(list(one.wanted), partition.blocks_per_task, most_tasks)
-    known = read_told(one.folder.jobs, one.study.scale.name).means
-    return one.folder.next_job(one.study, within_time(tasks, partition, known))
+    return one.folder.next_job(within_time(tasks, partition, one.block_seconds))
 
 
 def pack(wanted: Sequence[Unit], blocks_per_task: int, array_size: int) -> list[list[Unit]]:
@@ -191,7 +187,7 @@ def within_time(
     """
     kept = []
     for task in tasks:
-        left, own = 60.0 * partition.minutes - partition.signal_seconds, list[Unit]()
+        left, own = float(partition.measuring_seconds), list[Unit]()
         for unit in task:
             left -= seconds.get(unit[0], 0.0)
             if left < 0 and len(own) >= partition.blocks_per_task:

@@ -16,6 +16,7 @@ from experiments.slurm.scheduler import TaskState
 from experiments.slurm.task import work
 from experiments.tests.conftest import PAIR, ROOT, Workplace, start
 from experiments.tests.slurm.test_script import site
+from experiments.tests.slurm.test_submit import took
 from support.errors import InputError
 from support.files import write_json
 from support.record_schema import SCHEMA_FILE
@@ -31,7 +32,7 @@ def job_of(workplace: Workplace, tasks: int = 1, folder: PartitionFolder | None 
     """Write the list of blocks of a job, dealt out to so many tasks."""
     folder = folder or folder_of(workplace)
     wanted = [*Standing(folder, folder.study(), {}).missing]
-    job, path = folder.next_job(folder.study(), [wanted[first::tasks] for first in range(tasks)])
+    job, path = folder.next_job([wanted[first::tasks] for first in range(tasks)])
     path.parent.mkdir(parents=True, exist_ok=True)
     write_json(path, job.content(), path.parent)
     return path
@@ -179,18 +180,19 @@ def test_a_task_started_again_measures_what_was_not_begun(workplace: Workplace) 
     assert missing(workplace) == {("pair", 2): 2}
 
 
-def test_blocks_that_never_fit_their_allocation_come_to_an_end(workplace: Workplace) -> None:
+def test_blocks_that_do_not_fit_their_allocation_come_to_an_end(workplace: Workplace) -> None:
     workplace.question("pair", APART)
-    submitted = 0
-    while wanted := missing(workplace):
-        assert work(job_of(workplace), 0) == 0
-        submitted += len(wanted)
-        cut_off(workplace, *(block for name, block in wanted if name == "pair"))
-    assert standing(workplace).too_long == {"pair": 4}, "twice the two blocks that the question asks for"
-    assert submitted == 7 + 2
+    assert work(job_of(workplace), 0) == 0
+    took(workplace, 40.0)
     settings = folder_of(workplace).settings
+    site(workplace.root, "# own", "minutes = 1")
+    (short,) = folders(settings)
+    assert standing(workplace, short).too_long == [], "none was cut off"
+    cut_off(workplace, 1)
+    assert standing(workplace, short).too_long == ["pair"], "80 s, and a signal comes after 45"
+    assert standing(workplace, short).wanted == {}
     site(workplace.root, "# own", "minutes = 90")
-    assert standing(workplace, folders(settings)[0]).too_long == {}, "with more time they may be whole"
+    assert standing(workplace, folders(settings)[0]).wanted == {("pair", 2): 2}
 
 
 def test_a_point_that_failed_is_tried_again_before_its_partners_are(workplace: Workplace) -> None:
