@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,9 @@ from documents import BUILT
 from docs.generate import command_line, pages, program_help, python_verbs, schema
 from docs.generate.markdown import sentence, table
 from docs.generate.program_help import Row
-from experiments.plan.question import FOLDER
+from experiments.plan.question import FOLDER, Blocks, Question, Sweep
+from experiments.plan.scenes import HardCase, Scene
+from experiments.plan.series import Benchmark, PrintedTime, Series
 from support.record_schema import SCHEMA_FILE
 
 HELP = """A program
@@ -111,6 +114,25 @@ def test_every_field_of_a_schema_says_what_it_means(file: Path) -> None:
     content = schema.read(file)
     silent = [path for path, node in _fields(content, "") if not schema.told(content, node)]
     assert silent == []
+
+
+READ_INTO: dict[str, type] = {
+    "": Question, "generated": Scene, "case": HardCase, "sweep": Sweep, "blocks": Blocks, "series": Series,
+    "time": PrintedTime, "benchmark": Benchmark,
+}  # fmt: skip
+FILLED_IN = {"verb", "x_name", "minimum", "wanted"}
+"""Keys that the reader fills in, or that no table may lack."""
+
+
+@pytest.mark.parametrize("name", READ_INTO)
+def test_the_defaults_of_a_question_are_those_of_what_it_is_read_into(name: str) -> None:
+    content = schema.read(FOLDER / "question.schema.json")
+    node = content["$defs"][name] if name else content
+    said = {key: one["default"] for key, one in node["properties"].items() if "default" in one}
+    plain = {
+        one.name: one.default for one in fields(READ_INTO[name]) if isinstance(one.default, str | int | float)
+    }
+    assert said == {key: one for key, one in plain.items() if key in node["properties"].keys() - FILLED_IN}
 
 
 def _fields(node: Mapping[str, Any], prefix: str) -> list[tuple[str, Mapping[str, Any]]]:
