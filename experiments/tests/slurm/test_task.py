@@ -47,28 +47,21 @@ def records(workplace: Workplace) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in paths}
 
 
-def test_two_tasks_share_a_folder_and_the_work(workplace: Workplace) -> None:
+@pytest.mark.parametrize("started", [[0, 1], [0, 0, 0]], ids=["two tasks", "copies of one"])
+def test_those_who_share_a_folder_tear_nothing(workplace: Workplace, started: list[int]) -> None:
     workplace.behave(FAKE_SECONDS="0.05")
-    manifest = job_of(workplace, tasks=2)
-    for process in [start_task(manifest, 0), start_task(manifest, 1)]:
-        _, error = process.communicate(timeout=60)
-        assert process.returncode == 0
-        assert all("waits for another" in line for line in error.splitlines())
-    assert len(records(workplace)) == 16
-    assert sum("--tag" in call["words"] for call in workplace.calls()) == 16
-    assert not list(workplace.results.rglob(".running/*"))
-
-
-def test_two_copies_of_one_task_tear_nothing(workplace: Workplace) -> None:
-    workplace.behave(FAKE_SECONDS="0.05")
-    manifest = job_of(workplace)
-    for process in [start_task(manifest, 0) for _ in range(3)]:
+    tasks = len(set(started))
+    manifest = job_of(workplace, tasks)
+    for process in [start_task(manifest, task) for task in started]:
         _, error = process.communicate(timeout=60)
         assert process.returncode == 0
         assert all("waits for another" in line for line in error.splitlines())
     assert len(records(workplace)) == 16
     for content in records(workplace).values():
         jsonschema.validate(json.loads(content), json.loads(SCHEMA_FILE.read_text()))
+    if tasks == len(started):
+        assert sum("--tag" in call["words"] for call in workplace.calls()) == 16
+        assert not list(workplace.results.rglob(".running/*"))
 
 
 def test_the_signal_ahead_of_the_time_limit_keeps_what_is_finished(workplace: Workplace) -> None:
