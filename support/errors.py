@@ -3,7 +3,7 @@
 import difflib
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 
@@ -35,6 +35,11 @@ def nearest(found: str, names: Iterable[str]) -> str:
     """`; did you mean "x"?` where one of `names` resembles `found`, else the empty string."""
     matches = difflib.get_close_matches(found, list(names), n=1)
     return f'; did you mean "{matches[0]}"?' if matches else ""
+
+
+def not_one_of(found: str, names: Collection[str]) -> str:
+    """What was found in the place of one of these names, and the nearest of them."""
+    return f"found {quoted(found)}, expected one of {', '.join(names)}{nearest(found, names)}"
 
 
 def cannot(error: OSError) -> str:

@@ -10,7 +10,7 @@ from datetime import date
 from pathlib import Path
 
 from docs.generate import sources
-from support.errors import InputError, nearest
+from support.errors import InputError, not_one_of
 from support.home import ROOT
 
 TABLE = ROOT / "docs" / "figures" / "figures.toml"
@@ -79,8 +79,7 @@ def chosen(names: str, table: Path = TABLE) -> list[Figure]:
     wanted = [one.strip() for one in names.split(",") if one.strip()]
     for name in wanted:
         if name not in all_of_them:
-            known = ", ".join(all_of_them)
-            raise InputError(f'FIGURES: found "{name}", expected out of {known}{nearest(name, all_of_them)}')
+            raise InputError(f"FIGURES: {not_one_of(name, all_of_them)}")
         if not all_of_them[name].command:
             raise InputError(f"FIGURES: {name} needs {all_of_them[name].needs}: no command makes it")
     if wanted:

@@ -1,56 +1,35 @@
-"""The page of a question's keys: from the schema that checks them and the classes that they are read into."""
+"""The page of a question's keys: from the schema that checks them."""
 
 from collections.abc import Iterator
-from dataclasses import MISSING, fields
 
 from docs.generate.markdown import code, page, table
 from docs.generate.schema import Schema, definition, read, told, type_of
-from experiments.plan.kinds import KINDS
-from experiments.plan.question import FOLDER, Blocks, Question, Sweep
-from experiments.plan.scenes import HardCase, Scene
-from experiments.plan.series import Benchmark, PrintedTime, Series
+from experiments.plan.kinds import KINDS, Kind
+from experiments.plan.question import FOLDER
 
 OPENING = (
     "A question is a TOML file. `carom study new NAME` writes one to start from. "
     "A mistake in it is answered with the file, the key, what was found and what was expected."
 )
-READ_INTO: dict[str, type] = {
-    "": Question, "generated": Scene, "case": HardCase, "sweep": Sweep, "blocks": Blocks, "series": Series,
-    "time": PrintedTime, "benchmark": Benchmark,
-}  # fmt: skip
-TITLES = {
-    "": "At the top",
-    "generated": "A scene: `[scene]`, `[[scenes]]`",
-    "case": "A scene that is a hard case",
-    "sweep": "What changes along a curve: `[sweep]`",
-    "blocks": "How often: `[blocks]`",
-    "series": "A curve: `[[series]]`",
-    "time": "`time` of a series",
-    "benchmark": "`benchmark` of a series",
-}
-NO_DEFAULT = ("kind", "figure", "verb", "reference", "x_name", "values", "quick_values", "exit_codes")
-"""Keys of which the schema says what holds without them, or that others fill in."""
 
 
 def render() -> str:
     """The page."""
     schema = read(FOLDER / "question.schema.json")
-    return page("Keys of a question", OPENING, *_sections(schema), _kinds())
+    sections = [
+        f"## {node['section']}\n\n" + table(("key", "type", "default", "meaning"), _rows(schema, node))
+        for node in (schema, *schema["$defs"].values())
+        if "section" in node
+    ]
+    return page("Keys of a question", OPENING, *sections, _kinds())
 
 
-def _sections(schema: Schema) -> Iterator[str]:
-    series = schema["$defs"]["series"]["properties"]
-    nodes = {"": schema, **schema["$defs"], "time": series["time"], "benchmark": series["benchmark"]}
-    for name, title in TITLES.items():
-        head = ("key", "type", "default", "meaning")
-        yield f"## {title}\n\n" + table(head, _rows(schema, nodes[name], READ_INTO[name]))
-
-
-def _rows(schema: Schema, node: Schema, read_into: type) -> Iterator[tuple[str, ...]]:
-    defaults = {one.name: one.default for one in fields(read_into) if one.default is not MISSING}
+def _rows(schema: Schema, node: Schema) -> Iterator[tuple[str, ...]]:
     for key, value in node["properties"].items():
-        default = "required" if key in node.get("required", ()) else _default(defaults.get(key), key)
-        yield code(key), _type(schema, value), default, told(schema, value)
+        default = value.get("default", "")
+        shown = code(str(default).lower() if isinstance(default, bool) else str(default))
+        is_required = key in node.get("required", ())
+        yield code(key), _type(schema, value), "required" if is_required else shown, told(schema, value)
 
 
 def _type(schema: Schema, node: Schema) -> str:
@@ -63,24 +42,16 @@ def _type(schema: Schema, node: Schema) -> str:
     return type_of(schema, content)
 
 
-def _default(value: object, key: str) -> str:
-    if key in NO_DEFAULT or not isinstance(value, (str, int, float)):
-        return ""
-    return code(str(value).lower() if isinstance(value, bool) else str(value))
-
-
 def _kinds() -> str:
     """What each kind of question is."""
     rows = [
-        (code(name), kind.measured, kind.judged, ", ".join(map(code, kind.figures)), *_wants(name))
+        (code(name), kind.measured, kind.judged, ", ".join(map(code, kind.figures)), _wants(kind))
         for name, kind in KINDS.items()
     ]
     head = ("kind", "what is measured", "how it is judged", "figures, the usual one first", "needs")
     return "## Kinds of questions\n\n" + table(head, rows)
 
 
-def _wants(name: str) -> tuple[str]:
-    kind = KINDS[name]
-    wanted = ["`errors = true`"] if kind.errors else []
-    wanted += [f"a sweep of {code(kind.sweep)}"] if kind.sweep else []
-    return ("; ".join(wanted),)
+def _wants(kind: Kind) -> str:
+    errors, sweep = "`errors = true`" if kind.errors else "", f"a sweep of {code(kind.sweep or '')}"
+    return "; ".join(filter(None, [errors, sweep if kind.sweep else ""]))

@@ -65,20 +65,18 @@ def record(table: Path, figure: Figure, of: Origin, digest: str) -> None:
     """Write into the table of what the figure is now."""
     commit, measured, machine = of
     new = {
-        "commit": f'"{commit}"',
-        "measured": str(measured),
-        "machine": json.dumps(machine),
-        "digest": f'"{digest}"',
+        key: json.dumps(one) for key, one in (("commit", commit), ("machine", machine), ("digest", digest))
     }
+    new["measured"] = str(measured)
     text = table.read_text(encoding="utf-8")
     begin = text.index(f"[{figure.name}]\n")
-    end = text.find("\n[", begin)
-    entry = text[begin:] if end < 0 else text[begin:end]
-    lines = [line for line in entry.splitlines() if not line.startswith("same = ")]
-    keys = [line.split(" = ")[0] for line in lines]
-    lines = [f"{key} = {new[key]}" if key in new else line for key, line in zip(keys, lines, strict=True)]
-    rest = "\n" if end < 0 else text[end:]
-    write_text(table, text[:begin] + "\n".join(lines) + rest, table.parent)
+    end = text.find("\n[", begin) % (len(text) + 1)
+    lines = [
+        f"{key} = {new[key]}" if (key := line.partition(" = ")[0]) in new else line
+        for line in text[begin:end].splitlines()
+        if not line.startswith("same = ")
+    ]
+    write_text(table, text[:begin] + "\n".join(lines) + (text[end:] or "\n"), table.parent)
 
 
 def origin(root: Path, place: str) -> Origin:

@@ -76,7 +76,7 @@ def test_sentences_are_found_without_what_is_none() -> None:
         "One sentence of CODE and a link of four words.",
         "Another one, wrapped over lines!",
         "(A third one.",
-        "*A fourth?",
+        "A fourth?",
         "It has 3.5 % of x.",
         "2 begin with a number.",
         "An item goes on",

@@ -1,7 +1,7 @@
 """The generated pages are what their generators make now; their generators read help, parsers and schemas."""
 
-import argparse
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -9,37 +9,10 @@ import pytest
 from documents import BUILT
 
 from docs.generate import command_line, pages, program_help, python_verbs, schema
-from docs.generate.markdown import sentence, table
-from docs.generate.program_help import Row
-from experiments.plan.question import FOLDER
+from experiments.plan.question import FOLDER, Blocks, Question, Sweep
+from experiments.plan.scenes import HardCase, Scene
+from experiments.plan.series import Benchmark, PrintedTime, Series
 from support.record_schema import SCHEMA_FILE
-
-HELP = """A program
-Usage: carom [OPTIONS] VERB
-
-Options:
-  -h,--help                   Print this help message and exit
-
-Simulate a scene and
-print a summary
-Usage: carom run [OPTIONS] SCENE
-
-Arguments:
-  SCENE                       Scene file; - is
-                              standard input
-
-Options:
-  -h,--help                   Print this help message and exit
-  --help-all                  Print the help of every verb
-  --threads N=2               Threads
-  --tolerance relative|published=relative
-                              What counts as
-                              approaching
-  --json                      Print JSON
-
-Exit codes: 0 done
-  1 wrong
-"""
 
 
 @pytest.mark.parametrize("name", [name for name in pages.PAGES if name != "command_line.md"])
@@ -64,53 +37,30 @@ def test_every_verb_is_on_the_page() -> None:
         assert f"\n### carom {name}\n" in page
 
 
-def test_help_is_read_with_its_wrapped_lines() -> None:
-    verb = program_help.verbs(HELP)["run"]
-    assert (verb.told, verb.usages) == (
-        "Simulate a scene and print a summary",
-        ("carom run [OPTIONS] SCENE",),
-    )
-    assert verb.rows == (
-        Row("SCENE", "", "Scene file; - is standard input"),
-        Row("--threads N", "as many as the machine gives", "Threads"),
-        Row("--tolerance relative|published", "`relative`", "What counts as approaching"),
-        Row("--json", "", "Print JSON"),
-    )
-
-
-def test_a_default_stands_as_it_would_be_typed() -> None:
-    parser = argparse.ArgumentParser(prog="carom x")
-    parser.add_argument(
-        "--margin", type=lambda text: float(text.strip("%")) / 100, default=0.02, metavar="2%"
-    )
-    parser.add_argument(
-        "--head", default="HEAD", metavar="COMMIT", help="what is judged (default: %(default)s)"
-    )
-    parser.add_argument("--reference", help="what it is compared with (default: the first)")
-    rows = python_verbs._verb("x", parser).rows
-    assert [(row.default, row.told) for row in rows] == [
-        ("`2%`", ""),
-        ("`HEAD`", "what is judged"),
-        ("the first", "what it is compared with"),
-    ]
-
-
-def test_a_bar_in_a_cell_does_not_end_it() -> None:
-    assert table(("a",), [("x|y",)]).splitlines()[-1] == "| x\\|y |"
-
-
-@pytest.mark.parametrize(
-    ("text", "said"), [("a b", "A b."), ("omp_x y", "omp_x y."), ("Why?", "Why?"), ("", "")]
-)
-def test_a_description_becomes_a_sentence(text: str, said: str) -> None:
-    assert sentence(text) == said
-
-
 @pytest.mark.parametrize("file", [SCHEMA_FILE, FOLDER / "question.schema.json"], ids=lambda file: file.name)
 def test_every_field_of_a_schema_says_what_it_means(file: Path) -> None:
     content = schema.read(file)
     silent = [path for path, node in _fields(content, "") if not schema.told(content, node)]
     assert silent == []
+
+
+READ_INTO: dict[str, type] = {
+    "": Question, "generated": Scene, "case": HardCase, "sweep": Sweep, "blocks": Blocks, "series": Series,
+    "time": PrintedTime, "benchmark": Benchmark,
+}  # fmt: skip
+FILLED_IN = {"verb", "x_name", "minimum", "wanted"}
+"""Keys that the reader fills in, or that no table may lack."""
+
+
+@pytest.mark.parametrize("name", READ_INTO)
+def test_the_defaults_of_a_question_are_those_of_what_it_is_read_into(name: str) -> None:
+    content = schema.read(FOLDER / "question.schema.json")
+    node = content["$defs"][name] if name else content
+    said = {key: one["default"] for key, one in node["properties"].items() if "default" in one}
+    plain = {
+        one.name: one.default for one in fields(READ_INTO[name]) if isinstance(one.default, str | int | float)
+    }
+    assert said == {key: one for key, one in plain.items() if key in node["properties"].keys() - FILLED_IN}
 
 
 def _fields(node: Mapping[str, Any], prefix: str) -> list[tuple[str, Mapping[str, Any]]]:

@@ -7,14 +7,14 @@ from pathlib import Path
 from experiments.compare.commands import Compared
 from experiments.compare.options import Asked
 from experiments.plan.benchmark_cases import filter_of
-from experiments.plan.command import Command, Place, literal, resolved
+from experiments.plan.command import Command, Place, resolved
 from experiments.plan.executable import UnfitError
-from experiments.plan.plan import Experiment, Surroundings
+from experiments.plan.plan import Experiment, Surroundings, point_of
 from experiments.plan.point import PROCESS, Point
 from experiments.plan.program import GENERATOR, Program
-from experiments.plan.question import Question
+from experiments.plan.question import Question, Sweep
 from experiments.plan.scenes import NoScene
-from experiments.plan.series import SECONDS_OF_UNIT
+from experiments.plan.series import SECONDS_OF_UNIT, Series, literal
 from support.errors import InputError
 from support.vocabulary import AGAIN
 
@@ -34,12 +34,16 @@ _OPENMP = ("OMP_", "GOMP_", "KMP_")
 
 def experiment_of(asked: Asked, around: Surroundings) -> Experiment:
     """What is run. Raises InputError for a command that is not there or cannot be run."""
+    question = Question(
+        NAME, Path(NAME), "Commands compared", "comparison", "comparison", (), (), Sweep(x_name="case"),
+        margin=asked.margin, error=asked.error, reference=asked.reference, verb=PROCESS,
+        warm_up=asked.warm_up,
+    )  # fmt: skip
     points = [
-        _point(one, number, case, asked, around)
+        _point(question, one, number, case, asked, around)
         for number, one in enumerate((*asked.commands, again(asked)), start=1)
         for case in enumerate(asked.cases or [None])
     ]
-    question = Question(NAME, Path(NAME), "Commands compared", "comparison", "comparison", (), ())
     return Experiment(question, tuple(points), f"{around.seed} {NAME}")
 
 
@@ -50,22 +54,20 @@ def again(asked: Asked) -> Compared:
 
 
 def _point(
-    one: Compared, number: int, case: tuple[int, str | None], asked: Asked, around: Surroundings
+    question: Question,
+    one: Compared,
+    number: int,
+    case: tuple[int, str | None],
+    asked: Asked,
+    around: Surroundings,
 ) -> Point:
     """That of one command, which has a folder of its own, or of a case of it, with its number."""
     threads = min(asked.threads or around.machine.hardware_threads, around.machine.hardware_threads)
     bound = around.site.binding.environment(threads, around.machine)
     command, program = _command(one, case[1], asked, around)
-    return Point(
-        experiment=NAME, kind="comparison", figure="comparison", claim=None, scale=around.scale.name,
-        margin=asked.margin, error=asked.error, reference=asked.reference,
-        series=one.name, series_number=number, scene_name=None, x_name="case", x=case[0],
-        label=one.name, replicate=1, site=around.site.name, machine=around.machine, verb=PROCESS,
-        program=program, command=command, scene=NoScene(), variant=None, find_chunk=None, resolve_chunk=None,
-        threads=threads, substeps=1, tolerance="relative",
-        warm_up=asked.warm_up, repetitions=1, errors=False, simulated=0, apart=False,
-        openmp=_environment(asked, bound, one.environment),
-    )  # fmt: skip
+    openmp = _environment(asked, bound, one.environment)
+    run = {"scene": NoScene(), "threads": threads, "program": program, "command": command, "openmp": openmp}
+    return point_of(question, (number, Series(one.name, label=one.name)), around, case[0], **run)
 
 
 def _command(one: Compared, case: str | None, asked: Asked, around: Surroundings) -> tuple[Command, Program]:

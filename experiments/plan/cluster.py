@@ -39,6 +39,11 @@ class Partition:
         """How long before the time limit a task is asked to stop: a minute, less where there are few."""
         return min(60, 15 * self.minutes)
 
+    @property
+    def measuring_seconds(self) -> int:
+        """How long a task may measure before that."""
+        return 60 * self.minutes - self.signal_seconds
+
 
 @dataclass(frozen=True)
 class Cluster:

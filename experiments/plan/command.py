@@ -2,7 +2,7 @@
 
 import os
 import string
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,15 +10,13 @@ from typing import Any
 from experiments.plan.benchmark_cases import filter_of
 from experiments.plan.executable import UnfitError, found, program_of, require_executable
 from experiments.plan.program import Program
-from experiments.plan.series import SECONDS_OF_UNIT, Series
+from experiments.plan.series import SECONDS_OF_UNIT, Series, literal
 from experiments.support.digest import digest
-from support.errors import InputError, nearest
+from support.errors import InputError, not_one_of
 
 SCENE, OUTPUT, FOLDER = "scene", "out", "folder"
 """Placeholders of files that are known only when the program is run, and of the question's folder."""
 
-_LITERAL = "\0"
-"""Behind a brace of the user's own: no word of a command can have it."""
 _LONGEST_NAME = 60
 
 
@@ -26,8 +24,8 @@ _LONGEST_NAME = 60
 class Command:
     """What is run and how its time is known; every field decides what is measured.
 
-    In all words only {scene} and {out} are left to be filled in. `instrument` is the SHA-256 of the program
-    that takes the time: what another one measured is not compared.
+    Its words are templates, as `placed` takes them: only {scene} and {out} are left to be filled in.
+    `instrument` is the SHA-256 of the program that takes the time: what another one measured is not compared.
     """
 
     words: tuple[str, ...]
@@ -59,7 +57,7 @@ class Command:
     @property
     def writes_trajectory(self) -> bool:
         """Whether what is timed writes its own trajectory."""
-        return any("{out}" in word for word in self.words)
+        return placed(self.words) != placed(self.words, output=Path())
 
     @property
     def content(self) -> dict[str, object]:
@@ -171,49 +169,30 @@ def _lead(words: Sequence[str], folder: Path) -> tuple[str, ...]:
 
 
 def placed(words: Sequence[str], scene: Path | None = None, output: Path | None = None) -> tuple[str, ...]:
-    """The words with the files in their places."""
-    files = {"{scene}": scene, "{out}": output}
-    for name, path in files.items():
-        words = [word if path is None else word.replace(name, literal(os.fspath(path))) for word in words]
-    return tuple(word.replace(_LITERAL, "") for word in words)
-
-
-def literal(text: str) -> str:
-    """The text, as one in which no placeholder is left to be filled in."""
-    for name in (SCENE, OUTPUT):
-        text = text.replace(f"{{{name}}}", f"{{{_LITERAL}{name}}}")
-    return text
+    """The words of templates, with the files in their places; a file that is not known keeps its name."""
+    files = {SCENE: scene or f"{{{SCENE}}}", OUTPUT: output or f"{{{OUTPUT}}}"}
+    return tuple(word.format_map(files) for word in words)
 
 
 def _known(values: Mapping[str, object], place: Place) -> dict[str, str]:
-    """Placeholders with their values; those of files come later."""
+    """Placeholders with their values, as templates have them; those of files come later."""
     told = ((name, f"{one:.12g}" if isinstance(one, float) else str(one)) for name, one in values.items())
     files = {name: f"{{{name}}}" for name in (SCENE, OUTPUT) if SCENE in values}
-    return {name: one for name, one in told if name != SCENE} | files | {FOLDER: os.fspath(place.folder)}
+    known = {name: literal(one) for name, one in told if name != SCENE}
+    return known | files | {FOLDER: literal(os.fspath(place.folder))}
 
 
 def _filled(words: Sequence[str], key: str, known: Mapping[str, str]) -> tuple[str, ...]:
-    """The words with the placeholders in the place of their values, but for those of files, of which only
-    these are left.
-    """
-    return tuple(_filled_word(word, key, known) for word in words)
+    """Templates with the values in the place of the placeholders, but for those of files."""
+    return tuple("".join(_parts(word, key, known)) for word in words)
 
 
-def _filled_word(word: str, key: str, known: Mapping[str, str]) -> str:
+def _parts(word: str, key: str, known: Mapping[str, str]) -> Iterator[str]:
     try:
-        parts = list(string.Formatter().parse(word))
+        for text, name, form, conversion in string.Formatter().parse(word):
+            yield literal(text)
+            if name is not None and (name not in known or form or conversion):
+                raise InputError(f"{key}: {not_one_of(f'{{{name}}}', [f'{{{one}}}' for one in known])}")
+            yield known[name] if name is not None else ""
     except ValueError as error:
         raise InputError(f'{key}: found "{word}": {error}; {{{{ stands for a brace') from error
-    filled, text = "", ""  # up to the last file, and since
-    for plain, name, form, conversion in parts:
-        text += plain
-        if name is None:
-            continue
-        if name not in known or form or conversion:
-            expected = f"one of {', '.join(f'{{{one}}}' for one in known)}{nearest(name, known)}"
-            raise InputError(f'{key}: found "{{{name}}}", expected {expected}')
-        if name in (SCENE, OUTPUT):
-            filled, text = filled + literal(text) + known[name], ""
-        else:
-            text += known[name]
-    return filled + literal(text)

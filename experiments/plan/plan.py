@@ -14,7 +14,7 @@ from experiments.plan.scale import Scale
 from experiments.plan.scenes import AnyScene, NoScene, Scene
 from experiments.plan.series import Series
 from experiments.plan.site import Machine, Site
-from support.errors import InputError, nearest, quoted
+from support.errors import InputError, nearest, not_one_of
 
 SEED = 1
 
@@ -112,15 +112,14 @@ def _known(question: Question, number: int, series: Series, around: Surroundings
     if series.is_foreign:
         return series
     if series.program not in around.programs:
-        expected = f"one of {', '.join(around.programs)}{nearest(series.program, around.programs)}"
-        raise InputError(f"{key}.program: found {quoted(series.program)}, expected {expected}")
+        raise InputError(f"{key}.program: {not_one_of(series.program, around.programs)}")
     program = around.programs[series.program]
     if program.sha256 is None or series.variant in SHORT_NAMES:
         return series
     if series.variant not in variants(program):
+        known = ["a name out of `carom list --names`", *SHORT_NAMES]
         like = nearest(str(series.variant), [*SHORT_NAMES, *variants(program)])
-        expected = f"a name out of `carom list --names`, or one of {', '.join(SHORT_NAMES)}{like}"
-        raise InputError(f'{key}.variant: found "{series.variant}", expected {expected}')
+        raise InputError(f'{key}.variant: found "{series.variant}", expected one of {", ".join(known)}{like}')
     return series
 
 
@@ -157,29 +156,27 @@ def _point(
         of_run = {"threads": run["threads"], "substeps": run["substeps"]}
         command, program = _command(question, number, series, (scene, of_run, x), around)
     assert program is not None
-    variables = around.site.binding.environment(run["threads"], around.machine, bound=question.bound)
+    openmp = around.site.binding.environment(run["threads"], around.machine, bound=question.bound)
+    run |= {"scene": scene, "program": program, "command": command, "openmp": tuple(sorted(openmp.items()))}
+    return point_of(question, (number, series), around, x, scene_name=named.name, **run)
+
+
+def point_of(
+    question: Question,
+    numbered: tuple[int, Series],
+    around: Surroundings,
+    x: float,
+    **run: Any,  # noqa: ANN401 - the fields of a point that only its run decides
+) -> Point:
+    """The point of a series, which has a number in its question, at a place of its sweep."""
+    number, series = numbered
+    simulated = around.scale.simulated(question)
     return Point(
-        experiment=question.name,
-        series=series.name,
-        series_number=number,
-        label=series.label,
-        replicate=1,
-        scene_name=named.name,
-        x_name=question.sweep.x_name,
-        x=x,
-        scale=around.scale.name,
-        site=around.site.name,
-        machine=around.machine,
-        program=program,
-        scene=scene,
-        variant=series.variant,
-        command=command,
-        simulated=around.scale.simulated(question),
-        openmp=tuple(sorted(variables.items())),
-        apart=series.apart,
-        **{name: getattr(question, name) for name in _OF_QUESTION},
-        **run,
-    )
+        experiment=question.name, series=series.name, series_number=number, label=series.label, replicate=1,
+        x_name=question.sweep.x_name, x=x, scale=around.scale.name, site=around.site.name,
+        machine=around.machine, variant=series.variant, simulated=simulated, apart=series.apart,
+        **{name: getattr(question, name) for name in _OF_QUESTION}, **run,
+    )  # fmt: skip
 
 
 _OF_QUESTION = (

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from pathlib import Path
+from typing import Final
 
 from experiments.plan.command import Command, placed
 from experiments.plan.program import Program, tag_arguments
@@ -15,7 +16,7 @@ from experiments.support.digest import digest
 
 Tags = dict[str, str | int | float]
 
-PROCESS = "process"
+PROCESS: Final = "process"
 """The verb of points of which whole processes are timed."""
 
 SHORT_BENCHMARK = "--benchmark_min_time=0.1"
@@ -24,7 +25,7 @@ Written without its unit, which versions before 1.8 do not know.
 """
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Measurement:
     """Everything that decides what is measured: every field is part of the id.
 
@@ -41,10 +42,10 @@ class Measurement:
     scene: AnyScene
     variant: str | None
     command: Command | None
-    find_chunk: int | None
-    resolve_chunk: int | None
+    find_chunk: int | None = None
+    resolve_chunk: int | None = None
     threads: int
-    substeps: int
+    substeps: int = 1
     tolerance: str
     warm_up: int
     repetitions: int
@@ -83,7 +84,7 @@ class Measurement:
         }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Point(Measurement):
     """A measurement and what only says where in which figure it is shown."""
 
@@ -96,7 +97,7 @@ class Point(Measurement):
     reference: str | None
     series: str
     series_number: int
-    scene_name: str | None
+    scene_name: str | None = None
     x_name: str
     x: float
     scale: str

@@ -13,7 +13,7 @@ from experiments.plan.claims import known_claims, published_claims
 from experiments.plan.kinds import KINDS
 from experiments.plan.scenes import HardCase, NoScene
 from experiments.plan.series import Series
-from support.errors import InputError, nearest, quoted
+from support.errors import InputError, not_one_of
 
 if TYPE_CHECKING:
     from experiments.plan.question import Question
@@ -57,14 +57,13 @@ def _names(question: "Question") -> Iterator[str]:
     known = list(dict.fromkeys(series.name for series in question.series))
     for key, name in told.items():
         if name not in known:
-            yield f"{key}: found {quoted(name)}, expected one of {', '.join(known)}{nearest(name, known)}"
+            yield f"{key}: {not_one_of(name, known)}"
 
 
 def _claim(question: "Question") -> Iterator[str]:
     known = known_claims(question.file) if question.claim is not None else []
     if question.claim is not None and question.claim not in known:
-        expected = f"one of {', '.join(known)}{nearest(question.claim, known)}"
-        yield f'claim: found "{question.claim}", expected {expected}'
+        yield f"claim: {not_one_of(question.claim, known)}"
 
 
 def _possible_scenes(question: "Question") -> Iterator[str]:
@@ -94,23 +93,24 @@ def _what_processes_can(question: "Question") -> Iterator[str]:
     foreign = [series for series in question.series if series.is_foreign]
     if foreign and question.verb != "process":
         yield f'verb: found {question.verb} beside programs of others, expected "process"'
-    found, known = f"sweep.parameter: found {quoted(str(parameter))}", (*_OF_THE_RUN, *_OF_A_SCENE)
+    known = (*_OF_THE_RUN, *_OF_A_SCENE)
     if parameter is not None and parameter not in known and len(foreign) < len(question.series):
-        yield f"{found}, expected one of {', '.join(known)}{nearest(parameter, known)}"
+        yield f"sweep.parameter: {not_one_of(parameter, known)}"
     if parameter in _PLACEHOLDERS:
-        yield f"{found}, which is a placeholder of another meaning; expected another name"
+        yield f"sweep.parameter: found {parameter}, a placeholder of another meaning; expected another name"
     if parameter in _OF_A_SCENE and any(isinstance(named.scene, NoScene) for named in question.scenes):
         yield f"sweep.parameter: found {parameter} without a scene, expected another name"
-    for key, default in (("repetitions", 1), ("errors", False), ("simulated", 0)):
-        if question.verb == "process" and getattr(question, key) != default:
-            yield f"{key}: found for whole processes, expected for verb bench only"
 
 
 def _what_is_measured_beside(question: "Question") -> Iterator[str]:
     """What is measured beside times is measured by one verb, and a kind that judges it needs it."""
-    for key, verb in (("errors", "bench"), ("simulated", "profile")):
-        if getattr(question, key) and question.verb != verb:
-            yield f"{key}: found for verb {question.verb}, expected for {verb} only"
+    for key, default, verbs in (
+        ("repetitions", 1, ("bench", "profile")),
+        ("errors", False, ("bench",)),
+        ("simulated", 0, ("profile",)),
+    ):
+        if getattr(question, key) != default and question.verb not in verbs:
+            yield f"{key}: found for verb {question.verb}, expected for {' or '.join(verbs)} only"
     kind = KINDS[question.kind]
     if kind.errors and not question.errors:
         yield f"errors: missing; expected true for kind {question.kind}"

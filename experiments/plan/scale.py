@@ -6,7 +6,7 @@ from experiments.plan.question import NamedScene, Question
 from experiments.plan.scenes import Scene
 from experiments.plan.series import Series
 from support import vocabulary
-from support.errors import InputError, nearest
+from support.errors import InputError, not_one_of
 from support.vocabulary import COUNTS
 
 
@@ -78,5 +78,5 @@ SCALES = dict(zip(vocabulary.SCALES, (_PAPER, _QUICK), strict=True))
 def find_scale(name: str) -> Scale:
     """The scale of that name. Raises InputError with the nearest name."""
     if name not in SCALES:
-        raise InputError(f'scale: found "{name}", expected one of {", ".join(SCALES)}{nearest(name, SCALES)}')
+        raise InputError(f"scale: {not_one_of(name, SCALES)}")
     return SCALES[name]

@@ -218,11 +218,11 @@ def _shown(name: str) -> str:
 def _placed(word: str, values: Mapping[str, str]) -> str:
     """The word with these placeholders filled in, braces in the values kept from being others."""
     for name, value in values.items():
-        word = word.replace(f"{{{name}}}", _without_placeholders(value))
+        word = word.replace(f"{{{name}}}", literal(value))
     return word
 
 
-def _without_placeholders(text: str) -> str:
+def literal(text: str) -> str:
     """The text as words of a command have it, where a brace alone begins a placeholder."""
     return text.replace("{", "{{").replace("}", "}}")
 
@@ -251,5 +251,5 @@ def _of_benchmark(path: Path, key: str, series: Series, benchmark: Benchmark) ->
         return
     for name in cases([os.fspath(path.parent / benchmark.program)], benchmark.filter, f"{key}.benchmark"):
         # What is listed has no placeholders.
-        own = replace(benchmark, name=_without_placeholders(name))
+        own = replace(benchmark, name=literal(name))
         yield replace(series, name=series.name or _shown(name), benchmark=own)

@@ -9,7 +9,7 @@ from pathlib import Path
 from experiments.plan.cluster import Cluster, read_cluster
 from experiments.plan.cpu_quota import read_cpu_quota
 from experiments.support.schema import read_toml
-from support.errors import InputError, nearest
+from support.errors import InputError, not_one_of
 
 FOLDER = Path(__file__).parents[1] / "sites"
 
@@ -75,10 +75,7 @@ def load_site(name_or_path: str) -> Site:
         path = FOLDER / f"{name_or_path}.toml"
         names = sorted(file.stem for file in FOLDER.glob("*.toml"))
         if path.stem not in names:
-            raise InputError(
-                f'site: found "{name_or_path}", expected one of {", ".join(names)} or a file *.toml'
-                f"{nearest(name_or_path, names)}"
-            )
+            raise InputError(f"site: {not_one_of(name_or_path, [*names, 'a file *.toml'])}")
     document = read_toml(path, FOLDER / "site.schema.json")
     return Site(
         name=path.stem,

@@ -120,10 +120,6 @@ class WholeBlocks:
         block = next(iter(self.lacking), None)
         return block if block is not None and block < self.end(most) else None
 
-    def cut_off(self, block: int) -> bool:
-        """Whether the block was begun, of some scene, and lacks what did not fail."""
-        return any(place[1] == block and self._lost(place) for place in self.broken)
-
     def lost(self) -> list[str]:
         """The series of which blocks that do not count lack a record made with the rest."""
         return list(dict.fromkeys(point.series for place in self.broken for point in self._lost(place)))

@@ -1,16 +1,14 @@
 """What was handed to Slurm and what is lacking: for each job array, the blocks that its tasks are to measure.
 
 A job is written down before it is submitted, under the name it will have in the queue. It is never edited:
-whether its blocks are measured is told by the records alone.
+whether its blocks are measured, and how long that took, is told by the records alone.
 """
 
-import contextlib
 import hashlib
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
-from datetime import UTC, datetime, timedelta
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from statistics import fmean
@@ -21,18 +19,15 @@ from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.site import Machine, Site, load_site
+from experiments.run.progress import about
 from experiments.run.study import Settings, Study
 from experiments.run.whole_blocks import WholeBlocks
-from experiments.slurm.scheduler import Queue, TaskState
-from experiments.support.digest import digest
+from experiments.slurm.scheduler import Queue
 from support.errors import InputError
-from support.files import of_json, read_json, to_json
+from support.files import read_json
 
 Unit = tuple[str, int]
 """An experiment and one of its blocks: what is measured within one allocation."""
-
-MOST_CUT_OFF = 2
-"""Blocks of an experiment that allocations may cut off, in those that the question asks for."""
 
 _OF_ONE_RUN: dict[str, Any] = {"budget_seconds": None, "figures": False}
 """Settings that no job keeps: its tasks draw nothing, and Slurm limits their time."""
@@ -40,16 +35,17 @@ _OF_ONE_RUN: dict[str, Any] = {"budget_seconds": None, "figures": False}
 
 @dataclass(frozen=True)
 class Job:
-    """One job array: its name in the queue, the settings of the study, the units of each task; and in a word
-    (`made_of`), by the experiment's name, what its blocks were made of and how long they might take.
-    """
+    """One job array: its name in the queue, the settings of the study, and the units of each task."""
 
     name: str
     partition: str
     settings: Settings
     tasks: tuple[tuple[Unit, ...], ...]
-    submitted_at: str
-    made_of: Mapping[str, str]
+
+    @property
+    def number(self) -> int:
+        """Which of the jobs of all partitions it is, from 1 on: no clock is compared with another one's."""
+        return int(self.name.rpartition("-")[2])
 
     def content(self) -> dict[str, Any]:
         """As JSON."""
@@ -58,8 +54,6 @@ class Job:
             "name": self.name,
             "partition": self.partition,
             "tasks": self.tasks,
-            "submitted_at": self.submitted_at,
-            "made_of": dict(self.made_of),
             **{key: os.fspath(value) if isinstance(value, Path) else value for key, value in kept.items()},
         }
 
@@ -71,9 +65,7 @@ def read_job(path: Path) -> Job:
         defaults = {key: value for key, value in vars(Settings()).items() if key not in _OF_ONE_RUN}
         kept = {key: _like(default, content[key]) for key, default in defaults.items()}
         tasks = tuple(tuple((str(name), int(block)) for name, block in task) for task in content["tasks"])
-        settings = Settings(**_OF_ONE_RUN, **kept)
-        made_of = {str(name): str(word) for name, word in content["made_of"].items()}
-        return Job(content["name"], content["partition"], settings, tasks, content["submitted_at"], made_of)
+        return Job(content["name"], content["partition"], Settings(**_OF_ONE_RUN, **kept), tasks)
     except (TypeError, KeyError, ValueError, AttributeError):
         raise InputError(f"{path}: is not the list of blocks of a job") from None
 
@@ -114,32 +106,15 @@ class PartitionFolder:
         """All jobs ever submitted, the first one first."""
         return [read_job(path) for path in sorted(self.jobs.glob("*.json"))]
 
-    def next_job(self, study: Study, tasks: Sequence[Sequence[Unit]]) -> tuple[Job, Path]:
-        """A job of these tasks of the study with a name of its own, and the path to write it to."""
-        numbers = [int(path.stem) for path in self.jobs.glob("*.json") if re.fullmatch(r"\d+", path.stem)]
-        number = f"{max(numbers, default=0) + 1:04d}"
+    def next_job(self, tasks: Sequence[Sequence[Unit]]) -> tuple[Job, Path]:
+        """A job of these tasks with a name of its own, and the path to write it to."""
+        known = (path.stem for path in self.path.parent.glob("*/jobs/*.json"))
+        number = 1 + max((int(stem) for stem in known if re.fullmatch(r"\d+", stem)), default=0)
         # Another study of the same user may have jobs of the same number in the queue.
         folder = hashlib.sha256(os.fsencode(self.path)).hexdigest()[:8]
-        name = f"carom-{self.partition.name}-{folder}-{number}"
+        name = f"carom-{self.partition.name}-{folder}-{number:04d}"
         units = tuple(tuple(task) for task in tasks)
-        now = self._after_all_others(datetime.now(UTC))
-        words = {one.name: self.made_of(one) for one in study.experiments}
-        return Job(name, self.partition.name, self.settings, units, now, words), self.jobs / f"{number}.json"
-
-    def _after_all_others(self, now: datetime) -> str:
-        """The time, or just after the last job of any partition: that may be of another login node, whose
-        clock is ahead.
-        """
-        paths = self.path.parent.glob("*/jobs/*.json")
-        last = max((read_job(path).submitted_at for path in paths), default="")
-        with contextlib.suppress(ValueError):
-            now = max(now, datetime.fromisoformat(last).astimezone(UTC) + timedelta(microseconds=1))
-        return now.isoformat()
-
-    def made_of(self, experiment: Experiment) -> str:
-        """The points of an experiment and a task's time limit in a word: another one where any is another."""
-        words = sorted(point.id for point in experiment.points)
-        return digest(" ".join([*words, str(self.partition.minutes)]))
+        return Job(name, self.partition.name, self.settings, units), self.jobs / f"{number:04d}.json"
 
 
 def folders(settings: Settings) -> list[PartitionFolder]:
@@ -162,7 +137,7 @@ def submitted(settings: Settings) -> Settings | None:
     jobs = [job for folder in folders(settings) for job in folder.known_jobs()]
     if not jobs:
         return None
-    last = max(jobs, key=lambda job: job.submitted_at).settings
+    last = max(jobs, key=lambda job: job.number).settings
     same = [job.settings for job in jobs if replace(job.settings, study=()) == replace(last, study=())]
     names = tuple(dict.fromkeys(name for chosen in same for name in chosen.study))
     return replace(last, study=names if all(chosen.study for chosen in same) else ())
@@ -188,28 +163,29 @@ class Standing:
         self.study = study
         self.name = folder.partition.name
         jobs = folder.known_jobs()
-        self.is_active = any(self._tasks(jobs, queue, "lives"))
+        living = [
+            (job, task, state)
+            for job in jobs
+            for index, task in enumerate(job.tasks)
+            if (state := queue.get((job.name, index))) is not None and state.lives
+        ]
+        self.is_active = bool(living)
         """Whether tasks wait or run, of this study or of one at another scale."""
         self.jobs = [one for one in jobs if one.settings.scale == study.scale.name]
-        self.running, self.waiting = (list(self._tasks(self.jobs, queue, what)) for what in ("runs", "waits"))
-        waiting, running = (
-            {unit for _, task, _ in tasks for unit in task} for tasks in (self.waiting, self.running)
-        )
-        self.active = dict.fromkeys(waiting, "waiting") | dict.fromkeys(running, "running")
+        self.tasks = [one for one in living if one[0].settings.scale == study.scale.name]
+        """Those of the study that wait or run, each with its job, its blocks and its state."""
+        self.active = {
+            unit: "running" if state.runs else "waiting" for _, task, state in self.tasks for unit in task
+        }
         """What of the study waits or runs."""
         self.found = {one.name: study.store.find(one) for one in study.experiments}
         self.blocks = {one.name: self._blocks(one) for one in study.experiments}
-
-    @staticmethod
-    def _tasks(
-        jobs: Iterable[Job], queue: Queue, what: str
-    ) -> Iterator[tuple[Job, Sequence[Unit], TaskState]]:
-        """The tasks of jobs that Slurm says are so, with their blocks."""
-        for job in jobs:
-            for index, task in enumerate(job.tasks):
-                state = queue.get((job.name, index))
-                if state is not None and getattr(state, what):
-                    yield job, task, state
+        self.block_seconds = {
+            one.name: len(one.points) * fmean(self.found[one.name].seconds.values())
+            for one in study.experiments
+            if self.found[one.name].seconds
+        }
+        """About how long a block takes, of the experiments of which something was measured."""
 
     def _blocks(self, one: Experiment) -> WholeBlocks:
         """The experiment's blocks; those that wait in a queue or run count, whatever they hold."""
@@ -231,21 +207,6 @@ class Standing:
         }
 
     @cached_property
-    def too_long(self) -> dict[str, int]:
-        """The experiments of which so many blocks were cut off that no further ones are submitted, with their
-        number: else a block that is longer than its allocation would be submitted for ever.
-        """
-        found = {}
-        for one in self.study.experiments:
-            made_of = self.folder.made_of(one)
-            jobs = [job for job in self.jobs if job.made_of.get(one.name) == made_of]
-            handed_out = {unit for job in jobs for task in job.tasks for unit in task if unit[0] == one.name}
-            cut_off = sum(self.blocks[one.name].cut_off(block) for _, block in handed_out)
-            if cut_off >= MOST_CUT_OFF * one.question.blocks.minimum:
-                found[one.name] = cut_off
-        return found
-
-    @cached_property
     def wanted(self) -> dict[Unit, int]:
         """What is to be submitted, and the number of processes of each."""
         return {
@@ -254,65 +215,18 @@ class Standing:
             if unit not in self.active and unit[0] not in self.too_long
         }
 
+    @cached_property
+    def too_long(self) -> list[str]:
+        """The experiments of which blocks were cut off and take longer than an allocation: what measures
+        another one would be submitted for ever.
+        """
+        most = self.folder.partition.measuring_seconds
+        return [name for name, took in self.block_seconds.items() if took > most and self.blocks[name].broken]
+
     def said_of_too_long(self) -> list[str]:
         """Lines on what is not submitted any more."""
         return [
-            f"{self.name}: {name}: {number} blocks were cut off before they were whole; no further ones are "
-            "submitted: raise `minutes` in the site file"
-            for name, number in self.too_long.items()
+            f"{self.name}: {name}: a block takes about {about(self.block_seconds[name])}, more than a task "
+            "has; no further ones are submitted: raise `minutes` in the site file"
+            for name in self.too_long
         ]
-
-
-def tell(manifest: Path, index: int, **what: object) -> None:
-    """Let a task of a job tell a line of itself, which is whole or, where its node died, the last. Durations
-    are of its own node: nothing compares the clocks of two machines.
-    """
-    # It only helps to foretell: a task goes on without it.
-    with contextlib.suppress(OSError), _told_by(manifest, index).open("ab") as file:
-        file.write(to_json(what) + b"\n")
-
-
-def _told_by(manifest: Path, index: int) -> Path:
-    return manifest.with_name(f"{manifest.stem}-{index}.jsonl")
-
-
-@dataclass
-class Told:
-    """What all tasks of a partition told, of one scale: the seconds of each whole block by experiment, and
-    what they ran on.
-    """
-
-    seconds: dict[str, list[float]] = field(default_factory=dict)
-    processors: set[str] = field(default_factory=set)
-
-    @property
-    def means(self) -> dict[str, float]:
-        """Seconds of a block, by experiment."""
-        return {name: fmean(values) for name, values in self.seconds.items()}
-
-    def seconds_of(self, units: Sequence[Unit]) -> float:
-        """How long blocks would take; one of an unknown experiment as long as others on average."""
-        known = self.means
-        usual = fmean(known.values()) if known else 0.0
-        return sum(known.get(name, usual) for name, _ in units)
-
-
-def read_told(jobs: Path, scale: str) -> Told:
-    """What the tasks of a folder of jobs have told so far; nothing of a line that is no JSON."""
-    told = Told()
-    for manifest in sorted(jobs.glob("*.json")):
-        job = read_job(manifest)
-        files = (_told_by(manifest, index) for index in range(len(job.tasks)))
-        for path in files if job.settings.scale == scale else ():
-            for line in path.read_bytes().splitlines() if path.exists() else ():
-                with contextlib.suppress(ValueError):
-                    _take(told, of_json(line))
-    return told
-
-
-def _take(told: Told, line: object) -> None:
-    match line:
-        case {"processor": str() as processor}:
-            told.processors.add(processor)
-        case {"block": [str() as name, int()], "seconds": float() as seconds}:
-            told.seconds.setdefault(name, []).append(seconds)

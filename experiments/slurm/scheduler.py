@@ -3,22 +3,13 @@
 import os
 import re
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
 
 from experiments.support import process
-from experiments.support.process import TIMED_OUT, Completed
+from experiments.support.process import Completed
 from support.errors import InputError
 
-_AGAIN = "`carom study resume` tries again"
-
-_FULL = re.compile(r"temporarily un|queue (is )?full", re.IGNORECASE)
-_AWAY = re.compile(
-    r"unable to contact|connection refused|timed out|zero bytes|communication connection|receive failure",
-    re.IGNORECASE,
-)
 _POLICY = re.compile(r"\b(?:Assoc|QOS)\w*Limit\b")
 """Which limit it was, on a line of its own before the general one."""
 
@@ -39,49 +30,25 @@ _SUSPENDED = ("SUSPENDED", "STOPPED")
 
 
 class RefusedError(InputError):
-    """A job that was not taken. `too_many`: fewer tasks may be taken. `is_away`: nobody answered, so that no
-    other job will be taken now. `is_unsure`: it may have been taken all the same.
-    """
+    """A job that was not taken, in Slurm's words, or of which nobody says whether it was."""
 
-    def __init__(
-        self, text: str, *, too_many: bool = False, is_away: bool = False, is_unsure: bool = False
-    ) -> None:
-        super().__init__(text)
-        self.too_many = too_many
-        self.is_away = is_away
-        self.is_unsure = is_unsure
-
-    @classmethod
-    def of(cls, done: Completed) -> Self:
-        """What sbatch said."""
-        words, limit = _words_of(done), _POLICY.search(done.error)
-        if limit is not None and limit[0] not in words:
-            words += f" ({limit[0]})"
-        if "SubmitJob" in limit[0] if limit is not None else "job submit limit" in done.error:
-            return cls(
-                f"{words}; `carom study resume` submits the rest once jobs of yours have ended", too_many=True
-            )
-        if done.exit_code == TIMED_OUT:
-            # sbatch itself tries again for minutes while the cluster takes no more jobs.
-            told = f"{words}; the queue is full, or the controller is away: {_AGAIN}"
-            return cls(told, is_away=True, is_unsure=True)
-        if _AWAY.search(done.error):
-            is_unsure = "unable to contact" not in done.error.lower()
-            return cls(f"{words}; {_AGAIN} once it answers", is_away=True, is_unsure=is_unsure)
-        if _FULL.search(done.error):
-            return cls(f"{words}; the queue is full: {_AGAIN}")
-        return cls(words)
+    def __init__(self, done: Completed) -> None:
+        said, limit = _words_of(done), _POLICY.search(done.error)
+        if limit is not None and limit[0] not in said:
+            said += f" ({limit[0]})"
+        super().__init__(f"{said}; `carom study resume` submits the rest later")
+        self.is_of_number = "SubmitJob" in limit[0] if limit else "job submit limit" in done.error
+        """Whether fewer tasks may be taken."""
+        self.is_away = False
+        """Whether nobody answers any more, so that no other job will be taken now."""
 
 
 @dataclass(frozen=True)
 class TaskState:
-    """What the scheduler says of one task of an array, e.g. `PENDING` and `Resources`, and for how many
-    seconds it has run, by the controller's clock.
-    """
+    """What the scheduler says of one task of an array, e.g. `PENDING` and `Resources`."""
 
     state: str
     reason: str
-    seconds: float = 0.0
 
     @property
     def waits(self) -> bool:
@@ -125,16 +92,14 @@ def queue() -> Queue:
     Raises InputError if squeue does not answer.
     """
     # The name comes last: others of the user's jobs may have any.
-    said = _ask("squeue", "--me", "--array", "--noheader", "--states=all", "--format=%K|%T|%M|%r|%j")
-    tasks: Queue = {}
+    said = _ask("squeue", "--me", "--array", "--noheader", "--states=all", "--format=%K|%T|%r|%j")
+    tasks: list[tuple[tuple[str, int], TaskState]] = []
     for line in said.splitlines():
-        index, state, elapsed, reason, name = (line.strip().split("|", 4) + [""] * 5)[:5]
-        for number in _indices(index):
-            # A task may be listed twice, by the job that was requeued and by its twin: what lives counts.
-            known = tasks.get((name, number))
-            if known is None or not known.lives:
-                tasks[name, number] = TaskState(state.rstrip("+"), reason, _seconds(elapsed))
-    return tasks
+        index, state, reason, name = (line.strip().split("|", 3) + [""] * 4)[:4]
+        if index.isdecimal():
+            tasks.append(((name, int(index)), TaskState(state.rstrip("+"), reason)))
+    # A task may be listed twice, by the job that was requeued and by its twin: what lives counts.
+    return dict(sorted(tasks, key=lambda one: one[1].lives))
 
 
 def in_queue() -> Counter[str]:
@@ -150,26 +115,8 @@ def submit(script: Path) -> str:
     """Submit a batch script; returns the job's id. Raises RefusedError with Slurm's words."""
     done = _run("sbatch", "--parsable", os.fspath(script))
     if done.exit_code != 0:
-        raise RefusedError.of(done)
+        raise RefusedError(done)
     return done.output.strip().partition(";")[0]
-
-
-def _indices(text: str) -> Iterator[int]:
-    """`7` is one, `N/A` is none; of `[0-3,9%4]`, which a version may leave together, it is five."""
-    for part in text.strip("[]").partition("%")[0].split(","):
-        found = re.fullmatch(r"(\d{1,9})(?:-(\d{1,9}))?(?::(\d{1,9}))?", part)
-        if found is not None:
-            first, last, step = int(found[1]), int(found[2] or found[1]), int(found[3] or 1)
-            yield from range(first, last + 1, max(1, step))
-
-
-def _seconds(elapsed: str) -> float:
-    """Of `1-02:03:04`, `02:03:04` and `3:04`; 0 of what is no time, such as INVALID."""
-    found = re.fullmatch(r"(?:(?:(\d+)-)?(\d+):)?(\d+):(\d+)", elapsed.strip())
-    if found is None:
-        return 0.0
-    days, hours, minutes, seconds = (int(part or 0) for part in found.groups())
-    return 86400.0 * days + 3600 * hours + 60 * minutes + seconds
 
 
 def _ask(*command: str) -> str:

@@ -5,18 +5,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from pathlib import Path
+from statistics import fmean
 
 from experiments.run.progress import about, warn
 from experiments.run.status import new_console, new_table
 from experiments.run.study import Settings
 from experiments.slurm import scheduler
-from experiments.slurm.jobs import Standing, Told, Unit, folders, read_told, submitted
+from experiments.slurm.jobs import Standing, folders, submitted
 from experiments.slurm.scheduler import Queue, TaskState
 from support.errors import InputError
 
 _STATES = ("done", "running", "waiting", "failed", "missing")
 _WIDTH = 24
 """Of a bar."""
+
+Expected = tuple[TaskState, float | None]
+"""A task and the seconds that its blocks will take, if that can be known."""
 
 
 @dataclass(frozen=True)
@@ -38,33 +42,25 @@ def show_cluster_status(settings: Settings) -> int:
     if settings.study:
         chosen = replace(chosen, study=settings.study)
     answer = _queue()
-    screen = new_console()
-    shown = new_table("partition", "experiment", *_STATES)
-    explained, lines = [], []
+    screen, shown = new_console(), new_table("partition", "experiment", *_STATES)
+    bars, explained = [], []
     for folder in folders(chosen):
         one = Standing(folder, folder.study(to_be_built=True), answer or {})
         state = rows(one)
         for row in state:
             shown.add_row(one.name, row.experiment, *(str(row.counts[name]) for name in _STATES))
-        told = read_told(folder.jobs, one.study.scale.name)
-        tasks = Tasks.of(one) if answer is not None else None
         counts = sum((row.counts for row in state), Counter[str]())
-        lines.append(progress_line(one.name, counts, tasks, told, datetime.now().astimezone()))
+        tasks = _expected(one) if answer is not None else None
+        at_once = len({job.name for job, *_ in one.tasks}) * folder.partition.at_once
+        bars.append(progress_line(one.name, counts, tasks, at_once, datetime.now().astimezone()))
         explained += [
             f"{one.name}: {row.experiment}: {number} failed: {reason}"
             for row in state
             for reason, number in row.reasons.items()
         ]
-        explained += _explain(one, answer or {})
-        if len(told.processors) > 1:
-            kinds = ", ".join(sorted(told.processors))
-            explained.append(
-                f"{one.name}: its nodes differ, and count as {len(told.processors)} machines: "
-                f"{kinds}; `constraint` in the site file picks one"
-            )
-        explained += one.said_of_too_long()
+        explained += [*_explain(one, answer or {}), *one.said_of_too_long()]
     screen.print(shown)
-    for line in (*lines, *explained):
+    for line in (*bars, *explained):
         screen.print(line)
     return 0
 
@@ -122,59 +118,44 @@ def _fate(state: TaskState | None, log: Path) -> str:
     return f"{ended} and left processes unfinished; their logs are in {log.parent}"
 
 
-@dataclass(frozen=True)
-class Tasks:
-    """The tasks of a study that Slurm still has, each with its blocks."""
-
-    running: Sequence[tuple[TaskState, Sequence[Unit]]]
-    waiting: Sequence[tuple[TaskState, Sequence[Unit]]]
-    at_once: int
-    """How many may run at a time, of all of their arrays."""
-
-    @classmethod
-    def of(cls, one: Standing) -> "Tasks":
-        """Those of a partition."""
-        running, waiting = ([(state, task) for _, task, state in each] for each in (one.running, one.waiting))
-        arrays = {job.name for job, _, _ in (*one.running, *one.waiting)}
-        return cls(running, waiting, len(arrays) * one.folder.partition.at_once)
-
-    @property
-    def suspended(self) -> int:
-        """How many of those that run stand still."""
-        return sum(state.is_suspended for state, _ in self.running)
-
-    def seconds_left(self, told: Told) -> float:
-        """How long they will take, by what blocks have taken so far."""
-        left = [max(0.0, told.seconds_of(units) - state.seconds) for state, units in self.running]
-        left += [told.seconds_of(units) for _, units in self.waiting]
-        return max(max(left, default=0.0), sum(left) / max(1, min(self.at_once, len(left))))
+def _expected(one: Standing) -> list[Expected]:
+    """The tasks of a partition; a block of an unknown experiment takes as long as others on average."""
+    known = one.block_seconds
+    usual = fmean(known.values()) if known else None
+    return [
+        (state, sum(known.get(unit[0], usual) for unit in task if unit in one.missing) if usual else None)
+        for _, task, state in one.tasks
+    ]
 
 
-def progress_line(name: str, counts: Counter[str], tasks: Tasks | None, told: Told, now: datetime) -> str:
+def progress_line(
+    name: str, counts: Counter[str], tasks: Sequence[Expected] | None, at_once: int, now: datetime
+) -> str:
     """The line of one partition, whose processes have these states. `tasks` is None where Slurm does not tell
-    them; `now` is the local time.
+    them; so many may run `at_once`, and `now` is the local time.
     """
     all_of_them, done = counts.total(), counts["done"]
-    share = done / all_of_them if all_of_them else 1.0
-    filled = int(_WIDTH * share)
+    filled = int(_WIDTH * done / all_of_them) if all_of_them else _WIDTH
     parts = [f"{name}: [{'#' * filled}{'-' * (_WIDTH - filled)}] {done} of {all_of_them} processes"]
     if tasks is None:
         parts.append("what runs and waits is not known")
-    elif tasks.running or tasks.waiting:
-        run = "task runs" if len(tasks.running) == 1 else "tasks run"
-        parts += [f"{len(tasks.running)} {run}, {len(tasks.waiting)} wait", _end(tasks, told, now)]
-        if tasks.suspended:
-            parts.append(f"{tasks.suspended} suspended: what the pause cut through is measured again")
+    elif tasks:
+        running = sum(state.runs for state, _ in tasks)
+        run = "task runs" if running == 1 else "tasks run"
+        left = [seconds for _, seconds in tasks if seconds is not None]
+        parts += [f"{running} {run}, {len(tasks) - running} wait", _end(left, min(at_once, len(tasks)), now)]
+        if suspended := sum(state.is_suspended for state, _ in tasks):
+            parts.append(f"{suspended} suspended: what the pause cut through is measured again")
     elif done < all_of_them:
         parts.append("no task runs or waits: `carom study resume` submits what is missing")
     return "; ".join(parts)
 
 
-def _end(tasks: Tasks, told: Told, now: datetime) -> str:
-    if not told.seconds:
-        return "when they will be done is not known: no task has ended yet"
-    seconds = tasks.seconds_left(told)
+def _end(left: Sequence[float], together: int, now: datetime) -> str:
+    """When tasks that take so many seconds will be done, no sooner than the longest of them."""
+    if not left:
+        return "when they will be done is not known: nothing is measured yet"
+    seconds = max(*left, sum(left) / together)
     end = now + timedelta(seconds=seconds)
     at = f"{end:%H:%M}" if end.date() == now.date() else f"{end:%Y-%m-%d %H:%M}"
-    together = min(tasks.at_once, len(tasks.running) + len(tasks.waiting))
     return f"{about(seconds)} left if {together} run at a time, done at {at}"

@@ -1,6 +1,5 @@
 """Hand what is missing of a study to Slurm: one job array for each partition, its script from a template."""
 
-import contextlib
 import shlex
 import shutil
 import sys
@@ -21,7 +20,6 @@ from experiments.slurm.jobs import (
     Unit,
     cluster_of,
     folders,
-    read_told,
     results_of,
     submitted,
 )
@@ -146,35 +144,33 @@ def _hand_over(one: Standing, most_tasks: int) -> tuple[str, Job, Path]:
         write_json(manifest, job.content(), manifest.parent)
         try:
             return scheduler.submit(script), job, manifest
-        except InputError as error:
-            refusal = error if isinstance(error, RefusedError) else None
-            is_queued = _is_queued(job) if refusal is not None and refusal.is_unsure else False
-            if is_queued:
+        except RefusedError as refusal:
+            if _is_queued(job, refusal):
                 return "known by its name", job, manifest
-            if is_queued is not None:
-                # A job that was never in the queue must not be taken for one that has left it.
-                manifest.unlink()
-                script.unlink()
-            if refusal is None or not refusal.too_many or len(job.tasks) == 1:
+            # A job that was never in the queue must not be taken for one that has left it.
+            manifest.unlink()
+            script.unlink()
+            if not refusal.is_of_number or len(job.tasks) == 1:
                 raise
             most_tasks = len(job.tasks) // 2
 
 
-def _is_queued(job: Job) -> bool | None:
-    """Whether the queue holds the job although nobody said so. None if nobody answers: its list of blocks
-    then stays, for its tasks or as one that has left the queue.
+def _is_queued(job: Job, refusal: RefusedError) -> bool:
+    """Whether the queue holds the job although nobody said so. Raises the refusal if nobody answers: its list
+    of blocks then stays, for its tasks or as one that has left the queue.
     """
-    with contextlib.suppress(InputError):
+    try:
         return any(name == job.name for name, _ in scheduler.queue())
-    return None
+    except InputError:
+        refusal.is_away = True
+        raise refusal from None
 
 
 def _plan_job(one: Standing, most_tasks: int) -> tuple[Job, Path]:
     """A job of the blocks, as far as they fit into so many tasks, and where its list of blocks belongs."""
     partition = one.folder.partition
     tasks = pack(list(one.wanted), partition.blocks_per_task, most_tasks)
-    known = read_told(one.folder.jobs, one.study.scale.name).means
-    return one.folder.next_job(one.study, within_time(tasks, partition, known))
+    return one.folder.next_job(within_time(tasks, partition, one.block_seconds))
 
 
 def pack(wanted: Sequence[Unit], blocks_per_task: int, array_size: int) -> list[list[Unit]]:
@@ -191,7 +187,7 @@ def within_time(
     """
     kept = []
     for task in tasks:
-        left, own = 60.0 * partition.minutes - partition.signal_seconds, list[Unit]()
+        left, own = float(partition.measuring_seconds), list[Unit]()
         for unit in task:
             left -= seconds.get(unit[0], 0.0)
             if left < 0 and len(own) >= partition.blocks_per_task:
@@ -227,14 +223,14 @@ def _script_of(one: Standing, job: Job, manifest: Path) -> str:
 def render(job: str, partition: Partition, manifest: Path, tasks: int, programs: Mapping[str, str]) -> str:
     """The script of an array of `tasks` tasks that work through `manifest`.
 
-    The template quotes every value that is put into it, so that no shell takes one for anything but a word.
+    Every value that is put into the template is quoted, so that no shell takes one for anything but a word.
     Raises InputError for a program that is to be built in the job but that this project does not know how to
-    build, and for an option that would not stay within its line.
+    build, and for a value that would not stay within its line.
     """
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent),
         undefined=jinja2.StrictUndefined,
-        finalize=lambda value: shlex.quote(str(value)),
+        finalize=_word,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
@@ -242,53 +238,30 @@ def render(job: str, partition: Partition, manifest: Path, tasks: int, programs:
     )
     folder = manifest.parent.parent
     return environment.get_template("job.sh.jinja").render(
+        job=job,
         partition=partition,
-        options=[_one_line(option) for option in _options(job, partition, manifest, tasks)],
+        asks_for_memory=any(one.split("=")[0] in _OF_MEMORY for one in partition.arguments),
+        last_task=tasks - 1,
         builds=_builds(folder / "build", programs) if partition.build else [],
         folder=folder,
         root=ROOT,
         python=sys.executable,
         manifest=manifest,
+        # In a file name Slurm puts %a and the like in place; a % of the folder's own is written twice.
+        log=str(manifest.with_suffix("")).replace("%", "%%"),
     )
 
 
-def _options(job: str, partition: Partition, manifest: Path, tasks: int) -> list[str]:
-    optional = {"account": partition.account, "qos": partition.qos, "constraint": partition.constraint}
-    # In a file name Slurm puts %a and the like in place; a % of the folder's own is written twice.
-    log = str(manifest.with_suffix("")).replace("%", "%%") + "-%a.log"
-    return [
-        f"--job-name={job}",
-        f"--partition={partition.name}",
-        *(f"--{key}={value}" for key, value in optional.items() if value is not None),
-        "--nodes=1",
-        "--ntasks=1",
-        f"--cpus-per-task={partition.cpus}",
-        "--exclusive",
-        *_memory(partition),
-        "--hint=nomultithread",
-        f"--time={partition.minutes}",
-        f"--signal=USR1@{partition.signal_seconds}",
-        f"--array=0-{tasks - 1}%{partition.at_once}",
-        "--requeue",
-        f"--chdir={ROOT}",
-        f"--output={log}",
-        "--open-mode=append",
-        *partition.arguments,
-    ]
-
-
-def _memory(partition: Partition) -> list[str]:
-    """All of the node's: even with a whole node comes no more than DefMemPerCPU for each processor."""
-    return [] if any(one.split("=")[0] in _OF_MEMORY for one in partition.arguments) else ["--mem=0"]
-
-
-def _one_line(option: str) -> str:
-    """The option, which stands in a comment that Slurm reads: at the line's end bash would go on reading."""
-    if not option.isprintable() or any(sign in option for sign in "'\"\\#"):
+def _word(value: object) -> str:
+    """A value as one word of a shell. In a comment that Slurm reads it has to stay within its line: at the
+    line's end bash would go on reading.
+    """
+    text = str(value)
+    if not text.isprintable() or any(sign in text for sign in "'\"\\#"):
         raise InputError(
-            f"{option!r}: cannot be said in a batch script; expected no quotes, backslashes, # and line ends"
+            f"{text!r}: cannot be said in a batch script; expected no quotes, backslashes, # and line ends"
         )
-    return option
+    return shlex.quote(text)
 
 
 def _builds(folder: Path, programs: Mapping[str, str]) -> list[tuple[str, Path]]:

@@ -1,7 +1,7 @@
 """One task of a job array: measures the blocks that are its own, within its allocation."""
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from experiments.plan.cluster import Partition
@@ -15,7 +15,7 @@ from experiments.run.runner import ProcessResult, Runner, Task
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import together
 from experiments.run.whole_blocks import WholeBlocks
-from experiments.slurm.jobs import Unit, folders, read_job, tell
+from experiments.slurm.jobs import folders, read_job
 from experiments.support.process import Completed
 from support.errors import InputError
 
@@ -35,12 +35,13 @@ def work(manifest: Path, index: int) -> int:
     if job.partition not in partitions:
         raise InputError(f'{job.settings.site}: has no partition "{job.partition}" any more')
     folder = partitions[job.partition]
-    study, machine = folder.study(), this_machine()
-    tell(manifest, index, processor=machine.name)
+    study = folder.study()
+    experiments = {one.name: one for one in study.experiments}
     with study.store.shared(), ProgressDisplay() as display:
-        worker = _Worker(study, display, folder.partition, machine)
-        for unit, seconds in worker.run(job.tasks[index]):
-            tell(manifest, index, block=unit, seconds=seconds)
+        worker = _Worker(study, display, folder.partition, this_machine())
+        for name, block in job.tasks[index]:
+            if name in experiments:
+                worker.measure(experiments[name], block)
         return POINTS_FAILED if worker.failed else 0
 
 
@@ -62,27 +63,17 @@ class _Worker:
         # What this task has seen itself: others may measure elsewhere.
         self._costs = Costs()
 
-    def run(self, own: Sequence[Unit]) -> Iterator[tuple[Unit, float]]:
-        """Measure what is missing of these; tells of each block that it measured whole how long that took."""
-        experiments = {one.name: one for one in self._study.experiments}
-        for name, block in own:
-            if name in experiments:
-                began, failed = time.monotonic(), len(self.failed)
-                if self._block(experiments[name], block) and len(self.failed) == failed:
-                    yield (name, block), time.monotonic() - began
-
-    def _block(self, experiment: Experiment, block: int) -> bool:
-        """Measure what is missing of a block; says whether that was all of it."""
+    def measure(self, experiment: Experiment, block: int) -> None:
+        """Measure what is missing of a block."""
         found = self._study.store.find_block(experiment, block)
         given, session = experiment.question.blocks.minimum, self._study.store.session
         missing = WholeBlocks(experiment, given, found, session).missing_if_given(block)
         hopeful = [one for one in missing if (experiment.name, one[1].id) not in self.failed]
-        blocks, size = experiment.question.blocks.minimum, len(experiment.points)
+        size = len(experiment.points)
         for group in together(experiment, block, hopeful):
             runs = self._costs.runs([point for _, point in group])
-            tasks = [Task(experiment, point, block, at, blocks, size, runs) for at, point in group]
+            tasks = [Task(experiment, point, block, at, given, size, runs) for at, point in group]
             self._measure([one for one in tasks if not self._study.store.has(one.point, block)])
-        return len(hopeful) == size
 
     def _measure(self, asked: Sequence[Task]) -> None:
         tasks = [one for one in asked if not self._refuse(one)]

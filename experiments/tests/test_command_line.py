@@ -78,7 +78,7 @@ MISTAKES = {
     "no study": (["run", "--study", "x"], r'study: found "x", expected names out of chunks, control, pair'),
     "site": (
         ["plan", "--site", "lokal"],
-        r'site: found "lokal", expected one of example-slurm, local or .*; did you mean "local"\?',
+        r'site: found "lokal", expected one of example-slurm, local, a file .*; did you mean "local"\?',
     ),
     "blocks": (["run", "--blocks", "0"], r"argument --blocks: found 0, expected a whole number of at .*"),
     "budget": (["run", "--budget", "-1"], r"argument --budget: found -1, expected a number of minutes .*"),

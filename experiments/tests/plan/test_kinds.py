@@ -34,14 +34,6 @@ def test_a_figure_alone_stands_for_its_kind_and_a_kind_has_a_usual_figure(
     assert tags_of(workplace, head) == told
 
 
-def test_a_kind_is_no_part_of_an_id(workplace: Workplace) -> None:
-    alone, named = (
-        plan(load_question(workplace.question("chunks", f"{head}{CHUNKS}")), surroundings(workplace)).points
-        for head in ("", 'kind = "comparison"\n')
-    )
-    assert [point.id for point in alone] == [point.id for point in named]
-
-
 def test_every_kind_can_be_asked_for_and_its_usual_figure_is_its_own() -> None:
     schema = json.loads((FOLDER / "question.schema.json").read_text(encoding="utf-8"))["properties"]
     assert set(schema["kind"]["enum"]) == {*schema["figure"]["enum"], COUNTS} == set(KINDS)

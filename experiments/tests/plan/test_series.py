@@ -1,10 +1,12 @@
 """Somebody else's programs as series: what a file may say of them, and what each mistake is answered with."""
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from experiments.plan.command import placed
 from experiments.plan.point import Point
 from experiments.plan.question import load_question
 from experiments.plan.scenes import CHECKED_STEPS
@@ -40,7 +42,7 @@ def refusal(place: Workplace, text: str) -> str:
 
 def words(point: Point) -> tuple[str, ...]:
     assert point.command is not None
-    return point.command.words
+    return placed(point.command.words)
 
 
 def test_a_question_needs_no_scene_and_fills_in_what_it_sweeps(empty_workplace: Workplace) -> None:
@@ -59,6 +61,16 @@ def test_of_a_scene_everything_can_be_said(empty_workplace: Workplace) -> None:
     [point] = points(empty_workplace, text)
     assert words(point)[1:] == ("{scene}", "100", "1000", "5", "10", "1")
     assert point.process_words(Path("/a b/{x}.in"), Path("out"))[1] == "/a b/{x}.in"
+
+
+def test_braces_of_a_folder_are_what_they_are(empty_workplace: Workplace) -> None:
+    folder = empty_workplace.root / "{x} {scene}"
+    folder.mkdir()
+    lines = '[[series]]\nname = "a"\ncommand = ["echo", "{folder}", "{scene}"]\n'
+    (folder / "asked.toml").write_text(HEAD + SCENE + lines + BLOCKS, encoding="utf-8")
+    [experiment] = Study(replace(empty_workplace.settings, questions=folder)).experiments
+    [point] = experiment.points
+    assert point.process_words(Path("s.in"), Path("out"))[1:] == (str(folder), "s.in")
 
 
 def test_what_is_checked_is_the_beginning_of_the_scene(empty_workplace: Workplace) -> None:
@@ -191,7 +203,7 @@ def test_what_only_variants_can_do_is_refused(empty_workplace: Workplace) -> Non
     assert 'verb: found bench beside programs of others, expected "process"' in refusal(
         empty_workplace, f'{HEAD}verb = "bench"\n{SORT}{BLOCKS}'
     )
-    assert "repetitions: found for whole processes" in refusal(
+    assert "repetitions: found for verb process, expected for bench or profile only" in refusal(
         empty_workplace, f"{HEAD}repetitions = 2\n{SORT}{BLOCKS}"
     )
     variant = '[[series]]\nname = "b"\nvariant = "nine"\n'

@@ -41,17 +41,17 @@ class FakeSlurm:
         """How many tasks each job has that sbatch was given, taken or not."""
         return [int(number) for number in self._read()["asked"]]
 
-    def becomes(self, index: int, state: str, reason: str = "None", elapsed: str = "0:00") -> None:
+    def becomes(self, index: int, state: str, reason: str = "None") -> None:
         """Let a task of the last job be in another state."""
         told = self._read()
-        told["jobs"][-1]["tasks"][index] = {"state": state, "reason": reason, "elapsed": elapsed}
+        told["jobs"][-1]["tasks"][index] = {"state": state, "reason": reason}
         self._write(told)
 
     def ends(self, state: str = "COMPLETED") -> None:
         """Let all tasks have ended."""
         told = self._read()
         for job in told["jobs"]:
-            job["tasks"] = [{"state": state, "reason": "None", "elapsed": "1:00"} for _ in job["tasks"]]
+            job["tasks"] = [{"state": state, "reason": "None"} for _ in job["tasks"]]
         self._write(told)
 
     def _read(self) -> dict[str, Any]:

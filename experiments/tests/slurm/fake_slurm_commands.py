@@ -2,7 +2,8 @@
 
 FAKE_SLURM is the file of the cluster's state. Its `config` may say: `max_array_size`, `max_job_count`,
 `max_submit` (jobs of the user), `refuse` (by partition, what sbatch says), `loses_replies` (a job is taken,
-and sbatch told otherwise), `squeue_fails` (what squeue says), `squeue_lines` (all that it prints),
+and sbatch told otherwise), `goes_away` (how it is configured once sbatch has failed), `squeue_fails` (what
+squeue says), `squeue_lines` (all that it prints),
 `show_config` (all that scontrol prints).
 """
 
@@ -38,11 +39,13 @@ def sbatch(state: dict[str, Any], words: list[str]) -> int:
     if said is None and "max_submit" in config and queued + tasks > config["max_submit"]:
         said = ["AssocMaxSubmitJobLimit", POLICY]
     if said is not None:
+        config |= config.get("goes_away", {})
         return fail("sbatch", said)
     job = {"name": options["job-name"], "partition": options["partition"]}
-    waits = {"state": "PENDING", "reason": "Resources", "elapsed": "0:00"}
+    waits = {"state": "PENDING", "reason": "Resources"}
     state["jobs"].append(job | {"tasks": [waits] * tasks})
     if config.get("loses_replies"):
+        config |= config.get("goes_away", {})
         return fail("sbatch", config["loses_replies"])
     print(f"{100 + len(state['jobs'])}")
     return 0
@@ -56,7 +59,7 @@ def read_options(script: Path) -> dict[str, str]:
 
 def squeue(state: dict[str, Any], words: list[str]) -> int:
     config = state["config"]
-    if "squeue_fails" in config:
+    if config.get("squeue_fails"):
         return fail("squeue", config["squeue_fails"])
     if "squeue_lines" in config:
         print("\n".join(config["squeue_lines"]))
@@ -65,7 +68,7 @@ def squeue(state: dict[str, Any], words: list[str]) -> int:
     for job in state["jobs"]:
         for index, task in enumerate(job["tasks"]):
             if task["state"] in LIVE or "--states=all" in words:
-                values = {"%K": index, "%T": task["state"], "%M": task["elapsed"], "%r": task["reason"]}
+                values = {"%K": index, "%T": task["state"], "%r": task["reason"]}
                 values |= {"%P": job["partition"], "%j": job["name"]}
                 print("".join(str(values.get(part, part)) for part in re.split("(%[A-Za-z])", form)))
     return 0

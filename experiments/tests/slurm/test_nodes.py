@@ -132,19 +132,6 @@ def test_a_pause_is_noticed_and_what_it_cut_through_measured_again_at_once(
     assert not reasons(empty_workplace)
 
 
-def test_one_pause_after_the_other_is_a_reason_and_the_next_job_tries_again(
-    empty_workplace: Workplace,
-) -> None:
-    empty_workplace.question("pair", PAIR)
-    empty_workplace.behave(FAKE_SUSPENDED="turns")
-    site(empty_workplace.root)
-    assert work(job_of(empty_workplace), 0) == 2
-    assert all("was suspended" in reason for reason in reasons(empty_workplace).values())
-    empty_workplace.behave(FAKE_SUSPENDED="nothing")
-    assert work(job_of(empty_workplace), 0) == 0
-    assert not reasons(empty_workplace)
-
-
 def models(workplace: Workplace) -> dict[int, set[str]]:
     """The CPU models of each block of the question `pair` of which a session measured everything."""
     by_session: dict[tuple[int, str], list[str]] = defaultdict(list)

@@ -66,27 +66,20 @@ def test_lines_of_every_kind_are_read_and_others_left(workplace: Workplace) -> N
     FakeSlurm(
         workplace,
         squeue_lines=[
-            "0|RUNNING|1-02:03:04|None|carom-xs-1",
-            "1|RUNNING|3:04|None|carom-xs-1",
-            "2|PENDING|0:00|Nodes required for job are DOWN, DRAINED or reserved|carom-xs-1",
-            "[4-6,9%4]|PENDING|0:00|Priority|carom-xs-1",
-            "[12-...]|PENDING|0:00|Priority|carom-xs-1",
-            "N/A|RUNNING|5:00|None|somebody's | job |7",
+            "0|RUNNING|None|carom-xs-1",
+            "2|PENDING|Nodes required for job are DOWN, DRAINED or reserved|carom-xs-1",
+            "N/A|RUNNING|None|somebody's | job |7",
             "|RUNNING",
             "",
-            "7|REVOKED|INVALID|None|carom-xs-1",
-            "7|COMPLETING|2:00:00|None|carom-xs-1",
-            "8|OUT_OF_ME+|UNLIMITED|OutOfMemory|carom-xs-1",
+            "7|COMPLETING|None|carom-xs-1",
+            "7|REVOKED|None|carom-xs-1",
+            "8|OUT_OF_ME+|OutOfMemory|carom-xs-1",
         ],
     )
     found = scheduler.queue()
-    assert {name for name, _ in found} == {"carom-xs-1"}
-    assert sorted(index for _, index in found) == [0, 1, 2, 4, 5, 6, 7, 8, 9]
-    assert found["carom-xs-1", 0].seconds == 86400 + 2 * 3600 + 3 * 60 + 4
-    assert found["carom-xs-1", 1].seconds == 184
+    assert sorted(found) == [("carom-xs-1", index) for index in (0, 2, 7, 8)]
     assert found["carom-xs-1", 2].reason == "Nodes required for job are DOWN, DRAINED or reserved"
     assert found["carom-xs-1", 7].runs, "of a task that is listed twice the living one counts"
-    assert found["carom-xs-1", 7].seconds == 7200
 
 
 def test_jobs_are_counted_as_the_limits_count_them(workplace: Workplace) -> None:

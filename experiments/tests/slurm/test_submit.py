@@ -3,29 +3,26 @@ why.
 """
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from experiments.plan.cluster import Partition
-from experiments.slurm import scheduler
 from experiments.slurm.jobs import Unit
-from experiments.slurm.scheduler import Queue, RefusedError
-from experiments.slurm.submit import submit, within_time
+from experiments.slurm.submit import within_time
+from experiments.slurm.task import work
 from experiments.tests.conftest import Workplace, finish
 from experiments.tests.slurm.fake_slurm import FakeSlurm
 from experiments.tests.slurm.test_script import site
-from support.errors import InputError
 
 BLOCKS = 7
 """Of the three questions of a workplace; 16 processes."""
 SECOND = '\n[[slurm.partitions]]\nname = "w5"\ncpus = 2\n'
 
 
-def say(workplace: Workplace, verb: str, code: int = 0) -> tuple[str, str]:
+def say(workplace: Workplace, verb: str, *words: str, code: int = 0) -> tuple[str, str]:
     """Run a verb for the site of the workplace; what it prints."""
-    found, output, error = finish(workplace.start(verb, "--site", "cluster.toml"))
+    found, output, error = finish(workplace.start(verb, "--site", "cluster.toml", *words))
     assert found == code, output + error
     return output, error
 
@@ -36,11 +33,10 @@ def tasks(workplace: Workplace, partition: str = "xs") -> list[list[Unit]]:
     return [[(name, block) for name, block in task] for task in json.loads(paths[-1].read_text())["tasks"]]
 
 
-def told(workplace: Workplace, seconds: float) -> None:
-    """Let a task tell how long each block took."""
-    jobs = workplace.results / "slurm/cluster/xs/jobs"
-    lines = [{"block": [name, 0], "seconds": seconds} for name in ("pair", "control", "chunks")]
-    (jobs / "0001-0.jsonl").write_text("\n".join(map(json.dumps, lines)))
+def took(workplace: Workplace, seconds: float) -> None:
+    """Let each process that was measured have taken so long."""
+    for path in workplace.results.glob("slurm/cluster/xs/records/*/*/*.json"):
+        path.write_text(json.dumps(json.loads(path.read_text()) | {"process_seconds": seconds}))
 
 
 @pytest.mark.parametrize("place", ["common", "own"])
@@ -87,16 +83,16 @@ def test_a_limit_that_nobody_named_is_found_by_asking_for_less(
 def test_what_is_known_not_to_fit_is_left_to_resume(workplace: Workplace) -> None:
     slurm = FakeSlurm(workplace)
     site(workplace.root, "# own", "minutes = 2\nmax_submitted = 2")
-    say(workplace, "submit")
+    say(workplace, "submit", "--blocks", "4")
+    work(next(workplace.results.rglob("jobs/*.json")), 0)
     slurm.ends("CANCELLED")
-    told(workplace, seconds=40.0)
+    took(workplace, 15.0)
     output, _ = say(workplace, "resume")
     assert [len(task) for task in tasks(workplace)] == [2, 2], "a signal comes after 90 s"
     assert output.splitlines()[1] == (
         "xs: no more fit into the time limit of so many tasks; "
-        "`carom study resume` submits the 3 blocks that are left"
+        "`carom study resume` submits the 2 blocks that are left"
     )
-    slurm.ends("CANCELLED")
 
 
 def test_as_many_blocks_as_the_site_wishes_stay_together_however_long_they_take() -> None:
@@ -107,38 +103,22 @@ def test_as_many_blocks_as_the_site_wishes_stay_together_however_long_they_take(
     assert within_time([units], partition, {}) == [units]
 
 
-def test_a_user_without_any_room_gets_one_line(workplace: Workplace) -> None:
-    FakeSlurm(workplace, max_submit=0)
-    site(workplace.root)
-    _, error = say(workplace, "submit", 1)
-    assert error == (
-        "carom: sbatch: error: Batch job submission failed: Job violates accounting/QOS policy (job submit "
-        "limit, user's size and/or time limits) (AssocMaxSubmitJobLimit); `carom study resume` submits the "
-        "rest once jobs of yours have ended\n"
-    )
-    assert not list(workplace.results.rglob("jobs/*"))
-
-
 POLICY = (
     "Batch job submission failed: Job violates accounting/QOS policy (job submit limit, user's size and/or "
 )
 POLICY += "time limits)"
+AWAY = ["Batch job submission failed: Unable to contact slurm controller (connect failure)"]
+LOST = ["Batch job submission failed: Socket timed out on send/recv operation"]
 REFUSALS = {
     "full": (
         [
             "Slurm temporarily unable to accept job, sleeping and retrying",
             "Batch job submission failed: Resource temporarily unavailable",
         ],
-        "Resource temporarily unavailable; the queue is full: `carom study resume` tries again",
+        "Resource temporarily unavailable",
     ),
-    "away": (
-        ["Batch job submission failed: Unable to contact slurm controller (connect failure)"],
-        "(connect failure); `carom study resume` tries again once it answers",
-    ),
-    "silent": (
-        ["Batch job submission failed: Socket timed out on send/recv operation"],
-        "send/recv operation; `carom study resume` tries again once it answers",
-    ),
+    "away": (AWAY, "(connect failure)"),
+    "silent": (LOST, "send/recv operation"),
     "another limit": (["QOSMaxWallDurationPerJobLimit", POLICY], "(QOSMaxWallDurationPerJobLimit)"),
     "a mistake": (["Batch job submission failed: Invalid account"], "Invalid account"),
 }
@@ -148,9 +128,9 @@ REFUSALS = {
 def test_a_refusal_is_one_line_and_leaves_nothing(workplace: Workplace, lines: list[str], said: str) -> None:
     slurm = FakeSlurm(workplace, refuse={"xs": lines})
     site(workplace.root)
-    _, error = say(workplace, "submit", 1)
+    _, error = say(workplace, "submit", code=1)
     assert error.startswith("carom: sbatch: error: ")
-    assert error.endswith(f"{said}\n")
+    assert error.endswith(f"{said}; `carom study resume` submits the rest later\n")
     assert error.count("\n") == 1
     assert slurm.asked() == [BLOCKS], "asked once: fewer tasks would not help"
     assert not list(workplace.results.rglob("jobs/*"))
@@ -158,12 +138,24 @@ def test_a_refusal_is_one_line_and_leaves_nothing(workplace: Workplace, lines: l
     assert "16 processes in 7 tasks" in say(workplace, "submit")[0]
 
 
+def test_a_user_without_any_room_gets_one_line(workplace: Workplace) -> None:
+    slurm = FakeSlurm(workplace, max_submit=0)
+    site(workplace.root)
+    _, error = say(workplace, "submit", code=1)
+    assert error == (
+        f"carom: sbatch: error: {POLICY} (AssocMaxSubmitJobLimit); "
+        "`carom study resume` submits the rest later\n"
+    )
+    assert slurm.asked() == [7, 3, 1]
+    assert not list(workplace.results.rglob("jobs/*"))
+
+
 @pytest.mark.parametrize("refused", ["xs", "w5"])
 def test_what_other_partitions_could_submit_stays(workplace: Workplace, refused: str) -> None:
     slurm = FakeSlurm(workplace, refuse={refused: ["Batch job submission failed: Invalid account"]})
     site(workplace.root, "# common", SECOND)
-    output, error = say(workplace, "submit", 1)
-    assert error == "carom: sbatch: error: Batch job submission failed: Invalid account\n"
+    output, error = say(workplace, "submit", code=1)
+    assert error.startswith("carom: sbatch: error: Batch job submission failed: Invalid account; ")
     (taken,) = {"xs", "w5"} - {refused}
     assert f"{taken}: job 101, 16 processes in 7 tasks" in output
     assert slurm.arrays(taken) == [7]
@@ -176,23 +168,24 @@ def test_what_other_partitions_could_submit_stays(workplace: Workplace, refused:
 def test_each_refusal_has_a_line(workplace: Workplace) -> None:
     FakeSlurm(workplace, refuse={"xs": ["Invalid qos"], "w5": ["Invalid account"]})
     site(workplace.root, "# common", SECOND)
-    _, error = say(workplace, "submit", 1)
-    assert error == "sbatch: error: Invalid account\ncarom: sbatch: error: Invalid qos\n"
+    _, error = say(workplace, "submit", code=1)
+    assert [line.partition(";")[0] for line in error.splitlines()] == [
+        "sbatch: error: Invalid account",
+        "carom: sbatch: error: Invalid qos",
+    ]
 
 
 def test_nobody_is_asked_twice_while_the_controller_is_away(workplace: Workplace) -> None:
-    lines = ["Batch job submission failed: Unable to contact slurm controller (connect failure)"]
-    slurm = FakeSlurm(workplace, refuse={"xs": lines, "w5": lines})
+    slurm = FakeSlurm(workplace, refuse={"xs": AWAY, "w5": AWAY}, goes_away={"squeue_fails": AWAY})
     site(workplace.root, "# common", SECOND)
-    say(workplace, "submit", 1)
+    say(workplace, "submit", code=1)
     assert len(slurm.asked()) == 1
 
 
 def test_a_job_that_was_taken_although_the_reply_was_lost_is_not_submitted_twice(
     workplace: Workplace,
 ) -> None:
-    lost = ["Batch job submission failed: Socket timed out on send/recv operation"]
-    slurm = FakeSlurm(workplace, loses_replies=lost)
+    slurm = FakeSlurm(workplace, loses_replies=LOST)
     site(workplace.root)
     output, _ = say(workplace, "submit")
     assert "xs: job known by its name, 16 processes in 7 tasks" in output
@@ -201,24 +194,13 @@ def test_a_job_that_was_taken_although_the_reply_was_lost_is_not_submitted_twice
 
 
 def test_a_list_of_blocks_stays_while_nobody_says_whether_its_job_was_taken(workplace: Workplace) -> None:
-    lost = ["Batch job submission failed: Socket timed out on send/recv operation"]
-    slurm = FakeSlurm(workplace, loses_replies=lost)
+    slurm = FakeSlurm(workplace, loses_replies=LOST, goes_away={"squeue_fails": LOST})
     site(workplace.root)
-    answers = iter([scheduler.queue])
-
-    def queue() -> Queue:
-        asked = next(answers, None)
-        if asked is None:
-            raise InputError("squeue: nobody answers")
-        return asked()
-
-    with workplace.monkeypatch.context() as patch:
-        patch.setattr(scheduler, "queue", queue)
-        with pytest.raises(RefusedError, match="timed out"):
-            submit(replace(workplace.settings, site=str(workplace.root / "cluster.toml")))
+    assert "timed out" in say(workplace, "submit", code=1)[1]
     assert len(jobs_of(workplace)) == 1
+    slurm.configure(loses_replies=[], goes_away={}, squeue_fails=None)
+    assert "nothing to submit; the rest waits or runs" in say(workplace, "resume")[0]
     slurm.ends("CANCELLED")
-    slurm.configure(loses_replies=[])
     assert "16 processes in 7 tasks" in say(workplace, "resume")[0]
 
 
@@ -229,19 +211,19 @@ def test_arrays_stay_below_what_the_cluster_keeps_at_all(workplace: Workplace) -
     assert slurm.asked() == [4]
 
 
-def test_the_last_submission_is_found_whatever_the_clocks_of_login_nodes_say(workplace: Workplace) -> None:
+def test_the_last_submission_is_found_without_any_clock(workplace: Workplace) -> None:
     slurm = FakeSlurm(workplace)
-    site(workplace.root)
-    say(workplace, "submit")
-    slurm.ends("CANCELLED")
-    (first,) = workplace.results.rglob("jobs/*.json")
-    ahead = json.loads(first.read_text()) | {"submitted_at": "2099-01-01T00:00:00+00:00"}
-    first.write_text(json.dumps(ahead))
-    finish(workplace.start("submit", "--site", "cluster.toml", "--scale", "quick"))
-    slurm.ends("CANCELLED")
+    site(workplace.root, "# common", SECOND)
+    for refused, scale in (("w5", "paper"), ("w5", "paper"), ("xs", "quick")):
+        slurm.configure(refuse={refused: ["Invalid account"]})
+        say(workplace, "submit", "--scale", scale, code=1)
+        slurm.ends("CANCELLED")
+    slurm.configure(refuse={})
     say(workplace, "resume")
-    scales = [json.loads(path.read_text())["scale"] for path in sorted(jobs_of(workplace))]
-    assert scales == ["paper", "quick", "quick"]
+    jobs = sorted(jobs_of(workplace), key=lambda path: path.name)
+    assert [path.stem for path in jobs] == ["0001", "0002", "0003", "0004", "0005"]
+    scales = [json.loads(path.read_text())["scale"] for path in jobs]
+    assert scales == ["paper"] * 2 + ["quick"] * 3
 
 
 def jobs_of(workplace: Workplace) -> list[Path]:

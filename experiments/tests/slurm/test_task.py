@@ -16,6 +16,7 @@ from experiments.slurm.scheduler import TaskState
 from experiments.slurm.task import work
 from experiments.tests.conftest import PAIR, ROOT, Workplace, start
 from experiments.tests.slurm.test_script import site
+from experiments.tests.slurm.test_submit import took
 from support.errors import InputError
 from support.files import write_json
 from support.record_schema import SCHEMA_FILE
@@ -31,7 +32,7 @@ def job_of(workplace: Workplace, tasks: int = 1, folder: PartitionFolder | None 
     """Write the list of blocks of a job, dealt out to so many tasks."""
     folder = folder or folder_of(workplace)
     wanted = [*Standing(folder, folder.study(), {}).missing]
-    job, path = folder.next_job(folder.study(), [wanted[first::tasks] for first in range(tasks)])
+    job, path = folder.next_job([wanted[first::tasks] for first in range(tasks)])
     path.parent.mkdir(parents=True, exist_ok=True)
     write_json(path, job.content(), path.parent)
     return path
@@ -46,28 +47,21 @@ def records(workplace: Workplace) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in paths}
 
 
-def test_two_tasks_share_a_folder_and_the_work(workplace: Workplace) -> None:
+@pytest.mark.parametrize("started", [[0, 1], [0, 0, 0]], ids=["two tasks", "copies of one"])
+def test_those_who_share_a_folder_tear_nothing(workplace: Workplace, started: list[int]) -> None:
     workplace.behave(FAKE_SECONDS="0.05")
-    manifest = job_of(workplace, tasks=2)
-    for process in [start_task(manifest, 0), start_task(manifest, 1)]:
-        _, error = process.communicate(timeout=60)
-        assert process.returncode == 0
-        assert all("waits for another" in line for line in error.splitlines())
-    assert len(records(workplace)) == 16
-    assert sum("--tag" in call["words"] for call in workplace.calls()) == 16
-    assert not list(workplace.results.rglob(".running/*"))
-
-
-def test_two_copies_of_one_task_tear_nothing(workplace: Workplace) -> None:
-    workplace.behave(FAKE_SECONDS="0.05")
-    manifest = job_of(workplace)
-    for process in [start_task(manifest, 0) for _ in range(3)]:
+    tasks = len(set(started))
+    manifest = job_of(workplace, tasks)
+    for process in [start_task(manifest, task) for task in started]:
         _, error = process.communicate(timeout=60)
         assert process.returncode == 0
         assert all("waits for another" in line for line in error.splitlines())
     assert len(records(workplace)) == 16
     for content in records(workplace).values():
         jsonschema.validate(json.loads(content), json.loads(SCHEMA_FILE.read_text()))
+    if tasks == len(started):
+        assert sum("--tag" in call["words"] for call in workplace.calls()) == 16
+        assert not list(workplace.results.rglob(".running/*"))
 
 
 def test_the_signal_ahead_of_the_time_limit_keeps_what_is_finished(workplace: Workplace) -> None:
@@ -179,18 +173,19 @@ def test_a_task_started_again_measures_what_was_not_begun(workplace: Workplace) 
     assert missing(workplace) == {("pair", 2): 2}
 
 
-def test_blocks_that_never_fit_their_allocation_come_to_an_end(workplace: Workplace) -> None:
+def test_blocks_that_do_not_fit_their_allocation_come_to_an_end(workplace: Workplace) -> None:
     workplace.question("pair", APART)
-    submitted = 0
-    while wanted := missing(workplace):
-        assert work(job_of(workplace), 0) == 0
-        submitted += len(wanted)
-        cut_off(workplace, *(block for name, block in wanted if name == "pair"))
-    assert standing(workplace).too_long == {"pair": 4}, "twice the two blocks that the question asks for"
-    assert submitted == 7 + 2
+    assert work(job_of(workplace), 0) == 0
+    took(workplace, 40.0)
     settings = folder_of(workplace).settings
+    site(workplace.root, "# own", "minutes = 1")
+    (short,) = folders(settings)
+    assert standing(workplace, short).too_long == [], "none was cut off"
+    cut_off(workplace, 1)
+    assert standing(workplace, short).too_long == ["pair"], "80 s, and a signal comes after 45"
+    assert standing(workplace, short).wanted == {}
     site(workplace.root, "# own", "minutes = 90")
-    assert standing(workplace, folders(settings)[0]).too_long == {}, "with more time they may be whole"
+    assert standing(workplace, folders(settings)[0]).wanted == {("pair", 2): 2}
 
 
 def test_a_point_that_failed_is_tried_again_before_its_partners_are(workplace: Workplace) -> None:

@@ -93,6 +93,6 @@ def test_the_published_command_lines_work(place: ClusterWorkplace) -> None:
 
 def caption_of_machines(report: str) -> str:
     """What stands below the figure of the machines."""
-    found = re.search(r"<figcaption>One scene on every machine .*?</figcaption>", report)
+    found = re.search(r"</summary>One scene on every machine .*?</figcaption>", report)
     assert found is not None
     return html.unescape(found.group(0))
