@@ -1,20 +1,26 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "harness/accuracy/error_measures.hpp"
+#include "kernels/policies.hpp"
 #include "kernels/scene.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {
 
-/// The error that a bound is put on, as error_measures.hpp has it.
+/// The error that a bound is put on.
 enum class Measure {
     path,           ///< RMS distance to the exact paths after one unit of time, in radii
     collision_rate, ///< of the whole run, relative to that of the exact one
     pressure,       ///< on the walls over the whole run, likewise
 };
+
+/// That error of a run; infinity if it is not known.
+double error_by(const ErrorMeasures& errors, Measure measure);
 
 /// One way to run a scene.
 struct Method {
@@ -24,80 +30,51 @@ struct Method {
     friend bool operator==(const Method&, const Method&) = default;
 };
 
-/// Everything that could be chosen for the scene, whether a trial comes to it or not: the event-driven
-/// simulation; the fastest variant with collisions at the step's end and at contact, in double and in float,
-/// each with 1, 2, 4 ... up to 64 substeps, all of them with few substeps before any with twice as many.
-std::vector<Method> methods_for(const Scene& scene);
-
 /// What a trial says of a method.
-struct Tried {
+struct TrialResult {
     Method method;
-    double error = 0;        ///< as measured in the trial
-    double margin = 0;       ///< by which the error of the run may be larger
-    double setting_up = 0;   ///< seconds, for the whole scene, by costs.hpp
-    double unit_seconds = 0; ///< of a unit of time of the whole scene, likewise
+    double error = 0;  ///< as measured in the trial
+    double margin = 0; ///< by which the error of the run may be larger; 0 if the trial leaves nothing open
+    double unit_seconds = 0; ///< that a unit of time of the whole scene takes on one thread
 
     double largest_error() const { return error + margin; }
-
-    /// Seconds of a run of so many units of time.
-    double cost(int units) const { return setting_up + unit_seconds * units; }
+    friend bool operator==(const TrialResult&, const TrialResult&) = default;
 };
 
-/// Of those whose largest error is at most the bound the one that costs least for so many units of time;
-/// empty if there is none. Costs within a tenth of the least are as good as equal: of those the most exact
-/// one, then the first.
-std::optional<Tried> cheapest_below(std::span<const Tried> tried, double bound, int units);
+/// What came of trying methods on the beginning of a scene, or on a piece of it.
+struct Trial {
+    std::vector<TrialResult> results; ///< never empty; the event-driven simulation is the first
+    std::size_t discs = 0;            ///< of the scene or its piece
+    bool whole_scene = false;         ///< not a piece of it
+    int units_of_time = 0;            ///< that each method ran
+    double seconds = 0;               ///< that all of it took
+};
+
+/// Tries the event-driven simulation, then the fastest variant with collisions at contact and at the step's
+/// end, each with 1, 2, 4 ... up to 64 substeps until its error is below `bound` or it costs more than the
+/// event-driven simulation. Each is measured as error_measures.hpp does it, on the threads and with the
+/// tolerance of `tuning`. No clock decides: what a method costs is its work, counted, times what each kind of
+/// work took once on one machine. So the same scene and bound choose the same on any machine and any threads.
+///
+/// A scene of more than `largest_trial` discs is tried on the busiest of its pieces of that size, and of a
+/// long run no more than the beginning if an average is asked for. What that leaves open is the margin: a
+/// quarter of the error at least, and
+///  - of averages twice the standard deviation of the collisions of both simulations, taken for independent;
+///  - of paths as many collisions more that are missed, or made in another order, as a Poisson distribution
+///    leaves possible: three where none was seen (95 %). Few such discs make most of the error of paths, and
+///    a piece may have none of them.
+///
+/// The discs must be apart at the start, and the scene have a unit of time. Throws CheckError if the
+/// collisions of an instant do not come to an end.
+Trial try_methods(const Scene& scene, const Tuning& tuning, Measure measure, double bound);
+
+/// Discs of the largest scene that is tried as a whole. Averages need fewer, for longer.
+constexpr std::size_t largest_trial(Measure measure) { return measure == Measure::path ? 20'000 : 4'000; }
+
+/// Of those whose largest error is at most the bound the one that costs least; empty if there is none.
+std::optional<TrialResult> cheapest_below(std::span<const TrialResult> results, double bound);
 
 /// The one with the least of the largest errors. There must be one.
-const Tried& most_exact(std::span<const Tried> tried);
-
-/// What an average is made of, in each unit of time of a trial: of the exact simulation, and of another one
-/// on the same scene. Collisions, or the momentum that the walls took up.
-struct Amounts {
-    std::vector<double> exact;
-    std::vector<double> other;
-    double grain = 1; ///< variance of an amount over its mean; 1 of events that know nothing of each other
-};
-
-/// A relative error that is expected, and by how much it may be larger.
-struct Expected {
-    double error = 0;
-    double margin = 0;
-};
-
-/// The relative error of an average over `units` of time, of which `amounts` are the first, or, where these
-/// are of a piece, over a scene with `times_more` of them. A step begins better than it goes on, since discs
-/// that are apart at the start get into each other only then: what is still to come is taken to be as the
-/// second half of what was tried.
-///
-/// The margin is twice the standard deviation of what is still to come beside that half. Amounts are taken
-/// for independent, of variance `grain` times their mean. If the trial was the whole run nothing is open.
-Expected expected_average_error(const Amounts& amounts, int units, double times_more = 1);
-
-/// The error of paths over a scene, if the discs of a piece of it are off by so much: the squares of their
-/// distances to the exact paths, in radii. `moved` is what these squares add up to after one collision that
-/// was missed, or made in another order (moved_by_one_collision).
-///
-/// Few discs make most of such an error, since a collision out of order is rare and moves its discs far. A
-/// piece may have none of them. So the margin covers twice the standard deviation of what was seen, the three
-/// discs of such a collision moving together, and as many collisions that were not seen as a Poisson
-/// distribution leaves possible where none is, three (95 %).
-///
-/// `whole_over_piece` is the mean square in the scene over that in the piece; one below 1 counts as 1. Of a
-/// piece without discs the margin is infinite.
-Expected expected_path_error(std::span<const double> squares, double moved, double whole_over_piece = 1);
-
-/// The least share of an error in a piece by which it may be larger in the scene.
-constexpr double least_margin_of_piece = 0.25;
-
-/// What one collision that is missed or made in another order adds to the sum of squared distances to the
-/// exact paths within a unit of time, in radii: three discs fly on with a velocity that is off by what two of
-/// them differ in, from some time of the unit on. Fast discs collide more often in proportion.
-double moved_by_one_collision(const Scene& scene);
-
-/// The grain of the momentum that `collisions` with walls took up, `impulse` in all: its mean square over its
-/// mean. Where velocities are distributed as in equilibrium those that arrive at a wall have <v^2> = 4/pi
-/// <v>^2 (Maxwell 1860); where all discs are about as fast it is less.
-double grain_of_impulse(double impulse, double collisions);
+const TrialResult& most_exact(std::span<const TrialResult> results);
 
 } // namespace carom

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,25 +15,16 @@
 
 namespace carom {
 
-/// Of each disc the squared distance to where it is exactly, in units of their radius.
-template <class Real>
-std::vector<double> squared_distances(const std::vector<Disc>& discs,
-                                      const std::vector<BasicDisc<Real>>& exact, double radius) {
-    std::vector<double> squares(discs.size());
-    for (std::size_t i = 0; i < discs.size(); ++i) {
-        const auto dx = static_cast<double>(discs[i].x - exact[i].x) / radius;
-        const auto dy = static_cast<double>(discs[i].y - exact[i].y) / radius;
-        squares[i] = dx * dx + dy * dy;
-    }
-    return squares;
-}
-
 /// Root of the mean squared distance of the discs to where they are exactly, in units of their radius.
 template <class Real>
 double rms_distance(const std::vector<Disc>& discs, const std::vector<BasicDisc<Real>>& exact,
                     double radius) {
-    const std::vector<double> squares = squared_distances(discs, exact, radius);
-    const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
+    double sum = 0;
+    for (std::size_t i = 0; i < discs.size(); ++i) {
+        const auto dx = static_cast<double>(discs[i].x - exact[i].x) / radius;
+        const auto dy = static_cast<double>(discs[i].y - exact[i].y) / radius;
+        sum += dx * dx + dy * dy;
+    }
     return discs.empty() ? 0 : std::sqrt(sum / static_cast<double>(discs.size()));
 }
 

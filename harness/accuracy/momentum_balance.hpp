@@ -104,15 +104,6 @@ class MomentumWatch {
         before_ = discs;
     }
 
-    /// The same, looking for the pairs itself, where they are needed. Returns what the walls took up.
-    double step(const std::vector<Disc>& discs) {
-        const double so_far = balance_.wall_impulse();
-        const bool needed = impact_ != Impact::at_contact;
-        step(discs, needed ? overlapping_pairs(discs, walls_.radius, walls_.rounding)
-                           : std::vector<OverlappingPair>());
-        return balance_.wall_impulse() - so_far;
-    }
-
     const MomentumBalance& balance() const { return balance_; }
 
   private:

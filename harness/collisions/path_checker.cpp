@@ -20,8 +20,8 @@ std::string at_time(double time) { return format(" at time %.17g", time); }
 } // namespace
 
 PathChecker::PathChecker(const Scene& scene)
-    : side_(scene.side), radius_(scene.radius),
-      rounding_(side_, radius_, static_cast<double>(scene.discs.size())), search_(scene, rounding_) {
+    : side_(scene.side), radius_(scene.radius), search_(side_, radius_, scene.discs.size()),
+      rounding_(search_.rounding()) {
     for (const Disc& disc : scene.discs) {
         paths_.push_back({disc, 0});
     }

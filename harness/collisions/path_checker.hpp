@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/collisions/path.hpp"
-#include "harness/collisions/path_search.hpp"
+#include "harness/verify/path.hpp"
+#include "harness/verify/path_search.hpp"
 #include "kernels/probe.hpp"
 #include "kernels/scene.hpp"
 
@@ -58,8 +58,8 @@ class PathChecker final : public CollisionLog<double> {
 
     double side_;
     double radius_;
-    PathRounding rounding_;
     PathSearch search_;
+    PathRounding rounding_;
     std::vector<Path> paths_;
     std::vector<PathPiece> pieces_; ///< since the last search
     double searched_ = 0;           ///< up to when

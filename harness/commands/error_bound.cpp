@@ -39,9 +39,9 @@ std::string option_text(const ErrorBound& bound) {
 }
 
 /// "0.0034", or "0.0034 at most 0.0052" where the trial leaves something open.
-std::string error_text(const Tried& tried) {
-    return tried.margin > 0 ? format("%.2g, at most %.2g", tried.error, tried.largest_error())
-                            : format("%.2g", tried.error);
+std::string error_text(const TrialResult& result) {
+    return result.margin > 0 ? format("%.2g, at most %.2g", result.error, result.largest_error())
+                             : format("%.2g", result.error);
 }
 
 const MeasureText& text_of(Measure measure) {
@@ -99,42 +99,42 @@ std::optional<Chosen> choose_method(const Scene& scene, const ErrorBound& bound,
     require_exact_run(scene, bound);
     const std::string option = option_text(bound);
     Trial trial = try_methods(scene, options.tuning, bound.measure, bound.below);
-    const auto cheapest = cheapest_below(trial.tried, bound.below, scene.steps);
+    const auto cheapest = cheapest_below(trial.results, bound.below);
     if (!cheapest) {
-        const Tried& best = most_exact(trial.tried);
+        const TrialResult& best = most_exact(trial.results);
         throw InputError(option + "found no method with so small an error (" +
                          text_of(bound.measure).meaning + "); the best is " + text_of(best.method) + ": " +
                          error_text(best));
     }
-    return Chosen{.tried = *cheapest, .bound = bound, .trial = std::move(trial)};
+    return Chosen{.result = *cheapest, .bound = bound, .trial = std::move(trial)};
 }
 
 void print_choice(const Chosen& chosen) {
     const Trial& trial = chosen.trial;
     std::printf("chosen for an error below %s: %s; expected: %s (%s), %.3g ms a unit of time on one thread\n",
-                number_text(chosen.bound.below).c_str(), text_of(chosen.tried.method).c_str(),
-                error_text(chosen.tried).c_str(), text_of(chosen.bound.measure).meaning,
-                1e3 * chosen.tried.unit_seconds);
+                number_text(chosen.bound.below).c_str(), text_of(chosen.result.method).c_str(),
+                error_text(chosen.result).c_str(), text_of(chosen.bound.measure).meaning,
+                1e3 * chosen.result.unit_seconds);
     std::printf("from %s of at most %s of time on %s, against the event-driven simulation, in %.2g s\n",
-                counted(trial.tried.size(), "trial").c_str(), counted(trial.units_of_time, "unit").c_str(),
+                counted(trial.results.size(), "trial").c_str(), counted(trial.units_of_time, "unit").c_str(),
                 trial.whole_scene ? "the scene itself"
                                   : ("a piece of " + counted(trial.discs, "disc")).c_str(),
                 trial.seconds);
 }
 
 nlohmann::ordered_json choice_json(const Chosen& chosen) {
-    const auto row = [](const Tried& one) {
-        return nlohmann::ordered_json{
-            {"variant", one.method.variant->name},  {"substeps", one.method.substeps},
-            {"error", number_or_null(one.error)},   {"largest_error", number_or_null(one.largest_error())},
-            {"setting_up_seconds", one.setting_up}, {"unit_seconds", one.unit_seconds}};
+    const auto row = [](const TrialResult& one) {
+        return nlohmann::ordered_json{{"variant", one.method.variant->name},
+                                      {"substeps", one.method.substeps},
+                                      {"error", number_or_null(one.error)},
+                                      {"largest_error", number_or_null(one.largest_error())},
+                                      {"unit_seconds", one.unit_seconds}};
     };
     auto tried = nlohmann::ordered_json::array();
-    std::ranges::transform(chosen.trial.tried, std::back_inserter(tried), row);
+    std::ranges::transform(chosen.trial.results, std::back_inserter(tried), row);
     nlohmann::ordered_json json{{"error_below", chosen.bound.below},
                                 {"measure", text_of(chosen.bound.measure).word}};
-    json.update(row(chosen.tried));
-    json.erase("setting_up_seconds");
+    json.update(row(chosen.result));
     json["trial"] = {{"seconds", chosen.trial.seconds},
                      {"discs", chosen.trial.discs},
                      {"whole_scene", chosen.trial.whole_scene},

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/accuracy/choice.hpp"
-#include "harness/accuracy/trial.hpp"
 #include "harness/commands/simulation_options.hpp"
 #include "kernels/scene.hpp"
 
@@ -20,7 +19,7 @@ struct ErrorBound {
 
 /// The method that was chosen for a bound, and what it was chosen from.
 struct Chosen {
-    Tried tried;
+    TrialResult result;
     ErrorBound bound;
     Trial trial;
 };

@@ -229,8 +229,8 @@ void run(RunOptions options) {
     seconds.reading = process_seconds() - before;
     const auto chosen = choose_method(scene, options.bound, options.simulation);
     if (chosen) {
-        options.simulation.variant = chosen->tried.method.variant->name;
-        options.simulation.tuning.substeps = chosen->tried.method.substeps;
+        options.simulation.variant = chosen->result.method.variant->name;
+        options.simulation.tuning.substeps = chosen->result.method.substeps;
     }
     const Variant& variant = require_variant(options.simulation.variant, scene, options.simulation.tuning);
     if (variant.engine == Engine::event_driven) {

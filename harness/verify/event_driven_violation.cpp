@@ -8,6 +8,7 @@
 #include "harness/verify/checker.hpp"
 #include "harness/verify/disc_states.hpp"
 #include "harness/verify/overlapping_pairs.hpp"
+#include "harness/verify/path_search.hpp"
 
 namespace carom {
 namespace {
@@ -44,61 +45,19 @@ std::optional<std::string> overlap(const std::vector<Disc>& discs, const Walls& 
     return std::nullopt;
 }
 
-/// The straight way of a disc that met nobody, with the box around it.
-struct Way {
-    std::size_t disc;
-    Disc start;
-    double low_x;
-    double high_x;
-    double low_y;
-    double high_y;
-};
-
-/// The ways of those that met nobody, from left to right.
-std::vector<Way> free_ways(const std::vector<Disc>& before, const std::vector<Disc>& after, double dt,
-                           const Walls& walls, double slack) {
-    std::vector<Way> ways;
+/// The paths of those that met nobody.
+std::vector<PathPiece> free_paths(const std::vector<Disc>& before, const std::vector<Disc>& after, double dt,
+                                  double slack) {
+    std::vector<PathPiece> paths;
     for (std::size_t i = 0; i < before.size(); ++i) {
-        const Disc& from = before[i];
-        const Disc& to = after[i];
-        const bool straight = to.vx == from.vx && to.vy == from.vy &&
-                              std::hypot(from.x + from.vx * dt - to.x, from.y + from.vy * dt - to.y) <= slack;
-        if (straight) {
-            ways.push_back({.disc = i,
-                            .start = from,
-                            .low_x = std::min(from.x, to.x) - walls.radius,
-                            .high_x = std::max(from.x, to.x) + walls.radius,
-                            .low_y = std::min(from.y, to.y) - walls.radius,
-                            .high_y = std::max(from.y, to.y) + walls.radius});
+        const Path path{before[i], 0};
+        const Disc end = path.at(dt);
+        if (after[i].vx == end.vx && after[i].vy == end.vy &&
+            distance_of(seen_from(end, after[i])) <= slack) {
+            paths.push_back({i, path, 0, dt});
         }
     }
-    std::ranges::sort(ways, {}, &Way::low_x);
-    return ways;
-}
-
-double least_distance(const Disc& one, const Disc& two, double dt) {
-    const Disc d = seen_from(one, two);
-    const double squared = d.vx * d.vx + d.vy * d.vy;
-    const double nearest = squared > 0 ? std::clamp(-parting_of(d) / squared, 0.0, dt) : 0;
-    return std::hypot(d.x + d.vx * nearest, d.y + d.vy * nearest);
-}
-
-/// Two that met nobody although their ways cross.
-std::optional<std::string> missed_collision(const std::vector<Way>& ways, double dt, const Walls& walls,
-                                            double slack) {
-    for (auto one = ways.begin(); one != ways.end(); ++one) {
-        for (auto two = one + 1; two != ways.end() && two->low_x <= one->high_x; ++two) {
-            if (two->low_y > one->high_y || two->high_y < one->low_y) {
-                continue;
-            }
-            const double depth = 2 * walls.radius - least_distance(one->start, two->start, dt);
-            if (depth > slack) {
-                return format("discs %zu and %zu flew through each other, %.3g deep",
-                              std::min(one->disc, two->disc), std::max(one->disc, two->disc), depth);
-            }
-        }
-    }
-    return std::nullopt;
+    return paths;
 }
 
 } // namespace
@@ -120,7 +79,8 @@ std::optional<std::string> event_driven_violation(const std::vector<Disc>& befor
     if (std::abs(change) > 1e-10 * energy) {
         return format("energy changed from %.17g to %.17g", energy, energy + change);
     }
-    return missed_collision(free_ways(before, after, dt, walls, slack), dt, walls, slack);
+    return PathSearch(walls.side, walls.radius, before.size())
+        .too_near(free_paths(before, after, dt, slack), 0, dt);
 }
 
 std::optional<std::string> overlap_at_start(const Scene& scene) {

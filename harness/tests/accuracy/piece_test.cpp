@@ -10,42 +10,12 @@
 
 #include "harness/accuracy/choice.hpp"
 #include "harness/accuracy/error_measures.hpp"
-#include "harness/accuracy/trial.hpp"
 #include "harness/scenes/generate.hpp"
 #include "harness/scenes/piece.hpp"
-#include "harness/tests/accuracy/error_of.hpp"
 #include "harness/verify/event_driven_violation.hpp"
 
 namespace carom {
 namespace {
-
-TEST(ExpectedPathError, CountsWhatAPieceMayNotHaveSeen) {
-    const std::vector<double> exact(10'000, 0.0);
-    EXPECT_EQ(expected_path_error(exact, 0).margin, 0);
-    const Expected none_seen = expected_path_error(exact, 0.1);
-    EXPECT_EQ(none_seen.error, 0);
-    EXPECT_NEAR(none_seen.margin, std::sqrt(3 * 0.1 / 10'000), 1e-12) << "three such collisions";
-    EXPECT_TRUE(std::isinf(expected_path_error({}, 0.1).margin));
-}
-
-TEST(ExpectedPathError, IsLessSureOfFewDiscsFarOffThanOfManyNearby) {
-    const std::vector<double> many(1000, 1e-4);
-    std::vector<double> few(1000, 0.0);
-    few.front() = 0.1;
-    const Expected of_many = expected_path_error(many, 0);
-    const Expected of_few = expected_path_error(few, 0);
-    EXPECT_NEAR(of_many.error, 0.01, 1e-12);
-    EXPECT_NEAR(of_few.error, 0.01, 1e-12);
-    EXPECT_NEAR(of_many.margin, 0.0025, 1e-12) << "a quarter at least";
-    EXPECT_NEAR(of_few.margin, 0.01 * (std::sqrt(1 + 2 * std::sqrt(3.0)) - 1), 1e-12);
-}
-
-TEST(MovedByOneCollision, GrowsAsTheSquareOfSpeeds) {
-    Scene scene{.side = 100, .radius = 2, .steps = 1, .discs = {{10, 10, 3, 4}, {20, 20, 0, 0}}};
-    EXPECT_DOUBLE_EQ(moved_by_one_collision(scene), 2 * 2.5 * 2.5) << "the disc at rest collides less often";
-    scene.discs = {{10, 10, 0, 0}};
-    EXPECT_EQ(moved_by_one_collision(scene), 0);
-}
 
 /// Of a dilute scene of more discs than a trial has, in which a step at contact is exact for all but a few.
 TEST(TryMethods, PromisesNoErrorThatAPieceCannotTell) {
@@ -59,14 +29,13 @@ TEST(TryMethods, PromisesNoErrorThatAPieceCannotTell) {
                                       .seed = seed,
                                       .placement = Placement::random,
                                       .isotropic = true});
-        const Method at_contact = methods_for(scene)[1];
         const Trial trial = try_methods(scene, {}, Measure::path, 1e-9);
         ASSERT_FALSE(trial.whole_scene);
-        const auto tried = std::ranges::find(trial.tried, at_contact, &Tried::method);
-        ASSERT_NE(tried, trial.tried.end());
+        const TrialResult& at_contact = trial.results.at(1);
+        ASSERT_EQ(at_contact.method.variant->policies.impact, Impact::at_contact);
         const double error =
-            tests::error_of(measure_errors(scene, *at_contact.variant, {.substeps = 1}), Measure::path);
-        EXPECT_LE(error, tried->largest_error()) << "seed " << seed << ", expected " << tried->error;
+            error_by(measure_errors(scene, *at_contact.method.variant, {.substeps = 1}), Measure::path);
+        EXPECT_LE(error, at_contact.largest_error()) << "seed " << seed << ", expected " << at_contact.error;
     }
 }
 
@@ -154,19 +123,16 @@ TEST(BusiestPiece, TellsWhereOthersAddMoreADisc) {
     const double of_piece = 400;
     const double of_all = (700 * 400 + 3 * 400 * 400 * std::pow(1.15, 3)) / 1900;
     EXPECT_NEAR(piece.whole_over_piece, of_all / of_piece, 1e-9);
-    const std::vector<double> squares(100, 1.0);
-    EXPECT_NEAR(expected_path_error(squares, 0, 4).error, 2, 1e-12);
-    EXPECT_NEAR(expected_path_error(squares, 0, 0.25).error, 1, 1e-12);
 }
 
 TEST(TryMethods, PromisesWhatHoldsWhereDiscsAreFast) {
     const Scene scene = slow_and_fast();
     const Trial trial = try_methods(scene, {}, Measure::path, 0.05);
     ASSERT_FALSE(trial.whole_scene);
-    const auto choice = cheapest_below(trial.tried, 0.05, scene.steps);
+    const auto choice = cheapest_below(trial.results, 0.05);
     ASSERT_TRUE(choice);
     const Tuning tuning{.substeps = choice->method.substeps};
-    EXPECT_LE(tests::error_of(measure_errors(scene, *choice->method.variant, tuning), Measure::path), 0.05);
+    EXPECT_LE(error_by(measure_errors(scene, *choice->method.variant, tuning), Measure::path), 0.05);
 }
 
 } // namespace

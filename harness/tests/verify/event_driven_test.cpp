@@ -106,7 +106,8 @@ TEST(EventDrivenChecker, CatchesWhatIsPlanted) {
 TEST(EventDrivenChecker, CatchesAPairThatFlewThroughEachOther) {
     const Scene scene{.side = 50, .radius = 1, .steps = 1, .discs = {{20, 20, 6, 0}, {24, 20.5, -6, 0}}};
     const auto fly = [](auto& discs) { discs = {{26, 20, 6, 0}, {18, 20.5, -6, 0}}; };
-    EXPECT_EQ(said_of(scene, fly), "discs 0 and 1 flew through each other, 1.5 deep");
+    EXPECT_EQ(said_of(scene, fly),
+              "discs 0 and 1 come 1.5 too near each other, without a collision, at time 0.33333333333333331");
     EXPECT_EQ(said_of(scene, [](auto&) {}), "nothing");
 }
 
