@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -25,25 +24,6 @@
 
 namespace carom {
 namespace {
-
-/// An event-driven run, whose steps are ends of time alone.
-class ExactSteps final : public CollisionChecker {
-  public:
-    ExactSteps(const Scene& scene, int substeps) : paths_(scene), substeps_(substeps) {}
-
-    CollisionLog<double>& log() override { return paths_; }
-    std::optional<std::string> violation_so_far() const override { return paths_.violation(); }
-    std::optional<std::string> step(const std::vector<Disc>& /*before*/,
-                                    const std::vector<Disc>& after) override {
-        ++steps_;
-        return paths_.violation_at(static_cast<double>(steps_) / substeps_, after);
-    }
-
-  private:
-    PathChecker paths_;
-    double substeps_;
-    std::int64_t steps_ = 0;
-};
 
 /// What a step with Impact::at_contact is made of.
 struct ContactRules {
@@ -245,18 +225,16 @@ std::string when(const Collision<double>& collision) {
 ///    as at a step's end: nothing that is near is left colliding, and what is to be conserved is.
 ///
 /// "Surely" is whatever the rounding of the variant's precision, as PairBackwards has it.
-class ContactChecker final : public CollisionChecker, public CollisionLog<double> {
+class ContactChecker final : public CollisionChecker {
   public:
     ContactChecker(const Scene& scene, const Policies& policies, const Tuning& tuning)
         : at_end_(scene.side, scene.radius, 1.0 / tuning.substeps, tuning.tolerance, rounding_of(policies)),
           rules_(rules_of(scene, policies, tuning)) {}
 
-    CollisionLog<double>& log() override { return *this; }
     void collided(const Collision<double>& collision) override {
         const std::lock_guard lock(telling_);
         collisions_.push_back(collision);
     }
-    std::optional<std::string> violation_so_far() const override { return std::nullopt; }
     std::optional<std::string> step(const std::vector<Disc>& before,
                                     const std::vector<Disc>& after) override {
         if (before.size() != after.size()) {
@@ -487,7 +465,7 @@ class ContactChecker final : public CollisionChecker, public CollisionLog<double
 std::unique_ptr<CollisionChecker> collision_checker(const Scene& scene, const Variant& variant,
                                                     const Tuning& tuning) {
     if (variant.engine == Engine::event_driven) {
-        return std::make_unique<ExactSteps>(scene, tuning.substeps);
+        return std::make_unique<PathChecker>(scene, tuning.substeps);
     }
     if (variant.policies.impact == Impact::at_contact) {
         return std::make_unique<ContactChecker>(scene, variant.policies, tuning);

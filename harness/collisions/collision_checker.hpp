@@ -12,17 +12,12 @@
 
 namespace carom {
 
-/// Checks a run, step by step, by every collision that it tells: by these a step is proven, and not by its
+/// Checks a run, step by step, by every collision that it is told: by these a step is proven, and not by its
 /// state at the end alone.
-class CollisionChecker {
+class CollisionChecker : public CollisionLog<double> {
   public:
-    virtual ~CollisionChecker() = default;
-
-    /// What the simulation is to tell its collisions to.
-    virtual CollisionLog<double>& log() = 0;
-
     /// The first violation of what has been told of a step that did not end, or nothing.
-    virtual std::optional<std::string> violation_so_far() const = 0;
+    virtual std::optional<std::string> violation_so_far() const { return std::nullopt; }
 
     /// The first violation of the next step, named with its discs and numbers, or nothing. `before` and
     /// `after` are the states at its ends.

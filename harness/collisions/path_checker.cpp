@@ -19,9 +19,9 @@ std::string at_time(double time) { return format(" at time %.17g", time); }
 
 } // namespace
 
-PathChecker::PathChecker(const Scene& scene)
-    : side_(scene.side), radius_(scene.radius), search_(side_, radius_, scene.discs.size()),
-      rounding_(search_.rounding()) {
+PathChecker::PathChecker(const Scene& scene, int substeps)
+    : side_(scene.side), radius_(scene.radius), substeps_(substeps),
+      search_(side_, radius_, scene.discs.size()), rounding_(search_.rounding()) {
     for (const Disc& disc : scene.discs) {
         paths_.push_back({disc, 0});
     }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/collisions/collision_checker.hpp"
 #include "harness/verify/path.hpp"
 #include "harness/verify/path_search.hpp"
 #include "kernels/probe.hpp"
@@ -27,17 +28,22 @@ namespace carom {
 /// are let go. Centres nearer than rounding can tell have no normal, and may do either.
 ///
 /// What rounding allows stands in path.hpp.
-class PathChecker final : public CollisionLog<double> {
+class PathChecker final : public CollisionChecker {
   public:
-    explicit PathChecker(const Scene& scene);
+    explicit PathChecker(const Scene& scene, int substeps = 1);
 
     void collided(const Collision<double>& collision) override;
 
     /// The first that was wrong up to that time, or of the state that the simulation then is in; or nothing.
     std::optional<std::string> violation_at(double time, const std::vector<Disc>& discs);
 
-    /// The first that was wrong so far.
-    const std::optional<std::string>& violation() const { return violation_; }
+    std::optional<std::string> violation_so_far() const override { return violation_; }
+
+    /// What is wrong at the end of the next step, one of `substeps` in a unit of time.
+    std::optional<std::string> step(const std::vector<Disc>& /*before*/,
+                                    const std::vector<Disc>& after) override {
+        return violation_at(static_cast<double>(++steps_) / substeps_, after);
+    }
 
     /// Of discs and of walls, so far.
     std::int64_t pair_collisions() const { return pair_collisions_; }
@@ -58,6 +64,8 @@ class PathChecker final : public CollisionLog<double> {
 
     double side_;
     double radius_;
+    double substeps_;
+    std::int64_t steps_ = 0;
     PathSearch search_;
     PathRounding rounding_;
     std::vector<Path> paths_;

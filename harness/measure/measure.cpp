@@ -143,8 +143,8 @@ Run run_scene(const Scene& scene, Simulation& simulation, const Tuning& tuning, 
 
 Run checked_run(const Scene& scene, const Variant& variant, const Tuning& tuning, const OnStep& on_step) {
     const auto collisions = collision_checker(scene, variant, tuning);
-    const auto simulation = collisions ? variant.simulate_logged(scene, tuning, collisions->log())
-                                       : variant.simulate(scene, tuning);
+    const auto simulation =
+        collisions ? variant.simulate_logged(scene, tuning, *collisions) : variant.simulate(scene, tuning);
     return run_scene(scene, *simulation, tuning, {CheckScope::every_step, variant, collisions.get()},
                      on_step);
 }

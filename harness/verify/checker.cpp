@@ -83,28 +83,26 @@ std::optional<std::string> Checker::left_colliding(const std::vector<Disc>& free
     return std::nullopt;
 }
 
-std::optional<std::string> Checker::colliding(const std::vector<Disc>& discs) const {
+/// `body(violation)` for each wall and each pair, which may be nothing.
+template <class Body>
+void Checker::for_each_colliding(const std::vector<Disc>& discs, const Body& body) const {
     for (int i = 0; i < static_cast<int>(discs.size()); ++i) {
-        if (auto violation = wall_colliding(discs, i)) {
-            return violation;
-        }
+        body(wall_colliding(discs, i));
     }
     for (const OverlappingPair& pair : overlapping_pairs(discs, walls_.radius, rounding_)) {
-        if (auto violation = pair_colliding(discs, pair)) {
-            return violation;
-        }
+        body(pair_colliding(discs, pair));
     }
-    return std::nullopt;
+}
+
+std::optional<std::string> Checker::colliding(const std::vector<Disc>& discs) const {
+    std::optional<std::string> first;
+    for_each_colliding(discs, [&](const auto& violation) { first = first ? first : violation; });
+    return first;
 }
 
 long Checker::count_colliding(const std::vector<Disc>& discs) const {
     long count = 0;
-    for (int i = 0; i < static_cast<int>(discs.size()); ++i) {
-        count += wall_colliding(discs, i).has_value();
-    }
-    for (const OverlappingPair& pair : overlapping_pairs(discs, walls_.radius, rounding_)) {
-        count += pair_colliding(discs, pair).has_value();
-    }
+    for_each_colliding(discs, [&](const auto& violation) { count += violation.has_value(); });
     return count;
 }
 

@@ -53,6 +53,7 @@ class Checker {
   private:
     std::optional<std::string> moved(const std::vector<Disc>& before, const std::vector<Disc>& free,
                                      const std::vector<Disc>& after) const;
+    template <class Body> void for_each_colliding(const std::vector<Disc>& discs, const Body& body) const;
     std::optional<std::string> left_colliding(const std::vector<Disc>& free, const std::vector<Disc>& after,
                                               const std::vector<OverlappingPair>& pairs) const;
 

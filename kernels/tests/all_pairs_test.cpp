@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "kernels/tests/all_pairs.hpp"
-#include "kernels/tests/definition.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "kernels/tests/simulate.hpp"
 
@@ -127,32 +126,6 @@ TEST(SingleDiscs, EndInTheSameBitsInEveryOrder) {
     for_each_order([&scene]<Policies policies>() {
         EXPECT_TRUE(same_bits(simulate<policies>(scene).discs, reference_end(scene)));
     });
-}
-
-TEST(AllPairs, KeepsToTheDefinitionOfAStep) {
-    for (const auto& [name, scene] : tests::all_scenes()) {
-        SCOPED_TRACE(name);
-        for (const Order order : {Order::once, Order::repeat}) {
-            for (const SelfContained self_contained : {SelfContained::on, SelfContained::off}) {
-                AllPairs reference(scene, {.order = order, .self_contained = self_contained}, {});
-                tests::keeps_to_the_definition(
-                    scene, [&] { return reference.discs(); }, [&] { return reference.step(); });
-            }
-        }
-    }
-}
-
-TEST(EveryOrder, KeepsToTheDefinitionOfAStep) {
-    for (const tests::NamedScene& named : tests::all_scenes()) {
-        SCOPED_TRACE(named.name);
-        const Scene& scene = named.scene;
-        for_each_order([&scene]<Policies policies>() {
-            State<policies> state(scene);
-            NoProbe probe;
-            tests::keeps_to_the_definition(
-                scene, [&] { return state.discs; }, [&] { return step(state, {}, probe); });
-        });
-    }
 }
 
 } // namespace

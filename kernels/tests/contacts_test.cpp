@@ -119,16 +119,6 @@ TEST(StripsOfContacts, ShareNoDiscAndNoMarkWithinAParity) {
     }
 }
 
-TEST(Filter, ChangesNothing) {
-    for (const auto& [name, scene] : tests::all_scenes()) {
-        SCOPED_TRACE(name);
-        const tests::Outcome exact = tests::simulate<snug>(scene);
-        const tests::Outcome through_filter = tests::simulate<filtered>(scene);
-        EXPECT_TRUE(same_bits(exact.discs, through_filter.discs));
-        EXPECT_EQ(exact.work, through_filter.work);
-    }
-}
-
 /// Of strips on any number of threads, and of a wavefront of them, one that is said to exceed the cache, too.
 template <Policies in_strips> void end_in_the_same_bits(const Scene& scene) {
     constexpr Policies in_wavefront = tests::with(tests::with(in_strips, &Policies::order, Order::wavefront),

@@ -62,38 +62,6 @@ TEST(Grid, HasAtMost4096BoxesAlongASide) {
     EXPECT_TRUE(grid.at_wall(4095, 7));
 }
 
-TEST(GridCoordinate, IsTheNearestBoxForEveryPosition) {
-    const Grid grid(50, 1); // ten boxes of side 5
-    ASSERT_EQ(grid.boxes_per_side(), 10);
-    EXPECT_EQ(grid.coordinate(0), 0);
-    EXPECT_EQ(grid.coordinate(4.999), 0);
-    EXPECT_EQ(grid.coordinate(5), 1);
-    EXPECT_EQ(grid.coordinate(49.9), 9);
-    EXPECT_EQ(grid.coordinate(50), 9);
-    for (const double far : {50.1, 1e9, 1e60, 1e300}) {
-        EXPECT_EQ(grid.coordinate(far), 9);
-        EXPECT_EQ(grid.coordinate(-far), 0);
-    }
-    EXPECT_EQ(grid.coordinate(-0.0), 0);
-    EXPECT_EQ(grid.coordinate(-1e-300), 0);
-}
-
-TEST(GridCoordinate, NeverDecreasesWithThePosition) {
-    Random random(22);
-    for (int trial = 0; trial < 2'000; ++trial) {
-        const Box box = random_box(random);
-        const Grid grid(box.side, box.radius);
-        for (int pair = 0; pair < 20; ++pair) {
-            const double one = random_position(box, grid, random);
-            const double two =
-                random.coin() ? some_ulps_from(one, random) : random_position(box, grid, random);
-            ASSERT_LE(grid.coordinate(std::min(one, two)), grid.coordinate(std::max(one, two)));
-            ASSERT_GE(grid.coordinate(one), 0);
-            ASSERT_LT(grid.coordinate(one), grid.boxes_per_side());
-        }
-    }
-}
-
 /// What a grid owes to a disc of a random scene: neighbours that hold every partner, whichever of the two
 /// looks, and `at_wall` of the box of every disc at a wall.
 template <Neighbourhood... neighbourhoods, class MakeGrid>

@@ -98,26 +98,5 @@ TEST(RowOrder, NeverTouchesADiscFromTwoRowsOfOneParity) {
     }
 }
 
-/// Three discs in a row: the first runs into the second, which passes the blow on to the third.
-template <Direction direction> auto chain() {
-    return with_overlaps<Policies{.self_contained = SelfContained::off, .direction = direction}>(
-        {.side = 50, .radius = 1, .steps = 1, .discs = {{20, 27, 1, 0}, {22.5, 27, 0, 0}, {24, 27, 0, 0}}});
-}
-
-TEST(Direction, DecidesWhichPartnerComesFirst) {
-    State forward = chain<Direction::forward>();
-    State reverse = chain<Direction::reverse>();
-    const ApproachTolerance approaching(Tolerance::relative);
-    std::vector<int> changed;
-    const auto note = [&changed](int j) { changed.push_back(j); };
-    // Disc 1 is listed with 0 and then 2; only after the blow from 0 has it anything to pass on to 2.
-    ASSERT_EQ(forward.overlaps[1], (std::vector<int>{0, 2}));
-    visit<false, Direction::forward>(forward, 1, false, approaching, note);
-    EXPECT_EQ(changed, (std::vector<int>{0, 2}));
-    changed.clear();
-    visit<false, Direction::reverse>(reverse, 1, false, approaching, note);
-    EXPECT_EQ(changed, (std::vector<int>{0}));
-}
-
 } // namespace
 } // namespace carom

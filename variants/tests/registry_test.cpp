@@ -25,10 +25,11 @@ TEST(Registry, HasOneVariantForEachRowOfTheTable) {
     }
 }
 
-TEST(Registry, HasNoNameTwice) {
+TEST(Registry, HasNoNameTwiceNorOneThatAShellDoesNotTakeAsItIs) {
     std::set<std::string_view> names;
     for (const Variant& variant : variants()) {
         EXPECT_TRUE(names.insert(variant.name).second) << variant.name;
+        EXPECT_EQ(variant.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_-"), std::string_view::npos);
     }
 }
 

@@ -20,15 +20,6 @@ testing::AssertionResult in_table(const Policies& policies) {
     return testing::AssertionFailure() << name_of(policies).view() << " is not in the table";
 }
 
-TEST(Table, StartsWithThePublishedBest) {
-    EXPECT_EQ(table[0].neighbourhood, Neighbourhood::four);
-    EXPECT_EQ(table[0].order, Order::checkered);
-    EXPECT_EQ(table[0].self_contained, SelfContained::on);
-    EXPECT_EQ(table[0].direction, Direction::reverse);
-    EXPECT_EQ(table[0].find_schedule, Schedule::guided_chunk);
-    EXPECT_EQ(table[0].resolve_schedule, Schedule::guided_chunk);
-}
-
 TEST(Table, HasEverySingleFlipOfThePublishedBest) {
     EXPECT_TRUE(in_table({.neighbourhood = Neighbourhood::nine}));
     EXPECT_TRUE(in_table({.order = Order::row}));
@@ -56,13 +47,6 @@ TEST(Table, HasWhatThePublishedGraphsCompare) {
     }
 }
 
-TEST(Table, HoldsOnlyPossibleCombinationsEachOnce) {
-    for (std::size_t i = 0; i < table.size(); ++i) {
-        EXPECT_EQ(impossible(table[i]), "") << name_of(table[i]).view();
-        EXPECT_EQ(std::ranges::count(table, table[i]), 1) << name_of(table[i]).view();
-    }
-}
-
 TEST(Impossible, GivesAReasonForAScheduleWithoutALoopToSchedule) {
     for (const Order order : sequential_orders) {
         for (const Schedule schedule : schedules) {
@@ -71,17 +55,6 @@ TEST(Impossible, GivesAReasonForAScheduleWithoutALoopToSchedule) {
                 EXPECT_EQ(reason, "");
             } else {
                 EXPECT_EQ(reason, "a sequential resolve order has no resolve schedule to choose");
-            }
-        }
-    }
-}
-
-TEST(Impossible, HasNothingAgainstAnyScheduleOfTheParallelOrders) {
-    for (const Order order : {Order::checkered, Order::row}) {
-        for (const Schedule find : schedules) {
-            for (const Schedule resolve : schedules) {
-                EXPECT_EQ(impossible({.order = order, .find_schedule = find, .resolve_schedule = resolve}),
-                          "");
             }
         }
     }
@@ -146,14 +119,6 @@ TEST(Ladder, ClimbsFromThePublishedBestOnePolicyARung) {
     }
     EXPECT_EQ(below.impact, Impact::step_end) << "the published step is what is climbed with";
     EXPECT_EQ(below.precision, Precision::double_) << "accuracy is not for sale";
-}
-
-TEST(Vary, CrossesACombinationWithTheValuesOfAnAxis) {
-    constexpr auto varied =
-        vary({.order = Order::row}, &Policies::direction, Direction::forward, Direction::reverse);
-    static_assert(varied.size() == 2);
-    EXPECT_EQ(varied[0], (Policies{.order = Order::row, .direction = Direction::forward}));
-    EXPECT_EQ(varied[1], (Policies{.order = Order::row, .direction = Direction::reverse}));
 }
 
 } // namespace

@@ -70,7 +70,7 @@ TEST_P(KeptPromise, OnScenesNotSeenBefore) {
 }
 
 TEST_P(KeptPromise, OfRunsOfWhichTheBeginningAloneIsTried) {
-    for (const std::uint64_t seed : {2, 5, 8, 11}) {
+    for (const std::uint64_t seed : {2U, 5U, 8U, 11U}) {
         EXPECT_LE(share_of_bound(unseen(seed, 120), 0.05), 1) << seed;
     }
 }
@@ -90,6 +90,36 @@ INSTANTIATE_TEST_SUITE_P(TryMethods, KeptPromise,
                                                 : now.param == Measure::collision_rate ? "collision_rate"
                                                                                        : "pressure");
                          });
+
+/// So many discs that no more than fifty of hundred units of time are tried.
+TEST(TryMethods, CountsTheCollisionsThatAnAverageIsOf) {
+    Scene scene = unseen(0, 100);
+    for (int copy = 1; copy < 3200 / 200; ++copy) {
+        for (std::size_t i = 0; i < 200; ++i) {
+            scene.discs.push_back(scene.discs[i]);
+            scene.discs.back().x += copy % 4 * scene.side;
+            scene.discs.back().y += copy / 4 * scene.side;
+        }
+    }
+    scene.side *= 4;
+    const Trial moving = try_methods(scene, {}, Measure::collision_rate, 1);
+    EventDriven<double> exact(scene);
+    exact.advance(moving.units_of_time);
+    const double collisions = static_cast<double>(exact.pair_collisions());
+    EXPECT_NEAR(moving.results.at(1).margin, 2 * std::sqrt(4 / collisions), 1e-9)
+        << "twice the deviation of both, and as much in what is to come";
+    EXPECT_GT(try_methods(scene, {}, Measure::pressure, 1).results.at(1).margin, moving.results.at(1).margin)
+        << "fewer walls are met than discs";
+    for (Disc& disc : scene.discs) {
+        disc.vx = disc.vy = 0;
+    }
+    for (const Measure measure : {Measure::collision_rate, Measure::pressure}) {
+        const Trial trial = try_methods(scene, {}, measure, 1);
+        EXPECT_EQ(trial.results.at(1).error, 0);
+        EXPECT_EQ(trial.results.at(1).margin, std::numeric_limits<double>::infinity()) << "may happen yet";
+        EXPECT_EQ(cheapest_below(trial.results, 1)->method.variant, &event_driven());
+    }
+}
 
 TEST(TryMethods, TriesNoMoreSubstepsThanTheBoundTakesNorWhatCostsMoreThanTheExactRun) {
     for (const auto& [bound, most_substeps] : {std::pair{0.5, 1}, std::pair{1e-300, 64}}) {

@@ -94,7 +94,7 @@ TEST(PathChecker, CatchesACollisionOfADiscThatIsNotThere) {
     auto told = told_of_pair()[0];
     told.second = 2;
     checker.collided(told);
-    EXPECT_EQ(checker.violation(), "a collision of discs 0 and 2 is told, of 2");
+    EXPECT_EQ(checker.violation_so_far(), "a collision of discs 0 and 2 is told, of 2");
 }
 
 TEST(PathChecker, CatchesACollisionBeforeTheDiscsMeetOrAfter) {
@@ -133,7 +133,7 @@ TEST(ToldCollisions, ChangeNoBitOfWhatIsSimulated) {
         // A mutex of its own is the checker's: on one thread none is needed here.
         const auto told = variant.simulate_logged(scene, {}, kept);
         const auto checker = collision_checker(scene, variant, tuning);
-        const auto checked = variant.simulate_logged(scene, tuning, checker->log());
+        const auto checked = variant.simulate_logged(scene, tuning, *checker);
         const auto untold = variant.simulate(scene, tuning);
         std::int64_t collisions = 0;
         for (int step = 0; step < scene.steps; ++step) {

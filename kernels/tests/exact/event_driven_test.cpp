@@ -21,11 +21,6 @@ double twice_energy(const std::vector<Disc>& discs) {
     return sum;
 }
 
-TEST(EventDriven, WedgedDiscIsReportedInsteadOfHanging) {
-    EventDriven<double> reference({.side = 2, .radius = 1, .steps = 0, .discs = {{1, 1, 1, 0}}});
-    EXPECT_FALSE(reference.advance(1, {.at_once = 1000}));
-}
-
 TEST(EventDriven, GivesUpAtTheLimitOfCollisionsItIsGiven) {
     EventDriven<double> reference(lattice_scene(10, 0.5, 1));
     EXPECT_FALSE(reference.advance(10, {.in_all = 100}));
