@@ -151,7 +151,7 @@ COMMITS = {
     "no program": Case(
         SLOWER,
         1,
-        ("carom: head ", ': found "./prog", which is not there; expected a program'),
+        ("carom: head ", ": found ./prog, which is not there once it is built; expected a build that"),
         build=f"! grep -q 100 prog.in || {{ {COPY}; }}",
     ),
     "no program of that name on PATH": Case(

@@ -121,7 +121,7 @@ def test_slices_are_as_long_as_asked(folder: Path) -> None:
 
 def test_if_one_must_not_be_stopped_none_is(folder: Path) -> None:
     script(folder / "far_longer_than_a_slice", LOOP.format(times=60_000))
-    words = ("-n", "works", "-n", "sleeps", "--time", "4s", "--append", "kept.json")
+    words = ("-n", "works", "-n", "sleeps", "--time", "8s", "--append", "kept.json")
     done = run(folder, "compare", *words, "--", "./far_longer_than_a_slice", "--vs", "sleep", "0.2")
     assert done.returncode in (0, 5), done.stderr
     [session] = json.loads((folder / "kept.json").read_text(encoding="utf-8"))["sessions"]
