@@ -15,7 +15,7 @@ from analysis.statistics.intervals import widening_of_independent
 from analysis.statistics.looks import ERROR, LOOKS, looks_up_to, next_look
 from analysis.statistics.looks import share as share_of_error
 from analysis.statistics.pairs import PAIR
-from analysis.statistics.verdicts import MARGIN
+from analysis.statistics.verdicts import INCONCLUSIVE, MARGIN
 from analysis.support.values import Floats
 from analysis.support.wording import count, listed, share
 
@@ -41,6 +41,19 @@ def blocks_to_decide(p: float, blocks: int, family: int = 1) -> float:
         if look > blocks and per_block >= asked * _error(look):
             return look
     return math.inf
+
+
+def needed_by_rows(table: pd.DataFrame, error: float) -> list[float]:
+    """Return the blocks that are expected to settle each row of a table of `judge`, which was corrected to an
+    `error` for all; NaN for a row that is decided.
+    """
+    undecided = table["verdict"] == INCONCLUSIVE
+    # The forecast waits for `ERROR`: a stricter error is that of a larger family.
+    family = max(1, round(int(undecided.sum()) * ERROR / error))
+    return [
+        blocks_to_decide(float(alone), int(blocks), family) if is_open else math.nan
+        for alone, blocks, is_open in zip(table["alone"], table["blocks"], undecided, strict=True)
+    ]
 
 
 def _error(blocks: int) -> float:
