@@ -4,6 +4,7 @@ import argparse
 import json
 import signal
 import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from itertools import chain
 from pathlib import Path
@@ -171,14 +172,13 @@ def _movie(options: argparse.Namespace) -> int:
     from analysis.commands import movie
 
     movie.target_of(options.scene, options.output, options.step)  # a mistake is told before it is simulated
-    if options.trajectory is not None:
-        print(movie.draw(options.scene, options.trajectory, options.output, options.step))
-        return 0
-    if options.program is None:
+    if options.trajectory is None and options.program is None:
         raise InputError("TRAJECTORY: missing, expected a file that `carom run --trajectory` wrote")
-    try:
-        with movie.simulated(options.program, options.scene, options.variant) as trajectory:
-            print(movie.draw(options.scene, trajectory, options.output, options.step))
-    except movie.ProgramError as failed:
-        return failed.exit_code
+    with tempfile.TemporaryDirectory(prefix="carom-") as folder:
+        run = options.trajectory or Path(folder) / "trajectory"
+        if options.trajectory is None:
+            code = movie.simulate(options.program, options.scene, options.variant, run)
+            if code:
+                return code
+        print(movie.draw(options.scene, run, options.output, options.step))
     return 0

@@ -6,16 +6,14 @@ all over the stream and overlap: they show how often something happens, and are 
 the other set are disjoint: exact bounds rest on them.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from analysis.calibration.streams import Stream
 from analysis.statistics.looks import LOOKS, looks_up_to
-from analysis.statistics.verdicts import MARGIN, Ratio, judge_one
+from analysis.statistics.verdicts import INCONCLUSIVE, MARGIN, judge_one
 from analysis.support.parallel import in_parallel
 from analysis.support.values import Floats
 
@@ -29,19 +27,10 @@ LONGEST_DISJOINT = 48
 DECIDED = ("faster", "slower", "equivalent")
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """Two contenders of a stream, and by which part of the first one's work the second does more."""
-
-    reference: int
-    candidate: int
-    more: float
-
-
-def comparisons(more: Sequence[float]) -> list[Comparison]:
+def comparisons(more: Sequence[float]) -> list[tuple[int, int]]:
     """Return each contender against the first, then against the others that do the same work as the first."""
     equal = [k for k, one in enumerate(more) if one == 0]
-    return [Comparison(one, k, more[k]) for one in equal for k in range(len(more)) if k > one and k > 0]
+    return [(one, k) for one in equal for k in range(len(more)) if k > one]
 
 
 def is_wrong(verdict: str, more: float, margin: float = MARGIN) -> bool:
@@ -52,16 +41,13 @@ def is_wrong(verdict: str, more: float, margin: float = MARGIN) -> bool:
     return verdict in DECIDED and verdict != truth
 
 
-Rule = Callable[[Floats], Ratio]
-
-
-def study(values: Floats, looks: Sequence[int], more: float, rule: Rule = judge_one) -> dict[str, Any]:
+def study(values: Floats, looks: Sequence[int], more: float) -> dict[str, Any]:
     """Return what came of the study of these blocks: its `verdict`, how many `blocks` it took, whether that
     is `wrong`, and whether every interval up to there `covered` the truth.
     """
-    verdict, covered, blocks = "inconclusive", True, 0
+    verdict, covered, blocks = INCONCLUSIVE, True, 0
     for look in looks:
-        row = rule(values[:look])
+        row = judge_one(values[:look])
         verdict, blocks = row.verdict, look
         covered = covered and row.low <= 1 + more <= row.high
         if verdict in DECIDED:
@@ -69,18 +55,20 @@ def study(values: Floats, looks: Sequence[int], more: float, rule: Rule = judge_
     return {"verdict": verdict, "blocks": blocks, "wrong": is_wrong(verdict, more), "covered": covered}
 
 
-def of_stream(stream: Stream, one: Comparison, rule: Rule = judge_one) -> Iterator[dict[str, Any]]:
-    """Yield every study of one comparison: a row with the columns of `study`, `start`, `disjoint` and
-    `seconds`, which measuring those two alone would have taken.
+def of_stream(stream: Stream, reference: int, candidate: int) -> Iterator[dict[str, Any]]:
+    """Yield every study of one comparison: a row with the columns of `study`, of which stream and contenders
+    it is, where it starts, whether it is `disjoint`, and the `seconds` that measuring those two alone would
+    have taken.
     """
-    values = stream.log_ratios(one.reference, one.candidate)
-    seconds = stream.seconds_of_block(one.reference, one.candidate)
-    plans = [(False, overlapping(stream))] + [(True, disjoint(stream))] * (one.reference == 0)
+    values, more = stream.log_ratios(reference, candidate), stream.more[candidate]
+    seconds = stream.seconds_of_block(reference, candidate)
+    named = {"kind": stream.kind, "condition": stream.condition, "reference": reference, "more": more}
+    plans = [(False, overlapping(stream))] + [(True, disjoint(stream))] * (reference == 0)
     for is_disjoint, (starts, looks) in plans:
         for start in starts:
-            row = study(values[start:], looks, one.more, rule)
+            row = study(values[start:], looks, more)
             told = {"start": start, "disjoint": is_disjoint, "seconds": row["blocks"] * seconds}
-            yield {**row, **told}
+            yield {**named, **row, **told}
 
 
 def overlapping(stream: Stream) -> tuple[range, list[int]]:
@@ -99,29 +87,8 @@ def disjoint(stream: Stream) -> tuple[range, list[int]]:
     return range(0, stream.blocks - looks[-1] + 1, looks[-1]), looks
 
 
-def all_studies(streams: Sequence[Stream], rule: Rule = judge_one) -> pd.DataFrame:
-    """Return the studies of all streams, a row each: the columns of `of_stream`, `kind`, `condition`,
-    `reference` and `more`. All processors work on it.
-    """
-    asked = [(stream, one) for stream in streams for one in comparisons(stream.more)]
-
-    def rows(number: int) -> list[dict[str, Any]]:
-        stream, one = asked[number]
-        named = {"kind": stream.kind, "condition": stream.condition}
-        known = {**named, "reference": one.reference, "more": one.more}
-        return [{**known, **row} for row in of_stream(stream, one, rule)]
-
-    found = [row for several in in_parallel(rows, len(asked)) for row in several]
-    return pd.DataFrame(found, columns=COLUMNS).astype({"wrong": bool, "covered": bool, "disjoint": bool})
-
-
-COLUMNS = [
-    *("kind", "condition", "reference", "more", "start", "disjoint"),
-    *("verdict", "blocks", "seconds", "wrong", "covered"),
-]
-
-
-def quantile_until_found(studies: pd.DataFrame, level: float) -> float:
-    """Return the seconds by which this part of the studies had found the candidate slower, if they did."""
-    seconds = np.where(studies["verdict"] == "slower", studies["seconds"], np.inf)
-    return float(np.quantile(seconds, level, method="higher")) if len(seconds) else np.inf
+def all_studies(streams: Sequence[Stream]) -> pd.DataFrame:
+    """Return the studies of all streams, a row each, as of `of_stream`. All processors work on it."""
+    asked = [(stream, *two) for stream in streams for two in comparisons(stream.more)]
+    found = in_parallel(lambda number: list(of_stream(*asked[number])), len(asked))
+    return pd.DataFrame([row for rows in found for row in rows])

@@ -7,7 +7,7 @@ import pandas as pd
 
 from analysis.calibration.bounds import interval, upper_bound
 from analysis.calibration.streams import Stream
-from analysis.calibration.studies import DECIDED, quantile_until_found
+from analysis.calibration.studies import DECIDED
 from analysis.calibration.usual_ways import COUNTED
 
 OURS = "Carom"
@@ -50,10 +50,10 @@ def power(studies: pd.DataFrame, more: float = TO_BE_FOUND) -> pd.DataFrame:
     asked = studies[(studies["more"] == more) & ~studies["disjoint"]]
     rows = []
     for key, group in asked.groupby(STREAM, sort=False):
-        in_time = (group["verdict"] == "slower") & (group["seconds"] <= FOUND_WITHIN_SECONDS)
-        half, nine_of_ten = (quantile_until_found(group, part) for part in (0.5, 0.9))
-        longest = float(group["seconds"].max())
-        rows.append((*key, len(group), float(in_time.mean()), half, nine_of_ten, longest))
+        until = group["seconds"].where(group["verdict"] == "slower", np.inf)
+        half, nine_of_ten = np.quantile(until, (0.5, 0.9), method="higher")
+        found, longest = (until <= FOUND_WITHIN_SECONDS).mean(), group["seconds"].max()
+        rows.append((*key, len(group), found, half, nine_of_ten, longest))
     return pd.DataFrame(rows, columns=[*STREAM, "studies", "found", "half", "nine_of_ten", "longest"])
 
 
@@ -64,11 +64,10 @@ def ours_and_theirs(studies: pd.DataFrame, ways: pd.DataFrame, streams: Sequence
     tries as would not overlap.
     """
     counted = pd.concat([_ours(studies, streams), ways], ignore_index=True)
-    counted["hits"] = counted["slower"] + np.where(counted["more"] == 0, counted["faster"], 0)
     rows = []
-    for key, group in counted.groupby(["condition", "way", "more"], sort=False):
-        tries, disjoint = int(group["studies"].sum()), int(group["disjoint"].sum())
-        said = float(group["hits"].sum()) / tries if tries else np.nan
+    for key, sums in counted.groupby(["condition", "way", "more"], sort=False).sum().iterrows():
+        tries, hits, disjoint = (int(one) for one in sums)
+        said = hits / tries if tries else np.nan
         ends = interval(said * disjoint, disjoint) if tries and disjoint else (np.nan, np.nan)
         rows.append((*key, tries, said, *ends))
     return pd.DataFrame(rows, columns=["condition", "way", "more", "studies", "said", "low", "high"])
@@ -80,7 +79,7 @@ def _ours(studies: pd.DataFrame, streams: Sequence[Stream]) -> pd.DataFrame:
     rows = []
     over = studies[~studies["disjoint"] & (studies["reference"] == 0)]
     for (kind, condition, more), group in over.groupby([*STREAM, "more"], sort=False):
-        said = [int((group["verdict"] == verdict).sum()) for verdict in ("slower", "faster")]
+        hits = group["verdict"].isin(["slower"] if more else ["slower", "faster"]).sum()
         disjoint = int(blocks[kind, condition] / group["blocks"].mean())
-        rows.append((kind, condition, OURS, more, len(group), *said, disjoint))
+        rows.append((condition, OURS, more, len(group), hits, disjoint))
     return pd.DataFrame(rows, columns=COUNTED)

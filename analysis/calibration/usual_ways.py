@@ -103,13 +103,13 @@ WAYS = (
 )
 
 
-COUNTED = ["kind", "condition", "way", "more", "studies", "slower", "faster", "disjoint"]
+COUNTED = ["condition", "way", "more", "studies", "hits", "disjoint"]
 
 
 def all_ways(streams: Sequence[Stream]) -> pd.DataFrame:
-    """Return a row for each stream, way and comparison with the first contender: `kind`, `condition`, `way`,
-    `more`, how many `studies`, in how many of them it said `slower` and `faster`, and how many would not
-    overlap (`disjoint`).
+    """Return a row for each stream, way and comparison with the first contender: `condition`, `way`, `more`,
+    how many `studies`, how many of them were `hits`, which say slower, or faster where neither does more, and
+    how many would not overlap (`disjoint`).
     """
     rows = []
     for stream in streams:
@@ -119,6 +119,6 @@ def all_ways(streams: Sequence[Stream]) -> pd.DataFrame:
             starts = range(0, places, max(1, places // MOST_STARTS))
             for candidate, more in list(enumerate(stream.more))[1:]:
                 said = way.studies(flat[:, [0, candidate]], starts) if starts else np.zeros(0)
-                counted = (len(said), int((said > 0).sum()), int((said < 0).sum()), len(flat) // way.rounds)
-                rows.append((stream.kind, stream.condition, way.name, more, *counted))
+                hits = int(((said > 0) | ((said < 0) & (more == 0))).sum())
+                rows.append((stream.condition, way.name, more, len(said), hits, len(flat) // way.rounds))
     return pd.DataFrame(rows, columns=COUNTED)

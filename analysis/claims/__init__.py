@@ -6,15 +6,16 @@ from dataclasses import replace
 
 import pandas as pd
 
-from analysis.claims import family, missing
+from analysis.claims import family, missing, summary
 from analysis.claims.curves import falls_then_rises, grows, linear, spike_then_linear
 from analysis.claims.entry import Claim, Evidence, evidence_of, load
 from analysis.claims.machines import clock
-from analysis.claims.outcome import ELSEWHERE, FAILS, OPEN, PLAIN, Compared, Outcome, Verdict
+from analysis.claims.outcome import ELSEWHERE, FAILS, OPEN, PLAIN, Outcome, Verdict
 from analysis.claims.ratios import compilers, fewer_wasted_attempts, pair, phase_dominates
 from analysis.claims.scaling import scaling
 from analysis.claims.schedules import best_schedule
 from analysis.records.studies import Study
+from analysis.statistics.verdicts import Ratio
 from analysis.support.wording import count, listed
 from support.errors import InputError
 
@@ -99,7 +100,7 @@ def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[st
     outcome = _because(_elsewhere(outcome, claim, tested, study.scale), lost)
     if not math.isnan(wanted):
         outcome = _because(outcome, missing.said(study, claim, outcome.blocks, wanted))
-    figures = (*_setting(claim, tested, runs), *outcome.figures)
+    figures = [*_setting(claim, tested, runs), *map(_beside, outcome.effects)]
     return {
         "id": claim.id,
         "claim": claim.claim,
@@ -110,7 +111,7 @@ def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[st
         "said": _said(outcome, claim, tested, study.scale),
         **vars(outcome),
         "name": claim.name,
-        "figures": figures if len(runs) else (),
+        "figures": figures if len(runs) else [],
     }
 
 
@@ -156,7 +157,11 @@ def _said(outcome: Outcome, claim: Claim, tested: tuple[int, ...], scale: str) -
     return f"{plain}{at_scale}{comma} at {threads} (claimed at {claim.published.threads})"
 
 
-def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> tuple[Compared, ...]:
+def _beside(effect: Ratio) -> tuple[str, str, str]:
+    return effect.what, summary.published_in_short(effect), summary.change_in_short(effect)
+
+
+def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> list[tuple[str, str, str]]:
     """The study's parameters beside those of our records."""
     origin = claim.published
     number = "" if origin.threads is None else str(origin.threads)
@@ -171,9 +176,9 @@ def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> tuple
         else "–"
     )
     models = listed(sorted(runs["cpu_model"].unique()))
-    return (
+    return [
         ("threads", said, listed(tested)),
         ("machine", origin.machine, models),
         ("scene", origin.scene, scene),
         ("tolerance", "published", listed(sorted(runs["tolerance"].dropna().unique())) or "–"),
-    )
+    ]

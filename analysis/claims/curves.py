@@ -8,24 +8,17 @@ import pandas as pd
 
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import OPEN, Compared, Outcome, judged, no_records, unmeasured
+from analysis.claims.outcome import OPEN, Outcome, judged, no_records, unmeasured
 from analysis.claims.schedules import EFFECTS, nothing_faster
-from analysis.records.studies import Study
 from analysis.statistics.intervals import FEWEST
-from analysis.statistics.pairs import log_ratios, ratios_of
+from analysis.statistics.pairs import log_ratios
 from analysis.statistics.trends import Minimum, growth, linearity, minimum
 from analysis.statistics.verdicts import EXPONENT, Ratio
-from analysis.support.wording import blocks, change, exact, factor, interval, interval_of, listed, number
+from analysis.support.wording import blocks, change, exact, interval, interval_of, listed, number
 
 ONE_POINT = "needs at least two values of the swept parameter"
 FOUR_POINTS = "needs four values measured in the same block"
-
-
-def published_processes(study: Study, experiment: str) -> pd.DataFrame:
-    """Return the processes of the published variant, of which the claims speak, or of all if it has none."""
-    processes = study.times_of(experiment)
-    published = processes[processes["variant"] == "published"]
-    return processes if published.empty else published
+BETWEEN = "the exponent's interval reaches across a bound: more blocks would decide"
 
 
 def grows(evidence: Evidence, experiments: Sequence[str]) -> Outcome:
@@ -38,67 +31,29 @@ def grows(evidence: Evidence, experiments: Sequence[str]) -> Outcome:
 
 
 def _grows(evidence: Evidence, experiment: str) -> Outcome:
-    curve = evidence.published.without_degenerate(experiment, evidence.published.curve(experiment))
-    published = growth(curve).change.ratio if curve["x"].nunique() > 1 else nan
-    what, margin = experiment.replace("_", " "), evidence.margin(experiment)
-    nothing = (unmeasured(what, published, margin),)
-    processes = published_processes(evidence.study, experiment)
+    curves = evidence.curves(experiment)
+    published, kept = (evidence.published.without_degenerate(experiment, one) for one in curves)
+    margin, processes = evidence.margin(experiment), curves[1]
+    theirs = growth(published).change.ratio if published["x"].nunique() > 1 else nan
+    nothing = unmeasured(experiment.replace("_", " "), theirs, margin)
     if processes.empty:
-        return replace(no_records(experiment), effects=nothing)
-    kept = evidence.published.without_degenerate(experiment, processes)
+        return no_records(experiment, effects=[nothing])
     if kept["x"].nunique() < 2:
-        return Outcome(OPEN, why=ONE_POINT, effects=nothing)
+        return Outcome(OPEN, why=ONE_POINT, effects=(nothing,))
     trend, name = growth(kept, margin), processes["x_name"].iloc[0]
     without = sorted(set(processes["x"]) - set(kept["x"]))
     measured = (
         f"{change(trend.change)} of time from {name} = {exact(trend.first)} to {exact(trend.last)}, "
         f"exponent {interval(trend.exponent)}, {blocks(trend.change)}"
     ) + (f" (without the degenerate {name} = {listed(without)})" if without else "")
-    figures = (_growth_compared(evidence, experiment, kept),)
-    effect = replace(trend.change, what=what, published=published)
-    return replace(judged(trend.change, "grows", measured, figures), effects=(effect,))
-
-
-def _growth_compared(evidence: Evidence, experiment: str, processes: pd.DataFrame) -> Compared:
-    """Return by which factor the time grows from the first to the last x, each over its own range."""
-    curve = evidence.published.curve(experiment)
-    theirs = evidence.published.without_degenerate(experiment, curve)
-    said = [_factor(one) if one["x"].nunique() > 1 else "–" for one in (theirs, processes)]
-    return f"growth of the time over {processes['x_name'].iloc[0]}", said[0], said[1]
-
-
-def _factor(processes: pd.DataFrame) -> str:
-    """Return the factor of the times and that of x, e.g. `×5.67 from 10 000 to 100 000`."""
-    ends = processes["x"].min(), processes["x"].max()
-    both = len(ratios_of(processes, "x", *ends))
-    trend = growth(processes).change.ratio if both else nan
-    return f"{factor(trend)} from {exact(ends[0])} to {exact(ends[1])}"
+    return judged(trend.change.told_as(nothing), "grows", measured)
 
 
 def linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> Outcome:
     """Test that the time is a straight line over x: its exponent, over any fixed cost, is within bounds."""
-    processes = published_processes(evidence.study, experiment)
-    curve = evidence.published.curve(experiment)
-    if processes.empty:
-        return replace(no_records(experiment), effects=(_exponent(curve, within),))
-    outcome = _linear(processes, curve, within)
-    grown = _growth_compared(evidence, experiment, processes)
-    return replace(outcome, figures=(*outcome.figures, grown))
-
-
-def _linear(processes: pd.DataFrame, published: pd.DataFrame, within: tuple[float, float]) -> Outcome:
+    published, processes = evidence.curves(experiment)
     nothing = _exponent(published, within)
-    line, name = linearity(processes, nothing.within), processes["x_name"].iloc[0]
-    effects = (replace(line, published=nothing.published),)
-    if not line.is_measured:
-        return Outcome(OPEN, why=FOUR_POINTS, effects=effects)
-    measured = (
-        f"time = fixed + slope × {name}^e with e = {interval_of(line, 'ratio')}, "
-        f"taken as linear between {within[0]} and {within[1]}"
-    )
-    figures = ((f"exponent over {name}", number(nothing.published), interval_of(line, "ratio")),)
-    why = "the exponent's interval reaches across a bound: more blocks would decide"
-    return replace(judged(line, "linear", measured, figures, why), effects=effects)
+    return no_records(experiment, effects=[nothing]) if processes.empty else _linear(processes, nothing)
 
 
 def _exponent(published: pd.DataFrame, within: tuple[float, float]) -> Ratio:
@@ -107,47 +62,46 @@ def _exponent(published: pd.DataFrame, within: tuple[float, float]) -> Ratio:
     return Ratio(what=EXPONENT, published=linearity(published, (low, high)).ratio, within=(low, high))
 
 
+def _linear(processes: pd.DataFrame, nothing: Ratio) -> Outcome:
+    line = linearity(processes, nothing.within).told_as(nothing)
+    if not line.is_measured:
+        return Outcome(OPEN, why=FOUR_POINTS, effects=(line,))
+    low, high = nothing.within
+    measured = (
+        f"time = fixed + slope × {processes['x_name'].iloc[0]}^e with e = {interval_of(line, 'ratio')}, "
+        f"taken as linear between {low} and {high}"
+    )
+    return judged(line, "linear", measured, BETWEEN)
+
+
 def falls_then_rises(evidence: Evidence, experiment: str, least: float | None = None) -> Outcome:
     """Test that the time falls to some x inside the range and rises from there; with `least` also that
     nowhere in the range it is less than there, by more than the margin.
     """
-    processes = published_processes(evidence.study, experiment)
-    curve = evidence.published.curve(experiment)
+    published, processes = evidence.curves(experiment)
     if processes.empty:
-        return replace(no_records(experiment), effects=_ends(curve, None))
+        return no_records(experiment, effects=_ends(published, None))
     if processes["x"].nunique() < 3:
         return Outcome(OPEN, why="needs at least three values of the swept parameter")
     margin = evidence.margin(experiment)
-    shape = _shape(processes, curve, margin)
-    return shape if least is None else both([shape, _least_at(processes, least, margin)])
-
-
-def _shape(processes: pd.DataFrame, published: pd.DataFrame, margin: float) -> Outcome:
-    ours = minimum(processes, margin)
-    name = processes["x_name"].iloc[0]
+    ours, name = minimum(processes, margin), processes["x_name"].iloc[0]
     measured = (
         f"least at {name} = {exact(ours.lowest)}{_break(ours)}; against it {change(ours.fall)} at "
         f"the smallest and {change(ours.rise)} at the largest {name}, {blocks(ours.fall)}"
     )
-    theirs = minimum(published)
-    figures = (
-        (f"least time at {name}", exact(theirs.lowest), exact(ours.lowest)),
-        (f"smallest {name} against it", factor(theirs.fall.ratio), factor(ours.fall.ratio)),
-        (f"largest {name} against it", factor(theirs.rise.ratio), factor(ours.rise.ratio)),
-    )
-    outcome = judged(ours.fall, "falls then rises", measured, figures)
-    return replace(outcome, why=outcome.why or ours.fall.verdict, effects=_ends(published, ours))
+    shape = judged(ours.fall, "falls then rises", measured)
+    shape = replace(shape, why=shape.why or ours.fall.verdict, effects=_ends(published, ours))
+    return shape if least is None else both([shape, _least_at(processes, least, margin)])
 
 
 def _ends(published: pd.DataFrame, ours: Minimum | None) -> tuple[Ratio, ...]:
     """Return the times at both ends of the range against the least."""
+    sides = (("at the smallest", "fall"), ("at the largest", "rise"))
     theirs = minimum(published) if len(published) else None
-    effects = []
-    for end, side in (("smallest", "fall"), ("largest", "rise")):
-        row = getattr(ours, side) if ours else Ratio()
-        told = getattr(theirs, side).ratio if theirs else nan
-        effects.append(replace(row, what=f"at the {end}", published=told))
-    return tuple(effects)
+    return tuple(
+        replace(getattr(ours, side, Ratio()), what=end, published=getattr(theirs, side, Ratio()).ratio)
+        for end, side in sides
+    )
 
 
 def _break(least: Minimum) -> str:
@@ -180,13 +134,14 @@ def _least_at(processes: pd.DataFrame, least: float, margin: float) -> Outcome:
 def spike_then_linear(evidence: Evidence, experiment: str, within: tuple[float, float]) -> Outcome:
     """Test for a fall at the small end of x and a straight line from the lowest point on."""
     spike = falls_then_rises(evidence, experiment)
-    theirs = _from_the_lowest(evidence.published.curve(experiment))
+    published, processes = map(_from_the_lowest, evidence.curves(experiment))
+    nothing = _exponent(published, within)
     if not spike.measured:
-        return replace(spike, effects=(*spike.effects, _exponent(theirs, within)))
-    ours = _from_the_lowest(published_processes(evidence.study, experiment))
-    return both([spike, _linear(ours, theirs, within)])
+        return replace(spike, effects=(*spike.effects, nothing))
+    return both([spike, _linear(processes, nothing)])
 
 
 def _from_the_lowest(processes: pd.DataFrame) -> pd.DataFrame:
     """Return the processes from the x with the least median on."""
-    return processes[processes["x"] >= processes.groupby("x")["steps_seconds"].median().idxmin()]
+    medians = processes.groupby("x")["steps_seconds"].median()
+    return processes if medians.empty else processes[processes["x"] >= medians.idxmin()]

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+
 from analysis.derived.comparisons import stated
 from analysis.records import published
 from analysis.records.published import Published
@@ -75,6 +77,14 @@ class Evidence:
     def margin(self, experiment: str) -> float:
         """Return the least difference that matters, as the experiment's question states it."""
         return stated(*self.study.of(experiment, "runs")).margin
+
+    def curves(self, experiment: str) -> tuple[pd.DataFrame, pd.DataFrame]:
+        """Return the sweep as it was published, and the processes of the published variant, of which the
+        claims speak, or of all if it has none.
+        """
+        processes = self.study.times_of(experiment)
+        own = processes[processes["variant"] == "published"]
+        return self.published.curve(experiment), processes if own.empty else own
 
 
 def evidence_of(records: Records) -> list[Evidence]:

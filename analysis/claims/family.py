@@ -37,7 +37,6 @@ def both(outcomes: Sequence[Outcome]) -> Outcome:
         verdict,
         "; ".join(outcome.measured for outcome in outcomes if outcome.measured),
         "; ".join(dict.fromkeys(outcome.why for outcome in decisive if outcome.why)),
-        tuple(dict.fromkeys(figure for outcome in outcomes for figure in outcome.figures)),
         all(outcome.missing for outcome in outcomes),
         (min(p) if verdict == FAILS else max(p)) if p else None,
         blocks=_blocks(decisive, verdict),

@@ -9,7 +9,7 @@ import pandas as pd
 
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import FAILS, OPEN, Compared, Outcome, judged, no_records, unmeasured
+from analysis.claims.outcome import FAILS, OPEN, Outcome, judged, no_records, unmeasured
 from analysis.records.published import Published
 from analysis.statistics.verdicts import Ratio, judge_unpaired
 from analysis.support.wording import listed, number
@@ -34,15 +34,11 @@ class Measured:
         return {int(number) for number in self.processes["threads"]}
 
     @property
-    def seconds(self) -> str:
-        """The median time in words."""
-        return f"{number(float(self.processes['steps_seconds'].median()))} s"
-
-    @property
     def said(self) -> str:
         """The machine with its clock, threads and median time."""
         clock = f"{number(self.gigahertz, 2)} GHz" if self.gigahertz else "clock not known"
-        return f"{self.machine}: {clock}, {listed(sorted(self.threads))} threads, {self.seconds}"
+        seconds = number(float(self.processes["steps_seconds"].median()))
+        return f"{self.machine}: {clock}, {listed(sorted(self.threads))} threads, {seconds} s"
 
 
 def clock(evidence: Evidence, experiment: str) -> Outcome:
@@ -55,22 +51,21 @@ def clock(evidence: Evidence, experiment: str) -> Outcome:
     machines = _machines(evidence, experiment)
     theirs = _published_effects(evidence.published, experiment)
     if not machines:
-        return replace(no_records(experiment), effects=theirs)
-    figures = _figures(evidence.published, experiment, machines)
+        return no_records(experiment, effects=theirs)
     measured = "; ".join(one.said for one in machines)
     why = _undecidable(machines)
     if why:
-        return Outcome(OPEN, measured if len(machines) > 1 else "", why, figures, effects=theirs)
+        return Outcome(OPEN, measured if len(machines) > 1 else "", why, effects=theirs)
     ordered = sorted((one for one in machines if one.gigahertz), key=lambda one: one.gigahertz or 0)
     faster = [two for two in pairwise(ordered) if two[0].gigahertz != two[1].gigahertz]
-    rows = [judge_unpaired(*(one.processes["steps_seconds"] for one in two)) for two in faster]
-    joined = both([judged(row, "faster", "", unit="process") for row in rows])
+    outcomes = []
+    for slow, fast in faster:
+        row = judge_unpaired(slow.processes["steps_seconds"], fast.processes["steps_seconds"])
+        row = replace(row, what=f"{fast.gigahertz} against {slow.gigahertz} GHz")
+        outcomes.append(judged(row, "faster", unit="process"))
+    joined = both(outcomes)
     why = "a higher clock was not faster" if joined.verdict == FAILS else joined.why
-    effects = tuple(
-        replace(row, what=f"{fast.gigahertz} against {slow.gigahertz} GHz")
-        for (slow, fast), row in zip(faster, rows, strict=True)
-    )
-    return replace(joined, measured=measured, why=why, figures=figures, effects=effects)
+    return replace(joined, measured=measured, why=why)
 
 
 def _published_effects(published: Published, experiment: str) -> tuple[Ratio, ...]:
@@ -95,18 +90,6 @@ def _undecidable(machines: Sequence[Measured]) -> str:
     if len(threads) > 1:
         return f"the machines ran on unequal numbers of threads: {listed(sorted(threads))}"
     return ""
-
-
-def _figures(published: Published, experiment: str, machines: Sequence[Measured]) -> tuple[Compared, ...]:
-    """Return a row a machine, of the study or of ours, where both have it one row."""
-    times = published.experiment(experiment).groupby("series")["seconds"].median()
-    ours = {one.published.machine: one.seconds for one in reversed(machines) if one.published}
-    rows = []
-    for row in published.machines.itertuples():
-        theirs = f"{number(float(times[row.machine]))} s" if row.machine in times else "–"
-        rows.append((f"{row.machine}, {row.maximum_gigahertz} GHz", theirs, ours.get(row.machine, "–")))
-    others = [(one.machine, "–", one.seconds) for one in machines if not one.gigahertz]
-    return (*rows, *others)
 
 
 def _machines(evidence: Evidence, experiment: str) -> list[Measured]:

@@ -1,5 +1,6 @@
 """What became of a claim: holds, does not hold, or cannot be decided here, with what was measured and why."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import nan
@@ -8,9 +9,6 @@ from analysis.statistics.intervals import FEWEST
 from analysis.statistics.looks import ERROR
 from analysis.statistics.verdicts import INCONCLUSIVE, MARGIN, Ratio, within_margin
 from analysis.support.wording import count, percent
-
-Compared = tuple[str, str, str]
-"""One figure of the study beside ours: what it is, as published, here; an en dash for what is not there."""
 
 
 class Verdict(StrEnum):
@@ -61,7 +59,6 @@ class Outcome:
     verdict: Verdict
     measured: str = ""
     why: str = ""
-    figures: tuple[Compared, ...] = ()
     missing: bool = False
     p: float | None = None
     against: float | None = None
@@ -72,10 +69,11 @@ class Outcome:
     """What it is about as numbers."""
 
 
-def no_records(experiment: str, missing: str = "") -> Outcome:
+def no_records(experiment: str, missing: str = "", effects: Iterable[Ratio] = ()) -> Outcome:
     """Return the outcome of a claim whose experiment has not been measured, or not with all that it needs."""
     detail = f" of {missing}" if missing else ""
-    return Outcome(OPEN, why=f"{NO_RECORDS}{detail} (experiment {experiment!r})", missing=True)
+    why = f"{NO_RECORDS}{detail} (experiment {experiment!r})"
+    return Outcome(OPEN, why=why, missing=True, effects=tuple(effects))
 
 
 def unmeasured(what: str, published: float = nan, margin: float = MARGIN) -> Ratio:
@@ -84,22 +82,17 @@ def unmeasured(what: str, published: float = nan, margin: float = MARGIN) -> Rat
 
 
 def judged(
-    row: Ratio,
-    expected: str,
-    measured: str,
-    figures: tuple[Compared, ...] = (),
-    unsettled: str = TOO_FEW,
-    unit: str = "block",
+    row: Ratio, expected: str, measured: str = "", unsettled: str = TOO_FEW, unit: str = "block"
 ) -> Outcome:
-    """Return what a verdict, from so many `blocks` (or another unit), says of a claim that expects one;
-    `unsettled` is why it is open where they are enough and do not decide.
+    """Return what a verdict, from so many `blocks` (or another unit), says of a claim that expects one, with
+    the ratio as its effect; `unsettled` is why it is open where they are enough and do not decide.
 
     That one choice is faster, or slower, holds in direction where the interval lies wholly on that side of 0,
     but not beyond the margin. Else a claim does not hold where the interval has no part in what was expected,
     whether or not it tells the other verdicts from each other. What has no p-value of that, as where a curve
     `grows`, fails by another verdict.
     """
-    outcome = Outcome(OPEN, measured, figures=figures, blocks=row.blocks)
+    outcome = Outcome(OPEN, measured, blocks=row.blocks, effects=(row,))
     if row.blocks < FEWEST:
         why = f"rests on {count(row.blocks, unit)}: a verdict needs at least {FEWEST}"
         return replace(outcome, why=why)

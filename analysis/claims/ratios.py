@@ -15,11 +15,11 @@ import pandas as pd
 
 from analysis.claims.entry import Evidence
 from analysis.claims.family import both
-from analysis.claims.outcome import OPEN, TOO_FEW, Compared, Outcome, judged, no_records, told, unmeasured
+from analysis.claims.outcome import OPEN, TOO_FEW, Outcome, judged, no_records, told, unmeasured
 from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import PAIR, log_ratios, ratios_of
 from analysis.statistics.verdicts import Ratio, judge_one, judge_pairs
-from analysis.support.wording import blocks, change, count, exact, number, percent, share
+from analysis.support.wording import blocks, change, count, exact, number, share
 from support.vocabulary import COUNTS
 
 CODE_ALONE = "g++'s code with the runtime of clang++, which its build has where clang++ is installed"
@@ -59,36 +59,23 @@ def _one_pair(
     known = {candidate, reference} <= set(means.index)
     published = float(means[candidate] / means[reference]) if known else nan
     margin, what = evidence.margin(experiment), f"{candidate} against {reference}"
-    nothing = (unmeasured(what, published, margin),)
+    nothing = unmeasured(what, published, margin)
     times = evidence.study.times_of(experiment)
+    if times.empty:
+        return no_records(experiment, effects=[nothing])
     chosen, against = (times[times[axis] == value] for value in (candidate, reference))
-    lacking = [
-        f"{axis} = {name}" for name, side in zip(sides[1:], (chosen, against), strict=True) if side.empty
-    ]
-    if times.empty or lacking:
-        needed = "" if times.empty else " and ".join(lacking)
-        return replace(no_records(experiment, needed), effects=nothing)
     name, shared = times["x_name"].iloc[0], sorted(set(chosen["x"]) & set(against["x"]))
     if not shared:
-        needed = f"{candidate} and {reference} at the same {name}"
-        return replace(no_records(experiment, needed), effects=nothing)
+        lacking = [f"{axis} = {one}" for one in (candidate, reference) if not (times[axis] == one).any()]
+        needed = " and ".join(lacking) or f"{candidate} and {reference} at the same {name}"
+        return no_records(experiment, needed, [nothing])
+    if at is not None and at not in shared:
+        return Outcome(OPEN, why=f"needs {name} = {exact(at)}", effects=(nothing,))
+    where, x = ("", shared[-1]) if at is None else (f" at {name} = {exact(at)}", at)
     pairs = log_ratios(against, chosen, match=("x",))
-    rows = {x: judge_pairs(pairs[pairs["x"] == x], margin) for x in shared}
-    theirs = evidence.published.ratio(experiment, candidate, reference)
-    figures = tuple(
-        (
-            f"time of {what}, {experiment if at is None else f'{name} = {exact(x)}'}",
-            percent(theirs.ratio - 1) if theirs else "–",
-            change(row),
-        )
-        for x, row in rows.items()
-    )
-    if at is not None and at not in rows:
-        return Outcome(OPEN, why=f"needs {name} = {exact(at)}", figures=figures, effects=nothing)
-    where, row = ("", rows[shared[-1]]) if at is None else (f" at {name} = {exact(at)}", rows[at])
+    row = judge_pairs(pairs[pairs["x"] == x], margin).told_as(nothing)
     measured = f"{what}{where}: {change(row)} of time, {blocks(row)} ({told(row, expected)})"
-    found = judged(row, expected, measured, figures)
-    return replace(found, effects=(replace(row, what=what, published=published),))
+    return judged(row, expected, measured)
 
 
 def compilers(evidence: Evidence, experiment: str, candidate: str, reference: str) -> Outcome:
@@ -115,9 +102,8 @@ def compilers(evidence: Evidence, experiment: str, candidate: str, reference: st
         alone = against(theirs[~shared])
         beside = f"{_compiler(theirs[~shared])} against {_compiler(theirs[shared])}: {change(alone)} of time"
         measured += f"; the runtime alone: {beside} ({told(alone, 'faster')})"
-    outcome = judged(row, "faster", measured, ((f"time of {names}", "–", change(row)),))
-    why = outcome.why or f"{verdict} with the same runtime"
-    return replace(outcome, why=why, effects=(replace(row, what=f"{candidate} against {reference}"),))
+    found = judged(replace(row, what=f"{candidate} against {reference}"), "faster", measured)
+    return replace(found, why=found.why or f"{verdict} with the same runtime")
 
 
 def _compiler(side: pd.DataFrame) -> str:
@@ -152,13 +138,12 @@ def fewer_wasted_attempts(
     if not (runs["question_kind"] == COUNTS).all():
         # The mean over the seeds of each block: what a block suffers, all its seeds do.
         pairs = ratios_of(evidence.study.times_of(experiment), axis, reference, candidate, match=("x",))
-        rows["time"] = row = judge_one(pairs.groupby(PAIR)["log_ratio"].mean())
+        row = judge_one(pairs.groupby(PAIR)["log_ratio"].mean())
         measured += f"; {change(row)} of time, {blocks(row)} ({row.verdict})"
-    figures = tuple((what, "–", change(row)) for what, row in rows.items())
     unsettled = TOO_FEW.replace("blocks or a quieter machine", "seeds")
-    found = judged(wasted, "faster", measured, figures, unsettled, unit="seed")
+    wasted = replace(wasted, what="wasted attempts")
     # More blocks bring no further seed.
-    return replace(found, blocks=0, effects=(replace(wasted, what="wasted attempts"),))
+    return replace(judged(wasted, "faster", measured, unsettled, unit="seed"), blocks=0)
 
 
 def _of_counts(row: Ratio) -> str:
@@ -203,18 +188,16 @@ def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str)
     # Later ones of less than half refute nothing.
     is_surer = row.verdict != "slower" and _above(late_row) <= min(ERROR, _above(row))
     if late_row.verdict == "slower" or is_surer:
-        row, said = late_row, f"{part['late']} without early resolves"
+        row = late_row
         of = f"{part['late']} of a step in {phase} alone, without what is done early in {early}"
     else:
-        said, late_and_early = str(part["all"]), f"{part['late']} in {phase} and {part['early']} early"
+        late_and_early = f"{part['late']} in {phase} and {part['early']} early"
         of = f"{part['all']} of a step: {late_and_early}, of the {part[early]} of {early}"
     measured = (
         f"resolving takes {of}; the ratio to all the rest is {number(row.ratio)} [{number(row.low)}, "
         f"{number(row.high)}], {blocks(row)}"
     )
-    figures: tuple[Compared, ...] = (("share of a step that resolving takes", "–", said),)
-    effect = replace(row, what="resolving against the rest")
-    return replace(judged(row, "slower", measured, figures), effects=(effect,))
+    return judged(replace(row, what="resolving against the rest"), "slower", measured)
 
 
 def _above(row: Ratio) -> float:

@@ -12,7 +12,7 @@ from analysis.claims.outcome import FAILS, OPEN, TOO_FEW, Outcome, judged, no_re
 from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import PAIR, log_ratios
 from analysis.statistics.verdicts import INCONCLUSIVE, MARGIN, Ratio, judge, judge_one, of_row, within_margin
-from analysis.support.wording import blocks, change, count, exact, number, percent
+from analysis.support.wording import blocks, change, count, number
 
 ONE_THREAD = "on a single thread a schedule shares nothing out: needs 2 hardware threads"
 EFFECTS = ("best other", "against the others")
@@ -41,7 +41,7 @@ def nothing_faster(pairs: pd.DataFrame, margin: float = MARGIN) -> Outcome:
     verdict = INCONCLUSIVE if undecided else "not faster"
     row = Ratio(blocks=fewest, p=float(table["not_faster"].max()), verdict=verdict)
     why = f"not settled against {undecided} of {others} others; {TOO_FEW}"
-    found = judged(row, "not faster", "", unsettled=why)
+    found = judged(row, "not faster", unsettled=why)
     why = found.why or f"none of {others} others is faster by more than {100 * margin:g} %"
     ahead = table["not_equivalent"].where(table["ratio"] < 1, inf)
     against = float(ahead.min()) * others if undecided else None
@@ -57,9 +57,9 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     choices, and so it does here. The average is that of the log ratios within each block.
     """
     processes = evidence.study.times_of(experiment)
-    best_published, *ratios = _published(evidence, experiment, schedule, chunk)
+    published = list(map(unmeasured, EFFECTS, _published(evidence, experiment, schedule, chunk)))
     if processes.empty:
-        return replace(no_records(experiment), effects=tuple(map(unmeasured, EFFECTS, ratios)))
+        return no_records(experiment, effects=published)
     kind = processes[axis].str.split("_").str[0]
     chosen = processes[(kind == schedule) & (processes["x"] == chunk)]
     others = processes.drop(chosen.index)
@@ -76,50 +76,26 @@ def best_schedule(evidence: Evidence, experiment: str, axis: str, schedule: str,
     margin = evidence.margin(experiment)
     # ln(choice / mean of the others) of every block that has all of them.
     table = pairs.pivot_table(index=PAIR, columns="name", values="log_ratio").dropna()
-    average = judge_one(-table.mean(axis=1), margin)
+    average = judge_one(-table.mean(axis=1), margin).told_as(published[1])
     seconds = number(float(np.median(chosen["steps_seconds"])))
     threads = count(int(chosen["threads"].iloc[0]), "thread")
     found = nothing_faster(pairs, margin)
     (best,) = found.effects
     other = f"best other, {best.what}: {change(best)} of time, {blocks(best)}"
-    found = replace(found, measured=f"{schedule} {chunk}: {seconds} s on {threads}; {other}")
-    matters = judged(
-        average, "faster", f"against the others on average {change(average)} of time, {blocks(average)}"
-    )
+    measured = f"{schedule} {chunk}: {seconds} s on {threads}; {other}"
+    found = replace(found, measured=measured, effects=(best.told_as(published[0]),))
+    said = f"against the others on average {change(average)} of time, {blocks(average)}"
+    matters = judged(average, "faster", said)
     if matters.verdict == FAILS:
         matters = replace(matters, why=NOT_BETTER[told(average, "faster")])
-    medians = processes.groupby(["series", "x"], as_index=False)["steps_seconds"].median()
-    fastest = _least(evidence.published.experiment(experiment), "seconds"), _least(medians, "steps_seconds")
-    figures = (
-        ("fastest measured", *fastest),
-        ("best other against the choice", best_published, f"{best.what}: {change(best)}"),
-    )
-    effects = tuple(
-        replace(row, what=what, published=published)
-        for row, what, published in zip((best, average), EFFECTS, ratios, strict=True)
-    )
-    return replace(both([found, matters]), figures=figures, effects=effects)
+    return both([found, matters])
 
 
-def _published(
-    evidence: Evidence, experiment: str, schedule: str, chunk: int
-) -> tuple[str, float, float]:  # fmt: skip
-    """Return the published best other against the choice, in words and as a ratio, and the choice against
-    the mean of the others.
-    """
+def _published(evidence: Evidence, experiment: str, schedule: str, chunk: int) -> tuple[float, float]:
+    """Return the published best other against the choice, and the choice against the mean of the others."""
     times = evidence.published.experiment(experiment)
     chosen = (times["series"] == schedule) & (times["x"] == chunk)
     if not chosen.any() or chosen.all():
-        return "–", nan, nan
-    choice, others = times.loc[chosen, "seconds"].iloc[0], times[~chosen]
-    best = others.loc[others["seconds"].idxmin()]
-    ratio = float(best["seconds"] / choice)
-    average = float(choice / np.exp(np.log(others["seconds"]).mean()))
-    return f"{best['series']} {exact(best['x'])}: {percent(ratio - 1)}", ratio, average
-
-
-def _least(table: pd.DataFrame, value: str) -> str:
-    if table.empty:
-        return "–"
-    least = table.loc[table[value].idxmin()]
-    return f"{least['series']} {exact(least['x'])}, {number(least[value], 4)} s"
+        return nan, nan
+    choice, others = float(times.loc[chosen, "seconds"].iloc[0]), times.loc[~chosen, "seconds"]
+    return float(others.min() / choice), float(choice / np.exp(np.log(others).mean()))

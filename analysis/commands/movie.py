@@ -4,15 +4,11 @@ import logging
 import math
 import shutil
 import subprocess
-import tempfile
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from pathlib import Path
 
 import matplotlib as mpl
-import numpy as np
-from matplotlib.animation import FFMpegWriter
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from PIL import Image
 
 from analysis.commands.picture import Moment, Picture
@@ -51,8 +47,11 @@ def draw(scene: Path, trajectory: Path, output: Path | None = None, step: int | 
             picture.figure.savefig(part, dpi=PICTURE_DOTS)
         else:
             picture.discs.set(antialiased=False, alpha=1)  # equal discs have equal pixels, which are small
-            write = _write_mp4 if target.suffix == ".mp4" else _write_gif
-            write(picture, moments(run.steps, FRAMES), part)
+            if target.suffix == ".mp4":
+                writer: AbstractMovieWriter = FFMpegWriter(fps=FRAMES_PER_SECOND, codec="h264")
+            else:
+                writer = _SmallGif(fps=FRAMES_PER_SECOND)
+            _write_movie(picture, moments(run.steps, FRAMES), part, writer)
     return target
 
 
@@ -77,26 +76,13 @@ def target_of(scene: Path, output: Path | None = None, step: int | None = None) 
     return target
 
 
-class ProgramError(Exception):
-    """The program said on standard error why; it ended with `exit_code`."""
-
-    def __init__(self, exit_code: int) -> None:
-        super().__init__(f"exit code {exit_code}")
-        self.exit_code = exit_code
-
-
-@contextmanager
-def simulated(program: Path, scene: Path, variant: str) -> Iterator[Path]:
-    """The trajectory of a variant on a scene, simulated now. The program's summary goes where this program's
-    output goes. Raises ProgramError.
+def simulate(program: Path, scene: Path, variant: str, trajectory: Path) -> int:
+    """Write the trajectory of a variant on a scene; return the program's exit code. What it says goes where
+    this program's output goes.
     """
-    with tempfile.TemporaryDirectory(prefix="carom-") as folder:
-        trajectory = Path(folder) / "trajectory"
-        words = [program, "run", scene, "--variant", variant, "--trajectory", trajectory]
-        code = subprocess.call([str(word) for word in words])
-        if code != 0:
-            raise ProgramError(code if code > 0 else 128 - code)
-        yield trajectory
+    words = [program, "run", scene, "--variant", variant, "--trajectory", trajectory]
+    code = subprocess.call([str(word) for word in words])
+    return code if code >= 0 else 128 - code
 
 
 def moments(steps: int, frames: int) -> list[Moment]:
@@ -112,23 +98,23 @@ def moments(steps: int, frames: int) -> list[Moment]:
     return [*between, Moment(steps, 0.0)]
 
 
-def _write_gif(picture: Picture, shown: Iterable[Moment], target: Path) -> None:
-    picture.figure.set_dpi(MOVIE_DOTS)
-    canvas = FigureCanvasAgg(picture.figure)
-    frames: list[Image.Image] = []
-    for moment in shown:
-        picture.show(moment)
-        canvas.draw()
-        pixels = Image.fromarray(np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[:, :, :3]))
-        palette = frames[0] if frames else None
-        frames.append(pixels.quantize(COLOURS, palette=palette, dither=Image.Dither.NONE))
-    first, *others = frames
-    first.save(target, save_all=True, append_images=others, loop=0, duration=1000 // FRAMES_PER_SECOND)
+class _SmallGif(PillowWriter):
+    """All frames have the few colours of the first."""
+
+    _frames: list[Image.Image]
+
+    def finish(self) -> None:
+        """Write the file."""
+        first = self._frames[0].quantize(COLOURS, dither=Image.Dither.NONE)
+        others = (one.quantize(COLOURS, palette=first, dither=Image.Dither.NONE) for one in self._frames[1:])
+        self._frames = [first, *others]
+        super().finish()
 
 
-def _write_mp4(picture: Picture, shown: Iterable[Moment], target: Path) -> None:
+def _write_movie(
+    picture: Picture, shown: Iterable[Moment], target: Path, writer: AbstractMovieWriter
+) -> None:
     logging.getLogger("matplotlib.animation").setLevel(logging.ERROR)  # which would tell it in many lines
-    writer = FFMpegWriter(fps=FRAMES_PER_SECOND, codec="h264")
     try:
         with writer.saving(picture.figure, str(target), MOVIE_DOTS):
             for moment in shown:

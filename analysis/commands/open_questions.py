@@ -12,8 +12,8 @@ from analysis.claims.missing import DECIDED
 from analysis.derived.comparisons import differences, reference, stated
 from analysis.records.reading import load
 from analysis.records.studies import Study
-from analysis.statistics.looks import ERROR, next_look
-from analysis.statistics.noise import blocks_to_decide
+from analysis.statistics.looks import next_look
+from analysis.statistics.noise import needed_by_rows
 from analysis.statistics.verdicts import INCONCLUSIVE
 from analysis.support.wording import change
 
@@ -82,14 +82,11 @@ def _comparisons(study: Study, claimed: Collection[str], said: dict[str, str]) -
         if experiment in claimed or times["question_kind"].iloc[0] not in COMPARED:
             continue
         against = reference(times)
-        table, error = differences(times, against), stated(times).error
-        undecided = int((table["verdict"] == INCONCLUSIVE).sum())
-        for row in table.itertuples():
-            name = f"{experiment}: {row.series} against {against}"
+        table = differences(times, against)
+        needed = needed_by_rows(table, stated(times).error)
+        for row, wanted in zip(table.itertuples(), needed, strict=True):
             if row.verdict != INCONCLUSIVE:
-                said[name] = f"{row.verdict}: {change(row)} of time"
-                yield str(experiment), row.blocks, math.nan
-            else:
-                # The forecast waits for `ERROR`: a stricter error is that of a larger family.
-                family = max(1, round(undecided * ERROR / error))
-                yield str(experiment), row.blocks, blocks_to_decide(row.alone, row.blocks, family)
+                said[f"{experiment}: {row.series} against {against}"] = (
+                    f"{row.verdict}: {change(row)} of time"
+                )
+            yield str(experiment), row.blocks, wanted

@@ -1,6 +1,5 @@
 """What a results folder says of the commands that `carom compare` runs."""
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +9,16 @@ import pandas as pd
 from analysis.derived.comparisons import Stated, differences, reference, stated
 from analysis.records.reading import load
 from analysis.records.studies import split
-from analysis.statistics.looks import ERROR, next_look
-from analysis.statistics.noise import blocks_to_decide
+from analysis.statistics.looks import next_look
+from analysis.statistics.noise import needed_by_rows
 from analysis.statistics.pairs import rounds_of, runs_of
 from analysis.statistics.ranking import ranking
-from analysis.statistics.verdicts import INCONCLUSIVE, corrected, judge_one
+from analysis.statistics.verdicts import corrected, judge_one
 from support.files import read_json
 from support.vocabulary import AGAIN, ASKED, OWN, WALL
+
+ENDS = ("low", "high", "totals", "start", "round", "low_of_all", "needed")
+"""Of a row of `judge`, what may not be known or have no end."""
 
 LEAGUE = 3
 """So many commands are a league, in which every pair is compared."""
@@ -40,24 +42,19 @@ def programs_compared(results: Path, many: int = 1, clock: str = WALL) -> dict[s
         return {**nothing, "next": next_look(0)}
     against, by = reference(times), stated(times)
     is_control = times["series"] == against + AGAIN
-    found = differences(times[~is_control], against)
-    together = Stated(by.margin, by.error / (max(1, len(found)) * many))
-    of_all = differences(times[~is_control], against, together).set_index(["series", "x"])["low"]
-    rows = [{**_row(row), "low_of_all": _end(of_all[row.series, row.x])} for row in found.itertuples()]
-    open_ones = max(1, sum(row["verdict"] == INCONCLUSIVE for row in rows))
-    for row in rows:
-        if row["verdict"] == INCONCLUSIVE:
-            needed = blocks_to_decide(
-                row["alone"], row["blocks"], max(1, round(open_ones * ERROR / by.error))
-            )
-            row["needed"] = int(needed) if math.isfinite(needed) else None
-    controls = _controls(times[is_control | (times["series"] == against)], against)
+    table = differences(times[~is_control], against)
+    together = Stated(by.margin, by.error / (max(1, len(table)) * many))
+    table["low_of_all"] = differences(times[~is_control], against, together)["low"]
+    table["needed"] = needed_by_rows(table, by.error)
+    # The reference has to differ from itself in no case: each has its part of the error (Bonferroni).
+    part = Stated(by.margin, by.error / max(1, times["x"].nunique()))
+    controls = differences(times[is_control | (times["series"] == against)], against, part)
     return {
-        "commands": rows,
-        "controls": controls,
+        "commands": _rows(table),
+        "controls": _rows(controls),
         "places": _places(times[~is_control]),
-        "effects": _effects(times, by, asked(results)["contrasts"]),
-        "next": next_look(max((row["blocks"] for row in rows), default=0)),
+        "effects": _rows(_effects(times, by, asked(results)["contrasts"])),
+        "next": next_look(int(table["blocks"].max()) if len(table) else 0),
     }
 
 
@@ -73,12 +70,10 @@ def times_of(results: Path) -> pd.DataFrame:
     return studies[0].times if studies else pd.DataFrame()
 
 
-def _effects(times: pd.DataFrame, by: Stated, contrasts: Any) -> list[dict[str, Any]]:  # noqa: ANN401 - JSON
+def _effects(times: pd.DataFrame, by: Stated, contrasts: Any) -> pd.DataFrame:  # noqa: ANN401 - JSON
     """Return a row for each contrast: the sum of the logarithms of the series' times in a block, each with
     its weight, judged as a log ratio is, Holm-corrected over all contrasts.
     """
-    if not contrasts:
-        return []
     of_block = ["block", "session"]
     logs = np.log(times.pivot_table("steps_seconds", of_block, "series")).dropna()
     stops = times.groupby(of_block)["stops"].mean().loc[logs.index]
@@ -87,20 +82,9 @@ def _effects(times: pd.DataFrame, by: Stated, contrasts: Any) -> list[dict[str, 
         weights = pd.Series(one["weights"], dtype=float)
         if set(weights.index) <= set(logs.columns):
             sums = logs[weights.index].to_numpy() @ weights.to_numpy()
-            rows.append(
-                {"series": one["name"], "x": 0, **vars(judge_one(sums, by.margin, by.error, stops=stops))}
-            )
-    table = pd.DataFrame(rows)
-    return list(map(_row, corrected(table, by.error).itertuples())) if rows else []
-
-
-def _controls(times: pd.DataFrame, against: str) -> list[dict[str, Any]]:
-    """Return the rows of the reference against itself. It has to differ from itself in no case, so that each
-    interval has its part of the error (Bonferroni).
-    """
-    by = stated(times)
-    part = by.error / max(1, times["x"].nunique())
-    return list(map(_row, differences(times, against, Stated(by.margin, part)).itertuples()))
+            found = judge_one(sums, by.margin, by.error, stops=stops)
+            rows.append({"series": one["name"], "x": 0, **vars(found)})
+    return corrected(pd.DataFrame(rows), by.error) if rows else pd.DataFrame()
 
 
 def _places(times: pd.DataFrame) -> list[dict[str, Any]]:
@@ -112,14 +96,14 @@ def _places(times: pd.DataFrame) -> list[dict[str, Any]]:
     ]
 
 
-def _row(row: Any) -> dict[str, Any]:  # noqa: ANN401 - of a table
-    """Return the row as JSON has it; what reaches without end is None."""
-    told = {"series": str(row.series), "verdict": row.verdict, "x": int(row.x), "blocks": int(row.blocks)}
-    numbers = {key: float(getattr(row, key)) for key in ("ratio", "alone", "p")}
-    differs = bool(np.isfinite(row.high) and not row.low <= 1 <= row.high)
-    ends = {name: _end(getattr(row, name)) for name in ("low", "high", "totals", "start", "round")}
-    return {**told, **numbers, **ends, "differs": differs}
-
-
-def _end(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
+def _rows(table: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return the rows as JSON has them and whether each `differs` from 1; what has no end is None."""
+    rows = []
+    for row in table.to_dict("records"):
+        ends = {name: float(row[name]) if np.isfinite(row.get(name, np.nan)) else None for name in ENDS}
+        needed = None if ends["needed"] is None else int(ends["needed"])
+        numbers = {name: float(row[name]) for name in ("ratio", "alone", "p")}
+        told = {"series": row["series"], "verdict": row["verdict"], "x": int(row["x"]), **numbers, **ends}
+        differs = ends["high"] is not None and not row["low"] <= 1 <= row["high"]
+        rows.append({**told, "blocks": int(row["blocks"]), "needed": needed, "differs": differs})
+    return rows

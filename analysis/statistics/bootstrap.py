@@ -2,8 +2,8 @@
 
 import numpy as np
 import pandas as pd
+from scipy import special
 
-from analysis.statistics import quantiles
 from analysis.statistics.pairs import narrow, runs_of
 from analysis.support.values import Floats
 
@@ -41,9 +41,7 @@ def _widened(padded: Floats, median: float, processes: int, level: float) -> tup
     if processes < FEWEST:
         return np.nan, np.nan
     tail = (1 + level) / 2
-    wider = (
-        quantiles.student(tail, processes - 1) / quantiles.normal(tail) * np.sqrt(processes / (processes - 1))
-    )
+    wider = special.stdtrit(processes - 1, tail) / special.ndtri(tail) * np.sqrt(processes / (processes - 1))
     # Of few processes the median has few values: between them, not at the nearest one, is the quantile (Ma,
     # Genton and Parzen, Ann. Inst. Stat. Math. 63, 2011).
     values, counts = np.unique(_replicates(padded), return_counts=True)

@@ -35,8 +35,8 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import special
 
-from analysis.statistics import quantiles
 from analysis.statistics.looks import ERROR, LOOKS, seen, share
 from analysis.support.values import Floats, Interval
 
@@ -71,7 +71,7 @@ class Centre:
         """Return the two-sided interval."""
         if np.isnan(self.error):
             return Interval(self.estimate, -np.inf, np.inf)
-        half = float(quantiles.student((1 + level) / 2, self.freedom)) * self.error if self.error else 0.0
+        half = float(special.stdtrit(self.freedom, (1 + level) / 2)) * self.error if self.error else 0.0
         low, high = self.estimate - half, self.estimate + half
         if self.averages is None:
             return Interval(self.estimate, low, high)
@@ -88,17 +88,12 @@ class Centre:
             return 1.0
         if self.error == 0:
             return 0.0 if beyond > 0 else 1.0
-        p = quantiles.student_beyond(beyond / self.error, self.freedom)
+        p = float(special.stdtr(self.freedom, -beyond / self.error))
         if self.averages is None:
             return p
         side = self.averages > bound if alternative == "greater" else self.averages < bound
         positive = side.sum() + (self.averages == bound).sum() / 2
         return max(p, rank_p_value(self.freedom + 1, positive))
-
-    def mirrored(self) -> "Centre":
-        """Return the centre of the negative differences."""
-        averages = None if self.averages is None else -self.averages[::-1]
-        return Centre(-self.estimate, self.error, self.freedom, averages)
 
 
 def measure(differences: ArrayLike, *, independent: bool = False, factor: float = 1.0) -> Centre:

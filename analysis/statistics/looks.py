@@ -12,6 +12,8 @@ Intervals that hold at any time (Howard, Ramdas, McAuliffe and Sekhon, Ann. Stat
 they cost is in docs/reference/method.md.
 """
 
+from bisect import bisect_right
+
 from analysis.support.values import Floats
 
 ERROR = 0.05
@@ -24,33 +26,28 @@ LATER = 0.1
 """The share of all looks after those, of which each takes half of what is left."""
 
 
+_PLANNED = list(LOOKS)
+while _PLANNED[-1] < 10**9:
+    _PLANNED.append(round(_PLANNED[-1] * GROWTH))
+
+
 def share(blocks: int) -> float:
     """Return the share of `ERROR` that the look at so many blocks may use.
 
     Any number of blocks between two looks has the share of the one before.
     """
-    if blocks < LOOKS[-1] * GROWTH:
-        return (1 - LATER) / len(LOOKS)
-    left, look = LATER, LOOKS[-1] * GROWTH
-    while blocks >= look:
-        left, look = left / 2, round(look * GROWTH)
-    return left
+    later = bisect_right(_PLANNED, blocks) - len(LOOKS)
+    return (1 - LATER) / len(LOOKS) if later <= 0 else LATER / 2**later
 
 
 def next_look(blocks: int) -> int:
     """Return the least number of blocks above `blocks` at which there is a look."""
-    look = next((one for one in LOOKS if one > blocks), round(LOOKS[-1] * GROWTH))
-    while look <= blocks:
-        look = round(look * GROWTH)
-    return look
+    return _PLANNED[bisect_right(_PLANNED, blocks)]
 
 
 def looks_up_to(most: float) -> list[int]:
     """Return the planned looks at no more than so many blocks."""
-    looks = [LOOKS[0]]
-    while looks[-1] <= most:
-        looks.append(next_look(looks[-1]))
-    return looks[:-1]
+    return _PLANNED[: bisect_right(_PLANNED, most)]
 
 
 def last_look(blocks: int) -> int:

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
+from scipy import special
 
-from analysis.statistics import quantiles
 from analysis.statistics.intervals import widening_of_independent
 from analysis.statistics.looks import ERROR, LOOKS, looks_up_to, next_look
 from analysis.statistics.looks import share as share_of_error
 from analysis.statistics.pairs import PAIR
-from analysis.statistics.verdicts import MARGIN
+from analysis.statistics.verdicts import INCONCLUSIVE, MARGIN
 from analysis.support.values import Floats
 from analysis.support.wording import count, listed, share
 
@@ -35,13 +35,25 @@ def blocks_to_decide(p: float, blocks: int, family: int = 1) -> float:
     alone = p * share_of_error(blocks)
     if not 0 < alone < 1:
         return math.inf if alone else next_look(blocks)
-    per_block = -quantiles.student(alone / 2, blocks - 1) * _error(blocks)
+    per_block = -special.stdtrit(blocks - 1, alone / 2) * _error(blocks)
     for look in looks_up_to(MOST_BLOCKS):
-        if look > blocks and per_block >= -quantiles.student(
-            ERROR * share_of_error(look) / family / 2, look - 1
-        ) * _error(look):
+        asked = -special.stdtrit(look - 1, ERROR * share_of_error(look) / family / 2)
+        if look > blocks and per_block >= asked * _error(look):
             return look
     return math.inf
+
+
+def needed_by_rows(table: pd.DataFrame, error: float) -> list[float]:
+    """Return the blocks that are expected to settle each row of a table of `judge`, which was corrected to an
+    `error` for all; NaN for a row that is decided.
+    """
+    undecided = table["verdict"] == INCONCLUSIVE
+    # The forecast waits for `ERROR`: a stricter error is that of a larger family.
+    family = max(1, round(int(undecided.sum()) * ERROR / error))
+    return [
+        blocks_to_decide(float(alone), int(blocks), family) if is_open else math.nan
+        for alone, blocks, is_open in zip(table["alone"], table["blocks"], undecided, strict=True)
+    ]
 
 
 def _error(blocks: int) -> float:
@@ -99,7 +111,7 @@ def typical_deviation(logs: Floats) -> float:
     first, second = np.triu_indices(logs.shape[1], k=1)
     ratios = logs[:, first] - logs[:, second]
     one, other = np.triu_indices(len(ratios), k=1)
-    return float(np.median(np.abs(ratios[one] - ratios[other])) / quantiles.normal(0.75) / 2)
+    return float(np.median(np.abs(ratios[one] - ratios[other])) / special.ndtri(0.75) / 2)
 
 
 def count_bursts(logs: Floats, noise: float) -> int:
@@ -134,16 +146,16 @@ def equivalence_rate(noise: float, blocks: int, margin: float = MARGIN) -> float
     and of the autocorrelation that they seem to have.
     """
     true_error = noise * np.sqrt(2 / blocks)
-    squares = quantiles.chi_squared((np.arange(200) + 0.5) / 200, blocks - 1)
-    chances = quantiles.normal((np.arange(20) + 0.5) / 20)
+    squares = 2 * special.gammaincinv((blocks - 1) / 2, (np.arange(200) + 0.5) / 200)
+    chances = special.ndtri((np.arange(20) + 0.5) / 20)
     widenings = np.array([widening_of_independent(blocks, chance) for chance in chances])
     half_width = (
-        quantiles.student(1 - ERROR * share_of_error(blocks) / 2, blocks - 1)
+        special.stdtrit(blocks - 1, 1 - ERROR * share_of_error(blocks) / 2)
         * true_error
         * np.outer(widenings, np.sqrt(squares / (blocks - 1)))
     )
     room = np.maximum(np.log1p(margin) - half_width, 0)
-    return float((2 * quantiles.normal_below(room / max(true_error, 1e-12)) - 1).mean())
+    return float((2 * special.ndtr(room / max(true_error, 1e-12)) - 1).mean())
 
 
 def warning(noise: pd.DataFrame, settled: Collection[str] = ()) -> str | None:
@@ -221,7 +233,7 @@ def shifting(times: ArrayLike) -> bool:
     ranks = pd.Series(values).rank().to_numpy()
     ratio = (np.diff(ranks) ** 2).mean() / ranks.var()
     deviation = np.sqrt(4 * (count - 2) / (count**2 - 1))
-    return bool(ratio < 2 + quantiles.normal(0.01) * deviation)
+    return bool(ratio < 2 + special.ndtri(0.01) * deviation)
 
 
 def in_order(processes: pd.DataFrame) -> Floats:

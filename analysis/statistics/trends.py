@@ -12,8 +12,8 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
+from scipy import special
 
-from analysis.statistics import quantiles
 from analysis.statistics.intervals import FEWEST, Centre, centre, measure
 from analysis.statistics.looks import ERROR, last_look, seen, share
 from analysis.statistics.pairs import block_curves, ratios_of
@@ -29,6 +29,7 @@ from analysis.statistics.verdicts import (
 )
 from analysis.support.values import Floats, Interval
 
+Side = Literal["less", "greater"]
 TOO_FEW_BLOCKS = "too few blocks"
 LINEAR_WITHIN = (0.9, 1.1)
 EXPONENTS = (0.3, 2.5, 441)
@@ -150,8 +151,7 @@ def _offset_exponents(x: Floats, curves: Floats) -> Floats:
     return candidates[errors.argmin(axis=0)]
 
 
-SHAPES = ("falls then rises", "rises only", "falls only", "flat")
-"""Of these at most one is true of a curve."""
+MIRRORED: dict[Side, Side] = {"greater": "less", "less": "greater"}
 
 
 @dataclass(frozen=True)
@@ -164,75 +164,59 @@ class Curves:
 
     logs: Floats
 
-    @property
-    def points(self) -> int:
-        """How many points the curve has."""
-        return self.logs.shape[1]
+    @cached_property
+    def lowest(self) -> int:
+        """The point of the least mean over the blocks."""
+        return int(self.logs.mean(axis=0).argmin())
 
     @cached_property
-    def means(self) -> Floats:
-        """The mean of each point over the blocks."""
-        return self.logs.mean(axis=0)
-
-    @property
-    def lowest(self) -> int:
-        """The point of the least mean."""
-        return int(self.means.argmin())
+    def _differences(self) -> dict[tuple[int, int], Centre]:
+        pairs = combinations(range(self.logs.shape[1]), 2)
+        return {(one, other): measure(self.logs[:, one] - self.logs[:, other]) for one, other in pairs}
 
     def interval_above_lowest(self, point: int) -> Interval:
         """Return how far a point lies above the lowest, which was found by looking: the intervals of an end
         against all others hold together, those of both ends, and of all looks, in 95 % of studies
         (Bonferroni).
         """
+        level = 1 - ERROR * share(len(self.logs)) / max(1, 2 * (self.logs.shape[1] - 1))
+        if point < self.lowest:
+            return self._differences[point, self.lowest].interval(level)
         if point == self.lowest:
             return Interval(0.0, 0.0, 0.0)
-        level = 1 - ERROR * share(len(self.logs)) / max(1, 2 * (self.points - 1))
-        return self._difference(point, self.lowest).interval(level)
+        estimate, low, high = self._differences[self.lowest, point].interval(level)
+        return Interval(-estimate, -high, -low)
 
     def shape(self, bound: float) -> tuple[str, float]:
-        """Return which of `SHAPES` is best supported, by differences of more than `bound`, and its p-value
-        over all looks and shapes.
+        """Return the shape that is best supported, by differences of more than `bound`, and its p-value over
+        all looks and shapes.
 
         *falls then rises*: some point inside lies below both ends; *rises only*: the last point lies above
         the first, and the first above none; *falls only*: the other way round; *flat*: no two points differ.
-        What needs several differences at once has the greatest of their p-values (intersection-union: Berger,
-        Technometrics 24, 1982), what needs any one of the points inside the least times their number.
+        At most one of these is true. What needs several differences at once has the greatest of their
+        p-values (intersection-union: Berger, Technometrics 24, 1982), what needs any one of the points inside
+        the least times their number.
         """
-        p = {
-            "falls then rises": self._inside(bound),
-            "rises only": self._only_away_from(0, self.points - 1, bound),
-            "falls only": self._only_away_from(self.points - 1, 0, bound),
-            "flat": max(
-                (self._p(*two, bound, "less") for two in permutations(range(self.points), 2)), default=1.0
-            ),
+        points = range(self.logs.shape[1])
+        last = len(points) - 1
+
+        def p(one: int, other: int, side: Side) -> float:
+            if one > other:
+                return self._differences[other, one].p_value(-bound, MIRRORED[side])
+            return self._differences[one, other].p_value(bound, side)
+
+        def only_away_from(start: int, end: int) -> float:
+            return max(p(end, start, "greater"), *(p(start, one, "less") for one in points if one != start))
+
+        inside = [max(p(0, one, "greater"), p(last, one, "greater")) for one in points[1:-1]]
+        found = {
+            "falls then rises": len(inside) * min(inside, default=1.0),
+            "rises only": only_away_from(0, last),
+            "falls only": only_away_from(last, 0),
+            "flat": max((p(*two, "less") for two in permutations(points, 2)), default=1.0),
         }
-        best = min(SHAPES, key=lambda shape: p[shape])
-        return best, len(SHAPES) * p[best] / share(len(self.logs))
-
-    def _inside(self, bound: float) -> float:
-        last = self.points - 1
-        found = [
-            max(self._p(0, point, bound, "greater"), self._p(last, point, bound, "greater"))
-            for point in range(1, last)
-        ]
-        return len(found) * min(found, default=1.0)
-
-    def _only_away_from(self, start: int, end: int, bound: float) -> float:
-        never = [self._p(start, point, bound, "less") for point in range(self.points) if point != start]
-        return max(self._p(end, start, bound, "greater"), *never)
-
-    def _p(self, one: int, other: int, bound: float, alternative: Literal["less", "greater"]) -> float:
-        return self._difference(one, other).p_value(bound, alternative)
-
-    def _difference(self, one: int, other: int) -> Centre:
-        first, second = sorted((one, other))
-        found = self._differences[first, second]
-        return found if one == first else found.mirrored()
-
-    @cached_property
-    def _differences(self) -> dict[tuple[int, int], Centre]:
-        pairs = combinations(range(self.points), 2)
-        return {(one, other): measure(self.logs[:, one] - self.logs[:, other]) for one, other in pairs}
+        best = min(found, key=lambda shape: found[shape])
+        return best, len(found) * found[best] / share(len(self.logs))
 
 
 CANDIDATES = 202
@@ -283,5 +267,5 @@ def order(step: ArrayLike, error: ArrayLike, ceiling: float) -> Interval:
     slope, intercept = np.polyfit(x, y, 1)
     freedom = len(x) - 2
     scatter = np.sum((y - intercept - slope * x) ** 2) / freedom
-    half = float(quantiles.student(0.975, freedom) * np.sqrt(scatter / np.sum((x - x.mean()) ** 2)))
+    half = float(special.stdtrit(freedom, 0.975) * np.sqrt(scatter / np.sum((x - x.mean()) ** 2)))
     return Interval(float(slope), float(slope) - half, float(slope) + half)

@@ -76,6 +76,10 @@ class Ratio:
         """Whether there were enough blocks for an interval."""
         return isfinite(self.high)
 
+    def told_as(self, other: "Ratio") -> "Ratio":
+        """Return it under the name of another, beside what is published of that."""
+        return replace(self, what=other.what, published=other.published)
+
     def scaled(self, factor: float) -> "Ratio":
         """Return it with all its p-values times a factor."""
         known = {name: getattr(self, name) for name in _P_VALUES}

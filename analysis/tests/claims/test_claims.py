@@ -206,10 +206,6 @@ CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
      {"said": "does not hold at 1 thread (claimed at 20)"}),
     ("quick", lambda: boxes(1.0, scale="quick"), "four_boxes", ELSEWHERE,
      {"said": "holds at quick scale", "why": "24 rows"}),
-    ("slower, quick", lambda: boxes(1.2, scale="quick"), "four_boxes", FAILS_ELSEWHERE,
-     {"said": "does not hold at quick scale"}),
-    ("in direction, quick", lambda: boxes(1.04, scale="quick"), "four_boxes", IN_DIRECTION_ELSEWHERE,
-     {"said": "holds in direction at quick scale"}),
     ("quick on 2", lambda: boxes(1.0, scale="quick", threads=2), "four_boxes", ELSEWHERE,
      {"said": "holds at quick scale, at 2 threads (claimed at 20)"}),
     ("no scale", lambda: on("neighbourhood", scale="unstated"), "four_boxes", Verdict.OTHER_SCALE,
@@ -220,9 +216,6 @@ CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
      {"measured": "(faster, but by less than 10 %)"}),
     ("noise", lambda: boxes(1.25 / 1.19, blocks=14, noise=Noise(process=0.05)), "four_boxes", OPEN,
      {"measured": "14 blocks", "why": "more blocks"}),
-    ("noise, quick",
-     lambda: on("neighbourhood", noise=Noise(process=0.2), scale="quick", blocks=9), "four_boxes", OPEN,
-     {"why": "the interval reaches across the margin"}),
     # where its effect is
     ("150 rows", lambda: rows_to(200_000), "row", HOLDS, {"measured": "particles = 100 000"}),
     ("fewer rows", lambda: rows_to(50_000), "row", OPEN, {"why": "needs particles = 100 000"}),
@@ -249,7 +242,6 @@ CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
     # machines
     ("clock", lambda: machines((XEON, 1.0, 16), (I7, 1.5, 16)), "machine", HOLDS, {"measured": "5.1 GHz"}),
     ("equal", lambda: machines((XEON, 1.0, 16), (I7, 1.0, 16)), "machine", FAILS, {"measured": "3.0 GHz"}),
-    ("slower clock", lambda: machines((XEON, 1.0, 16), (I7, 0.8, 16)), "machine", FAILS, {}),
     ("unequal", lambda: machines((XEON, 1.0, 16), (I7, 2.0, 8)), "machine", OPEN,
      {"why": "unequal numbers of threads: 8, 16"}),
     ("base clock", lambda: machines((I7, 1.0, 16), ("Some CPU @ 2.00GHz", 0.5, 16)), "machine", OPEN,
@@ -276,7 +268,6 @@ CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
     ("late alone", lambda: profiled(0.30, 0.60, 0.30), "resolve_dominates", HOLDS, {}),
     ("with early", lambda: profiled(0.40, 0.45, 0.30), "resolve_dominates", HOLDS, {}),
     ("half", lambda: profiled(0.45, 0.45, 0.45), "resolve_dominates", FAILS, {}),
-    ("nearly half", lambda: profiled(0.45, 0.46, 0.44), "resolve_dominates", FAILS, {}),
     ("hardly more", lambda: profiled(0.40, 0.502, 0.30), "resolve_dominates", HOLDS, {}),
     ("two speeds hide nothing that a process tells",
      lambda: profiled(0.3, 0.6, 0.3, (1, 2)), "resolve_dominates", HOLDS,
@@ -285,9 +276,9 @@ CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
     ("no early", without_early, "resolve_dominates", OPEN, {"why": "of the variant self_contained_off"}),
     # counts
     ("fewer attempts", lambda: attempts(REVERSE, FORWARD), "reverse", HOLDS,
-     {"measured": "over 6 seeds: ", "figures": "('time', '–', '+20.0 % [+20.0 %, +20.0 %]')"}),
+     {"measured": "; +20.0 % [+20.0 %, +20.0 %] of time"}),
     ("fewer, quick", lambda: attempts(REVERSE, FORWARD, scale="quick"), "reverse", HOLDS,
-     {"measured": "of wasted attempts (fewer)"}),
+     {"measured": "over 6 seeds: −50.0 % [−51.1 %, −48.9 %] of wasted attempts (fewer)"}),
     ("the same waste",
      lambda: attempts(REVERSE, [one + 100 for one in REVERSE], (1000, 1100)), "reverse", FAILS,
      {"measured": "of pair resolves (fewer)"}),
@@ -340,12 +331,13 @@ def test_the_study_s_figures_stand_beside_ours(tmp_path: Path) -> None:
     assert plain["four_boxes"]["scene"] == [scene, scene]
     assert plain["four_boxes"]["tolerance"] == ["published", "relative"]
     assert plain["four_boxes"]["threads"] == ["20", "20"]
-    theirs, ours = plain["particles"]["growth of the time over particles"]
-    assert theirs == "×5.67 from 10 000 to 100 000"
-    assert ours.startswith("×5.2")
-    assert plain["threads"]["time up to the cores"][0] == "×0.178 from 1 to 10"
-    assert plain["threads"]["time beyond"][0] == "×3.15 from 20 to 35"
-    assert plain["find_schedule"]["fastest measured"][0] == "dynamic 10, 0.7204 s"
+    assert plain["four_boxes"]["four against nine"][0] == "−4.6 %"
+    assert plain["particles"]["particles"][0] == "+467 %"
+    assert plain["particles"]["particles"][1].startswith("+42")
+    assert plain["threads"]["up to the cores"][0] == "−82.2 %"
+    assert plain["threads"]["beyond"][0] == "+215 %"
+    assert plain["find_schedule"]["best other"][0] == "−1.0 %"
+    assert plain["find_schedule"]["against the others"][0].startswith("−")
     assert rows.loc["four_boxes", ["claimed_threads", "tested_threads"]].tolist() == [(20,), (20,)]
 
 

@@ -170,18 +170,3 @@ def test_parts_that_hold_in_direction_make_a_claim_that_does_and_it_is_corrected
     among = corrected([weak, *[held(0.001)] * 3, *[Outcome(OPEN, p=1.0)] * 3])[0]
     assert among.verdict == OPEN
     assert "alone it would hold in direction" in among.why
-
-
-@pytest.mark.parametrize("blocks", [1, 2, 3])
-def test_few_blocks_refute_nothing_and_say_what_is_missing(blocks: int) -> None:
-    outcome = judged(judge_one([0.5] * blocks), "faster", "")
-    assert (outcome.verdict, outcome.p) == (OPEN, None)
-    assert "a verdict needs at least 6" in outcome.why
-
-
-def test_less_than_the_margin_is_that_of_the_question() -> None:
-    row = judge_one(-0.03 + WITHIN, 0.05)
-    assert (judged(row, "faster", "").verdict, told(row, "faster")) == (
-        IN_DIRECTION,
-        "faster, but by less than 5 %",
-    )

@@ -28,8 +28,8 @@ def found(folder: Path, names: list[str], blocks: int, noise: Noise) -> dict[str
 
 
 def test_a_claim_that_is_decided_is_settled_and_said(tmp_path: Path) -> None:
-    answer = found(tmp_path, ["neighbourhood"], 9, QUIET)
-    assert answer["settled"] == ["neighbourhood"]
+    answer = found(tmp_path, ["neighbourhood", "control"], 9, QUIET)
+    assert answer["settled"] == ["neighbourhood", "control"]
     assert str(answer["said"]["four_boxes"]).startswith("holds: ")
     assert answer["open"] == {}
 

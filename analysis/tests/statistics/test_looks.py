@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from analysis.statistics.looks import ERROR, LOOKS, last_look, next_look, share
+from analysis.statistics.looks import LOOKS, last_look, next_look, share
 from analysis.statistics.verdicts import MARGIN, judge_one
 
 Floats = NDArray[np.float64]
@@ -39,17 +39,10 @@ def two_speeds(generator: np.random.Generator) -> Floats:
 NOISES = (normal, unlike, bursts, two_speeds)
 
 
-def decide(logs: Floats) -> list[tuple[str, int]]:
-    """Return each comparison's verdict and the blocks it took: all go on until theirs is settled."""
-    return [_decide_one(row) for row in logs]
-
-
-def _decide_one(row: Floats) -> tuple[str, int]:
-    for look in LOOKS:
-        verdict = str(judge_one(row[:look]).verdict)
-        if verdict != "inconclusive":
-            break
-    return verdict, look
+def decided(row: Floats) -> str:
+    """Return the verdict of a comparison that goes on until it is settled."""
+    verdicts = (judge_one(row[:look]).verdict for look in LOOKS)
+    return next((one for one in verdicts if one != "inconclusive"), "inconclusive")
 
 
 @pytest.mark.parametrize("noise", NOISES)
@@ -58,40 +51,10 @@ def test_looking_until_it_is_decided_errs_in_at_most_one_in_twenty(noise: object
     generator = np.random.default_rng(5)
     truth = "equivalent" if effect < MARGIN else "slower"
     assert callable(noise)
-    found = [one for _ in range(4) for one in decide(noise(generator) + np.log1p(effect))]
-    wrong = sum(verdict not in (truth, "inconclusive") for verdict, _ in found)
-    assert wrong <= 0.05 * len(found)
+    found = [decided(row + np.log1p(effect)) for _ in range(4) for row in noise(generator)]
+    assert sum(verdict not in (truth, "inconclusive") for verdict in found) <= 0.05 * len(found)
     if effect == 0.05:  # one and a half margins beyond the border
-        assert sum(verdict == "slower" for verdict, _ in found) >= 0.9 * len(found)
-
-
-def settled(logs: Floats) -> list[str]:
-    """Return what is said of a claim that the candidate is faster: the first that the looks settle."""
-    said = []
-    for row in logs:
-        rows = (judge_one(row[:look]) for look in LOOKS)
-        found = ((one.verdict == "faster", one.not_faster <= ERROR) for one in rows)
-        holds, denied = next((one for one in found if any(one)), (False, False))
-        said.append("holds" if holds else "does not hold" if denied else "open")
-    return said
-
-
-@pytest.mark.parametrize("noise", NOISES)
-@pytest.mark.parametrize(("effect", "wrong"), [(-0.019, "holds"), (-0.021, "does not hold")])
-def test_what_is_denied_near_its_border_is_wrong_in_at_most_one_of_twenty(
-    noise: object, effect: float, wrong: str
-) -> None:
-    generator = np.random.default_rng(8)
-    assert callable(noise)
-    said = [one for _ in range(4) for one in settled(noise(generator) - np.log1p(-effect))]
-    assert said.count(wrong) <= 0.05 * len(said)
-
-
-def test_a_claim_is_denied_where_equivalent_and_slower_are_not_told_apart() -> None:
-    logs = np.random.default_rng(9).normal(np.log1p(MARGIN), 0.02, (200, LAST))
-    verdicts = [verdict for verdict, _ in decide(logs)]
-    assert verdicts.count("inconclusive") >= 180
-    assert settled(logs).count("does not hold") >= 195
+        assert found.count("slower") >= 0.9 * len(found)
 
 
 def test_what_is_looked_at_once_has_the_whole_of_the_error() -> None:

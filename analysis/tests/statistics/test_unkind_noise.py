@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from analysis.statistics.intervals import autocorrelation, centre, widening, widening_of_independent
-from analysis.statistics.looks import ERROR, LOOKS, last_look, seen
+from analysis.statistics.looks import ERROR, LOOKS, seen
 from analysis.statistics.trends import Curves
 from analysis.statistics.verdicts import MARGIN, holm, judge_one
 from analysis.tests.statistics.unkind_noise import Floats, dependent, one_sided_bursts, two_speeds
@@ -84,16 +84,6 @@ def test_a_table_of_equals_on_a_machine_of_two_speeds(slow: float) -> None:
             for row, corrected in zip(table, holm([row.p for row in table]), strict=True)
         )
     assert wrong <= 1
-
-
-def test_a_report_at_every_block_adds_no_look() -> None:
-    values = np.random.default_rng(8).standard_normal((100, LAST))
-    now = [[centre(row[:count]) for count in range(1, LAST + 1)] for row in values]
-    assert all(
-        one == centre(row[: last_look(count)])
-        for row, found in zip(values, now, strict=False)
-        for count, one in enumerate(found, 1)
-    )
 
 
 def test_a_resumed_study_decides_as_one_that_was_not_stopped() -> None:

@@ -43,13 +43,15 @@ def test_what_is_raised_there_is_raised_here() -> None:
     assert raised.value.filename == "file 0"
 
 
-def test_no_library_has_threads_that_a_fork_would_lose() -> None:
-    script = "import analysis.report, os; print(len(os.listdir('/proc/self/task')))"
+def test_no_library_has_threads_that_a_fork_would_lose_and_none_that_is_slow_to_load_is_loaded() -> None:
+    slow = "{'scipy.stats', 'matplotlib.backends.backend_pdf'}"
+    script = "import analysis.report, os, sys; "
+    script += f"print(len(os.listdir('/proc/self/task')), {slow} & set(sys.modules))"
     settings = {key: value for key, value in os.environ.items() if not key.endswith("_NUM_THREADS")}
     done = subprocess.run(
         [sys.executable, "-c", script], env=settings, cwd=ROOT, capture_output=True, text=True, check=True
     )
-    assert done.stdout == "1\n"
+    assert done.stdout == "1 set()\n"
 
 
 SLEEPERS = r"""
