@@ -5,9 +5,11 @@ come from the one that measured them, since every run of a point ends in the sam
 simulation takes no steps: it is a point with 0 substeps.
 """
 
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -21,6 +23,7 @@ from analysis.statistics.trends import order
 from analysis.statistics.verdicts import error_of_picked, judge_one
 from analysis.support.values import Interval
 
+MEASURES_FILE = Path(__file__).parent / "measures.toml"
 POINT = ["scene_name", "series", "x"]
 Entrant = tuple[str, float]
 """A point of one scene: its series and its x."""
@@ -51,60 +54,7 @@ class Measure:
         return values.abs()
 
 
-MEASURES = [
-    Measure(
-        "path", "distance of the paths from the exact ones",
-        "RMS distance from the exact paths at time 1, radii",
-        "the root mean square over all discs of the distance to the event-driven reference at time 1",
-        "path", converges=True,
-    ),
-    Measure(
-        "parting", "when the paths part from the exact ones",
-        "1 / time until the paths are 0.1 radii off",
-        "one over the first time at which that distance passes a tenth of a radius; 0 if it never does",
-        "parting", converges=False,
-    ),
-    Measure(
-        "penetration_worst", "worst penetration", "worst penetration, radii",
-        "the deepest overlap of any pair that was apart at the start",
-        "penetration_worst", converges=True,
-    ),
-    Measure(
-        "penetration_mean", "mean penetration", "mean penetration, radii",
-        "the mean depth over all overlaps of pairs that were apart at the start",
-        "penetration_mean", converges=True,
-    ),
-    Measure(
-        "collision_rate", "collision rate", "relative error of the collision rate",
-        "collisions of pairs per disc and unit of time against those of the reference",
-        "collision_rate", converges=True, is_relative=True,
-    ),
-    Measure(
-        "pressure", "pressure", "relative error of the pressure",
-        "the impulse on the walls per length and time against that of the reference",
-        "pressure", converges=True, is_relative=True,
-    ),
-    Measure(
-        "speeds", "distribution of speeds", "greatest distance of the speeds' distributions",
-        "the Kolmogorov-Smirnov distance between the distributions of speeds of run and reference at the end",
-        "speed_distance", converges=False,
-    ),
-    Measure(
-        "energy", "drift of energy", "relative drift of energy",
-        "the change of kinetic energy from start to end; collisions conserve it, so that this is rounding",
-        "energy_drift", converges=False,
-    ),
-    Measure(
-        "momentum", "unexplained momentum", "momentum that no wall explains, relative",
-        "the change of momentum that the walls' impulses do not account for, over the sum of all speeds",
-        "momentum_drift", converges=False,
-    ),
-    Measure(
-        "unresolved", "unresolved collisions", "collisions left unresolved",
-        "pairs and walls left colliding at the ends of units of time",
-        "unresolved_pairs", converges=False,
-    ),
-]  # fmt: skip
+MEASURES = [Measure(**table) for table in tomllib.loads(MEASURES_FILE.read_text(encoding="utf-8"))["measure"]]
 
 
 def errors(study: Study, experiment: str) -> pd.DataFrame:

@@ -148,12 +148,3 @@ def _difference(run: pd.Series, other: pd.Series) -> float:
     keys = ["path_end", *(measure.key for measure in MEASURES)]
     one, two = run[keys].astype(float), other[keys].astype(float)
     return float((one - two).abs().mask(one.isna() & two.isna(), 0.0).fillna(np.inf).max())
-
-
-def summary(table: pd.DataFrame) -> str:
-    """Say in one sentence how many cells hold, fail, and show a limit of the method."""
-    counts = table["verdict"].value_counts()
-    said = ", ".join(
-        f"{counts[verdict]} {verdict}" for verdict in (HOLDS, LIMIT, FAILS, UNMEASURED) if verdict in counts
-    )
-    return f"Of {len(table)} cells (a case with a variant): {said}."

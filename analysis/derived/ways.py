@@ -3,7 +3,6 @@ the ratios by turns are off, and how soon either way knows a ratio.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 import pandas as pd
@@ -13,7 +12,7 @@ from analysis.statistics.intervals import FEWEST, centre
 from analysis.statistics.pairs import PAIR, ratios_of
 from analysis.statistics.verdicts import ratio_of
 from analysis.support.values import Interval
-from analysis.support.wording import change, listed, percent
+from analysis.support.wording import change, percent
 
 KIND = "ways"
 """The kind of the experiments that measure each point both ways."""
@@ -80,24 +79,6 @@ def _comparison(name: str, processes: pd.DataFrame, reference: str, candidate: s
         for way, part in ways.items()
     }
     return Comparison(name, pd.concat(tables, axis=1, join="inner").reset_index(), seconds)
-
-
-@lru_cache(maxsize=1)
-def bias_sentence(study: Study) -> str:
-    """Say how far ratios by turns are off on this machine, as far as the study measured it; else nothing.
-
-    Many figures of one study say it.
-    """
-    names = study.times.loc[study.times["question_kind"] == KIND, "experiment"].unique()
-    found = [one for name in sorted(names) for one in comparisons(study, str(name))]
-    if not found:
-        return ""
-    widest = max(found, key=lambda one: abs(one.bias.estimate))
-    return (
-        f" Measured by turns. Against processes of their own, {len(found)} ratios by turns came out "
-        f"{said(overall(found))} on average here; the one farthest off, {widest.name}, {said(widest.bias)} "
-        f"({listed(sorted(names))})."
-    )
 
 
 def overall(found: list[Comparison]) -> Interval:

@@ -1,57 +1,77 @@
-"""Sentences of captions, generated from the data."""
+"""What captions say: the facts of the measurements in rows, put into words by `captions.jinja`."""
 
-from collections.abc import Iterable
+import re
+from collections.abc import Callable
+from typing import Any
 
 import pandas as pd
+from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from analysis.derived.ladder import speed_up
 from analysis.statistics.pairs import timed_runs, without_partner
 from analysis.statistics.trends import growth, linearity, minimum
-from analysis.support.values import Interval
-from analysis.support.wording import change, count, exact, interval, interval_of, listed
+from analysis.support import wording
+from analysis.support.wording import count, exact
 
 MEDIANS = "Dots are medians, bars their 95 % bootstrap intervals"
 PROCESSES = "A dot is the median of one process"
 SCENES = "A dot is the geometric mean over the seeds in one block"
 
+SAMPLES = {"file": "process", "block": "block", "session": "session"}
+
+Course = tuple[str, Any]
+"""What a curve does: what it was asked, and what was found."""
+
+
+def environment(package: str, **more: Any) -> Environment:  # noqa: ANN401
+    """Return what renders a package's templates, in which numbers are said as everywhere else."""
+    made = Environment(loader=PackageLoader(package, "."), undefined=StrictUndefined, **more)
+    words = {name: word for name, word in vars(wording).items() if callable(word)}
+    made.filters |= words | {
+        "speed_up": speed_up,
+        "capital": lambda text: text[0].upper() + text[1:],
+        "g": "{:g}".format,
+    }
+    return made
+
+
+def teller(package: str, file: str) -> Callable[..., str]:
+    """Return what says in one line what a macro of a package's template makes of facts, by its name."""
+    words = environment(package).get_template(file)
+
+    def tell(macro: str, /, **facts: Any) -> str:  # noqa: ANN401
+        return re.sub("[ \n]+", " ", getattr(words.module, macro)(**facts)).strip()
+
+    return tell
+
+
+caption = teller("analysis.figures", "captions.jinja")
+
 
 def opening(times: pd.DataFrame, subject: str, dots: str = MEDIANS) -> str:
     """Say what is drawn, on which scene and threads, from how many processes, blocks and sessions."""
+    columns = {"N": "particles", "L": "side", "r": "radius", "steps": "steps"}
     fixed = [
         f"{name} = {exact(times[column].iloc[0])}"
-        for name, column in (("N", "particles"), ("L", "side"), ("r", "radius"), ("steps", "steps"))
+        for name, column in columns.items()
         if times[column].nunique() == 1
     ]
     if times["threads"].nunique() == 1:
         fixed.append(count(int(times["threads"].iloc[0]), "thread"))
-    nouns = {"file": "process", "block": "block", "session": "session"}
-    processes, blocks, sessions = (count(times[of].nunique(), noun) for of, noun in nouns.items())
-    runs = count(timed_runs(times), "timed run")
-    return (
-        f"{subject[0].upper()}{subject[1:]} ({', '.join(fixed)}). {dots}: {processes} in {blocks} and "
-        f"{sessions}, {runs}, none left out.{_alone(times)}{_kind_of_time(times)}"
-    )
-
-
-def _alone(times: pd.DataFrame) -> str:
-    """Say which processes are in no ratio; nothing if all of them are."""
-    lone = without_partner(times)
-    if lone.empty:
-        return ""
-    return (
-        f" In no ratio: {by_series(lone)}, beside which their session measured nothing to compare them with "
-        "in that block."
-    )
-
-
-def differing(names: Iterable[str], table: pd.DataFrame) -> str:
-    """Say each ratio of a table, with its name and its verdict."""
-    rows = zip(names, table.itertuples(), strict=True)
-    return "; ".join(f"{name} {change(row)} ({row.verdict})" for name, row in rows)
+    whole = times[times["kind"] == "process"]
+    # Which series had no turns where others did, and why.
+    alone = whole.dropna(subset=["undisturbed"]).drop_duplicates("series").sort_values("series")
+    return caption(
+        "opening", subject=subject, fixed=fixed, dots=dots, runs=timed_runs(times), whole=len(whole),
+        amounts={noun: times[of].nunique() for of, noun in SAMPLES.items()},
+        lone=by_series(without_partner(times)), alone=list(alone.itertuples()),
+        own=sorted(whole.loc[whole["time_from"] != "outside", "series"].unique()),
+    )  # fmt: skip
 
 
 def by_series(runs: pd.DataFrame) -> str:
     """Return how many runs there are of each series, in words."""
-    return listed(f"{number} of {series}" for series, number in runs.groupby("series").size().items())
+    return wording.listed(f"{number} of {series}" for series, number in runs.groupby("series").size().items())
 
 
 def time_axis(times: pd.DataFrame) -> str:
@@ -59,54 +79,12 @@ def time_axis(times: pd.DataFrame) -> str:
     return "time, s" if (times["kind"] == "process").any() else "time of the steps, s"
 
 
-def _kind_of_time(times: pd.DataFrame) -> str:
-    """Say which times they are, if not those of the steps."""
-    processes = times[times["kind"] == "process"]
-    if processes.empty:
-        return ""
-    own = sorted(processes.loc[processes["time_from"] != "outside", "series"].unique())
-    stated = f"; those of {listed(own)} are what the program says itself" if own else ""
-    # Which series had no turns where others did, and why.
-    alone = processes.dropna(subset=["undisturbed"]).drop_duplicates("series")
-    said = "; ".join(f"{row.series} ({row.undisturbed})" for row in alone.sort_values("series").itertuples())
-    pause = f" Measured without a pause, in a stretch of its own instead of in turns: {said}." if said else ""
-    return f" Times are of whole processes, from outside{stated}.{pause}"
-
-
-def growth_sentence(times: pd.DataFrame) -> str:
-    """Say how the time changes over the whole range, with the fitted exponent."""
-    if times["x"].nunique() < 2:
-        return ""
-    trend = growth(times)
-    verdict = {"grows": "The time grows", "falls": "The time falls", "flat": "The time stays the same"}
-    said = verdict.get(trend.change.verdict, "No trend is settled")
-    return (
-        f" {said}: {change(trend.change)} from {exact(trend.first)} to {exact(trend.last)}"
-        f"{_with('; fitted exponent', trend.exponent)}."
-    )
-
-
-def linear_sentence(times: pd.DataFrame) -> str:
-    """Say whether the time is a straight line, with the exponent over a fixed cost."""
-    line = linearity(times)
-    if not line.is_measured:
-        return growth_sentence(times)
-    said = {"linear": "The time is linear", "not linear": "The time is not linear"}
-    verdict = said.get(line.verdict, "Whether the time is linear is not settled")
-    return f" {verdict}: exponent {interval_of(line, 'ratio')} over a fixed cost."
-
-
-def minimum_sentence(times: pd.DataFrame) -> str:
-    """Say where the time is least, and how far it falls before and rises after."""
-    if times["x"].nunique() < 3:
-        return growth_sentence(times)
-    least = minimum(times)
-    where = f"{exact(least.lowest)}{_with('; break point', least.break_point)}"
-    return (
-        f" The time is least at {where}; against it {change(least.fall)} at the smallest and "
-        f"{change(least.rise)} at the largest ({least.fall.verdict})."
-    )
-
-
-def _with(words: str, value: Interval) -> str:
-    return "" if pd.isna(value.estimate) else f"{words} {interval(value)}"
+def course_of(times: pd.DataFrame, asked: str = "growth") -> Course:
+    """Return what the time does over x, of a single series: its `minimum`, whether it is `linear`, or its
+    `growth`, which is told as well of too few points for the others.
+    """
+    if asked == "minimum" and times["x"].nunique() > 2:
+        return asked, minimum(times)
+    if asked == "linear" and (found := linearity(times)).is_measured:
+        return asked, found
+    return ("growth", growth(times)) if times["x"].nunique() > 1 else ("", None)

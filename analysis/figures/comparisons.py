@@ -1,98 +1,96 @@
-"""Any number of series against one of them, programs in a league table, machines, ways to measure, pauses:
-rows of dots with intervals each.
+"""Ratios with intervals in rows: any number of series against one of them, two of them with every block and
+the times of both beside it, machines, ways to measure, pauses.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from analysis.derived.comparisons import USUAL, Stated, differences, reference, stated
 from analysis.derived.pauses import ratios as pause_ratios
 from analysis.derived.ways import APART, TURNS, comparisons, overall, said
-from analysis.figures.captions import PROCESSES, differing, opening, time_axis
-from analysis.figures.kinds import Dot, forest, of_medians, of_ratio
-from analysis.figures.labels import SIGNS, key, logarithmic_ticks
-from analysis.figures.pairs import pair_drawing
+from analysis.derived.ways import KIND as WAYS
+from analysis.figures.captions import PROCESSES, SCENES, caption, opening, time_axis
+from analysis.figures.kinds import NO_ENDS, Dot, curve, forest, of_medians, of_ratio
+from analysis.figures.labels import SIGNS, key, label_ends, logarithmic_ticks, note, plain_ticks
 from analysis.figures.style import BLUE, INK, VERMILLION, Data, Drawing, Look, lighten, looks, new_figure
 from analysis.records.studies import Study
 from analysis.statistics.bootstrap import summarise
+from analysis.statistics.pairs import PAIR, log_ratios
 from analysis.statistics.ranking import ranking
-from analysis.statistics.verdicts import MARGIN, Ratio, corrected, judge_unpaired, of_row, ratio_of
-from analysis.support.values import Cell, Table, table_of
-from analysis.support.wording import count, exact, listed, number
+from analysis.statistics.verdicts import MARGIN, Ratio, corrected, judge_pairs, judge_unpaired, ratio_of
+from analysis.support.values import Cell, Floats, Table, table_of
+from analysis.support.wording import change, exact, listed, number
+from support.vocabulary import COUNTS
 
-PublishedOf = Callable[[Data, pd.DataFrame, str], Mapping[str, float]]
-"""From the table of differences to the published ratios of series to the reference."""
-
-LIGHTER = " Lighter: the published medians with self-contained resolves, moved as one so that track is level."
+MANY = 40
+"""Blocks from which their marks are as small as the line."""
 LOOKS = {TURNS: Look(BLUE), APART: Look(VERMILLION, "s", "--")}
 
 LEAGUE = ("place", "program", "time, s", "bracket", "checked")
 UNCHECKED, ANOTHER = "not checked", "another command"
 _TRAJECTORY = "trajectory of "
 
+Names = Mapping[str, str]
+"""The two series compared, the candidate first, each with its name for the reader."""
+
 
 def comparison(
-    data: Data, experiment: str, subject: str, published: PublishedOf | None = None
+    data: Data, experiment: str, subject: str,
+    names: Names | None = None, work: bool = False, published: Mapping[str, str] | None = None,
 ) -> Drawing | None:  # fmt: skip
-    """Draw the differences of an experiment's series from its reference, with a table of verdicts, and the
-    `published` ones on the same axis.
+    """Draw the differences of an experiment's series from its reference, with a table of verdicts. Two
+    series, or those of `names`, are drawn as a pair, with the attempts at resolving a pair that each takes if
+    `work` is wanted. On the same axis are published times of series, from the experiments `published`.
     """
     times = data.study.times_of(experiment)
     if times.empty:
         return None
     against, by = reference(times), stated(times)
-    table = named(differences(times, against), against)
-    ranked = league(data.study, experiment)
-    tables = [ranked] if ranked else []
-    names = sorted(times["series"].unique(), key=lambda name: name == against)
-    if len(names) == 2 and times["x"].nunique() == 1:
-        row = of_row(table.iloc[0]) if len(table) else None
-        drawing = pair_drawing(data, experiment, subject, {one: one for one in names}, by=by, row=row)
-        return drawing and replace(drawing, verdicts=table, tables=tables)
+    series = sorted(times["series"].unique(), key=lambda name: name == against)
+    tables = league(data.study, experiment)
+    if names or (len(series) == 2 and times["x"].nunique() == 1):
+        drawing = _pair(data, experiment, subject, names or dict(zip(series, series, strict=True)), by, work)
+        return drawing and replace(drawing, tables=tables)
+    table = differences(times, against)
+    table["label"] = _labels(table, table)
     summary = summarise(times, ["series", "x"]).iloc[::-1]
-    theirs = published(data, table, against) if published else {}
+    theirs = _published_orders(data, table, against, published) if published else {}
     figure, (left, right) = new_figure(0.8 + 0.36 * len(summary), columns=2, widths=[2.1, 1.0])
     _differences(left, table, summary, by.margin, theirs)
     left.set_xlabel(f"time against {against}, %")
     medians = of_medians(summary, _labels(summary, summary), INK, short=True)
     forest(right, medians, [""] * len(summary), width=1.4)
     right.set_xlabel(time_axis(times))
-    told = differences_sentence(table, against, by)
-    return Drawing(figure, f"{opening(times, subject)}{told}{LIGHTER if theirs else ''}", table, tables)
+    rows, is_usual = list(table.itertuples()), by == USUAL
+    told = caption("comparison", rows=rows, against=against, by=by, is_usual=is_usual, theirs=theirs)
+    table["name"] = [f"{label} against {against}" for label in table["label"]]
+    return Drawing(figure, f"{opening(times, subject)} {told}".strip(), table, tables)
 
 
-def published_orders(data: Data, table: pd.DataFrame, against: str) -> dict[str, float]:
-    """Return the published times of the sequential orders, with self-contained resolves, as ratios, moved as
-    one so that track is level with ours, if it is there.
+def _published_orders(
+    data: Data, table: pd.DataFrame, against: str, questions: Mapping[str, str]
+) -> Mapping[str, float]:
+    """Return the published times of series, with self-contained resolves, as ratios, moved as one so that the
+    first is level with ours, if it is there.
     """
     seconds = {
-        name: data.published.experiment(f"self_contained_{name}").query("series == 'on'")["seconds"].median()
-        for name in ("track", "repeat")
+        name: data.published.experiment(question).query("series == 'on'")["seconds"].median()
+        for name, question in questions.items()
     }
-    level = {against: 1.0, **dict(zip(table["series"], table["ratio"], strict=True))}
-    if "track" not in level:
-        return {}
-    return {name: level["track"] * one / seconds["track"] for name, one in seconds.items() if name in level}
-
-
-def named(table: pd.DataFrame, against: str) -> pd.DataFrame:
-    """Return the differences with what the report is to call each, its `name`."""
-    return table.assign(name=[f"{label} against {against}" for label in _labels(table, table)])
-
-
-def differences_sentence(table: pd.DataFrame, against: str, by: Stated = USUAL) -> str:
-    """Say every difference with its verdict, and the margin and error if they are the question's own."""
-    told = differing(_labels(table, table), table)
-    own = (
-        ""
-        if by == USUAL
-        else f", with a margin of {100 * by.margin:g} % and an error of {100 * by.error:g} %"
+    level, first = (
+        {against: 1.0, **dict(zip(table["series"], table["ratio"], strict=True))},
+        next(iter(seconds)),
     )
-    return f" Against {against}: {told} (Holm-corrected{own})." if told else ""
+    if first not in level:
+        return {}
+    return {name: level[first] * one / seconds[first] for name, one in seconds.items() if name in level}
 
 
 def _labels(rows: pd.DataFrame, table: pd.DataFrame) -> list[str]:
@@ -108,25 +106,25 @@ def _differences(
     the published ones, lighter, below them.
     """
     heights = {(row.series, row.x): float(height) for height, row in enumerate(rows.itertuples())}
-    shown, dots = looks(rows["series"]), []
-    for label, row in zip(_labels(table, table), table.itertuples(), strict=True):
-        at = heights[row.series, row.x]
-        dots.append(of_ratio(row, at, label, shown[row.series], row.verdict))
+    shown = looks(rows["series"])
+    dots = [
+        of_ratio(row, heights[row.series, row.x], row.label, shown[row.series], row.verdict)
+        for row in table.itertuples()
+    ]
     for (name, _), height in heights.items():
         if name in published:
-            per_cent = 100 * (published[name] - 1)
-            told, look = number(per_cent), Look(lighten(INK))
-            dots.append(Dot(per_cent, float("nan"), float("nan"), height - 0.2, "published", told, look))
+            ratio = 100 * (published[name] - 1)
+            dots.append(Dot(ratio, *NO_ENDS, height - 0.2, "published", number(ratio), Look(lighten(INK))))
     forest(axes, dots, _labels(rows, rows), margin)
 
 
-def league(study: Study, experiment: str) -> Table | None:
-    """Return the table of an experiment of whole processes at one place of its sweep, None for any other: who
+def league(study: Study, experiment: str) -> list[Table]:
+    """Return the table of an experiment of whole processes at one place of its sweep, none of any other: who
     is faster than whom, who was not checked, who failed.
     """
     times, failures = study.of(experiment, "times", "failures")
-    if times.empty or (times["kind"] != "process").any() or times["x"].nunique() > 1:
-        return None
+    if (times["kind"] != "process").any() or times["x"].nunique() > 1:
+        return []
     checked = study.runs_of(experiment).groupby("series")["check_scope"].agg(_checked)
     rows: list[list[Cell | str]] = []
     for row in ranking(times, stated(times).margin).itertuples():
@@ -142,13 +140,147 @@ def league(study: Study, experiment: str) -> Table | None:
         "In the order of their times. Programs with a letter in common cannot be told apart, or differ by "
         "less than the margin; those without differ by more (all pairs, Holm-corrected)"
     )
-    return table_of(title, LEAGUE, rows)
+    return [table_of(title, LEAGUE, rows)]
 
 
 def _checked(scopes: pd.Series) -> str:
     """Say what of a program was checked."""
     told = {UNCHECKED if scope == "nothing" else scope.removeprefix(_TRAJECTORY) for scope in scopes}
     return "; ".join(sorted(told))
+
+
+def _pair(
+    data: Data, experiment: str, subject: str, names: Names, by: Stated, work: bool
+) -> Drawing | None:  # fmt: skip
+    """Draw the ratio of both sides with its verdict and that of every block, the published one below it on
+    the same axis, and beside them the times block by block.
+    """
+    times = data.study.times_of(experiment)
+    candidate, reference = (times[times["series"] == name] for name in names)
+    if candidate.empty or reference.empty:
+        return None
+    if work and (times["question_kind"] == COUNTS).all():
+        return _of_counts(data, experiment, subject, names)
+    theirs, told = data.published.ratio(experiment, *names), list(names.values())
+    # The ratio has most of the room.
+    widths = [2.1, 1.0, *([0.9] if theirs else []), *([0.9] if work else [])]
+    figure, axes = new_figure(2.3, len(widths), widths)
+    # Of several scenes of a sweep, one value a block.
+    pairs = log_ratios(reference, candidate, match=("x",)).groupby(PAIR, as_index=False, sort=False)
+    pairs = pairs.mean(numeric_only=True)
+    row = judge_pairs(pairs, by.margin, by.error)
+    runs = data.published.experiment(experiment)
+    each = [np.exp(pairs["log_ratio"].to_numpy()), _published_ratios(runs, names)]
+    ratio_panel(axes[0], row, theirs, told, by.margin, each)
+    _times(axes[1], _one_a_block(times[times["series"].isin(list(names))]), names)
+    axes[1].set(xlabel="block", ylabel=time_axis(times), title="measured")
+    if theirs:
+        axes[2].set(xlabel="repetition", ylabel="time of the process, s", title="published")
+        _times(axes[2], runs, names, published=True)
+    if work:
+        _work(axes[-1], data, experiment, names)
+    # Cold caches at each turn make the ratio too great by so much, where that is known.
+    bias = pairs["bias"].dropna()
+    moved = None if bias.empty else float(np.expm1(bias.median()))
+    opened = opening(times, subject, SCENES if times["x"].nunique() > 1 else PROCESSES)
+    verdicts = pd.DataFrame([{**vars(row), "name": " against ".join(told)}])
+    words = caption("pair", row=row, names=told, by=by, theirs=theirs, moved=moved)
+    return Drawing(figure, f"{opened} {words}", verdicts)
+
+
+def _looks(names: Names) -> dict[str, Look]:
+    """Return the look of both series."""
+    return looks(reversed(list(names)))
+
+
+def _published_ratios(published: pd.DataFrame, names: Names) -> Floats:
+    """Return the ratio of each published repetition of both."""
+    runs = published.pivot_table(index="x", columns="series", values="seconds")
+    if not set(names) <= set(runs):
+        return np.empty(0)
+    candidate, reference = (runs[series] for series in names)
+    return np.asarray((candidate / reference).dropna(), dtype=float)
+
+
+def _of_counts(data: Data, experiment: str, subject: str, names: Names) -> Drawing:
+    """Draw the attempts alone. They have no verdict here: the claim about them has."""
+    figure, axes = new_figure(1.6)
+    _work(axes[0], data, experiment, names)
+    scenes = data.study.runs_of(experiment)["x"].nunique()
+    return Drawing(figure, caption("counts", subject=subject, scenes=scenes))
+
+
+def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:
+    """Return one row a series and block, numbered as `x`, since nodes number theirs alike, with its
+    `seconds`; where it holds several scenes of a sweep, the geometric mean of their times.
+    """
+    table = np.log(processes["steps_seconds"]).groupby([processes[key] for key in ("series", *PAIR)]).mean()
+    both = np.exp(table).rename("seconds").reset_index()
+    return both.assign(x=1 + both.groupby(PAIR).ngroup())
+
+
+def _times(axes: Axes, runs: pd.DataFrame, names: Names, *, published: bool = False) -> None:
+    """Draw the `seconds` of both sides over blocks or repetitions, `x`, small."""
+    labels = []
+    for series, look in _looks(names).items():
+        own, name = runs[runs["series"] == series].sort_values("x"), names[series]
+        lighter = look._replace(colour=lighten(look.colour)) if published else look
+        told = f"{name}, published" if published else name
+        size = 2.5 if len(own) <= MANY else 1.2
+        curve(axes, own[["x", "seconds"]], lighter, "seconds", name=told, size=size, width=0.8)
+        ink = lighten(look.colour, 0.35) if published else look.colour
+        labels.append((name.replace(" with ", "\nwith "), own["seconds"].iloc[-1], ink))
+    axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
+    axes.yaxis.set_major_locator(MaxNLocator(5))
+    axes.margins(y=0.15)
+    # With one block alone the axis would be too short for a whole number.
+    axes.set_xlim(0.5, runs["x"].max() + 0.5)
+    label_ends(axes, labels, size=6.5)
+
+
+def ratio_panel(
+    axes: Axes, ours: Ratio, theirs: Ratio | None, names: Sequence[str],
+    margin: float = MARGIN, each: Sequence[Floats] = (),
+) -> None:  # fmt: skip
+    """Draw the ratio as a dot with the interval on which the verdict rests, the published one below it, and
+    below either the ratios of `each` of its blocks or runs.
+    """
+    rows = [("published", theirs, lighten(INK, 0.4))] if theirs else []
+    rows.append(("measured", ours, INK))
+    dots = []
+    centred: Any = {"xycoords": ("axes fraction", "data"), "ha": "center", "fontsize": 7}
+    for at, (name, row, colour) in enumerate(rows):
+        dot = of_ratio(row, at, name, Look(colour))
+        # Too few published runs for an interval are no open end: they have no bar at all.
+        is_bare = name == "published" and not row.has_interval
+        dots.append(replace(dot, low=np.nan, high=np.nan) if is_bare else dot)
+        note(axes, change(row), (0.5, at), (0, 9), color=colour, **centred)
+    forest(axes, dots, [f"{name}:\n{row.verdict}" for name, row, _ in rows], margin, width=2.6)
+    low, high = axes.get_xlim()
+    for dot, ratios in zip(reversed(dots), each, strict=False):
+        blocks = 100 * (ratios - 1)
+        blocks = blocks[(blocks > low) & (blocks < high)]
+        pale = lighten(dot.look.colour, 0.3)
+        axes.plot(blocks, np.full(len(blocks), dot.at - 0.24), "|", color=pale, markersize=5)
+    axes.set(title="difference", xlabel=f"time of {names[0]} against {names[1]}, %")
+    axes.xaxis.set_major_locator(MaxNLocator(6))
+
+
+def _work(axes: Axes, data: Data, experiment: str, names: Names) -> None:
+    """Draw the attempts at resolving a pair, those that resolve it in a stronger shade; medians of scenes."""
+    runs = data.study.runs_of(experiment)
+    counts = runs[["pair_resolves", "pair_attempts"]].div(runs["steps"], axis=0)
+    medians, shown = counts.groupby(runs["series"]).median(), _looks(names)
+    for height, (series, name) in enumerate(list(names.items())[::-1]):
+        colour, counted = shown[series].colour, medians.loc[series].dropna()
+        for shade, amount in zip((colour, lighten(colour, 0.5)), counted, strict=False):
+            axes.barh(height, amount, color=shade, height=0.5, zorder=2 if shade == colour else 1)
+        said = " of ".join(exact(round(amount)) for amount in counted)
+        note(axes, f"{name}: {said}", (0, height + 0.27), (0, 2), color=colour, fontsize=7)
+    axes.set(yticks=[], xlabel="resolves of attempts per step", title="work", ylim=(-0.6, 1.6))
+    axes.xaxis.set_major_locator(MaxNLocator(3))
+    plain_ticks(axes.xaxis)
+    axes.spines["left"].set_visible(False)
 
 
 def machines(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -178,30 +310,24 @@ def machines(data: Data, experiment: str, subject: str) -> Drawing | None:
 
 
 def _of_machines(times: pd.DataFrame, subject: str) -> str:
-    on = " or ".join(count(int(threads), "thread") for threads in sorted(times["threads"].unique()))
-    caption = (
-        f"{subject} (N = {exact(times['particles'].iloc[0])}, {on}): medians with 95 % "
-        f"bootstrap intervals, {count(times['file'].nunique(), 'process')}.{_hosts(times)}"
-    )
     groups = {name: group["steps_seconds"] for name, group in times.groupby("told")}
-    if times["machine"].nunique() < 2:
-        return f"{caption} Only one machine is present; more appear when their results are collected."
     # By name: were the fastest chosen, the verdicts against it would be biased.
-    first = min(groups)
-    others = [name for name in groups if name != first]
-    table = corrected(pd.DataFrame([vars(judge_unpaired(groups[first], groups[name])) for name in others]))
-    return f"{caption} Against {first} (not interleaved, so unpaired): {differing(others, table)}."
-
-
-def _hosts(times: pd.DataFrame) -> str:
-    """Say which nodes of a partition were used; what is no partition has its host in its name."""
-    nodes = times.groupby("machine")["node"].unique()
-    used = [
+    first, *others = groups
+    rows = None
+    if times["machine"].nunique() > 1:
+        table = pd.DataFrame([vars(judge_unpaired(groups[first], groups[name])) for name in others])
+        rows = list(corrected(table).assign(label=others).itertuples())
+    # What is no partition has its host in its name.
+    nodes = [
         f"{machine} on {', '.join(sorted(names))}"
-        for machine, names in nodes.items()
+        for machine, names in times.groupby("machine")["node"].unique().items()
         if not str(machine).startswith(f"{names[0]}: ")
     ]
-    return f" Nodes: {'; '.join(used)}." if used else ""
+    return caption(
+        "machines", subject=subject, nodes=nodes, first=first, rows=rows,
+        particles=times["particles"].iloc[0], threads=sorted(times["threads"].unique()),
+        processes=times["file"].nunique(),
+    )  # fmt: skip
 
 
 def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -213,7 +339,7 @@ def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
         return None
     figure, (left, right) = new_figure(1.0 + 0.42 * max(len(found), 4), columns=2, widths=[1.1, 1.0])
     dots = [
-        _of_way(ratio_of(one.log_ratio(way)), at + aside, f"{one.name}, {way}", LOOKS[way])
+        of_ratio(ratio_of(one.log_ratio(way)), at + aside, f"{one.name}, {way}", LOOKS[way], judged=False)
         for at, one in enumerate(reversed(found))
         for way, aside in ((TURNS, 0.13), (APART, -0.13))
     ]
@@ -228,59 +354,56 @@ def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
     for axis in (right.xaxis, right.yaxis):
         logarithmic_ticks(axis)
     key(figure, [(f"{SIGNS[look.marker]} {way}", look.colour) for way, look in LOOKS.items()])
-    caption = (
-        f"{opening(data.study.times_of(experiment), subject, PROCESSES)} Ratios of the times of the steps "
-        "with 95 % intervals, and, a line a comparison, half of these as blocks came, over the time that "
-        f"they took. Ratios by turns are {said(overall(found))} off those apart, on average."
-    )
-    both = (TURNS, APART)
-    rows: Iterable[list[Cell | str]] = (
-        [one.name, *(said(one.log_ratio(way)) for way in both), said(one.bias), str(len(one.pairs)),
-         *(number(one.seconds[way]) for way in both)]
+    opened = opening(data.study.times_of(experiment), subject, PROCESSES)
+    rows = (
+        [one.name, *(said(one.log_ratio(way)) for way in LOOKS), said(one.bias), str(len(one.pairs)),
+         *(number(one.seconds[way]) for way in LOOKS)]
         for one in found
     )  # fmt: skip
-    columns = [
-        "comparison",
-        *both,
-        "by turns against apart",
-        "blocks",
-        *(f"s a block, {way}" for way in both),
-    ]
-    title = "The same comparisons both ways, with 95 % intervals over the blocks"
-    return Drawing(figure, caption, tables=[table_of(title, columns, rows)])
+    spent = (f"s a block, {way}" for way in LOOKS)
+    columns = ["comparison", *LOOKS, "by turns against apart", "blocks", *spent]
+    table = table_of("The same comparisons both ways, with 95 % intervals over the blocks", columns, rows)
+    return Drawing(figure, f"{opened} {caption('ways', off=said(overall(found)))}", tables=[table])
 
 
-def _of_way(ratio: Ratio, at: float, name: str, look: Look, *, is_hollow: bool = False) -> Dot:
-    """Return a ratio that has no verdict."""
-    return replace(of_ratio(ratio, at, name, look), name=name, is_hollow=is_hollow)
+@lru_cache(maxsize=1)
+def bias_sentence(study: Study) -> str:
+    """Say how far ratios by turns are off on this machine, as far as the study measured it; else nothing.
+
+    Many figures of one study say it.
+    """
+    names = sorted(study.times.loc[study.times["question_kind"] == WAYS, "experiment"].unique())
+    found = [one for name in names for one in comparisons(study, str(name))]
+    if not found:
+        return ""
+    widest = max(found, key=lambda one: abs(one.bias.estimate))
+    return " " + caption(
+        "biases", amount=len(found), mean=said(overall(found)), widest=widest.name, off=said(widest.bias),
+        names=names,
+    )  # fmt: skip
 
 
 def pauses(data: Data, experiment: str, subject: str) -> Drawing | None:
     """Draw the time of each program in slices over its time without a pause."""
-    found = pause_ratios(data.study.times_of(experiment))
+    times = data.study.times_of(experiment)
+    found = pause_ratios(times)
     if found.empty:
         return None
     figure, [axes] = new_figure(1.0 + 0.32 * max(len(found), 4))
+    rows = list(found.itertuples())
     dots = [
-        _of_way(ratio_of(row.ratio), at, row.series, Look(BLUE), is_hollow=not row.sliced)
-        for at, row in enumerate(found[::-1].itertuples())
+        replace(
+            of_ratio(ratio_of(row.ratio), at, row.series, Look(BLUE), judged=False), is_hollow=not row.sliced
+        )
+        for at, row in enumerate(reversed(rows))
     ]
     forest(axes, dots, list(found["series"])[::-1], MARGIN, width=1.4)
     axes.set_xlabel("time in slices against time without a pause, %")
-    opened = opening(data.study.times_of(experiment), subject, PROCESSES)
-    caption = (
-        f"{opened} Time in slices against time without a pause, by pairs within blocks, with 95 % "
-        "intervals. A hollow dot is a program that was found to mind being stopped, and so was not."
+    stopped = {True: "", False: " (not stopped)"}
+    cells = (
+        [row.series, number(row.seconds), said(row.ratio) + stopped[row.sliced], str(row.blocks)]
+        for row in rows
     )
-    rows: Iterable[list[Cell | str]] = (
-        [
-            row.series,
-            number(row.seconds),
-            said(row.ratio) + ("" if row.sliced else " (not stopped)"),
-            str(row.blocks),
-        ]
-        for row in found.itertuples()
-    )
-    columns = ["program", "s without a pause", "in slices", "blocks"]
     title = "Time in slices against time without a pause, with 95 % intervals over the blocks"
-    return Drawing(figure, caption, tables=[table_of(title, columns, rows)])
+    table = table_of(title, ["program", "s without a pause", "in slices", "blocks"], cells)
+    return Drawing(figure, f"{opening(times, subject, PROCESSES)} {caption('pauses')}", tables=[table])

@@ -3,9 +3,7 @@ variant stays from the bound of each, with the table of all verdicts.
 """
 
 import re
-from collections.abc import Iterable, Mapping
-from itertools import groupby
-from operator import itemgetter
+from collections.abc import Iterable, Mapping, Sequence
 from textwrap import fill
 from typing import Any
 
@@ -17,7 +15,8 @@ from analysis.derived import accuracy
 from analysis.derived import hard_cases as cases
 from analysis.derived.accuracy import SMALL, Choice, Measure, Race
 from analysis.derived.hard_cases import AT_CONTACT, COLUMNS, FAILS, HOLDS, LIMIT, UNMEASURED
-from analysis.figures.captions import opening
+from analysis.figures.captions import caption, opening
+from analysis.figures.kinds import mark
 from analysis.figures.labels import (
     HOLLOW_SIGNS,
     SIGNS,
@@ -25,7 +24,6 @@ from analysis.figures.labels import (
     label_points,
     logarithmic_ticks,
     name_rows,
-    plain_ticks,
     power_of_ten,
 )
 from analysis.figures.style import (
@@ -40,10 +38,9 @@ from analysis.figures.style import (
     looks,
     new_figure,
     new_grid,
-    point,
 )
 from analysis.support.values import Cell, Interval, Table, table_of
-from analysis.support.wording import NO_BREAK, count, interval, number
+from analysis.support.wording import NO_BREAK, interval, number
 
 MOST_POWERS = 5
 """Of ten that have room below a panel."""
@@ -54,7 +51,7 @@ OTHERS = 2
 
 COLOURS = {"double": BLUE, "float": VERMILLION}
 MARKS = {HOLDS: "holds", FAILS: "fails", LIMIT: "open", UNMEASURED: "open"}
-VERDICT_SIGNS = {HOLDS: "✓", FAILS: "✗", LIMIT: "!", UNMEASURED: "–"}
+VERDICT_SIGNS = {HOLDS: "✓", LIMIT: "!", FAILS: "✗", UNMEASURED: "–"}
 LABEL_WIDTH = 30
 """Letters in a line of what a row measures."""
 
@@ -62,7 +59,7 @@ WIDEST = 6
 """Variants side by side in one table, so that it fits a printed page."""
 
 
-def draw(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing | None:
+def speed_against_error(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing | None:
     """Draw the time of a unit of simulated time over one error measure, a line a series, a panel a scene.
 
     None without records, and where the measure is 0 everywhere.
@@ -111,18 +108,13 @@ def _looks(table: pd.DataFrame) -> dict[str, Look]:
 
 def _line(axes: Axes, part: pd.DataFrame, zero: float, look: Look) -> None:
     rows = part.sort_values("x")
-    axes.plot(
-        rows["error"].clip(lower=zero), MILLI * rows["median"], color=look.colour, linestyle=look.dashes,
-        linewidth=0.9, zorder=3,
-    )  # fmt: skip
-    mark: Any = {"color": look.colour, "mfc": look.colour if look.dashes == "-" else "white", "zorder": 3.5}
-    for row in rows.itertuples():
-        x, y = max(row.error, zero), MILLI * row.median
-        across, up = np.maximum([row.error_low, row.error_high], zero), MILLI * np.array([row.low, row.high])
-        axes.plot(across, [y, y], color=look.colour, linewidth=0.9, zorder=3)
-        axes.plot([x, x], up, color=look.colour, linewidth=0.9, zorder=3)
-        time = f"{number(y)} [{number(up[0])}, {number(up[1])}]"
-        point(axes, x, y, look.marker, run_label(str(row.series), row.x), f"{row.error:.2g}", time, **mark)
+    errors = rows[["error", "error_low", "error_high"]].clip(lower=zero).to_numpy()
+    times = MILLI * rows[["median", "low", "high"]].to_numpy()
+    axes.plot(errors[:, 0], times[:, 0], color=look.colour, linestyle=look.dashes, linewidth=0.9, zorder=3)
+    for row, (x, *across), (y, *up) in zip(rows.itertuples(), errors, times, strict=True):
+        told = run_label(str(row.series), row.x), f"{row.error:.2g}", interval(Interval(y, *up))
+        ends: Any = {"across": across, "up": up, "hollow": look.dashes != "-", "width": 0.9}
+        mark(axes, (x, y), look, *told, **ends)
 
 
 def _front(axes: Axes, part: pd.DataFrame, zero: float) -> None:
@@ -150,9 +142,14 @@ def _settle_limits(axes: Axes, has_zero: bool, zero: float) -> None:
     every = max(1, -(-len(powers) // MOST_POWERS))
     ticks = [10.0**power for power in powers if power % every == 0 and not (has_zero and 10.0**power <= zero)]
     axes.set(xlim=(low * 0.7, high * 1.2), ylim=(bottom, top * 1.6))
-    axes.set_xticks([zero, *ticks] if has_zero else ticks)
+    _error_ticks(axes, zero, ticks, has_zero=has_zero)
     logarithmic_ticks(axes.yaxis)
-    plain_ticks(axes.xaxis)
+
+
+def _error_ticks(axes: Axes, zero: float, ticks: Sequence[float], *, has_zero: bool = True) -> None:
+    """Put powers of ten on the axis of the errors, at whose left edge 0 stands."""
+    axes.set_xticks([zero, *ticks] if has_zero else ticks)
+    axes.minorticks_off()
     axes.xaxis.set_major_formatter(
         lambda value, _: "0" if has_zero and value <= zero else power_of_ten(value)
     )
@@ -212,43 +209,27 @@ def _order(fitted: object) -> Cell | str:
 
 
 def _caption(table: pd.DataFrame, data: Data, experiment: str, subject: str, measure: Measure) -> str:
-    opened = opening(data.study.times_of(experiment), f"{subject}: {measure.title}")
-    certain = "A point's error is the same in every run, to the last bit, and has no interval; its time has."
-    if (table["error_low"] != table["error_high"]).any():
-        certain = "Bars across are the range of the errors."
-    zeros = " Errors of exactly 0 stand at the left edge." if (table["error"] <= 0).any() else ""
-    fronts = "; ".join(
-        f"{_panel_name(str(scene), part)}: {front_in_words(part)}"
+    # What the error of the event-driven simulation is against is the reference of all others.
+    exact_ones = list(table.loc[table["substeps"] == 0, "series"].unique())
+    fronts = [
+        (_panel_name(str(scene), part), front_of(part))
         for scene, part in table.groupby("scene_name", sort=False)
-    )
-    return (
-        f"{opened} The error is {measure.meaning}; down and to the left is better. {certain}"
-        f"{_exact_sentence(table)}{zeros} By the medians, no other choice has at most the error and at most "
-        f"the time of one on the Pareto front (grey): {fronts}."
-    )
+    ]
+    told = caption(
+        "error", measure=measure, exact_ones=exact_ones, fronts=fronts, has_zero=(table["error"] <= 0).any(),
+        has_range=(table["error_low"] != table["error_high"]).any(),
+    )  # fmt: skip
+    return f"{opening(data.study.times_of(experiment), f'{subject}: {measure.title}')} {told}"
 
 
-def _exact_sentence(table: pd.DataFrame) -> str:
-    """Say what the error of the event-driven simulation is against, which is the reference of all others."""
-    names = table.loc[table["substeps"] == 0, "series"].unique()
-    if len(names) == 0:
-        return ""
-    return (
-        f" {' and '.join(names)}: without steps, the simulation that the others are "
-        "compared with; its own error is against the same in long double, and so the rounding of double."
-    )
-
-
-def front_in_words(part: pd.DataFrame) -> str:
-    """Say who is on the front, from the cheapest: `row with 1, 2 and 4 substeps, then track with 8`."""
+def front_of(part: pd.DataFrame) -> list[tuple[str, list[str]]]:
+    """Return who is on the front, from the cheapest: series, each with its substeps side by side."""
     rows = part[part["on_front"]].sort_values("median")
-    said = []
-    for series, group in groupby(zip(rows["series"], rows["substeps"], strict=True), key=itemgetter(0)):
-        *most, last = (f"{substeps:g}" for _, substeps in group)
-        listed = f"{', '.join(most)} and {last}" if most else last
-        noun = "substep" if listed == "1" else "substeps"
-        said.append(str(series) if listed == "0" else f"{series} with {listed} {noun}")
-    return ", then ".join(said)
+    return [
+        (str(series), [f"{substeps:g}" for substeps in group["substeps"]])
+        for _, group in rows.groupby((rows["series"] != rows["series"].shift()).cumsum())
+        for series in group["series"].unique()
+    ]
 
 
 def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
@@ -263,13 +244,11 @@ def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
     _name_measures(axes, labels)
     present = [precision for precision in COLOURS if (table["precision"] == precision).any()]
     key(figure, [*((f"● {one}", COLOURS[one]) for one in present), ("| bound", INK)])
-    caption = (
-        f"{subject}: {count(table['case'].nunique(), 'case')} and "
-        f"{count(table['series'].nunique(), 'variant')}, a process for each. A dot is a variant on a case, "
-        "at the measure that the case is about; a bar is the most that it may be in the dot's precision. "
-        f"Hollow: a limit of the method, and the bar the least that it must be. {cases.summary(table)}"
-    )
-    return Drawing(figure, caption, tables=list(_tables(table)))
+    told = caption(
+        "hard_cases", subject=subject, cases=table["case"].nunique(), variants=table["series"].nunique(),
+        cells=len(table), counts=table["verdict"].value_counts().reindex(VERDICT_SIGNS).dropna().astype(int),
+    )  # fmt: skip
+    return Drawing(figure, told, tables=list(_tables(table)))
 
 
 def _dots(axes: Axes, shown: pd.DataFrame) -> None:
@@ -280,19 +259,16 @@ def _dots(axes: Axes, shown: pd.DataFrame) -> None:
     for row in shown.itertuples():
         colour = COLOURS.get(row.precision, INK)
         height = heights[row.title] - (0.14 if row.precision == "float" else -0.14)
-        look: Any = {"color": colour, "mfc": "white" if row.verdict == LIMIT else colour, "zorder": 3}
         bound = "" if pd.isna(row.bound) else f" (bound {row.bound:.1e})"
         told = f"{row.case}, {row.series}: {row.verdict}", f"{row.value:.1e}{bound}"
-        point(axes, max(row.value, zero), height, "o", *told, markersize=3.5, **look)
+        mark(axes, (max(row.value, zero), height), Look(colour), *told, hollow=row.verdict == LIMIT)
         if bound:
             axes.plot([max(row.bound, zero)] * 2, [height - 0.14, height + 0.14], color=INK, linewidth=1.1)
     axes.set_xscale("log")
     name_rows(axes, [title.replace("_", " ") for title in heights], list(heights.values()))
     axes.set_xlabel("what stands to the right of each case; relative where it has no unit")
     powers = range(round(np.log10(zero)) + 1, int(np.floor(np.log10(axes.get_xlim()[1]))) + 1)
-    axes.set_xticks([zero, *(10.0**power for power in powers if power % 2 == 0)])
-    axes.xaxis.set_major_formatter(lambda value, _: "0" if value <= zero else power_of_ten(value))
-    axes.minorticks_off()
+    _error_ticks(axes, zero, [10.0**power for power in powers if power % 2 == 0])
     for height in heights.values():
         axes.axhline(height - 0.5, color=FAINT, linewidth=0.3, zorder=1)
 

@@ -1,8 +1,9 @@
-"""The kinds of which figures are made: forests, and curves with or without ratios below them. What a point
-tells stands in the same rows as what is drawn of it.
+"""The kinds of which figures are made, drawn from rows: forests, curves with or without ratios below them,
+and the mark with its intervals of which all of them are made. What a mark tells when the pointer rests on it
+comes from the row that is drawn.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +19,9 @@ from analysis.support.wording import change, exact, interval_of, number
 PLAIN = Look(INK)
 FAR = 1.6
 """Times the least ratio from which the greatest is shown as a factor, not in per cent."""
+NO_ENDS = (np.nan, np.nan)
+
+Ends = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -37,10 +41,12 @@ class Dot:
     is_hollow: bool = False
 
 
-def of_ratio(row: Any, at: float, name: str, look: Look = PLAIN, said: str = "") -> Dot:  # noqa: ANN401
-    """Return a ratio, or a row of a table of them, in per cent."""
+def of_ratio(
+    row: Any, at: float, name: str, look: Look = PLAIN, said: str = "", *, judged: bool = True  # noqa: ANN401
+) -> Dot:  # fmt: skip
+    """Return a ratio, or a row of a table of them, in per cent; it tells its verdict if it was `judged`."""
     value, low, high = (100 * (end - 1) for end in (row.ratio, row.low, row.high))
-    return Dot(value, low, high, at, f"{name}: {row.verdict}", change(row), look, said)
+    return Dot(value, low, high, at, f"{name}: {row.verdict}" if judged else name, change(row), look, said)
 
 
 def of_medians(summary: pd.DataFrame, names: Sequence[str], colour: str, *, short: bool = False) -> list[Dot]:
@@ -52,6 +58,19 @@ def of_medians(summary: pd.DataFrame, names: Sequence[str], colour: str, *, shor
         low, high = getattr(row, "low", np.nan), getattr(row, "high", np.nan)
         dots.append(Dot(row.median, low, high, height, name, told, Look(colour), value if short else told))
     return dots
+
+
+def mark(
+    axes: Axes, at: tuple[float, float], look: Look, *told: str, across: Ends = NO_ENDS, up: Ends = NO_ENDS,
+    hollow: bool = False, size: float = 3.5, width: float = 1.1, zorder: float = 3,
+) -> None:  # fmt: skip
+    """Draw a value with its interval along either axis, or along both; what it has told is its name, and
+    what it tells of either axis.
+    """
+    face = "white" if hollow else look.colour
+    point(axes, *at, look.marker, *told, color=look.colour, mfc=face, markersize=size, zorder=zorder + 1)
+    span(axes, *across, at[1], look.colour, width)
+    span(axes, *up, at[0], look.colour, width, upright=True)
 
 
 def forest(
@@ -70,9 +89,8 @@ def forest(
         ratios = pd.DataFrame(rows, columns=["ratio", "low", "high"])
         axes.set_xlim(*(100 * (end - 1) for end in reach(ratios, margin)))
     for dot in dots:
-        mark = {"color": dot.look.colour, "mfc": "white" if dot.is_hollow else dot.look.colour}
-        point(axes, dot.value, dot.at, dot.look.marker, dot.name, dot.told, markersize=5, zorder=4, **mark)
-        span(axes, dot.low, dot.high, dot.at, dot.look.colour, width)
+        ends: Any = {"across": (dot.low, dot.high), "hollow": dot.is_hollow}
+        mark(axes, (dot.value, dot.at), dot.look, dot.name, dot.told, size=5, width=width, **ends)
         if dot.said:
             ink = INK if margin is not None else dot.look.colour
             note(axes, dot.said, (dot.value, dot.at), (0, 6), ha="center", fontsize=7, color=ink)
@@ -90,17 +108,19 @@ def shade(axes: Axes, low: float, high: float, equal: float, *, upright: bool = 
 def span(
     axes: Axes, low: float, high: float, at: float, colour: str, width: float, *, upright: bool = False
 ) -> None:
-    """Draw an interval, which ends in an arrow where it goes on beyond the axis. One without an end is thin
-    and dotted; one that is not known is not drawn.
+    """Draw an interval. On an axis that is settled it ends in an arrow where it goes on beyond, and one
+    without an end is thin and dotted; one that is not known is not drawn.
     """
     if np.isnan(low) or np.isnan(high):
         return
-    ends = np.clip([low, high], *(axes.get_ylim() if upright else axes.get_xlim()))
+    is_open = axes.get_autoscaley_on() if upright else axes.get_autoscalex_on()
+    limits = (-np.inf, np.inf) if is_open else axes.get_ylim() if upright else axes.get_xlim()
+    ends = np.clip([low, high], *limits)
     places = ([at, at], ends) if upright else (ends, [at, at])
     known: Any = {"linewidth": width, "solid_capstyle": "butt"}
     look = {"linewidth": 0.9, "linestyle": ":"} if np.isinf(high) else known
     axes.plot(*places, color=colour, zorder=2, **look)
-    for end in (low, high):
+    for end in () if is_open else (low, high):
         arrow(axes, end, at, colour, upright=upright)
 
 
@@ -118,53 +138,52 @@ def reach(table: pd.DataFrame, margin: float = MARGIN) -> tuple[float, float]:
     """Return the ends of an axis for the columns `ratio`, `low`, `high`. It has all ratios and the margin,
     and of the intervals what makes it at most three times as long.
     """
-    known = np.log(table["ratio"].to_numpy(dtype=float))
-    known = known[np.isfinite(known)]
-    low, high = (float(end) for end in (min([-2.5 * margin, *known]), max([2.5 * margin, *known])))
     with np.errstate(divide="ignore"):
-        ends = np.log(table[["low", "high"]].to_numpy(dtype=float).ravel())
-    length = high - low
-    ends = ends[(ends > low - length) & (ends < high + length)]
+        known, ends = (np.log(table[of].to_numpy(dtype=float)) for of in ("ratio", ["low", "high"]))
+    known = known[np.isfinite(known)]
+    low, high = min([-2.5 * margin, *known]), max([2.5 * margin, *known])
+    ends = ends[(ends > 2 * low - high) & (ends < 2 * high - low)]
     low, high = min([low, *ends]), max([high, *ends])
     return float(np.exp(low - 0.06 * (high - low))), float(np.exp(high + 0.06 * (high - low)))
 
 
 def curve(
-    axes: Axes, table: pd.DataFrame, look: Look, value: str = "median", aside: float = 1.0, said: Any = None  # noqa: ANN401
+    axes: Axes, table: pd.DataFrame, look: Look, value: str = "median", aside: float = 1.0, *,
+    told: Callable[[Any], str] | None = None, name: str | None = None, size: float = 3.5, zorder: float = 3,
+    width: float = 1.3,
 ) -> None:  # fmt: skip
     """Draw `value` over `aside` times `x`, a mark a point, with the interval `low` to `high` if it has one.
-    What a point tells is `said` of its row, by default the value with its interval.
+    A point tells its `name`, or else the row's series, and what is `told` of its row, or else the value with
+    the interval.
     """
     rows = table.sort_values("x")
-    axes.plot(aside * rows["x"], rows[value], color=look.colour, linestyle=look.dashes, zorder=3)
+    drawn: Any = {"color": look.colour, "linestyle": look.dashes, "zorder": zorder, "linewidth": width}
+    axes.plot(aside * rows["x"], rows[value], **drawn)
     for row in rows.itertuples():
-        up = interval_of(row, value) if said is None else said(row)
-        told = str(getattr(row, "series", "")), exact(row.x), up
-        point(axes, aside * row.x, getattr(row, value), look.marker, *told, color=look.colour, zorder=3)
-        if said is None:
-            axes.plot([aside * row.x] * 2, [row.low, row.high], color=look.colour, linewidth=1.1, zorder=3)
+        y, ends = getattr(row, value), (getattr(row, "low", np.nan), getattr(row, "high", np.nan))
+        up = told(row) if told else interval_of(row, value) if "low" in rows else number(y)
+        called = str(getattr(row, "series", "")) if name is None else name
+        mark(axes, (aside * row.x, y), look, called, exact(row.x), up, up=ends, size=size, zorder=zorder)
+
+
+def ratio_curve(axes: Axes, table: pd.DataFrame, look: Look, aside: float = 1.0) -> None:
+    """Draw the column `ratio` over `aside` times `x` with its intervals, on an axis that is settled. A ratio
+    without an interval has none.
+    """
+    curve(axes, table, look, "ratio", aside, told=change)
+
+
+def published_curve(axes: Axes, x: pd.Series, y: pd.Series, look: Look) -> None:
+    """Draw a published series in a lighter tone, below everything else."""
+    lighter = look._replace(colour=lighten(look.colour))
+    table = pd.DataFrame({"x": x, "y": y})
+    curve(axes, table, lighter, "y", name="published", size=2.5, width=1.0, zorder=1.5)
 
 
 def ends_of(table: pd.DataFrame, shown: Mapping[str, Look], value: str) -> list[tuple[str, float, str]]:
     """Return the label of each series, where its last point is, and its colour."""
     last = table.loc[table.groupby("series")["x"].idxmax()]
     return [(row["series"], float(row[value]), shown[row["series"]].colour) for _, row in last.iterrows()]
-
-
-def line(axes: Axes, x: Iterable[float], y: Iterable[float], look: Look, name: str, **more: Any) -> None:  # noqa: ANN401
-    """Draw a curve without intervals."""
-    size = more.pop("markersize", 3.5)
-    known = list(zip(x, y, strict=True))
-    axes.plot(*zip(*known, strict=True), color=look.colour, linestyle=look.dashes, **more)
-    for one, other in known:
-        drawn = {"color": look.colour, "markersize": size, "zorder": more.get("zorder", 2)}
-        point(axes, one, other, look.marker, name, exact(one), number(other), **drawn)
-
-
-def published_curve(axes: Axes, x: pd.Series, y: pd.Series, look: Look) -> None:
-    """Draw a published series in a lighter tone, below everything else."""
-    lighter = look._replace(colour=lighten(look.colour))
-    line(axes, x, y, lighter, "published", markersize=2.5, linewidth=1.0, zorder=2)
 
 
 def ratio_axis(axes: Axes, table: pd.DataFrame, against: str, margin: float = MARGIN) -> None:
@@ -183,12 +202,3 @@ def ratio_axis(axes: Axes, table: pd.DataFrame, against: str, margin: float = MA
     axes.minorticks_off()
     logarithmic_ticks(axes.yaxis, most=9)
     axes.set_ylabel(f"time relative\nto {against}")
-
-
-def ratio_curve(axes: Axes, table: pd.DataFrame, look: Look, aside: float = 1.0) -> None:
-    """Draw the column `ratio` over `aside` times `x` with its intervals, on an axis that is settled. A ratio
-    without an interval has none.
-    """
-    curve(axes, table, look, "ratio", aside, change)
-    for row in table.itertuples():
-        span(axes, row.low, row.high, aside * row.x, look.colour, 1.1, upright=True)

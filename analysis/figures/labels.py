@@ -2,7 +2,6 @@
 so that none lies on another.
 """
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,6 +11,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
+from matplotlib.transforms import Bbox
 from scipy.optimize import isotonic_regression
 
 from analysis.support.wording import exact
@@ -23,11 +23,8 @@ SIGNS = {"o": "●", "s": "■", "^": "▲", "D": "◆", "v": "▼", "P": "✚"}
 HOLLOW_SIGNS = {"o": "○", "s": "□", "^": "△", "D": "◇", "v": "▽", "P": "✚"}
 """How a key writes the marks of curves."""
 
-STEPS = (
-    tuple(1 + part / 20 for part in range(180)), tuple(1 + part / 10 for part in range(90)),
-    (1, 1.2, 1.4, 1.6, 2, 2.5, 3, 4, 5, 6, 8), (1, 1.5, 2, 3, 5, 7), (1, 2, 5), (1, 3), (1,), (),
-)  # fmt: skip
-"""Round numbers of one power of ten, ever fewer."""
+STEPS = (1, 2, 5)
+"""Round numbers of one power of ten."""
 
 LINE_POINTS = 9.0
 """Of a name at the end of a curve."""
@@ -75,22 +72,16 @@ def percent_ticks(axis: Axis) -> None:
 
 def logarithmic_ticks(axis: Axis, most: int = 7) -> None:
     """Put plain numbers on a logarithmic axis, as many as have room. Call it when its limits are settled."""
-    ticks = steps_within(*axis.get_view_interval(), most)
-    if ticks:
-        axis.set_major_locator(FixedLocator(ticks))
+    low, high = axis.get_view_interval()
+    ticks = np.concatenate([10.0**power * np.array(STEPS) for power in range(-12, 13)])
+    ticks = ticks[(ticks >= low) & (ticks <= high)]
+    if len(ticks) < 3:
+        ticks = np.asarray(MaxNLocator(most // 2 + 1, steps=[1, 2, 5, 10]).tick_values(low, high))
+        ticks = ticks[ticks > 0]
+    elif len(ticks) > most:
+        ticks = ticks[np.isclose(np.log10(ticks) % 1, 0)]
+    axis.set_major_locator(FixedLocator([float(f"{tick:.6g}") for tick in ticks]))
     plain_ticks(axis)
-
-
-def steps_within(low: float, high: float, most: int) -> list[float]:
-    """Return round numbers on a logarithmic axis, the densest at most `most` that lie far enough apart."""
-    gap = np.log(high / low) / (most + 1)
-    for steps in STEPS:
-        powers = range(math.floor(math.log10(low)), math.floor(math.log10(high)) + 1)
-        ticks = [float(f"{step * 10.0**power:.6g}") for power in powers for step in steps]
-        ticks = [tick for tick in ticks if low <= tick <= high]
-        if len(ticks) <= most and (len(ticks) < 2 or np.diff(np.log(ticks)).min() >= gap):
-            return ticks
-    return []
 
 
 def power_of_ten(value: float) -> str:
@@ -110,18 +101,18 @@ def _points(axes: Axes, x: float, y: float) -> tuple[float, float]:
     """Return, nearly, where a place of a panel will be, in points from its corner."""
     figure = axes.figure.get_figure(root=True)
     place = axes.transAxes.inverted().transform(axes.transData.transform((x, y)))
-    size = axes.get_position().size * figure.get_size_inches() * 72
-    return float(place[0] * size[0]), float(place[1] * size[1])
+    across, up = place * axes.get_position().size * figure.get_size_inches() * 72
+    return float(across), float(up)
 
 
 def label_ends(axes: Axes, labels: Sequence[tuple[str, float, str]], size: float = 7) -> None:
     """Write each label (text, height in data units, colour) right of the axes, none on another. Call it when
     the limits are settled.
     """
-    lines = max((text.count("\n") + 1 for text, _, _ in labels), default=1)
+    gap = LINE_POINTS * max((text.count("\n") + 1 for text, _, _ in labels), default=1)
     at = [_points(axes, axes.get_xlim()[1], y)[1] for _, y, _ in labels]
     beside: Any = {"xycoords": ("axes fraction", "data"), "va": "center", "fontsize": size}
-    for (text, y, colour), wanted, place in zip(labels, at, spread(at, lines * LINE_POINTS), strict=True):
+    for (text, y, colour), wanted, place in zip(labels, at, spread(at, gap), strict=True):
         note(axes, text, (1, y), (4, place - wanted), color=colour, **beside)
 
 
@@ -131,14 +122,12 @@ def label_points(
     """Write each label (text, x, y) below and left of its point; leave out one that would lie on another.
     Call it when the limits are settled.
     """
-    taken: list[tuple[float, float, float]] = []
+    taken: list[Bbox] = []
     for text, x, y in labels:
-        (right, up), width = _points(axes, x, y), 0.66 * size * len(text)
-        is_free = all(
-            right < left or end < right - width or abs(up - other) > size for left, end, other in taken
-        )
-        if is_free and right > width:
-            taken.append((right - width, right, up))
+        right, up = _points(axes, x, y)
+        box = Bbox.from_extents(right - 0.66 * size * len(text), up - size, right, up)
+        if box.x0 > 0 and not box.count_overlaps(taken):
+            taken.append(box)
             note(axes, text, (x, y), (-3, -3), fontsize=size, color=colour, zorder=4, ha="right", va="top")
 
 

@@ -1,7 +1,10 @@
 """Where the time of a step goes, from profiled runs: its phases, what counters tell of them, how near they
-are to the limits of the machine, and a step on every thread.
+are to the limits of the machine, and a step on every thread; and a ladder as a waterfall, each rung from the
+time of the rung before to its own, a panel a scene.
 """
 
+import math
+from collections.abc import Sequence
 from itertools import zip_longest
 from typing import Any
 
@@ -10,10 +13,22 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from analysis.derived.counters import QUANTITIES, derived
-from analysis.derived.ladder import named, scene_title
+from analysis.derived.ladder import (
+    RUNG,
+    claims,
+    factors,
+    named,
+    rungs,
+    scene_title,
+    speed_up,
+    tables_of,
+    totals,
+)
 from analysis.derived.limits import ARITHMETIC, COPY, against_limits, busy_shares
 from analysis.derived.unavoidable import PHASES
-from analysis.figures.labels import key, name_rows, note, plain_ticks
+from analysis.figures.captions import caption
+from analysis.figures.kinds import mark
+from analysis.figures.labels import key, logarithmic_ticks, name_rows, note, plain_ticks
 from analysis.figures.style import (
     BLUE,
     FAINT,
@@ -23,13 +38,15 @@ from analysis.figures.style import (
     VERMILLION,
     Data,
     Drawing,
+    Look,
     lighten,
     new_figure,
     new_grid,
-    point,
 )
 from analysis.records import timelines
-from analysis.support.wording import count, number, scene_in_words, share
+from analysis.statistics.verdicts import MARGIN
+from analysis.support.values import table_of
+from analysis.support.wording import interval_of, number, scene_in_words, share
 
 PHASE_COLOURS = {"move": ORANGE, "bin": GREEN, "find": BLUE, "resolve": VERMILLION}
 COLUMNS = 3
@@ -84,29 +101,21 @@ def profile(data: Data, experiment: str, subject: str) -> Drawing | None:
 
 def _of_phases(subject: str, table: pd.DataFrame, shares: pd.DataFrame, threads: pd.DataFrame) -> str:
     first = table["series"].iloc[0]
-    said = ", ".join(f"{phase} {share(shares.loc[first, phase])}" for phase in shares.columns)
     seconds = table[table["series"] == first][["serial_seconds", "wall_seconds"]].sum()
-    serial = seconds["serial_seconds"] / seconds["wall_seconds"]
-    runs = count(table["file"].nunique(), "profiled run")
-    where = "; ".join(
-        scene_in_words(particles, fraction)
-        for particles, fraction in table[["particles", "area_fraction"]].drop_duplicates().to_numpy()
-    )
-    threads_used = count(int(table["threads"].max()), "thread")
     busy = threads.groupby(["series", "phase", "file"])["busy_seconds"]
     uneven = (busy.max() / busy.mean()).groupby(["series", "phase"]).median()
-    series, phase = uneven.idxmax()
-    return (
-        f"{subject} ({where}, {threads_used}), from {runs} apart from the timed ones (medians). {first}: "
-        f"{said}; {share(serial)} of it outside parallel loops. Right: busy time against waiting at "
-        f"barriers. Greatest load imbalance (maximum over mean of the threads): {number(uneven.max())} in "
-        f"{phase} of {series}."
-    )
+    scenes = table[["particles", "area_fraction"]].drop_duplicates().to_numpy()
+    return caption(
+        "phases", subject=subject, scenes=[scene_in_words(*scene) for scene in scenes], first=first,
+        threads=int(table["threads"].max()), runs=table["file"].nunique(), shares=shares.loc[first],
+        serial=seconds["serial_seconds"] / seconds["wall_seconds"],
+        uneven=uneven.max(), where=uneven.idxmax(),
+    )  # fmt: skip
 
 
-def panels(data: Data, source: str, subject: str) -> Drawing | None:
+def panels(data: Data, experiment: str, subject: str, source: str) -> Drawing | None:
     """Draw what one source counted of the published variants, a panel a quantity: sources are never mixed."""
-    (counters,) = data.study.of("phases", "counters")
+    (counters,) = data.study.of(experiment, "counters")
     asked = [one for one in QUANTITIES if one.source == source]
     rows = derived(counters[counters["source"] == source], asked)
     if rows.empty:
@@ -119,12 +128,7 @@ def panels(data: Data, source: str, subject: str) -> Drawing | None:
         axes.set_visible(quantity is not None)
         if quantity is not None:
             _bars(axes, rows[rows["quantity"] == quantity].set_index("series").reindex(series), quantity)
-    runs = count(int(rows["runs"].max()), "run")
-    caption = (
-        f"{subject} of profiled runs, {runs} a series, summed over threads: medians, with lines from the "
-        "least to the greatest."
-    )
-    return Drawing(figure, caption)
+    return Drawing(figure, caption("counters", subject=subject, runs=int(rows["runs"].max())))
 
 
 def _bars(axes: Axes, rows: pd.DataFrame, quantity: str) -> None:
@@ -178,11 +182,11 @@ def _limits(axes: Axes, table: pd.DataFrame, heights: dict[tuple[str, str], floa
     for row in table.itertuples():
         height = heights[row.series, row.phase]
         axes.plot([row.least, row.wall], [height, height], color=lighten(FAINT), linewidth=2.5, zorder=1)
-        for column, (name, mark, _, colour) in DOTS.items():
+        for column, (name, shape, _, colour) in DOTS.items():
             value = getattr(row, column)
             told = f"{row.series}, {row.phase}: {name}", number(value)
             if value > 0:
-                point(axes, value, height, mark, *told, color=colour, markersize=4, zorder=4)
+                mark(axes, (value, height), Look(colour, shape), *told, size=4)
         for right, part, colour in ((5, row.reached, INK), (38, 1 - row.busy / row.wall, FAINT)):
             said = f"{number(100 * part, 2)} %" if part < 0.1 else share(part)
             note(axes, said, (row.wall, height), (right, 0), color=colour, va="center", fontsize=6.5)
@@ -193,42 +197,26 @@ def _limits(axes: Axes, table: pd.DataFrame, heights: dict[tuple[str, str], floa
 
 
 def _of_limits(subject: str, table: pd.DataFrame, runs: pd.DataFrame) -> str:
-    threads = count(int(table["threads"].iloc[0]), "thread")
-    profiled = count(runs["file"].nunique(), "profiled run")
-    copies = "; ".join(
-        f"{number(1e-9 * row.copy_rate)} GB/s within {number(row.size / 2**20)} MiB ({row.level}) "
-        f"for {scene_title(runs, row.scene_name)}"
-        for row in table.drop_duplicates(["scene_name", "size"]).itertuples()
-    )
-    peak = number(1e-9 * table["arithmetic_rate"].max())
+    copies = table.drop_duplicates(["scene_name", "size"]).itertuples()
     ordered = table.merge(runs[["series", "series_number"]].drop_duplicates(), on="series")
     groups = ordered.groupby(["series_number", "particles", "scene_name"], dropna=False)
-    said = "; ".join(_of_a_step(rows, runs) for _, rows in groups)
-    return (
-        f"{subject[0].upper()}{subject[1:]} ({threads}, medians of {profiled}). The least time is the "
-        f"greater of two: the bytes that a phase must read and write at the copy bandwidth measured "
-        f"({copies}), and the operations that it must do at the peak measured ({peak} Gflop/s); percentages "
-        f"say how much of the time that is. {said}."
-    )
+    return caption(
+        "limits", subject=subject, threads=int(table["threads"].iloc[0]), runs=runs["file"].nunique(),
+        rates=[(scene_title(runs, row.scene_name), row) for row in copies],
+        peak=table["arithmetic_rate"].max(), steps=[_of_a_step(rows, runs) for _, rows in groups],
+    )  # fmt: skip
 
 
-def _of_a_step(rows: pd.DataFrame, runs: pd.DataFrame) -> str:
-    """Say how much of a whole step is unavoidable, and what fills the rest in its longest phase."""
-    first = rows.iloc[0]
-    longest: Any = rows.loc[rows["wall"].idxmax()]
-    one = runs[(runs["scene_name"] == first["scene_name"]) & (runs["series"] == first["series"])]
+def _of_a_step(rows: pd.DataFrame, runs: pd.DataFrame) -> dict[str, Any]:
+    """Return how much of a whole step is unavoidable, its longest phase, and its work."""
+    series, scene = rows[["series", "scene_name"]].iloc[0]
+    one = runs[(runs["scene_name"] == scene) & (runs["series"] == series)]
     work = one[["overlaps", "pair_resolves", "sweeps"]].div(one["steps"] * one["substeps"], axis=0).median()
-    waiting = 1 - longest["busy"] / longest["wall"]
-    return (
-        f"{first['series']}, {scene_title(runs, first['scene_name'])}: {number(rows['wall'].sum())} ns per "
-        f"disc and step, {share(rows['least'].sum() / rows['wall'].sum())} of it unavoidable; longest is "
-        f"{longest['phase']} ({share(longest['reached'])} by {longest['bound']}, {share(waiting)} waiting), "
-        f"with {number(work['overlaps'])} overlaps, {number(work['pair_resolves'])} resolves and "
-        f"{number(work['sweeps'])} sweeps a step"
-    )
+    found = {"series": series, "scene": scene_title(runs, scene), "longest": rows.loc[rows["wall"].idxmax()]}
+    return {**found, "work": work, **rows[["wall", "least"]].sum()}
 
 
-def timeline(data: Data) -> Drawing | None:
+def timeline(data: Data, experiment: str, subject: str) -> Drawing | None:  # noqa: ARG001 - of all experiments
     """Draw the step of median length of every timeline in the results folder, at most six, on a common time
     axis. They do not say whose they are: they stand with the first study that has profiled runs.
     """
@@ -240,7 +228,7 @@ def timeline(data: Data) -> Drawing | None:
     steps = [timelines.one_step(one.spans) for one in found]
     longest = 1e3 * max(step["end"].max() for step in steps)
     rows = [int(step["thread"].nunique()) for step in steps]
-    height = 0.6 + sum(0.45 + 0.22 * count for count in rows)
+    height = 0.6 + sum(0.45 + 0.22 * lanes for lanes in rows)
     figure, columns = new_grid(height, len(found), sharex=True, height_ratios=rows)
     for axes, title, step in zip(columns[:, 0], titles, steps, strict=True):
         _lanes(axes, step, longest)
@@ -248,9 +236,8 @@ def timeline(data: Data) -> Drawing | None:
     entries = [(f"■ {phase}", colour) for phase, colour in PHASE_COLOURS.items()]
     key(figure, [*entries, ("■ waiting", FAINT), ("pale: serial part of the phase", INK)])
     columns[-1, 0].set_xlabel("time since the step began, ms")
-    said = "; ".join(f"{title}: {_of_one_step(step)}" for title, step in zip(titles, steps, strict=True))
-    runs = count(len(found), "profiled run")
-    return Drawing(figure, f"The step of median length of {runs}, thread by thread. {said}.")
+    told = list(zip(titles, map(_of_one_step, steps), strict=True))
+    return Drawing(figure, caption("timeline", subject=subject, steps=told))
 
 
 def _in_words(title: str, runs: pd.DataFrame) -> str:
@@ -285,10 +272,120 @@ def _lanes(axes: Axes, step: pd.DataFrame, longest: float) -> None:
     axes.spines["left"].set_visible(False)
 
 
-def _of_one_step(step: pd.DataFrame) -> str:
+def _of_one_step(step: pd.DataFrame) -> dict[str, float]:
+    """Return the seconds of a step's `phases`, its `chunks`, and the share of the threads' time `waiting`."""
     seconds = (step["end"] - step["begin"]).groupby(step["kind"]).sum()
     phases = seconds.get("phase", 0.0)
-    chunks = int((step["kind"] == "chunk").sum())
     waiting = seconds.get("wait", 0.0) / max(phases * step["thread"].nunique(), 1e-12)
-    taken = f", {count(chunks, 'chunk')}" if chunks else ""
-    return f"{number(1e3 * phases)} ms{taken}, {share(waiting)} of the threads' time waiting"
+    return {"phases": phases, "chunks": int((step["kind"] == "chunk").sum()), "waiting": waiting}
+
+
+SCENES_BESIDE, ROW_HEIGHT = 2, 0.2
+JUDGED = {"faster": GREEN, "slower": VERMILLION}
+ENDS = {"ns": 0.1, "factor": 0.37, "resolves": 0.65, "sweeps": 0.91, "✓": 1.0}
+"""What stands beside the bars, and where each column ends."""
+
+
+def waterfall(data: Data, experiment: str, subject: str) -> Drawing | None:
+    """Draw an experiment's series in the order of its question, each against the one before, by scene."""
+    tables = tables_of(data.study, experiment)
+    if tables is None:
+        return None
+    runs, times = tables
+    table = rungs(runs, times, data.study.counters)
+    steps, whole = factors(times), totals(times).set_index("scene_name")
+    scenes = list(dict.fromkeys(table.sort_values(["particles", "radius", "scene_name"])["scene_name"]))
+    names = table.drop_duplicates("series_number").set_index("series_number")["change"].sort_index()
+    columns = min(len(scenes), SCENES_BESIDE)
+    lines = math.ceil(len(scenes) / columns)
+    height = lines * (0.85 + ROW_HEIGHT * (len(names) + 1))
+    figure, grid = new_grid(height, lines, 2 * columns, width_ratios=[1.0, 1.3] * columns)
+    for unused in grid.ravel()[2 * len(scenes) :]:
+        unused.set_visible(False)
+    for number_of, (scene, (axes, beside)) in enumerate(zip(scenes, grid.reshape(-1, 2), strict=False)):
+        rows = _rungs(table, steps, scene, names)
+        total = whole.loc[scene] if scene in whole.index else None
+        _waterfall(axes, rows, names, has_both_ends=total is not None, is_named=number_of % columns == 0)
+        _columns(beside, rows, names, total)
+        axes.set_title(scene_title(runs, scene), pad=13)
+    changes = table.set_index(RUNG)["change"]
+    places = steps[RUNG].itertuples(index=False, name=None)
+    verdicts = steps.assign(name=[f"{scene_title(runs, one)}: {changes[one, rung]}" for one, rung in places])
+    known = table.drop_duplicates("series_number").sort_values("series_number")
+    title = "The rungs by their short names, with the names by which the program knows them:"
+    cells = known[["series", "change", "variant"]].astype(str).to_numpy()
+    short_names = table_of(title, ["Rung", "Changes", "Variant (carom list)"], cells)
+    failed, counted = data.study.failed_checks(experiment), table[table["instructions"].notna()]
+    told = caption(
+        "ladder", subject=subject, threads=int(times["threads"].iloc[0]), margin=MARGIN,
+        totals=claims(runs, times), blocks=times["block"].nunique(), processes=times["file"].nunique(),
+        scopes=sorted(runs["check_scope"].unique()), failed=failed,
+        results=int(table["passed"].sum()) + failed,
+        counted=list(counted.itertuples()), sources=sorted(set(counted["source"])),
+    )  # fmt: skip
+    return Drawing(figure, told, verdicts, [short_names])
+
+
+def _rungs(table: pd.DataFrame, steps: pd.DataFrame, scene: str, names: pd.Series) -> pd.DataFrame:
+    """Return the scene's rungs in order, with the `height` of each, the time `before` it and its `verdict`
+    against the rung before, where that was measured.
+    """
+    judged = steps[[*RUNG, "ratio", "verdict"]]
+    rows = table[table["scene_name"] == scene].merge(judged, on=RUNG, how="left").sort_values("series_number")
+    before = rows.set_index("series_number")["nanoseconds"].reindex(names.index).shift()
+    heights = {rung: -float(line) for line, rung in enumerate(names.index)}
+    numbers = rows["series_number"]
+    return rows.assign(before=numbers.map(before), height=numbers.map(heights), told=numbers.map(names))
+
+
+def _waterfall(
+    axes: Axes, rows: pd.DataFrame, names: pd.Series, *, has_both_ends: bool, is_named: bool
+) -> None:  # fmt: skip
+    def bar(height: float, times: Sequence[float], colour: str, thickness: float) -> None:
+        left, right = sorted(times)
+        axes.barh(height, right - left, left=left, color=colour, height=thickness, zorder=2)
+
+    axes.set_xscale("log")
+    axes.use_sticky_edges = False  # A bar begins at a time, not at the axis.
+    for row in rows.itertuples():
+        if pd.notna(row.before):
+            axes.plot([row.before] * 2, [row.height + 1, row.height], color=FAINT, linewidth=0.6, zorder=1)
+            bar(row.height, (row.before, row.nanoseconds), JUDGED.get(row.verdict, FAINT), 0.55)
+        told, ends = (row.told, interval_of(row, "nanoseconds")), (row.low, row.high)
+        mark(axes, (row.nanoseconds, row.height), Look(INK), *told, across=ends, size=3, width=1.4)
+    if has_both_ends:
+        bar(-len(names), rows["nanoseconds"].iloc[[0, -1]], lighten(FAINT), 0.3)
+    axes.set_ylim(-len(names) - 0.6, 0.6)
+    ticks = [-float(line) for line in range(len(names) + 1)]
+    name_rows(axes, [*names, "in all"] if is_named else [""] * len(ticks), ticks)
+    axes.set_xlabel("time per disc and step, ns")
+    logarithmic_ticks(axes.xaxis, most=4)
+
+
+def _columns(axes: Axes, rows: pd.DataFrame, names: pd.Series, total: pd.Series | None) -> None:
+    """Write what each rung gains and does beside its bar."""
+
+    def write(end: float, height: float, text: str, colour: str = INK, **more: str) -> None:
+        look: Any = {"fontsize": 6, "color": colour, "ha": "right", "va": "center", **more}
+        axes.text(end, height, text, **look)
+
+    for heading, end in ENDS.items():
+        write(end, 0.75, heading, FAINT, va="bottom")
+    for row in rows.itertuples():
+        is_wrong = row.passed < row.records or pd.isna(row.nanoseconds)
+        cells = (
+            number(row.nanoseconds) if pd.notna(row.nanoseconds) else "none",
+            f"× {number(1 / row.ratio)}" if pd.notna(row.ratio) else "",
+            number(row.resolves),
+            number(row.sweeps),
+            "✓" if row.passed == row.records else "✗",
+        )
+        for end, text in zip(ENDS.values(), cells, strict=True):
+            write(end, row.height, text, VERMILLION if is_wrong else INK)
+    for line, rung in enumerate(names.index):
+        if rung not in set(rows["series_number"]):
+            write(ENDS["sweeps"], -line, "no result", VERMILLION)
+    if total is not None:
+        write(ENDS["sweeps"], -len(names), speed_up(total), weight="bold")
+    axes.set(xlim=(0, 1), ylim=(-len(names) - 0.6, 0.6))
+    axes.axis("off")

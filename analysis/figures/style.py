@@ -1,7 +1,8 @@
 """The look that all figures share, and what a figure function returns."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import tomllib
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from html import escape
@@ -21,6 +22,7 @@ from analysis.records.plans import planned_runs
 from analysis.support.values import Table
 from support.files import replacing
 
+FOLDER = Path(__file__).parent
 PALETTE = BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9",
 )  # fmt: skip
@@ -35,52 +37,18 @@ class Look(NamedTuple):
     dashes: Any = "-"
 
 
-_NAMES: Mapping[Look, Sequence[str]] = {
-    Look(BLUE): (
-        "published", "checkered", "four", "four boxes", "on", "A", "guided", "forward", "g++ with libomp",
-    ),
-    Look(VERMILLION, "s", "--"): (
-        "row", "nine", "nine boxes", "off", "self_contained_off", "A-again", "A again", "dynamic",
-        "clang++ with libomp", "reverse",
-    ),
-    Look(GREEN, "^", "-."): ("fastest", "sorted", "track", "static"),
-    Look(PURPLE, "D", (0, (4, 1, 1, 1, 1, 1))): ("repeat", "g++ with libgomp"),
-    Look(ORANGE, "v", (0, (1, 1))): ("once",),
-    Look(SKY, "P", (0, (6, 2))): (),
-}  # fmt: skip
-_LOOK_OF = {name: look for look, names in _NAMES.items() for name in names}
-"""Which look a thing has in all figures; one that is not here gets the first that is left."""
+_LOOKS = (
+    Look(BLUE), Look(VERMILLION, "s", "--"), Look(GREEN, "^", "-."),
+    Look(PURPLE, "D", (0, (4, 1, 1, 1, 1, 1))), Look(ORANGE, "v", (0, (1, 1))), Look(SKY, "P", (0, (6, 2))),
+)  # fmt: skip
+_SERIES = tomllib.loads((FOLDER / "looks.toml").read_text(encoding="utf-8"))
+_LOOK_OF = {name: look for look, names in zip(_LOOKS, _SERIES.values(), strict=True) for name in names}
 
 INK, FAINT, BAND = "#222222", "#8a8a8a", "#ececec"
 DOTS_PER_INCH = 200
 """Of what a figure has as pixels."""
 WIDTH = 7.0
-SETTINGS: Any = {
-    "font.family": "DejaVu Sans",
-    "font.size": 8,
-    "axes.titlesize": 8,
-    "axes.titlelocation": "left",
-    "axes.labelsize": 8,
-    "axes.labelcolor": INK,
-    "axes.edgecolor": FAINT,
-    "axes.linewidth": 0.6,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": False,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "xtick.labelsize": 7,
-    "ytick.labelsize": 7,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "lines.linewidth": 1.3,
-    "lines.markersize": 3.5,
-    "figure.constrained_layout.use": True,
-    "figure.constrained_layout.h_pad": 0.06,
-    "figure.constrained_layout.w_pad": 0.06,
-    "pdf.fonttype": 42,
-    "svg.fonttype": "path",
-}
+SETTINGS = mpl.rc_params_from_file(FOLDER / "style.mplstyle", use_default_template=False)
 
 
 @dataclass(frozen=True)
@@ -125,14 +93,13 @@ def looks(names: Iterable[str]) -> dict[str, Look]:
             unknown.append(name)
         else:
             found[name] = look
-    left = [look for look in _NAMES if look not in found.values()] or list(_NAMES)
+    left = [look for look in _LOOKS if look not in found.values()] or _LOOKS
     return found | {name: left[number % len(left)] for number, name in enumerate(unknown)}
 
 
 def lighten(colour: str, amount: float = 0.55) -> str:
     """Return the colour mixed with white, for the published series."""
-    red, green, blue = (part * (1 - amount) + amount for part in to_rgb(colour))
-    return to_hex((red, green, blue))
+    return to_hex(tuple(np.array(to_rgb(colour)) * (1 - amount) + amount))
 
 
 def new_figure(
@@ -149,17 +116,16 @@ def new_grid(height: float, lines: int, columns: int = 1, **more: Any) -> tuple[
     return figure, figure.subplots(lines, columns, squeeze=False, **more)
 
 
-def partial(data: Data, experiment: str) -> str | None:
+def partial(data: Data, experiment: str) -> str:
     """Return `partial: n of m runs` if the study lacks some of the experiment's planned records, else
-    None. What is planned the runner wrote down last; records tell what it was when they were made.
+    nothing. What is planned the runner wrote down last; records tell what it was when they were made.
     """
     study = data.study
     runs = study.runs[study.runs["experiment"] == experiment]
     known = planned_runs(data.folder, study.scale, experiment, set(runs["point"]))
     planned = len(runs) + _lacking(runs) if known is None else float(known)
-    if runs.empty or np.isnan(planned) or len(runs) >= planned:
-        return None
-    return f"partial: {len(runs)} of {int(planned)} runs"
+    is_partial = len(runs) and len(runs) < planned
+    return f"partial: {len(runs)} of {int(planned)} runs" if is_partial else ""
 
 
 def _lacking(runs: pd.DataFrame) -> float:
@@ -176,13 +142,6 @@ def _lacking(runs: pd.DataFrame) -> float:
     blocks = blocks.reindex(range(max(int(planned), int(blocks.index.max()) + 1)))
     lacking = blocks["points"].ffill().bfill() - blocks["runs"].fillna(0)
     return float(lacking.clip(lower=0).nsmallest(int(planned)).sum())
-
-
-def mark_partial(figure: Figure, text: str | None) -> None:
-    """Say in the figure itself that data are missing."""
-    if text:
-        # A title of the whole figure is given room of its own by the layout, unlike a text.
-        figure.suptitle(text, x=0.995, ha="right", fontsize=7, color=VERMILLION, weight="bold")
 
 
 class Point(Line2D):
@@ -206,10 +165,8 @@ def _in_words(one: Point) -> str:
     axes: Any = one.axes
     shared = axes.get_shared_x_axes().get_siblings(axes)
     x_label = next(filter(None, (each.get_xlabel() for each in (axes, *shared))), "")
-    values = (
-        (" ".join(label.split()), value) for label, value in ((x_label, along), (axes.get_ylabel(), up))
-    )
-    lines = (f"{label}: {value}" if label and value else value for label, value in values)
+    values = ((x_label, along), (axes.get_ylabel(), up))
+    lines = (": ".join(filter(None, (" ".join(label.split()), value))) for label, value in values if value)
     return "\n".join(filter(None, (name, *lines)))
 
 
@@ -223,14 +180,15 @@ def save(drawing: Drawing, folder: Path, name: str, *, pdf: bool = False) -> lis
     def titled(found: re.Match[str]) -> str:
         return f"{found[0]}<title>{escape(_in_words(points[int(found[1])]), quote=False)}</title>"
 
+    files = [svg, other] if pdf else [svg]
     with styled(name):
-        with replacing(svg) as part:
-            drawing.figure.savefig(part, format="svg", dpi=DOTS_PER_INCH, metadata={"Date": None})
-            text = re.sub(r'<g id="point-(\d+)">', titled, part.read_text(encoding="utf-8"))
-            part.write_text(text, encoding="utf-8")
-        if not pdf:
-            other.unlink(missing_ok=True)
-            return [svg]
-        with replacing(other) as part:
-            drawing.figure.savefig(part, format="pdf", dpi=DOTS_PER_INCH, metadata={"CreationDate": None})
-    return [svg, other]
+        for file in files:
+            with replacing(file) as part:
+                form, undated = file.suffix[1:], {"Date" if file is svg else "CreationDate": None}
+                drawing.figure.savefig(part, format=form, dpi=DOTS_PER_INCH, metadata=undated)
+                if file is svg:
+                    text = part.read_text(encoding="utf-8")
+                    part.write_text(re.sub(r'<g id="point-(\d+)">', titled, text), encoding="utf-8")
+    if not pdf:
+        other.unlink(missing_ok=True)
+    return files

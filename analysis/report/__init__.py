@@ -5,9 +5,10 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+from jinja2 import select_autoescape
 
 from analysis.claims.summary import change_in_short, colour_of, mark, published_in_short, verdict_in_short
+from analysis.figures.captions import environment
 from analysis.records.reading import Records, load
 from analysis.report.content import content
 from analysis.support.wording import NO_BREAK, blocks, change, in_all, spreads
@@ -51,13 +52,8 @@ def render(results: Path, asked: Sequence[str] = ()) -> str:
 
 def _page(records: Records, results: Path, asked: Sequence[str], goes_on: str = "") -> str:
     """Return the page; `goes_on` tells when and how far it was written while the study goes on."""
-    environment = Environment(
-        loader=PackageLoader("analysis.report", "."),
-        autoescape=select_autoescape(default=True),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.globals.update(WORDS)
+    escaped = select_autoescape(default=True)
+    made = environment("analysis.report", autoescape=escaped, trim_blocks=True, lstrip_blocks=True)
+    made.globals.update(WORDS)
     gathered = content(records, results, asked)
-    return environment.get_template(TEMPLATE).render(gathered, goes_on=goes_on, nbsp=NO_BREAK)
+    return made.get_template(TEMPLATE).render(gathered, goes_on=goes_on, nbsp=NO_BREAK)

@@ -31,6 +31,7 @@ from analysis.figures.style import (
     styled,
 )
 from analysis.records.reading import load
+from analysis.report.words import tell
 from analysis.statistics.verdicts import Ratio
 
 NAME = "claims"
@@ -96,7 +97,8 @@ def all_claims(table: pd.DataFrame, layout: Layout = WIDE) -> Drawing | None:
         _link(figure, row["id"], ((whole - ABOVE - bottom) / whole, (bottom - top) / whole))
         top = bottom
     _key(figure, layout)
-    return Drawing(figure, _caption(rows))
+    elsewhere = any(mark(row).startswith("(") for row in rows)
+    return Drawing(figure, tell("all_claims", linear=LINEAR, elsewhere=elsewhere))
 
 
 def _axis(axes: Axes, rows: Sequence[Mapping[Any, Any]], layout: Layout, height: float) -> None:
@@ -150,20 +152,17 @@ def _claim(axes: Axes, row: Mapping[Any, Any], top: float, layout: Layout) -> No
 
 def _effect(axes: Axes, effect: Ratio, height: float, look: str) -> None:
     colour, shape, _ = LOOK[look]
+    is_open = look == "open"
     if effect.has_interval:
         span(axes, _per_cent(effect.low), _per_cent(effect.high), height, colour, 2.2)
-    if effect.is_measured:
-        face = "white" if look == "open" else colour
-        _mark(axes, shape, effect.ratio, height, colour, mfc=face, markersize=4.2, zorder=4)
-    if isfinite(effect.published):
-        ink = lighten(INK, 0.5) if look == "open" else INK
-        _mark(axes, "D", effect.published, height, ink, **PUBLISHED_LOOK, zorder=5)
-
-
-def _mark(axes: Axes, shape: str, ratio: float, height: float, colour: str, **look: Any) -> None:  # noqa: ANN401
-    value = _per_cent(ratio)
-    if not arrow(axes, value, height, colour):
-        axes.plot(value, height, shape, color=colour, clip_on=False, **look)
+    ours: Any = {"mfc": "white" if is_open else colour, "markersize": 4.2, "zorder": 4}
+    theirs: Any = {**PUBLISHED_LOOK, "zorder": 5}
+    grey = lighten(INK, 0.5) if is_open else INK
+    for ratio, marker, ink, drawn in (
+        (effect.ratio, shape, colour, ours), (effect.published, "D", grey, theirs),
+    ):  # fmt: skip
+        if isfinite(ratio) and not arrow(axes, _per_cent(ratio), height, ink):
+            axes.plot(_per_cent(ratio), height, marker, color=ink, clip_on=False, **drawn)
 
 
 def _link(figure: Figure, name: str, place: tuple[float, float]) -> None:
@@ -185,18 +184,6 @@ def _key(figure: Figure, layout: Layout) -> None:
         *zip(*entries, strict=True), loc="lower left", ncols=2 if layout.is_narrow else 3, fontsize=6,
         frameon=False, handlelength=2.2, columnspacing=1.2, labelspacing=0.3, borderaxespad=0.2,
     )  # fmt: skip
-
-
-def _caption(rows: Sequence[Mapping[Any, Any]]) -> str:
-    elsewhere = any(mark(row).startswith("(") for row in rows)
-    brackets = " Brackets: a verdict on another number of threads than the claim's, or at a smaller scale."
-    return (
-        "Every claim: the published effect, and what was measured here with its 95 % interval. What is drawn "
-        "of an exponent is how far it is from 1, of attempts how their count changes. ✓ holds, ✗ does not "
-        "hold, ? was not decided, – was not measured. A value beyond the axis, which is logarithmic beyond "
-        f"{LINEAR} %, ends in an arrow. A mark without a bar has too few blocks for an interval."
-        f"{brackets if elsewhere else ''}"
-    )
 
 
 def draw(data: Data, table: pd.DataFrame | None = None, *, pdf: bool = False) -> tuple[str, list[Path]]:

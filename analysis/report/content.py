@@ -19,10 +19,11 @@ from analysis.records.reading import Records
 from analysis.records.studies import Study
 from analysis.report import all_claims, first_screen, graphs, provenance
 from analysis.report.parts import contents, inline, parts
+from analysis.report.words import tell
 from analysis.statistics.looks import ERROR
 from analysis.statistics.noise import in_order, levels, needed_said, process_noise, shifting, warning
-from analysis.statistics.verdicts import INCONCLUSIVE, MARGIN, Ratio
-from analysis.support.wording import blocks, change, count, number, share
+from analysis.statistics.verdicts import INCONCLUSIVE, MARGIN
+from analysis.support.wording import share
 from support.vocabulary import CONTROL
 
 STYLE = Path(__file__).parent / "report.css"
@@ -150,55 +151,18 @@ def _settled(table: pd.DataFrame, drawn: Sequence[Drawn]) -> set[str]:
 
 
 def control_sentence(study: Study) -> str:
-    """Say what came of the control, the same variant measured under two labels."""
+    """Say what came of the control, the same variant measured under two labels, and that the machine has two
+    speeds, or one that shifts, if the control's times show it.
+    """
     verdict, row = first_screen.control_of(study)
-    if not verdict:
-        return "The control (one variant, two labels) was not measured: nothing vouches for the rest."
     processes = study.times_of(CONTROL)
-    return f"{_control_verdict(study, processes, verdict, row)}{_speeds(processes)}"
-
-
-def _speeds(processes: pd.DataFrame) -> str:
-    """Say that the machine has two speeds, or one that shifts, if the control's times show it."""
-    times = in_order(processes)
-    found = levels(times)
-    if found is not None:
-        said = (
-            f"has two speeds, a factor of {number(found.factor, 2)} apart: {found.slow} of the {found.times} "
-            f"runs of the control were slow, and it changed {count(found.changes, 'time')} between them"
-        )
-    elif shifting(times):
-        said = (
-            f"shifts its speed: the same run took {number(times.min())} to {number(times.max())} s, and runs "
-            "close in time took alike"
-        )
-    else:
-        return ""
-    return (
-        f" The machine {said}. What is compared was in part measured at unlike speeds: intervals are wider."
-    )
-
-
-def _control_verdict(study: Study, processes: pd.DataFrame, verdict: str, row: Ratio) -> str:
-    sessions, beside = study.times["session"].nunique(), processes["session"].nunique()
-    over = "the whole run" if beside == sessions else f"{beside} of {count(sessions, 'session')}"
-    said = f"one variant, measured under two labels over {over}, differs by {change(row)} ({blocks(row)})"
-    if verdict == "off":
-        return (
-            f"The control is off: {said}. That is within the margin, but its interval leaves out 0, as it "
-            "does by chance in at most 5 % of studies. Only the label differs: this is a fault of the "
-            "machine or of the method, and a difference as small says nothing."
-        )
-    if verdict == "equivalent":
-        return f"The control came out equivalent, as it must: {said}."
-    if verdict == "inconclusive":
-        return (
-            f"The control is inconclusive: {said}. Differences of a few per cent cannot be told apart here."
-        )
-    return (
-        f"The control FAILED: {said} and was judged {verdict}. Only the label differs, so do not trust the "
-        "verdicts below: measure again on a quiet machine."
-    )
+    times = in_order(processes) if verdict else pd.Series(dtype=float)
+    shifts = len(times) > 0 and shifting(times)
+    return tell(
+        "control", verdict=verdict, row=row, sessions=study.times["session"].nunique(),
+        beside=processes["session"].nunique(), speeds=levels(times) if len(times) else None,
+        ends=(times.min(), times.max()) if shifts else None,
+    )  # fmt: skip
 
 
 def _noise_row(row: dict[str, Any], settled: Collection[str]) -> dict[str, Any]:

@@ -16,9 +16,10 @@ from analysis.derived.ladder import headlines
 from analysis.figures import Drawn
 from analysis.records.studies import Study
 from analysis.report.answers import Answer
+from analysis.report.words import tell
 from analysis.statistics.pairs import log_ratios
 from analysis.statistics.verdicts import Ratio, judge_one
-from analysis.support.wording import change, count, exact, number
+from analysis.support.wording import change, count, number
 from support.vocabulary import CONTROL
 
 MOST_SENTENCES = 6
@@ -82,22 +83,14 @@ def _open(rows: Sequence[Mapping[Any, Any]]) -> list[Answer]:
 
 def beside(study: Study, states: Mapping[str, int]) -> list[tuple[str, str]]:
     """Return machine, time, control and the share decided, as names and values; `states` as of `tally`."""
-    claims = sum(states.values())
-    rest = ", ".join(f"{amount} {state}" for state, amount in list(states.items())[1:] if amount)
-    decided = f"{states['decided']} of {count(claims, 'claim')}{rest and f'; {rest}'}"
+    verdict, row = control_of(study)
+    is_virtual = bool(study.runs["virtualised"].iloc[0])
     return [
-        ("Machine", _machine(study)),
+        ("Machine", tell("machine", study=study, is_virtual=is_virtual)),
         ("Measured", _time(study)),
-        ("Control", control_in_short(study)),
-        *([("Decided", decided)] if claims else []),
+        ("Control", tell("control_in_short", verdict=verdict, row=row)),
+        *([("Decided", tell("decided", states=states))] if sum(states.values()) else []),
     ]
-
-
-def _machine(study: Study) -> str:
-    runs = study.runs
-    cores = f"{exact(study.cores)} cores, " if study.cores else ""
-    virtual = ", a virtual machine" if bool(runs["virtualised"].iloc[0]) else ""
-    return f"{study.machine}; {cores}{count(study.hardware_threads, 'hardware thread')}{virtual}"
 
 
 def _time(study: Study) -> str:
@@ -117,15 +110,3 @@ def control_of(study: Study) -> tuple[str, Ratio]:
     row = judge_one(log_ratios(*sides)["log_ratio"])
     is_off = row.verdict == "equivalent" and not row.low <= 1 <= row.high
     return "off" if is_off else row.verdict, row
-
-
-def control_in_short(study: Study) -> str:
-    """Return what came of the control in a few words."""
-    verdict, row = control_of(study)
-    said = {
-        "": "– not measured: nothing vouches for the rest",
-        "inconclusive": f"? not decided: {change(row)}",
-        "equivalent": f"✓ no difference found: {change(row)}",
-        "off": f"✗ off: {change(row)}, within the margin",
-    }
-    return said.get(verdict, f"✗ failed: {change(row)}")

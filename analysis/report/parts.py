@@ -5,14 +5,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+import pandas as pd
 from markupsafe import Markup
 
 from analysis.derived.accuracy import MEASURES, errors
 from analysis.figures import HARD_CASES, OF_ERRORS, SPEED_AGAINST_ERROR, Drawn
 from analysis.records.studies import Study
 from analysis.report.answers import Answer, answer, questions
-from analysis.report.horizons import horizons
 from analysis.report.provenance import commands
+from analysis.report.words import tell
 
 PHASES = "phases"
 
@@ -42,8 +44,8 @@ def parts(study: Study, drawn: Sequence[Drawn], claims: Sequence[Mapping[str, An
         for experiment in dict.fromkeys(one.entry.experiment for one in drawn)
     ]
     kinds = {one.entry.experiment: one.entry.kind for one in drawn}
-    order = ["", *OF_ERRORS]
-    return sorted(found, key=lambda part: (part.experiment != PHASES, order.index(kinds[part.experiment])))
+    order = {kind: number for number, kind in enumerate(OF_ERRORS, start=1)}
+    return sorted(found, key=lambda part: (part.experiment != PHASES, order.get(kinds[part.experiment], 0)))
 
 
 def _part(study: Study, drawn: Sequence[Drawn], claims: Sequence[Mapping[str, Any]]) -> Part:
@@ -53,11 +55,7 @@ def _part(study: Study, drawn: Sequence[Drawn], claims: Sequence[Mapping[str, An
     if entry.kind == SPEED_AGAINST_ERROR:
         title, said = title.partition(":")[0], _errors(study, entry.experiment)
     elif entry.kind == HARD_CASES:
-        said = (
-            "Scenes that are hard to simulate right, each with an expectation that can fail. ✓ holds; ✗ "
-            "fails, with the reason; ! is wrong by the nature of the method, as expected, with its number; – "
-            "was not measured.",
-        )
+        said = [tell("hard_cases")]
     elif entry.experiment == PHASES:
         title = "Where the time goes"
     figures = [_figure(one) for one in drawn]
@@ -80,11 +78,31 @@ def _errors(study: Study, experiment: str) -> list[str]:
     """
     measured = errors(study, experiment)
     zeros = [measure.title for measure in MEASURES if (measured[measure.key] == 0).all()]
-    said = [
-        "Errors are measured in a run of their own, never inside the clock, against an exact simulation of "
-        f"the same scene that goes from collision to collision. {horizons(study, experiment)}"
-    ]
+    said = [f"{tell('errors')} {horizons(study, experiment)}"]
     return [*said, f"Zero in every run, and so without a figure: {', '.join(zeros)}."] if zeros else said
+
+
+def horizons(study: Study, experiment: str) -> str:
+    """Say how far single paths can be compared with the exact ones before chaos ends it, from the records;
+    nothing without any.
+    """
+    runs = errors(study, experiment).dropna(subset=["path"])
+    scenes = [
+        _horizon(part) for _, part in runs.sort_values("area_fraction").groupby("scene_name", sort=False)
+    ]
+    return tell("horizons", scenes=scenes) if scenes else ""
+
+
+def _horizon(runs: pd.DataFrame) -> dict[str, Any]:
+    """Return until when the paths of a scene's fewest and most substeps can be compared: the latest time,
+    over the series, None for one that is never within the run; and the `rate` of collisions.
+    """
+    ends = {}
+    for substeps in (runs["substeps"].min(), runs["substeps"].max()):
+        times = runs.loc[runs["substeps"] == substeps, "time_to_tenth_radius"]
+        ends[substeps] = None if times.isna().any() else times.max()
+    rate = runs["collision_rate_reference"].median()
+    return {"scene": runs["scene_name"].iloc[0], "ends": ends, "rate": None if np.isnan(rate) else rate}
 
 
 def _figure(figure: Drawn) -> dict[str, Any]:

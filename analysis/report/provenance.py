@@ -10,39 +10,40 @@ from analysis.figures import titles
 from analysis.figures.captions import by_series
 from analysis.records.reading import Records
 from analysis.records.studies import Study
+from analysis.report.words import tell
 from analysis.statistics.pairs import runs_of, timed_runs, without_partner
-from analysis.support.wording import count, exact, number, share
+from analysis.support.wording import exact, number, share
 from support.vocabulary import CONTROL, COUNTS
 
 UNTOLD = "not told by the system"
+FACTS = {
+    "Hosts": "node", "CPU": "cpu_model", "Cores": "cores", "CPUs usable": "affinity",
+    "Virtual machine": "virtualised", "Clock governor": "governor", "Memory": "memory_bytes",
+    "Operating system": "operating_system", "OpenMP": "openmp", "OpenMP settings": "environment",
+    "Compilers": "compiler", "Compiler flags": "compiler_flags", "Build": "build_type",
+}  # fmt: skip
+"""What is told of the machine and the programs, in this order, from which columns."""
 
 
 def machine(study: Study) -> list[tuple[str, str]]:
     """Return what is known of the machine and the programs, as names and (all) values."""
     runs = study.runs
     memory = runs["memory_bytes"].iloc[0] / 2**30
-    virtual = {True: "yes (shares its hardware with others)", False: "no"}[bool(runs["virtualised"].iloc[0])]
-    return [
-        ("Hosts", _values(runs["node"])),
-        ("CPU", _values(runs["cpu_model"])),
-        ("Cores", f"{_values(runs['cores'])} cores, {_values(runs['hardware_threads'])} hardware threads"),
-        ("CPUs usable", _values(runs["affinity"])),
-        ("Virtual machine", virtual),
-        ("Clock governor", _values(runs["governor"])),
-        ("Memory", f"{number(memory)} GiB"),
-        ("Operating system", _values(runs["operating_system"])),
-        ("OpenMP", _values(runs["openmp"])),
-        ("OpenMP settings", _values(runs["environment"])),
-        ("Compilers", _values(runs["compiler"])),
-        ("Compiler flags", _values(runs["compiler_flags"])),
-        ("Build", _values(runs["build_type"])),
-        ("Source revision", study.revision),
-        ("Programs (SHA-256)", _values(runs["binary_sha256"].str[:16])),
-        ("Measured", f"{runs['recorded_at'].min()} to {runs['recorded_at'].max()} (UTC)"),
-        ("Sessions", exact(runs["session"].nunique())),
-        ("Records", f"{exact(len(runs))} processes, {exact(timed_runs(study.times))} timed runs"),
-        ("In the clock", in_the_clock(study)),
-    ]
+    told = {name: _values(runs[column]) for name, column in FACTS.items()}
+    hardware = _values(runs["hardware_threads"])
+    virtual = "yes (shares its hardware with others)" if bool(runs["virtualised"].iloc[0]) else "no"
+    told |= {
+        "Cores": f"{told['Cores']} cores, {hardware} hardware threads",
+        "Virtual machine": virtual,
+        "Memory": f"{number(memory)} GiB",
+        "Source revision": study.revision,
+        "Programs (SHA-256)": _values(runs["binary_sha256"].str[:16]),
+        "Measured": f"{runs['recorded_at'].min()} to {runs['recorded_at'].max()} (UTC)",
+        "Sessions": exact(runs["session"].nunique()),
+        "Records": f"{exact(len(runs))} processes, {exact(timed_runs(study.times))} timed runs",
+        "In the clock": in_the_clock(study),
+    }
+    return list(told.items())
 
 
 def in_the_clock(study: Study) -> str:
@@ -67,34 +68,19 @@ def _values(column: pd.Series) -> str:
 def checks(study: Study) -> str:
     """Say how many results were checked, how, and the greatest error measures found."""
     runs = study.runs
-    drift = runs["energy_drift"].abs().max()
-    passed = count(int((runs["check_verdict"] == "passed").sum()), "result")
-    failed = study.failed_checks()
-    said = f"{passed} passed and {count(failed, 'result')} failed the program's own check"
-    scopes = " and ".join(sorted(set(runs["check_scope"]) - {"nothing"}))
-    energy = "" if pd.isna(drift) else f"; greatest relative drift of energy {drift:.1e}"
-    discs = runs["discs_outside"].max()
-    outside = "" if pd.isna(discs) else f"; at most {count(int(discs), 'disc')} outside the box at the end"
-    unchecked = int((runs["check_verdict"] == "unchecked").sum())
-    unseen = f"; {count(unchecked, 'process')} of programs whose results are not checked" if unchecked else ""
-    return f"{said} ({scopes}){energy}{outside}{unseen}."
+    verdicts = runs["check_verdict"].value_counts()
+    return tell(
+        "checks", passed=verdicts.get("passed", 0), failed=study.failed_checks(),
+        scopes=sorted(set(runs["check_scope"]) - {"nothing"}), drift=runs["energy_drift"].abs().max(),
+        discs=runs["discs_outside"].max(), unchecked=verdicts.get("unchecked", 0),
+    )  # fmt: skip
 
 
 def partners(study: Study) -> str:
     """Say which records are in no ratio, and why; nothing if all of them are."""
     runs = study.runs[study.runs["check_verdict"] != "failed"]
-    lone = [
-        f"{by_series(alone)} ({name})"
-        for name, group in runs.groupby("experiment")
-        if len(alone := without_partner(group))
-    ]
-    if not lone:
-        return ""
-    return (
-        "A ratio is taken only of what one session measured together. These records have no partner, and "
-        f"count in times alone: {'; '.join(lone)}. A partner is lost where a program or a question was "
-        "changed, a point failed, or a run ended within a block. What lost it is measured again with it."
-    )
+    groups = ((name, without_partner(group)) for name, group in runs.groupby("experiment"))
+    return tell("partners", lone=[f"{by_series(lone)} ({name})" for name, lone in groups if len(lone)])
 
 
 def missing_counters(counters: pd.DataFrame) -> list[dict[str, str]]:

@@ -2,11 +2,14 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from analysis.tests.synthetic import Machine, bench, failure, limits, profile
+from analysis.figures.studies import data_of
+from analysis.figures.style import Data
+from analysis.tests.synthetic import Machine, bench, failure, limits, profile, write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
 
@@ -49,6 +52,12 @@ def study(
     if "limits" in names:
         records.append(limits(machine or Machine(), COPY, ARITHMETIC))
     return records
+
+
+def data_in(folder: Path, records: Iterable[dict[str, Any]]) -> Data:
+    """Write records into a folder, and return what the figures of their first study may draw from."""
+    write(folder, records)
+    return data_of(folder)[0]
 
 
 def _figure(experiment: str) -> str:

@@ -10,6 +10,7 @@ import pytest
 
 from analysis import claims
 from analysis.figures import FIGURES
+from analysis.figures.sweeps import chosen_in
 from analysis.records import published
 from analysis.report import graphs
 
@@ -64,12 +65,13 @@ def test_the_questions_name_the_claims() -> None:
 
 
 def test_the_choice_that_is_ringed_is_a_published_point() -> None:
-    drawn = [entry for entry in FIGURES if "chosen" in getattr(entry.draw, "keywords", {})]
+    drawn = [entry.experiment for entry in FIGURES if entry.kind == "schedule"]
     assert len(drawn) == 3
-    for entry in drawn:
-        series, chunk = getattr(entry.draw, "keywords", {})["chosen"]
-        times = published.load().experiment(entry.experiment)
-        assert ((times["series"] == series) & (times["x"] == chunk)).any(), entry.name
+    for experiment in drawn:
+        found = chosen_in(experiment)
+        assert found is not None
+        times = published.load().experiment(experiment)
+        assert ((times["series"] == found[0]) & (times["x"] == found[1])).any(), experiment
 
 
 def test_each_graph_that_a_claim_is_about_is_in_the_table() -> None:

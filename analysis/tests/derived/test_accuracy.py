@@ -12,19 +12,18 @@ from analysis import report
 from analysis.derived import accuracy
 from analysis.derived.accuracy import MEASURES, Measure
 from analysis.figures import further
-from analysis.figures.errors import draw, front_in_words, run_label
-from analysis.figures.labels import power_of_ten
+from analysis.figures.captions import caption
+from analysis.figures.errors import front_of, run_label, speed_against_error
 from analysis.figures.studies import draw_all
 from analysis.figures.style import Data, Drawing
-from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
-from analysis.report.horizons import horizons
+from analysis.report.parts import horizons
 from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET, Noise, times_table
 from analysis.tests.synthetic_points import SUBSTEPS
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import data_in, study
 
 NAME = "speed_against_error"
 BY_KEY = {measure.key: measure for measure in MEASURES}
@@ -34,29 +33,26 @@ def records(**more: Any) -> list[dict[str, Any]]:  # noqa: ANN401
     return study([NAME], blocks=6, noise=QUIET, seed=4, **more)
 
 
-def study_with(folder: Path, change: Callable[[dict[str, Any]], object]) -> Study:
-    """Return the study of these records, each changed."""
+def data_with(folder: Path, change: Callable[[dict[str, Any]], object]) -> Data:
+    """Return the data of these records, each changed."""
     made = records()
     for record in made:
         change(record)
-    write(folder, made)
-    return split(load(folder))[0]
+    return data_in(folder, made)
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("accuracy")
-    write(path, records())
-    return path
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Data:
+    return data_in(tmp_path_factory.mktemp("accuracy"), records())
 
 
 @pytest.fixture(scope="module")
-def measured(folder: Path) -> Study:
-    return split(load(folder))[0]
+def measured(whole: Data) -> Study:
+    return whole.study
 
 
-def drawing(study: Study, key: str, folder: Path) -> Drawing:
-    drawn = draw(Data(study, [study], published.load(), folder), NAME, "Speed against error", BY_KEY[key])
+def drawing(data: Data, key: str) -> Drawing:
+    drawn = speed_against_error(data, NAME, "Speed against error", BY_KEY[key])
     assert drawn is not None
     return drawn
 
@@ -87,7 +83,7 @@ def test_paths_that_never_part_are_better_than_any_that_do(tmp_path: Path) -> No
         if "time_to_tenth_radius" in record["errors"] and record["tags"]["x"] == 64:
             record["errors"]["time_to_tenth_radius"] = None
 
-    table = points(study_with(tmp_path, never), BY_KEY["parting"])
+    table = points(data_with(tmp_path, never).study, BY_KEY["parting"])
     assert (table.loc[table["x"] == 64, "error"] == 0).all()
     assert (table.loc[table["x"] < 64, "error"] > 0).all()
 
@@ -109,12 +105,6 @@ def test_the_known_front_is_found(measured: Study) -> None:
         assert "row" not in set(on_front["series"])
 
 
-def test_the_front_is_named_from_the_cheapest(measured: Study) -> None:
-    table = points(measured, BY_KEY["path"])
-    said = front_in_words(table[table["scene_name"] == "dilute"])
-    assert said == "float with 1, 2, 4, 8, 16 and 32 substeps, then checkered with 32 and 64 substeps"
-
-
 def test_advice_is_the_cheapest_below_each_bound(measured: Study) -> None:
     table = points(measured, BY_KEY["path"])
     advice = dict(accuracy.advice(table, accuracy.races(measured, NAME)))
@@ -124,16 +114,12 @@ def test_advice_is_the_cheapest_below_each_bound(measured: Study) -> None:
     assert (choice.series, choice.substeps) == ("float", 16)
     assert choice.seconds.estimate == pytest.approx(16 * 0.5e-3 * 1.65, rel=0.05)
     assert choice.others == [], "everything else is slower by more than the margin"
+    assert accuracy.cheapest(table[table["error"] < 1e-9], accuracy.races(measured, NAME)["dense"]) is None
     tightest = advice[0.001]["dilute"]
     assert tightest is not None
     assert tightest.series == "float", "1e-3 is the floor of float, and not above the bound"
-
-
-def test_a_bound_that_nothing_meets_has_no_choice(measured: Study) -> None:
-    table = points(measured, BY_KEY["path"])
-    assert (
-        accuracy.cheapest(table[table["error"] < 1e-9], accuracy.Race(accuracy.times(measured, NAME))) is None
-    )
+    energy = accuracy.advice(points(measured, BY_KEY["energy"]), accuracy.races(measured, NAME))
+    assert [bound for bound, _ in energy] == [1e-6, 1e-13], "bounds with the same choices are one"
 
 
 def test_equal_choices_are_both_named(tmp_path: Path) -> None:
@@ -141,7 +127,7 @@ def test_equal_choices_are_both_named(tmp_path: Path) -> None:
         if record["tags"]["series"] == "row":
             record["repetitions"][0]["steps_seconds"] /= 1.2
 
-    measured = study_with(tmp_path, row_as_fast)
+    measured = data_with(tmp_path, row_as_fast).study
     table = points(measured, BY_KEY["path"])
     double = table[
         (table["precision"] == "double") & (table["scene_name"] == "dense") & (table["error"] < 0.01)
@@ -164,26 +150,18 @@ def test_the_time_of_the_least_of_equals_is_within_its_interval() -> None:
     assert missed <= 5
 
 
-def test_bounds_with_the_same_choices_are_one(measured: Study) -> None:
-    table = points(measured, BY_KEY["energy"])
-    advice = accuracy.advice(table, accuracy.races(measured, NAME))
-    assert [bound for bound, _ in advice] == [1e-6, 1e-13]
-
-
-@pytest.mark.parametrize("key", sorted(set(BY_KEY) - {"unresolved"}))
-def test_every_measure_has_a_figure_from_the_same_records(measured: Study, key: str, folder: Path) -> None:
-    drawn = drawing(measured, key, folder)
+def test_the_figure_says_what_the_error_means_and_how_it_falls(whole: Data) -> None:
+    drawn = drawing(whole, "path")
     assert len(drawn.figure.axes) == 3
-    assert BY_KEY[key].meaning in drawn.caption
+    assert BY_KEY["path"].meaning in drawn.caption
     assert "the same in every run, to the last bit, and has no interval" in drawn.caption
     assert "378 timed runs" in drawn.caption.replace("\u00a0", " ")
-    assert any("Order of convergence" in table.title for table in drawn.tables) == BY_KEY[key].converges
-
-
-def test_the_fitted_orders_are_stated(measured: Study, folder: Path) -> None:
-    (orders,) = (table for table in drawing(measured, "path", folder).tables if "Order" in table.title)
+    (orders,) = (table for table in drawn.tables if "Order of convergence" in table.title)
     cells = {row[0].text: [cell.text for cell in row[1:]] for row in orders.rows}
     assert [cell.split()[0] for cell in cells["checkered"]] == ["1.00"] * 3
+    (advice,) = drawing(whole, "energy").tables
+    assert [row[0].text for row in advice.rows] == ["10⁻⁶", "10⁻¹³"], "rounding does not converge"
+    assert run_label("row", 1) == "row, dt\u00a0=\u00a01"
 
 
 def test_errors_that_differ_between_runs_have_a_range(tmp_path: Path) -> None:
@@ -194,9 +172,9 @@ def test_errors_that_differ_between_runs_have_a_range(tmp_path: Path) -> None:
         if record["tags"]["block"] == 1:
             record["errors"] = known | {"energy_drift": 2 * known["energy_drift"]}
 
-    measured = study_with(tmp_path, twice)
-    assert "Bars across are the range of the errors" in drawing(measured, "energy", tmp_path).caption
-    row = points(measured, BY_KEY["energy"]).iloc[0]
+    data = data_with(tmp_path, twice)
+    assert "Bars across are the range of the errors" in drawing(data, "energy").caption
+    row = points(data.study, BY_KEY["energy"]).iloc[0]
     assert row["error_high"] == 2 * row["error_low"]
 
 
@@ -205,14 +183,14 @@ def test_zero_has_a_place_on_the_axis(tmp_path: Path) -> None:
         if record["tags"]["series"] == "checkered":
             record["errors"]["energy_drift"] = 0.0
 
-    drawn = drawing(study_with(tmp_path, exact), "energy", tmp_path)
+    drawn = drawing(data_with(tmp_path, exact), "energy")
     drawn.figure.draw_without_rendering()
     assert "Errors of exactly 0 stand at the left edge" in drawn.caption
     assert drawn.figure.axes[0].get_xticklabels()[0].get_text() == "0"
 
 
-def test_the_report_says_how_far_paths_go_and_what_to_use(folder: Path) -> None:
-    page = report.render(folder)
+def test_the_report_says_how_far_paths_go_and_what_to_use(whole: Data) -> None:
+    page = report.render(whole.folder)
     text = text_of(page)
     assert "Hard discs are chaotic" in text
     assert "dense by time 2 with 1 and by time 4 with 64 substeps (0.40 collisions per disc" in text
@@ -223,7 +201,7 @@ def test_the_report_says_how_far_paths_go_and_what_to_use(folder: Path) -> None:
 
 def test_an_experiment_of_another_name_is_drawn_alike(tmp_path: Path) -> None:
     told = {"experiment": "my_errors", "title": "Mine", "figure": NAME}
-    entries = further(study_with(tmp_path, lambda record: record["tags"].update(told)))
+    entries = further(data_with(tmp_path, lambda record: record["tags"].update(told)).study)
     assert [entry.name for entry in entries] == [f"my_errors-{key}" for key in BY_KEY]
     assert {entry.experiment for entry in entries} == {"my_errors"}
     assert "Mine: pressure" in [entry.title for entry in entries]
@@ -256,32 +234,25 @@ def exact_ones(records: list[dict[str, Any]], share: float) -> list[dict[str, An
 
 def test_the_event_driven_simulation_is_on_the_front_without_steps(tmp_path: Path) -> None:
     stepped = records()
-    write(tmp_path, [*stepped, *exact_ones(stepped, 3.0)])
-    found = split(load(tmp_path))[0]
+    data = data_in(tmp_path, [*stepped, *exact_ones(stepped, 3.0)])
+    found = data.study
     table = points(found, BY_KEY["path"])
     exact = table[table["series"] == "event-driven"]
     assert exact[["x", "substeps", "on_front"]].to_numpy().tolist() == [[0, 0, True]] * 3
     assert exact["error"].tolist() == [3e-14] * 3
     dilute = table[table["scene_name"] == "dilute"]
-    assert front_in_words(dilute) == "float with 1, 2 and 4 substeps, then event-driven"
+    assert caption("front", runs=front_of(dilute)) == "float with 1, 2 and 4 substeps, then event-driven"
     advice = dict(accuracy.advice(table, accuracy.races(found, NAME)))
     tight = advice[min(advice)]["dense"]
     assert tight is not None
     assert run_label(tight.series, tight.substeps) == "event-driven"
     assert tight.seconds.estimate == pytest.approx(3e-3 * 1.65, rel=0.05)
     assert "event-driven" not in set(accuracy.orders(table)["series"])
-    drawn = drawing(found, "path", tmp_path)
+    drawn = drawing(data, "path")
     assert "event-driven: without steps" in drawn.caption
     assert "against the same in long double" in drawn.caption
     (told,) = (one for one in drawn.tables if "cheapest" in one.title)
     assert "event-driven: " in told.rows[-1][1].text
-
-
-def test_numbers_read_well() -> None:
-    assert [power_of_ten(value) for value in (1e-2, 1.0, 1e-13, 1e4)] == ["0.01", "1", "10⁻¹³", "10⁴"]
-    assert run_label("row", 8) == "row, dt\u00a0=\u00a01/8"
-    assert run_label("event-driven", 0) == "event-driven"
-    assert run_label("row", 1) == "row, dt\u00a0=\u00a01"
 
 
 def test_where_the_reference_is_0_there_is_no_relative_error(tmp_path: Path) -> None:
@@ -289,6 +260,6 @@ def test_where_the_reference_is_0_there_is_no_relative_error(tmp_path: Path) -> 
         if record["tags"]["scene_name"] == "dense" and "pressure_reference" in record.get("errors", {}):
             record["errors"]["pressure_reference"] = 0.0
 
-    found = study_with(tmp_path, no_wall)
-    assert set(points(found, BY_KEY["pressure"])["scene_name"]) == {"dilute", "medium"}
-    assert "dense" not in drawing(found, "pressure", tmp_path).caption
+    found = data_with(tmp_path, no_wall)
+    assert set(points(found.study, BY_KEY["pressure"])["scene_name"]) == {"dilute", "medium"}
+    assert "dense" not in drawing(found, "pressure").caption

@@ -36,6 +36,8 @@ def test_without_a_word_the_first_of_the_file_is_the_reference(tmp_path: Path) -
     assert reference(times) == "old", "not the first by alphabet"
     assert stated(times) == USUAL
     assert reference(times.assign(series_number=None)) == "new", "records that do not tell the order"
+    published = ["published" if one == "new" else "x" for one in times["series"]]
+    assert reference(times.assign(variant=published)) == "new", "the only one of the published variant"
 
 
 def test_the_reference_is_the_one_that_is_stated(tmp_path: Path) -> None:

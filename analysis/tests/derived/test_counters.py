@@ -2,8 +2,6 @@ import pandas as pd
 import pytest
 
 from analysis.derived.counters import derived
-from analysis.figures import profiles as figures
-from analysis.figures.style import Data
 
 WORK = {"experiment": "phases", "series": "checkered", "particles": 1000, "steps": 10, "substeps": 1}
 
@@ -75,15 +73,3 @@ def test_several_runs_give_a_median_and_their_range() -> None:
     )
     (row,) = derived(rows).to_dict("records")
     assert (row["least"], row["value"], row["greatest"], row["runs"]) == (100, 200, 900, 3)
-
-
-def test_the_figure_names_its_source_alone(data: Data) -> None:
-    drawing = figures.panels(data, "papi-software", "Software counters (PAPI)")
-    assert drawing is not None
-    assert drawing.caption.startswith("Software counters (PAPI)")
-    titles = [axes.get_title() for axes in drawing.figure.axes if axes.get_visible()]
-    assert titles == [
-        "CPU nanoseconds per disc and step",
-        "context switches per step",
-        "page faults per step",
-    ]

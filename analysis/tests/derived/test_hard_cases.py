@@ -108,39 +108,34 @@ def at_contact(made: list[dict[str, Any]], series: str) -> None:
             record["axes"]["impact"] = AT_CONTACT
 
 
-def test_a_variant_at_contact_is_held_to_what_is_expected_of_such(
+def test_variants_at_contact_are_held_to_what_is_expected_of_such_in_a_table_of_their_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     own = Expectation("cradle", "exact", measure="path_end", at_most={"double": 1e-6}, impact=AT_CONTACT)
-    monkeypatch.setattr(hard_cases, "load", lambda: [*EXPECTED, own])
-    made = records()
-    at_contact(made, "row")
-    table = evaluated(tmp_path, made)
-    assert table.loc[("cradle", "row"), ["title", "verdict", "bound"]].to_list() == [
-        "cradle, at_contact", FAILS, 1e-6,
-    ]  # fmt: skip
-    assert table.loc[("cradle", "published"), ["title", "verdict", "bound"]].to_list() == [
-        "cradle", HOLDS, 1e-3,
-    ]  # fmt: skip
-    assert table.loc[("fast", "row"), "title"] == "fast"
-
-
-def test_variants_at_contact_have_a_table_of_their_own(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    own = Expectation("cradle", "exact", measure="energy", at_most={"double": 1e-6}, impact=AT_CONTACT)
     monkeypatch.setattr(hard_cases, "load", lambda: [EXPECTED[0], own, *EXPECTED[1:]])
     made = records()
-    at_contact(made, "row")
+    for record in made:
+        if record["tags"]["series"] == "row":
+            record["axes"]["impact"] = AT_CONTACT
     write(tmp_path, made)
     (drawn,) = draw_all(tmp_path)
-    assert [(table.title, list(table.columns[2:])) for table in drawn.tables] == [
-        ("In double precision:", ["published"]),
-        ("In double precision, collisions at contact:", ["row"]),
-        ("In float precision:", ["float"]),
+    told = {table.title: (list(table.columns[2:]), table.rows) for table in drawn.tables}
+    assert {title: columns for title, (columns, _) in told.items()} == {
+        "In double precision:": ["published"],
+        "In double precision, collisions at contact:": ["row"],
+        "In float precision:": ["float"],
+    }
+    cells = [[cell.text for cell in rows[0]] for _, rows in told.values()]
+    failed = "✗ 1.0e-05: expected at most"
+    assert cells == [
+        ["cradle: right", LABELS["path_end"], "✓ 1.0e-05"],
+        ["cradle: exact", LABELS["path_end"], f"{failed} 1e-06"],
+        ["cradle: right", LABELS["path_end"], f"{failed} 1e-09"],
     ]
-    cells = [[cell.text for cell in table.rows[0][:2]] for table in drawn.tables[:2]]
-    assert cells == [["cradle: right", LABELS["path_end"]], ["cradle: exact", LABELS["energy"]]]
+    svg = drawn.files[0].read_text(encoding="utf-8")
+    assert "cradle, at contact" in svg
+    assert "fast, at contact" not in svg
+    assert "<!-- RMS distance from the exact -->" in svg, "what the number of a row is"
 
 
 def test_a_variant_that_only_failed_has_a_table_too(tmp_path: Path) -> None:

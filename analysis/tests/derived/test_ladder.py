@@ -9,17 +9,15 @@ import pytest
 
 from analysis import report
 from analysis.derived.ladder import claims, factors, headlines, named, rungs, speed_up, totals
-from analysis.figures.ladder import waterfall
+from analysis.figures.profiles import waterfall
 from analysis.figures.style import Data, Drawing, styled
-from analysis.records import published
-from analysis.records.reading import load
-from analysis.records.studies import Study, split
+from analysis.records.studies import Study
 from analysis.statistics.verdicts import Ratio
 from analysis.support.wording import NO_INTERVAL
-from analysis.tests.synthetic import failure, profile, write
+from analysis.tests.synthetic import failure, profile
 from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_points import LADDER
-from analysis.tests.synthetic_study import SHARES, study
+from analysis.tests.synthetic_study import SHARES, data_in, study
 
 FACTORS = [factor for factor, _ in LADDER.values()]
 
@@ -28,18 +26,13 @@ def ladder_records(noise: Noise = QUIET) -> list[dict[str, Any]]:
     return study(["ladder"], blocks=9, noise=noise)
 
 
-def study_of(folder: Path, records: list[dict[str, Any]]) -> Study:
-    write(folder, records)
-    return split(load(folder))[0]
-
-
 def tables(one: Study) -> tuple[pd.DataFrame, pd.DataFrame]:
     return named(one.runs_of("ladder")), named(one.times_of("ladder"))
 
 
-def drawn(one: Study, folder: Path) -> Drawing:
+def drawn(data: Data) -> Drawing:
     with styled("ladder"):
-        drawing = waterfall(Data(one, [one], published.load(), folder), "ladder", "the ladder")
+        drawing = waterfall(data, "ladder", "the ladder")
     assert drawing is not None
     return drawing
 
@@ -49,14 +42,13 @@ def texts(drawing: Drawing) -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Study, Path]:
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Data:
     """A whole ladder on both scenes."""
-    folder = tmp_path_factory.mktemp("ladder")
-    return study_of(folder, ladder_records()), folder
+    return data_in(tmp_path_factory.mktemp("ladder"), ladder_records())
 
 
-def test_each_rung_is_judged_against_the_one_before_on_its_scene(whole: tuple[Study, Path]) -> None:
-    _, times = tables(whole[0])
+def test_each_rung_is_judged_against_the_one_before_on_its_scene(whole: Data) -> None:
+    _, times = tables(whole.study)
     table = factors(times)
     assert len(table) == 2 * (len(LADDER) - 1)
     for row in table.itertuples():
@@ -70,19 +62,19 @@ def test_each_rung_is_judged_against_the_one_before_on_its_scene(whole: tuple[St
         assert row.low < 1 / 2.5 < row.high
 
 
-def test_the_report_says_the_totals_where_there_are_any(tmp_path: Path, whole: tuple[Study, Path]) -> None:
-    said = headlines(whole[0])
-    assert said == claims(*tables(whole[0]))
+def test_the_report_says_the_totals_where_there_are_any(tmp_path: Path, whole: Data) -> None:
+    said = headlines(whole.study)
+    assert said == claims(*tables(whole.study))
     assert len(said) == 2
-    text = " ".join(report.render(whole[1]).split())
+    text = " ".join(report.render(whole.folder).split())
     for sentence in said:
         assert re.search(r"2\.5\d? × \[.*\] faster than the published best \(faster\)", sentence)
         assert " ".join(sentence.split()) in text
-    assert headlines(study_of(tmp_path, study(["steps"], blocks=2))) == []
+    assert headlines(data_in(tmp_path, study(["steps"], blocks=2)).study) == []
 
 
-def test_a_rung_shows_its_time_its_work_and_the_policy_that_it_changes(whole: tuple[Study, Path]) -> None:
-    table = rungs(*tables(whole[0]), whole[0].counters)
+def test_a_rung_shows_its_time_its_work_and_the_policy_that_it_changes(whole: Data) -> None:
+    table = rungs(*tables(whole.study), whole.study.counters)
     sparse = table[table["scene_name"] == "sparse"].sort_values("series_number")
     assert list(sparse["change"]) == ["published", "storage sorted", "order strips", "overlaps contacts"]
     assert list(sparse["passed"]) == list(sparse["records"]) == [9] * 4
@@ -99,16 +91,17 @@ def test_instructions_are_those_of_profiled_runs_of_the_variant_on_such_a_scene(
     first = next(record for record in records if record["axes"]["variant"] == "sorted")
     elsewhere = first | {"tags": first["tags"] | {"experiment": "profiled", "point": "p1"}}
     records.append(profile(elsewhere, SHARES, [counted | {"value": 7 * 100_000 * 100}]))
-    one = study_of(tmp_path, records)
-    runs, times = tables(one)
-    table = rungs(runs, times, one.counters).set_index(["scene_name", "variant"])["instructions"]
+    data = data_in(tmp_path, records)
+    table = rungs(*tables(data.study), data.study.counters).set_index(["scene_name", "variant"])[
+        "instructions"
+    ]
     assert table["sparse", "sorted"] == 7
     assert table.drop(("sparse", "sorted")).isna().all()
-    assert "Instructions per disc and step (cachegrind): storage sorted 7" in drawn(one, tmp_path).caption
+    assert "Instructions per disc and step (cachegrind): storage sorted 7" in drawn(data).caption
 
 
-def test_the_figure_says_every_factor_and_the_caption_the_totals(whole: tuple[Study, Path]) -> None:
-    drawing = drawn(*whole)
+def test_the_figure_says_every_factor_and_the_caption_the_totals(whole: Data) -> None:
+    drawing = drawn(whole)
     said = texts(drawing)
     assert sum(text.startswith("× 1.2") or text.startswith("× 1.25") for text in said) == 2
     assert said.count("✓") == 2 * len(LADDER) + 2, "a mark for each rung, and the headings"
@@ -116,6 +109,10 @@ def test_the_figure_says_every_factor_and_the_caption_the_totals(whole: tuple[St
     assert "100\u00a0000 discs at area fraction 0.80: 2.5" in drawing.caption
     assert "all 72\u00a0results passed" in drawing.caption
     assert "were not counted" in drawing.caption
+    (table,) = drawing.tables
+    assert [(row[0].text, row[1].text, row[2].text) for row in table.rows][1] == (
+        "sorted", "storage sorted", "sorted",
+    )  # fmt: skip
     assert drawing.verdicts is not None
     assert list(drawing.verdicts["name"].str.contains("storage sorted")).count(True) == 2
 
@@ -126,7 +123,7 @@ def test_a_rung_that_fails_its_check_is_shown_as_wrong_and_has_no_time(tmp_path:
         if record["axes"]["variant"] == "strips-sorted":
             record["repetitions"] = []
             record["check"] |= {"verdict": "failed", "reason": "step 3: two discs left colliding"}
-    drawing = drawn(study_of(tmp_path, records), tmp_path)
+    drawing = drawn(data_in(tmp_path, records))
     assert texts(drawing).count("✗") == 2
     assert texts(drawing).count("none") == 2
     assert "18 of 72\N{NO-BREAK SPACE}results failed" in drawing.caption
@@ -141,20 +138,20 @@ def test_a_rung_without_a_result_is_named_and_lends_its_place_to_no_other(tmp_pa
     ]
     assert len(kept) == len(records) - 18
     failed = failure("ladder", third, "step 3: two discs left colliding", scene_name="sparse")
-    one = study_of(tmp_path, [*kept, failed])
-    runs, times = tables(one)
+    data = data_in(tmp_path, [*kept, failed])
+    runs, times = tables(data.study)
     assert list(totals(times)["scene_name"]) == ["sparse"], "without its first rung a scene has no total"
     steps = factors(times).groupby("scene_name")["series_number"].agg(set)
     assert steps["dense"] == set(range(3, len(LADDER) + 1))
     assert steps["sparse"] == set(range(2, len(LADDER) + 1)) - {3, 4}
-    drawing = drawn(one, tmp_path)
+    drawing = drawn(data)
     assert texts(drawing).count("no result") == 2
     assert sum("faster than the published best" in sentence for sentence in claims(runs, times)) == 1
     assert "1 of 55\N{NO-BREAK SPACE}results failed" in drawing.caption
 
 
 def test_noise_leaves_a_small_factor_inconclusive(tmp_path: Path) -> None:
-    _, times = tables(study_of(tmp_path, ladder_records(Noise(process=0.1))))
+    _, times = tables(data_in(tmp_path, ladder_records(Noise(process=0.1))).study)
     equal = factors(times).query("series_number == 3")
     assert set(equal["verdict"]) == {"inconclusive"}
 

@@ -13,23 +13,20 @@ from analysis.derived.limits import against_limits
 from analysis.derived.unavoidable import PHASES, unavoidable
 from analysis.figures.profiles import phases_against_limits
 from analysis.figures.style import Data, styled
-from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
-from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET
-from analysis.tests.synthetic_study import ARITHMETIC, COPY, SHARES, study
+from analysis.tests.synthetic_study import ARITHMETIC, COPY, SHARES, data_in, study
 
 DISCS, OVERLAPS, RESOLVES = 100_000, 100_000, 120_000
 """Of a step of the synthetic sparse scene."""
 
 
-def study_of(folder: Path, **changes: Any) -> Study:  # noqa: ANN401
-    records = study(["limits"], blocks=3, noise=QUIET)
-    for record in records:
+def records(**changes: Any) -> list[dict[str, Any]]:  # noqa: ANN401
+    made = study(["limits"], blocks=3, noise=QUIET)
+    for record in made:
         record.get("axes", {}).update(changes)
-    write(folder, records)
-    return split(load(folder))[0]
+    return made
 
 
 def table_of(one: Study) -> pd.DataFrame:
@@ -43,8 +40,13 @@ def work_of(one: Study) -> pd.DataFrame:
 
 
 @pytest.fixture(scope="module")
-def one(tmp_path_factory: pytest.TempPathFactory) -> Study:
-    return study_of(tmp_path_factory.mktemp("limits"))
+def limits_data(tmp_path_factory: pytest.TempPathFactory) -> Data:
+    return data_in(tmp_path_factory.mktemp("limits"), records())
+
+
+@pytest.fixture(scope="module")
+def one(limits_data: Data) -> Study:
+    return limits_data.study
 
 
 def test_every_phase_reads_and_writes_what_its_formula_says(one: Study) -> None:
@@ -60,7 +62,7 @@ def test_every_phase_reads_and_writes_what_its_formula_says(one: Study) -> None:
 
 
 def test_float_halves_the_bytes_of_numbers_and_no_operation(tmp_path: Path) -> None:
-    work = work_of(study_of(tmp_path, precision="float"))
+    work = work_of(data_in(tmp_path, records(precision="float")).study)
     assert work.loc["move", "bytes"] == 24 * DISCS
     assert work.loc["bin", "bytes"] == 12 * DISCS
     assert work.loc["move", "operations"] == 4 * DISCS
@@ -86,13 +88,6 @@ def test_the_least_time_is_that_of_the_largest_copy_within_the_scene(one: Study)
     assert move["wall"] * 0.8 < move["busy"] < move["wall"] * 0.9
 
 
-def test_a_faster_variant_reaches_more_of_the_same_limit(one: Study) -> None:
-    table = table_of(one).set_index(["scene_name", "series", "phase"]).sort_index()
-    slow, fast = (table.loc[("sparse", name, "find")] for name in ("published", "strips-sorted-contacts"))
-    assert fast["least"] == slow["least"]
-    assert fast["reached"] / slow["reached"] == pytest.approx(2.5, rel=0.05)
-
-
 def test_arithmetic_bounds_where_it_takes_longer(one: Study) -> None:
     slow = one.limits.assign(best=one.limits["best"].where(one.limits["limit"] == "copy", 1e6))
     table = table_of(replace(one, limits=slow))
@@ -113,25 +108,23 @@ def test_a_scene_smaller_than_any_copy_is_compared_with_the_smallest(one: Study)
     assert set(table_of(replace(one, limits=larger))["level"]) == {"L2"}
 
 
-def test_the_limits_are_those_of_the_machine(tmp_path: Path) -> None:
-    measured = study_of(tmp_path)
-    assert set(measured.limits["machine"]) == {measured.machine}
-    records = load(tmp_path)
-    (other,) = split(replace(records, limits=records.limits.assign(machine="another: CPU")))
+def test_the_limits_are_those_of_the_machine(limits_data: Data, one: Study) -> None:
+    assert set(one.limits["machine"]) == {one.machine}
+    read = load(limits_data.folder)
+    (other,) = split(replace(read, limits=read.limits.assign(machine="another: CPU")))
     assert other.limits.empty
 
 
-def test_the_figure_names_the_limits_and_what_is_reached(tmp_path: Path, one: Study) -> None:
+def test_the_figure_names_the_limits_and_what_is_reached_if_there_are_any(
+    limits_data: Data, one: Study
+) -> None:
     with styled("limits"):
-        drawing = phases_against_limits(Data(one, [one], published.load(), tmp_path), "limits", "limits")
+        drawing = phases_against_limits(limits_data, "limits", "limits")
     assert drawing is not None
     assert "40.0 GB/s within 4.00 MiB (L3)" in drawing.caption
     assert "12.0 Gflop/s" in drawing.caption
     assert "longest is resolve" in drawing.caption
     said = [text.get_text() for axes in drawing.figure.axes for text in axes.texts]
     assert sum("%" in text for text in said) == 2 * (2 * 2 * len(PHASES)), "reached, and waiting"
-
-
-def test_without_limits_nothing_is_drawn(tmp_path: Path, one: Study) -> None:
-    without = replace(one, limits=one.limits.iloc[:0])
-    assert phases_against_limits(Data(without, [one], published.load(), tmp_path), "limits", "limits") is None
+    without = replace(limits_data, study=replace(one, limits=one.limits.iloc[:0]))
+    assert phases_against_limits(without, "limits", "limits") is None

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.derived.ways import APART, TURNS, bias_sentence, comparisons, overall
+from analysis.derived.ways import APART, TURNS, comparisons, overall
+from analysis.figures.comparisons import bias_sentence
 from analysis.figures.studies import draw_all
 from analysis.records.reading import load
 from analysis.records.studies import Study, split

@@ -1,8 +1,6 @@
 import json
 import re
 import tomllib
-from collections.abc import Callable
-from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -13,10 +11,10 @@ import pytest
 
 from analysis import figures
 from analysis.figures import FIGURES, Entry
+from analysis.figures.comparisons import ratio_panel
 from analysis.figures.labels import label_ends, spread
-from analysis.figures.pairs import ratio_panel
 from analysis.figures.studies import data_of, draw_all
-from analysis.figures.style import Data, new_figure, styled
+from analysis.figures.style import Data, Point, new_figure, styled
 from analysis.figures.sweeps import level_of
 from analysis.statistics.verdicts import Ratio
 from analysis.tests.claims.judging import verdicts_of
@@ -27,62 +25,52 @@ from analysis.tests.synthetic_study import study, trace
 
 UNCOUNTED = ["counters_hardware", "counters_simulated", "speed_against_error-unresolved"]
 DRAWN = [entry for entry in FIGURES if entry.name not in UNCOUNTED]
+WORDS = ("label", "known", "source", "measure")
+
+
+def way_of(entry: Entry) -> str:
+    """How a figure is drawn: its kind, and what that is told but words."""
+    told = {key: key if key == "names" else value for key, value in entry.more.items() if key not in WORDS}
+    return f"{entry.kind} {told}"
+
+
+ONE_OF_EACH_WAY = list({way_of(entry): entry for entry in reversed(DRAWN)}.values())
+WITHOUT_POINTS = ("phases", "counters", "timeline")
 QUESTIONS = Path(__file__).parents[3] / "experiments" / "questions"
 
 
-def pairs_of(entry: Entry) -> tuple[str, str] | None:
-    """Return the series that a figure of two compares, None of any other figure."""
-    names = getattr(entry.draw, "keywords", {}).get("names")
-    return names and tuple(names)
-
-
-@pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.name)
-def test_every_figure_is_drawn_with_labels_units_and_a_caption(data: Data, entry: Entry) -> None:
+@pytest.mark.parametrize("entry", FIGURES, ids=lambda entry: entry.name)
+def test_every_figure_is_drawn_with_labels_units_a_caption_and_points_that_tell(
+    data: Data, entry: Entry
+) -> None:
     with styled(entry.name):
         drawing = entry.draw(data)
+    if entry.name in UNCOUNTED:
+        assert drawing is None
+        return
     assert drawing is not None
     axes = drawing.figure.axes
     labels = [label for one in axes for label in (one.get_xlabel(), one.get_ylabel(), one.get_title("left"))]
     assert any(re.search(r", [nm]?s$|%$|relative| per |radii$", label) for label in labels)
     assert re.search(r"\d", drawing.caption)
     assert "nan" not in drawing.caption.lower()
+    points = [one for one in drawing.figure.findobj(Point) if isinstance(one, Point)]
+    assert all(re.search(r"\d", " ".join(one.told)) for one in points)
+    assert (not points) == (entry.kind in WITHOUT_POINTS)
 
 
-@pytest.mark.parametrize("name", UNCOUNTED)
-def test_what_was_not_counted_is_not_drawn(data: Data, name: str) -> None:
-    (entry,) = (entry for entry in FIGURES if entry.name == name)
-    assert entry.draw(data) is None
-
-
-def test_every_experiment_has_a_figure() -> None:
+def test_every_experiment_has_a_figure_and_every_kind_its_experiment() -> None:
     assert set(figures.titles()) == set(EXPERIMENTS)
+    assert {entry.kind for entry in FIGURES} >= set(figures.OF_ONE_QUESTION)
 
 
-PAIRED = {entry.experiment: sides for entry in FIGURES if (sides := pairs_of(entry))}
-
-
-def test_the_figures_of_pairs_are_known() -> None:
-    assert {"control", "neighbourhood", "reverse", "compiler"} <= set(PAIRED)
-
-
-@pytest.mark.parametrize("experiment", PAIRED)
-def test_a_pair_has_the_names_of_the_series_of_its_question(experiment: str) -> None:
-    question = tomllib.loads((QUESTIONS / f"{experiment}.toml").read_text(encoding="utf-8"))
-    series = {str(one.get("name", one.get("variant"))) for one in question["series"]}
-    assert set(PAIRED[experiment]) <= series
-
-
-@pytest.fixture(scope="module")
-def data_of_part(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str], Data]:
-    """Data of a part of an experiment's records, read once for all of its figures."""
-
-    @cache
-    def read(experiment: str, kept: str) -> Data:
-        folder = tmp_path_factory.mktemp(experiment)
-        write(folder, part(study([experiment], blocks=3, noise=Noise(), seed=3), kept))
-        return data_of(folder)[0]
-
-    return read
+def test_a_pair_has_the_names_of_the_series_of_its_question() -> None:
+    paired = {entry.experiment: entry.more["names"] for entry in FIGURES if "names" in entry.more}
+    assert {"control", "neighbourhood", "reverse", "compiler"} <= set(paired)
+    for experiment, names in paired.items():
+        question = tomllib.loads((QUESTIONS / f"{experiment}.toml").read_text(encoding="utf-8"))
+        series = {str(one.get("name", one.get("variant"))) for one in question["series"]}
+        assert set(names) <= series
 
 
 def part(records: list[dict[str, Any]], kept: str) -> list[dict[str, Any]]:
@@ -96,22 +84,12 @@ def part(records: list[dict[str, Any]], kept: str) -> list[dict[str, Any]]:
     return records[::2]
 
 
-@pytest.mark.parametrize("entry", DRAWN, ids=lambda entry: entry.name)
-@pytest.mark.parametrize(
-    "kept",
-    [
-        "one point",
-        "half",
-        pytest.param("one block", marks=pytest.mark.slow),
-        pytest.param("both ends", marks=pytest.mark.slow),
-    ],
-)
-def test_partial_data_are_drawn_or_left_out_but_never_fail(
-    data_of_part: Callable[[str, str], Data], entry: Entry, kept: str
-) -> None:
-    data = data_of_part(entry.experiment, kept)
+@pytest.mark.parametrize("entry", ONE_OF_EACH_WAY, ids=lambda entry: entry.name)
+@pytest.mark.parametrize("kept", ["one point", "half", "one block", "both ends"])
+def test_partial_data_are_drawn_or_left_out_but_never_fail(tmp_path: Path, entry: Entry, kept: str) -> None:
+    write(tmp_path, part(study([entry.experiment], blocks=3, noise=Noise(), seed=3), kept))
     with styled(entry.name):
-        drawing = entry.draw(data)
+        drawing = entry.draw(data_of(tmp_path)[0])
         if drawing is not None:
             drawing.figure.draw_without_rendering()
 
@@ -149,35 +127,17 @@ def test_what_is_planned_is_what_the_runner_wrote_down_last(tmp_path: Path) -> N
         )
 
 
-def test_a_timeline_calls_its_scene_as_other_figures_do(tmp_path: Path) -> None:
+def test_a_timeline_calls_its_scene_as_the_phases_do(tmp_path: Path) -> None:
     write(tmp_path, study(["phases"], blocks=2))
     (tmp_path / "timelines").mkdir()
     for number, name in enumerate(("scene.in", "unknown.in")):
         text = json.dumps(trace(f"find_static, {name}, 2 threads", 3))
         (tmp_path / "timelines" / f"{number}.json").write_text(text)
-    (drawn,) = (one for one in draw_all(tmp_path) if one.entry.name == "timeline")
-    caption = drawn.caption.replace("\u00a0", " ")
+    drawn = {one.entry.name: one.caption.replace("\u00a0", " ") for one in draw_all(tmp_path)}
+    assert "(100 000 discs at area fraction 0.80, 2 threads)" in drawn["phases"]
+    caption = drawn["timeline"]
     assert "find_static, 100 000 discs at area fraction 0.80, 2 threads: " in caption
     assert "find_static, unknown.in, 2 threads: " in caption
-
-
-def test_the_phases_and_the_hard_cases_say_what_they_show(tmp_path: Path) -> None:
-    write(tmp_path, study(["phases", "hard_cases"], blocks=2))
-    drawn = {one.entry.name: one for one in draw_all(tmp_path)}
-    caption = drawn["phases"].caption.replace("\u00a0", " ")
-    assert "(100 000 discs at area fraction 0.80, 2 threads)" in caption
-    svg = drawn["hard_cases"].files[0].read_text(encoding="utf-8")
-    assert "<!-- greatest distance of the -->" in svg
-    assert "table" not in re.findall(r"<!-- (what stands[^>]*) -->", svg)[0]
-
-
-def test_the_ladder_has_short_names_beside_the_long_ones(tmp_path: Path) -> None:
-    write(tmp_path, study(["ladder"], blocks=4))
-    (drawn,) = draw_all(tmp_path)
-    (table,) = drawn.tables
-    rows = [[cell.text for cell in row] for row in table.rows]
-    variants = {record["tags"]["series"]: record["axes"]["variant"] for record in study(["ladder"], blocks=1)}
-    assert {row[0]: row[2] for row in rows} == variants
 
 
 def test_a_figure_and_the_claim_about_it_tell_one_ratio(tmp_path: Path) -> None:
@@ -196,22 +156,18 @@ def test_a_figure_and_the_claim_about_it_tell_one_ratio(tmp_path: Path) -> None:
     assert f"{ratio} against nine boxes" in drawn.caption
 
 
-def test_svg_and_pdf_are_written_whole(tmp_path: Path) -> None:
+def test_svg_and_pdf_are_written_whole_and_the_same_again(tmp_path: Path) -> None:
     write(tmp_path, study(["neighbourhood"], blocks=3))
     (drawn,) = draw_all(tmp_path, ["neighbourhood"], pdf=True)
     assert [path.suffix for path in drawn.files] == [".svg", ".pdf"]
     svg, pdf = drawn.files
     assert ElementTree.parse(svg).getroot().tag.endswith("svg")
     assert pdf.read_bytes().startswith(b"%PDF")
-    assert not list((tmp_path / "figures").glob("*.part*"))
+    first = svg.read_bytes()
     draw_all(tmp_path, ["neighbourhood"])
     assert not pdf.exists(), "it would be outdated"
-
-
-def test_the_same_records_give_the_same_svg(tmp_path: Path) -> None:
-    write(tmp_path, study(["steps"], blocks=2))
-    first = draw_all(tmp_path)[0].files[0].read_bytes()
-    assert draw_all(tmp_path)[0].files[0].read_bytes() == first
+    assert svg.read_bytes() == first
+    assert {path.name for path in (tmp_path / "figures").iterdir()} == {"neighbourhood.svg"}
 
 
 def test_several_machines_are_in_one_machine_figure(tmp_path: Path) -> None:

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from analysis import report
-from analysis.derived.comparisons import differences, reference
-from analysis.figures import KINDS, Drawn
+from analysis.derived.comparisons import differences
+from analysis.figures import KINDS, OF_ERRORS, Drawn
 from analysis.figures.studies import draw_all
 from analysis.records.reading import load
 from analysis.tests.report.test_report import Page, text_of
@@ -53,8 +53,9 @@ def drawn_of(folder: Path, records: list[dict[str, Any]]) -> Drawn:
 
 
 def test_every_kind_is_tried() -> None:
-    # That of pauses needs labels which no other kind has: derived/test_pauses.py draws it.
-    assert {kind for kind, _ in LIKE} == set(KINDS) - {PAUSES}
+    # That of pauses needs labels which no other kind has, those of errors have several figures: their tests
+    # in `derived` draw them.
+    assert {kind for kind, _ in LIKE} == set(KINDS) - {PAUSES, *OF_ERRORS}
 
 
 @pytest.mark.parametrize(("kind", "known"), LIKE)
@@ -93,14 +94,6 @@ def test_a_name_that_is_a_file_of_another_figure_takes_nothing_away(tmp_path: Pa
     drawn = drawn_of(tmp_path, unknown("radius", "trend", name="counters_software"))
     assert drawn.files[0].name == "experiment-counters_software.svg"
     assert drawn_of(tmp_path, unknown("radius", "trend", name="a b")).files[0].name == "a_b.svg"
-
-
-def test_the_reference_does_not_depend_on_the_times(tmp_path: Path) -> None:
-    write(tmp_path, unknown("sequential_orders", "comparison"))
-    times = load(tmp_path).times
-    assert reference(times) == "once"
-    variants = times["series"].map({"once": "once", "repeat": "published", "track": "track"})
-    assert reference(times.assign(variant=variants)) == "repeat"
 
 
 def test_differences_are_those_within_the_same_x(tmp_path: Path) -> None:

@@ -5,7 +5,6 @@ from html import unescape
 from pathlib import Path
 from xml.etree import ElementTree
 
-import pytest
 from matplotlib.figure import Figure
 
 from analysis.figures.labels import label_points
@@ -46,14 +45,6 @@ def test_the_words_are_those_of_the_point_at_that_place(tmp_path: Path) -> None:
     low, high = found["<a>\nsize: 9.0\ntime, s: 2.0"], found["<a>\nsize: 1.0\ntime, s: 50.0"]
     assert low[0] > high[0]
     assert low[1] > high[1]
-
-
-@pytest.mark.parametrize("name", ["neighbourhood", "ladder", "limits", "hard_cases", "schedule_find", "row"])
-def test_every_kind_of_figure_tells(tmp_path: Path, name: str) -> None:
-    write(tmp_path, study([name], blocks=4, noise=QUIET))
-    drawn = draw_all(tmp_path, [name])
-    for figure in drawn:
-        assert any(re.search(r"\d", said) for _, _, said in marks(figure.files[0])), figure.entry.name
 
 
 def test_labels_beside_points_lie_on_no_other() -> None:
