@@ -1,5 +1,4 @@
 #include <csignal>
-#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <initializer_list>
@@ -31,14 +30,9 @@ int fail(int code, const char* message) {
 using AddVerb = void (*)(CLI::App&);
 
 void add_group(CLI::App& program, const char* group, std::initializer_list<AddVerb> verbs) {
-    const auto all = [](CLI::App*) { return true; };
-    const std::size_t before = program.get_subcommands(all).size();
     for (const AddVerb add : verbs) {
         add(program);
-    }
-    const auto added = program.get_subcommands(all);
-    for (std::size_t verb = before; verb < added.size(); ++verb) {
-        added[verb]->group(group);
+        program.get_subcommands(nullptr).back()->group(group);
     }
 }
 
@@ -70,8 +64,6 @@ int main(int count, char** arguments) {
     }
     // A file that may not grow further is then told as a full disk is, in one line.
     std::signal(SIGXFSZ, SIG_IGN);
-    // Whoever started this may ignore it, and the system would not tell how a child ended.
-    std::signal(SIGCHLD, SIG_DFL);
     CLI::App program("Carom: a performance study of colliding discs that checks itself", "carom");
     program.formatter(std::make_shared<carom::Help>());
     program.require_subcommand(1);

@@ -42,28 +42,19 @@ std::string Help::make_subcommands(const CLI::App* app, CLI::AppFormatMode mode)
 
 /// What is told stands on the right, or below if what is typed is too long.
 std::string Help::make_option(const CLI::Option* option, bool is_argument) const {
-    std::string line = "  " + typed_form(*option, is_argument);
+    std::string line = "  " + option->get_name(is_argument, !is_argument);
+    if (option->get_items_expected_max() > 0) {
+        const std::string value = option->get_default_str();
+        line += (is_argument ? "" : " " + option->get_type_name()) + (value.empty() ? "" : "=" + value);
+    }
     const bool fits = line.size() + 2 <= get_column_width();
     line += fits ? "" : "\n";
     line.append(get_column_width() - (fits ? line.size() : 0), ' ');
-    return line + told_of(*option) + "\n";
-}
-
-std::string typed_form(const CLI::Option& option, bool is_argument) {
-    std::string form = option.get_name(is_argument, !is_argument);
-    if (option.get_items_expected_max() > 0) {
-        const std::string value = option.get_default_str();
-        form += (is_argument ? "" : " " + option.get_type_name()) + (value.empty() ? "" : "=" + value);
+    line += option->get_description();
+    for (const CLI::Option* other : option->get_needs()) {
+        line += "; needs " + other->get_name();
     }
-    return form;
-}
-
-std::string told_of(const CLI::Option& option) {
-    std::string text = option.get_description();
-    for (const CLI::Option* other : option.get_needs()) {
-        text += "; needs " + other->get_name();
-    }
-    return text;
+    return line + "\n";
 }
 
 CLI::App& require_verb(CLI::App& program, const std::string& name) {

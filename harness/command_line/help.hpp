@@ -27,10 +27,6 @@ class Help final : public CLI::Formatter {
     std::string make_option(const CLI::Option* option, bool is_argument) const override;
 };
 
-/// An argument or an option as it is typed, with its default, and what is told of it.
-std::string typed_form(const CLI::Option& option, bool is_argument);
-std::string told_of(const CLI::Option& option);
-
 /// The verb of that name. Throws InputError, with the nearest one, if there is none.
 CLI::App& require_verb(CLI::App& program, const std::string& name);
 

@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
 
 // What options take, and what is said of what they do not, whichever release of CLI11 reads the command line:
@@ -57,6 +58,15 @@ inline CLI::Validator one_of(const std::vector<std::string>& words) {
     const auto check = [words, expected](std::string& word) {
         return std::ranges::count(words, word) > 0 ? std::string()
                                                    : "found " + in_quotes(word) + ", expected " + expected;
+    };
+    return {check, ""};
+}
+
+/// A file that can be written. Throws InputError: it is told before the work whose result is to go there.
+inline CLI::Validator writable() {
+    const auto check = [](const std::string& path) {
+        require_writable(path);
+        return std::string();
     };
     return {check, ""};
 }

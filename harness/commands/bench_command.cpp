@@ -23,7 +23,6 @@
 #include "harness/records/record.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/note.hpp"
-#include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
 
 namespace carom {
@@ -238,8 +237,6 @@ void bench(BenchOptions options, const std::vector<std::string>& flags) {
         require_one_case(options);
         options.repetitions = std::max(options.repetitions, 1);
     }
-    tags_json(options.measurement.tags);
-    require_writable(options.measurement.record);
     initialize_google_benchmark(flags);
     add_context();
     std::deque<LoadedScene> scenes;

@@ -68,22 +68,18 @@ Scene scene_of_case(const std::string& name) {
                      did_you_mean(name, names));
 }
 
-void print_cases(bool json) {
-    if (json) {
-        auto list = nlohmann::ordered_json::array();
-        for (const HardCase& one : hard_cases()) {
-            list.push_back({{"name", one.name}, {"description", one.description}});
-        }
-        std::cout << list.dump(2) << '\n';
-        return;
-    }
+void print_cases(bool as_json) {
+    auto list = nlohmann::ordered_json::array();
     for (const HardCase& one : hard_cases()) {
-        std::printf("%-18s %s\n", std::string(one.name).c_str(), std::string(one.description).c_str());
+        list.push_back({{"name", one.name}, {"description", one.description}});
+        if (!as_json) {
+            std::printf("%-18s %s\n", std::string(one.name).c_str(), std::string(one.description).c_str());
+        }
     }
+    std::cout << (as_json ? list.dump(2) + "\n" : "");
 }
 
 void run_generate(const GenerateOptions& options) {
-    require_writable(options.output);
     if (options.list_cases) {
         print_cases(options.json);
     } else if (!options.hard_case.empty()) {
@@ -98,34 +94,30 @@ void run_generate(const GenerateOptions& options) {
     }
 }
 
-/// N to VMAX, without which only a hard case can be written.
-std::vector<CLI::Option*> add_arguments(CLI::App& command, GeneratorArguments& arguments) {
+/// What a random scene is made of. Returns N to VMAX, without which only a hard case can be written.
+std::vector<CLI::Option*> add_scene_options(CLI::App& command, GeneratorArguments& scene) {
     const auto add = [&command](const char* name, auto& value, const CLI::Validator& right,
                                 const char* help) {
         return command.add_option(name, value, help)->transform(right);
     };
     const auto velocity = number_from(-largest_number, largest_number);
-    return {add("N", arguments.count, number_from(0, most_discs), "Number of discs"),
-            add("L", arguments.side, finite_number(), "Side of the box"),
-            add("R", arguments.radius, finite_number(), "Radius of the discs"),
-            add("STEPS", arguments.steps, number_from(0, std::numeric_limits<int>::max()),
+    add_number(command, "--seed", scene.seed, 0, std::numeric_limits<std::uint64_t>::max(),
+               "Seed of the 64-bit Mersenne Twister");
+    add_choice<Placement>(command, "--placement", scene.placement,
+                          {{"overlapping", Placement::overlapping},
+                           {"random", Placement::random},
+                           {"lattice", Placement::lattice}},
+                          "overlapping: anywhere; random: one by one, none overlapping; lattice: jittered "
+                          "hexagonal, none overlapping");
+    command.add_flag("--isotropic", scene.isotropic,
+                     "Directions uniform over the circle, speeds uniform in [VMIN, VMAX]");
+    return {add("N", scene.count, number_from(0, most_discs), "Number of discs"),
+            add("L", scene.side, finite_number(), "Side of the box"),
+            add("R", scene.radius, finite_number(), "Radius of the discs"),
+            add("STEPS", scene.steps, number_from(0, std::numeric_limits<int>::max()),
                 "Units of time to simulate"),
-            add("VMIN", arguments.least_velocity, velocity, "Least velocity component"),
-            add("VMAX", arguments.largest_velocity, velocity, "Largest velocity component")};
-}
-
-std::vector<CLI::Option*> add_choices(CLI::App& command, GeneratorArguments& arguments) {
-    return {add_number(command, "--seed", arguments.seed, 0, std::numeric_limits<std::uint64_t>::max(),
-                       "Seed of the 64-bit Mersenne Twister"),
-            add_choice<Placement>(
-                command, "--placement", arguments.placement,
-                {{"overlapping", Placement::overlapping},
-                 {"random", Placement::random},
-                 {"lattice", Placement::lattice}},
-                "overlapping: anywhere; random: one by one, none overlapping; lattice: jittered "
-                "hexagonal, none overlapping"),
-            command.add_flag("--isotropic", arguments.isotropic,
-                             "Directions uniform over the circle, speeds uniform in [VMIN, VMAX]")};
+            add("VMIN", scene.least_velocity, velocity, "Least velocity component"),
+            add("VMAX", scene.largest_velocity, velocity, "Largest velocity component")};
 }
 
 } // namespace
@@ -134,19 +126,19 @@ void add_generate_command(CLI::App& program) {
     auto options = std::make_shared<GenerateOptions>();
     CLI::App* command = program.add_subcommand(
         "generate", "Write a random scene (uniform velocity components, or --isotropic), or a hard case");
-    const auto arguments = add_arguments(*command, options->arguments);
-    const auto choices = add_choices(*command, options->arguments);
+    const auto arguments = add_scene_options(*command, options->arguments);
+    const auto of_scenes =
+        command->get_options([](const CLI::Option* one) { return one->get_name() != "--help"; });
     auto* hard_case = command->add_option("--case", options->hard_case, "Name of a hard case to write");
     auto* cases = command->add_flag("--cases", options->list_cases, "List the hard cases");
     command->add_flag("--json", options->json, "List them as JSON")->needs(cases);
     command->add_option("--output", options->output, "File to write instead of standard output")
+        ->check(writable())
         ->excludes(cases);
     cases->excludes(hard_case);
-    for (const auto& group : {arguments, choices}) {
-        for (CLI::Option* option : group) {
-            hard_case->excludes(option);
-            cases->excludes(option);
-        }
+    for (CLI::Option* option : of_scenes) {
+        hard_case->excludes(option);
+        cases->excludes(option);
     }
     command->callback([options, arguments] {
         for (const CLI::Option* argument : arguments) {

@@ -1,7 +1,8 @@
 #include <iostream>
 #include <memory>
+#include <regex>
 #include <string>
-#include <string_view>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -62,57 +63,25 @@ std::string completion(const std::string& shell) {
 }
 
 /// A text as roff takes it: nothing in it is a request.
-std::string escaped(std::string_view text) {
-    std::string roff;
-    for (const char letter : text) {
-        if (letter == '\\') {
-            roff += "\\e";
-        } else if (letter == '-') {
-            roff += "\\-";
-        } else {
-            if ((letter == '.' || letter == '\'') && (roff.empty() || roff.back() == '\n')) {
-                roff += "\\&";
-            }
-            roff += letter;
-        }
-    }
-    return roff;
-}
-
-std::string entry(const std::string& typed, const std::string& told) {
-    return ".TP\n.B " + escaped(typed) + "\n" + escaped(told) + "\n";
-}
-
-std::string verb_section(const CLI::App& verb) {
-    const std::string name = "carom " + verb.get_name();
-    std::string text = ".SS " + escaped(name) + "\n" + escaped(verb.get_description()) + ".\n.PP\n" +
-                       escaped(Help().make_usage(&verb, name));
-    for (const CLI::Option* argument :
-         verb.get_options([](const auto* one) { return one->get_positional(); })) {
-        text += entry(typed_form(*argument, true), told_of(*argument));
-    }
-    for (const CLI::Option* option : verb.get_options([](const auto* one) { return one->nonpositional(); })) {
-        text += entry(typed_form(*option, false), told_of(*option));
+std::string escaped(std::string text) {
+    for (const auto& [found, shown] :
+         {std::pair(R"(\\)", R"(\e)"), {"-", R"(\-)"}, {"(^|\n)([.'])", R"($1\&$2)"}}) {
+        text = std::regex_replace(text, std::regex(found), shown);
     }
     return text;
 }
 
-/// The page of the program for man(7), made of the same text as its help: what it does, its verbs by group,
-/// and of each verb its arguments and options.
-std::string man_page(const CLI::App& program, const std::string& version) {
-    std::string text = ".TH CAROM 1 \"\" \"carom " + escaped(version) + "\"\n.SH NAME\ncarom \\- " +
+/// The page of the program for man(7): what it does, and the help of each verb that its own help lists.
+std::string man_page(const CLI::App& program) {
+    std::string text = ".TH CAROM 1 \"\" \"carom " CAROM_VERSION "\"\n.SH NAME\ncarom \\- " +
                        escaped(program.get_description()) +
                        "\n.SH SYNOPSIS\n.B carom\nVERB [OPTIONS]\n.SH VERBS\n";
-    std::string details = ".SH EACH VERB\n";
-    for (const char* group : {groups::measure, groups::simulate, groups::study, groups::machine}) {
-        text += ".SS " + escaped(group) + "\n";
-        const auto is_in_group = [&](const CLI::App* verb) { return verb->get_group() == group; };
-        for (const CLI::App* verb : program.get_subcommands(is_in_group)) {
-            text += entry(verb->get_name(), verb->get_description());
-            details += verb_section(*verb);
-        }
+    const auto is_listed = [](const CLI::App* verb) { return verb->get_group() != groups::none; };
+    for (const CLI::App* verb : program.get_subcommands(is_listed)) {
+        text += ".SS carom " + escaped(verb->get_name()) + "\n.nf\n" +
+                escaped(verb->help(program.get_name())) + ".fi\n";
     }
-    return text + details + ".SH EXIT STATUS\n" + escaped(program.get_footer()) + "\n";
+    return text + ".SH EXIT STATUS\n" + escaped(program.get_footer()) + "\n";
 }
 
 struct HelpOptions {
@@ -123,7 +92,7 @@ struct HelpOptions {
 
 void print_help(CLI::App& program, const HelpOptions& options) {
     if (options.man) {
-        std::cout << man_page(program, CAROM_VERSION);
+        std::cout << man_page(program);
     } else if (!options.shell.empty()) {
         std::cout << completion(options.shell);
     } else if (!options.verb.empty()) {

@@ -7,6 +7,7 @@
 
 #include "harness/command_line/values.hpp"
 #include "harness/commands/commands.hpp"
+#include "harness/commands/measurement_options.hpp"
 #include "harness/machine/limits.hpp"
 #include "harness/machine/machine.hpp"
 #include "harness/machine/provenance.hpp"
@@ -14,7 +15,6 @@
 #include "harness/machine/threads.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/json.hpp"
-#include "harness/support/output_file.hpp"
 
 namespace carom {
 namespace {
@@ -31,20 +31,18 @@ struct LimitsOptions {
 };
 
 void limits(const LimitsOptions& options) {
-    tags_json(options.tags);
-    require_writable(options.record);
     const std::int64_t most_bytes = options.memory_mebibytes
                                         ? *options.memory_mebibytes * mebibyte
                                         : read_machine()["memory_bytes"].get<std::int64_t>() / 4;
     Suspensions suspensions;
     suspensions.start();
-    const Limits found = measure_limits(options.threads, options.seconds, most_bytes);
+    const auto found = measure_limits(options.threads, options.seconds, most_bytes);
     suspensions.require_none("limits");
-    std::cout << (options.json ? json_text(limits_json(found), 2) + "\n" : limits_text(found));
+    std::cout << (options.json ? json_text(found, 2) + "\n" : limits_text(found));
     if (!options.record.empty()) {
-        write_record(options.record, record_of("limits", options.tags,
-                                               {{"limits", limits_json(found)},
-                                                {"provenance", provenance_json(options.threads)}}));
+        write_record(options.record,
+                     record_of("limits", options.tags,
+                               {{"limits", found}, {"provenance", provenance_json(options.threads)}}));
     }
 }
 
@@ -64,9 +62,8 @@ void add_limits_command(CLI::App& program) {
         ->transform(number_from(1, 1 << 30))
         ->type_name("N");
     command->add_flag("--json", options->json, "Print the rates as one JSON object");
-    command->add_option("--record", options->record, "File for the record of the rates");
-    command->add_option("--tag", options->tags, "KEY=VALUE to keep in the record; may be repeated")
-        ->allow_extra_args(false);
+    add_record_options(*command, options->record, options->tags);
+    command->get_option("--record")->description("File for the record of the rates");
     command->callback([options] { limits(*options); });
 }
 

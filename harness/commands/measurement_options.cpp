@@ -17,9 +17,15 @@ void add_scene_option(CLI::App& command, std::string& scene) {
 }
 
 void add_record_options(CLI::App& command, std::string& record, std::vector<std::string>& tags) {
-    command.add_option("--record", record, "File for the record of this process");
+    command.add_option("--record", record, "File for the record of this process")->check(writable());
     command.add_option("--tag", tags, "KEY=VALUE to keep in the record; may be repeated")
-        ->allow_extra_args(false);
+        ->allow_extra_args(false)
+        ->check(CLI::Validator(
+            [](const std::string& tag) {
+                tags_json({tag});
+                return std::string();
+            },
+            ""));
 }
 
 void add_measurement_options(CLI::App& command, MeasurementOptions& options) {

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <iostream>
@@ -25,9 +23,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of what a program prints, enough to know what kind of program it is.
-constexpr std::size_t end_told = 4096;
-
 /// The time that all processors together have had nothing to do since the machine was started, in seconds; 0
 /// where the system does not tell it.
 double idle_seconds_of_machine() {
@@ -46,38 +41,9 @@ ProcessCommand command_of(const Json& json) {
     std::erase_if(command.environment,
                   [&more](const auto& own) { return more.contains(own.substr(0, own.find('='))); });
     for (const auto& [name, value] : more) {
-        command.environment.push_back(name);
-        command.environment.back() += '=' + value;
+        command.environment.push_back(std::string(name).append("=").append(value));
     }
     return command;
-}
-
-Json facts_of(const Sliced& run, double idle_seconds) {
-    const ProcessEnd& end = run.process->end();
-    const std::string& printed = end.output.end;
-    return {{"seconds", end.seconds},
-            {"seconds_alone", run.seconds_alone},
-            {"idle_seconds", idle_seconds},
-            {"not_started", end.not_started},
-            {"unknown", end.unknown},
-            {"suspended", end.suspended},
-            {"exit_code", end.exit_code},
-            {"signal", end.signal},
-            {"out_of_time", end.out_of_time},
-            {"went_on", end.went_on},
-            {"seconds_left_behind", end.seconds_left_behind},
-            {"user_seconds", end.user_seconds},
-            {"system_seconds", end.system_seconds},
-            {"waited_seconds", or_null(end.waited_seconds)},
-            {"peak_memory_bytes", or_null(end.peak_memory_bytes)},
-            {"memory_of", end.memory_of},
-            {"counted", end.counted},
-            {"ran_on", end.ran_on},
-            {"tree", end.kept_by},
-            {"output_bytes", end.output.bytes},
-            {"error_bytes", end.error.bytes},
-            {"output_end", printed.substr(printed.size() - std::min(printed.size(), end_told))},
-            {"error_end", last_line(end.error.end)}};
 }
 
 /// Runs all of a plan's processes in turn, one without a pause; what became of each, in their order.
@@ -93,7 +59,8 @@ Json run(const Json& plan) {
     const double idle = idle_seconds_of_machine() - idle_before;
     Json told = Json::array();
     for (const Sliced& one : all) {
-        told.push_back(facts_of(one, idle));
+        told.push_back(one.process->facts());
+        told.back().update({{"seconds_alone", one.seconds_alone}, {"idle_seconds", idle}});
     }
     return told;
 }

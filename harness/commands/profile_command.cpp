@@ -20,7 +20,6 @@
 #include "harness/records/profile_json.hpp"
 #include "harness/records/record.hpp"
 #include "harness/support/errors.hpp"
-#include "harness/support/output_file.hpp"
 #include "harness/support/text.hpp"
 
 namespace carom {
@@ -74,9 +73,6 @@ std::vector<CounterValue> all_counters(const ProfileOptions& options, const Meas
 
 void profile(const ProfileOptions& options) {
     const DisturbanceWatch watch;
-    tags_json(options.measurement.tags);
-    require_writable(options.timeline);
-    require_writable(options.measurement.record);
     require_threads(options.simulation.tuning.threads);
     const int threads = options.simulation.tuning.threads;
     const LoadedScene loaded = load_scene(options.simulation.scene);
@@ -143,6 +139,7 @@ void add_profile_command(CLI::App& program) {
                "Steps to run under cachegrind");
     auto* timeline = command->add_option("--timeline", options->timeline,
                                          "File for the timeline in Trace Event format (open in Perfetto)");
+    timeline->check(writable());
     command->add_flag("--timeline-chunks", options->timeline_chunks, "Show chunks in the timeline, too")
         ->needs(timeline);
     command->callback([options] { profile(*options); });

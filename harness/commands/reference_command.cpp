@@ -71,7 +71,6 @@ void simulate(const ReferenceOptions& options, const Scene& scene, Exact referen
 
 /// Collisions are told only to a checker: for that the simulation goes along in one piece, too.
 void reference(const ReferenceOptions& options) {
-    require_writable(options.output);
     const Scene scene = read_scene(options.scene);
     if (!options.check) {
         simulate(options, scene, ExactSimulation<double>(scene, options.threads), nullptr);
@@ -95,7 +94,8 @@ void add_reference_command(CLI::App& program) {
         ->default_str("1");
     command->add_flag("--check", options->check,
                       "Follow every collision with an independent checker; exit 2 at the first violation");
-    command->add_option("--output", options->output, "File to write instead of standard output");
+    command->add_option("--output", options->output, "File to write instead of standard output")
+        ->check(writable());
     command->add_flag("--json", options->json, "Print collision counts, wall impulse and pressure instead");
     command->callback([options] { reference(*options); });
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +24,14 @@ namespace carom {
 std::vector<CounterValue> simulate_counters(const Scene& scene, std::string_view variant,
                                             const Tuning& tuning, int units,
                                             const std::filesystem::path& program = {});
+
+/// The names, in a record, of what it counts of what happened.
+std::vector<std::string> simulated_counts();
+
+/// What was counted over the whole program and the sizes of the caches, by their names in a record, from the
+/// text of cachegrind's output file (valgrind's manual, "Cachegrind: output file format"). Throws
+/// CounterError with what was found and what was expected.
+std::map<std::string, double> parse_cachegrind(const std::string& text);
 
 /// The version of the valgrind on PATH, as 3.19.0; empty if there is none.
 std::string valgrind_version();

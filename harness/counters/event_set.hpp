@@ -4,13 +4,17 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace carom {
 
-/// Why something cannot be counted: half a line, for a record's `reason`.
-class CounterError : public std::runtime_error {
-    using std::runtime_error::runtime_error;
+/// Why something cannot be counted, half a line for a record's `reason`, and what to do about it.
+struct CounterError : std::runtime_error {
+    explicit CounterError(const std::string& reason, std::string what_to_do = "")
+        : std::runtime_error(reason), remedy(std::move(what_to_do)) {}
+
+    std::string remedy;
 };
 
 /// Events counted together on one thread. Every call, the destructor too, comes from the thread that made it

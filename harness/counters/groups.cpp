@@ -37,41 +37,27 @@ std::optional<std::string> try_counting(const std::vector<std::string>& events, 
     return std::nullopt;
 }
 
-/// The alternative that can be counted, or nothing and why in `missing`.
-std::optional<std::string> choose(const Alternatives& alternatives, const MakeEventSet& make,
-                                  std::vector<Uncountable>& missing) {
-    std::optional<std::string> first_error;
-    for (const std::string& event : alternatives) {
-        const auto error = try_counting({event}, make);
-        if (!error) {
-            return event;
-        }
-        if (!first_error) {
-            first_error = error;
-        }
-    }
-    missing.push_back({alternatives.front(), *first_error});
-    return std::nullopt;
-}
-
 } // namespace
 
 EventGroups group_events(const std::vector<Alternatives>& wanted, const MakeEventSet& make) {
     EventGroups found;
     for (const Alternatives& alternatives : wanted) {
-        const auto event = choose(alternatives, make, found.missing);
-        if (!event) {
-            continue;
+        std::vector<std::string> errors;
+        for (const std::string& event : alternatives) {
+            if (const auto error = try_counting({event}, make)) {
+                errors.push_back(*error);
+                continue;
+            }
+            const auto fits = [&](std::vector<std::string> group) {
+                group.push_back(event);
+                return !try_counting(group, make);
+            };
+            const auto group = std::ranges::find_if(found.groups, fits);
+            (group != found.groups.end() ? *group : found.groups.emplace_back()).push_back(event);
+            break;
         }
-        const auto fits = [&](std::vector<std::string> group) {
-            group.push_back(*event);
-            return !try_counting(group, make);
-        };
-        const auto group = std::ranges::find_if(found.groups, fits);
-        if (group != found.groups.end()) {
-            group->push_back(*event);
-        } else {
-            found.groups.push_back({*event});
+        if (errors.size() == alternatives.size()) {
+            found.missing.push_back({alternatives.front(), errors.front()});
         }
     }
     return found;

@@ -1,30 +1,12 @@
 #include "harness/counters/rusage.hpp"
 
-#include <array>
 #include <cerrno>
 #include <cstring>
-#include <string_view>
 
-#include <sys/resource.h>
-
-#include "harness/support/process_clock.hpp"
+#include "harness/support/usage.hpp"
 
 namespace carom {
 namespace {
-
-struct Field {
-    std::string_view event;
-    double (*value)(const rusage&);
-};
-
-constexpr std::array<Field, 6> fields{
-    {{"user_seconds", [](const rusage& usage) { return seconds_of(usage.ru_utime); }},
-     {"system_seconds", [](const rusage& usage) { return seconds_of(usage.ru_stime); }},
-     {"minor_page_faults", [](const rusage& usage) { return static_cast<double>(usage.ru_minflt); }},
-     {"major_page_faults", [](const rusage& usage) { return static_cast<double>(usage.ru_majflt); }},
-     {"voluntary_context_switches", [](const rusage& usage) { return static_cast<double>(usage.ru_nvcsw); }},
-     {"involuntary_context_switches",
-      [](const rusage& usage) { return static_cast<double>(usage.ru_nivcsw); }}}};
 
 /// Reading the thread's CPU clock first makes Linux bring up to date what getrusage tells, which would be as
 /// old as the last clock tick. The sum of user and system time is exact then; how it divides stays a sample.
@@ -37,31 +19,22 @@ rusage usage_of(int who) {
     return usage;
 }
 
+/// Counts all of them.
 class RusageEventSet : public EventSet {
   public:
-    void add(const std::string& event) override {
-        for (const Field& field : fields) {
-            if (field.event == event) {
-                added_.push_back(&field);
-                return;
-            }
-        }
-        throw CounterError("getrusage knows no " + event);
-    }
-
+    void add(const std::string& /*event*/) override {}
     void start() override { start_ = usage_of(RUSAGE_THREAD); }
-
     std::vector<double> stop() override {
-        const rusage now = usage_of(RUSAGE_THREAD);
+        const auto now = counts_of(usage_of(RUSAGE_THREAD));
+        const auto before = counts_of(start_);
         std::vector<double> counts;
-        for (const Field* field : added_) {
-            counts.push_back(field->value(now) - field->value(start_));
+        for (std::size_t k = 0; k < now.size(); ++k) {
+            counts.push_back(now[k].second - before[k].second);
         }
         return counts;
     }
 
   private:
-    std::vector<const Field*> added_;
     rusage start_{};
 };
 
@@ -69,8 +42,8 @@ class RusageEventSet : public EventSet {
 
 std::vector<std::string> rusage_events() {
     std::vector<std::string> names;
-    for (const Field& field : fields) {
-        names.emplace_back(field.event);
+    for (const auto& [name, value] : counts_of({})) {
+        names.push_back(name);
     }
     return names;
 }

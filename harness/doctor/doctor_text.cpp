@@ -88,9 +88,6 @@ std::string processor_lines(const Json& frequency, const Json& affinity, bool is
                                      "each is halted for a part of the time",
                                      quota.get<double>(), quota == 1 ? "" : "s"));
     }
-    if (affinity["has_unread_cpu_quota"].get<bool>()) {
-        text += line("CPU quota", "cannot be read: control groups of version 1 grant the processors here");
-    }
     return text + line("threads", "Carom takes " + plural(affinity["threads_by_default"], "thread") +
                                       " by default, on " +
                                       plural(affinity["usable_processors"], "usable processor"));

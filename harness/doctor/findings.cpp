@@ -7,11 +7,9 @@
 
 #include "harness/counters/access.hpp"
 #include "harness/counters/cachegrind.hpp"
-#include "harness/counters/cachegrind_output.hpp"
 #include "harness/counters/counters.hpp"
 #include "harness/counters/papi.hpp"
 #include "harness/counters/rusage.hpp"
-#include "harness/machine/cpu_quota.hpp"
 #include "harness/machine/machine.hpp"
 #include "harness/machine/provenance.hpp"
 #include "harness/machine/threads.hpp"
@@ -58,21 +56,18 @@ Json topology_json(const Topology& topology) {
 }
 
 /// A source of counters: the events that it counts, in how many runs, and those that it cannot count and why.
-Json source_json(const std::string& name, const std::vector<std::string>& events, int runs) {
-    return {{"source", name}, {"events", events}, {"runs", runs}, {"missing", Json::array()}};
-}
-
-Json papi_json(const std::string& name, const CounterPlan& plan) {
-    std::vector<std::string> events;
-    int runs = 0;
-    for (const CounterGroup& group : plan.groups) {
+Json source_json(const std::string& name, const std::vector<CounterGroup>& groups,
+                 const std::vector<CounterValue>& missing) {
+    Json source{{"source", name}, {"events", Json::array()}, {"runs", 0}, {"missing", Json::array()}};
+    for (const CounterGroup& group : groups) {
         if (group.source == name) {
-            ++runs;
-            events.insert(events.end(), group.events.begin(), group.events.end());
+            source["runs"] = source["runs"].get<int>() + 1;
+            for (const std::string& event : group.events) {
+                source["events"].push_back(event);
+            }
         }
     }
-    Json source = source_json(name, events, runs);
-    for (const CounterValue& value : plan.missing) {
+    for (const CounterValue& value : missing) {
         if (value.source == name) {
             source["missing"].push_back(
                 {{"event", value.name}, {"reason", value.reason}, {"remedy", value.remedy}});
@@ -81,24 +76,22 @@ Json papi_json(const std::string& name, const CounterPlan& plan) {
     return source;
 }
 
-Json cachegrind_json() {
-    const bool is_there = !valgrind_version().empty();
-    const auto [reason, remedy] = no_valgrind();
-    Json source = source_json("cachegrind", {}, is_there ? 1 : 0);
-    for (const SimulatedName& name : simulated_counts()) {
-        if (is_there) {
-            source["events"].push_back(name.counter);
-        } else {
-            source["missing"].push_back({{"event", name.counter}, {"reason", reason}, {"remedy", remedy}});
-        }
-    }
-    return source;
-}
-
 Json counters_json() {
-    const CounterPlan plan = plan_counters({});
-    return {papi_json("papi-hardware", plan), papi_json("papi-software", plan),
-            source_json("rusage", rusage_events(), 1), cachegrind_json()};
+    auto [groups, missing] = plan_counters({});
+    groups.push_back({"rusage", rusage_events(), nullptr});
+    if (valgrind_version().empty()) {
+        const auto [reason, remedy] = no_valgrind();
+        for (const std::string& name : simulated_counts()) {
+            missing.push_back({name, {}, {}, "cachegrind", reason, remedy});
+        }
+    } else {
+        groups.push_back({"cachegrind", simulated_counts(), nullptr});
+    }
+    Json sources = Json::array();
+    for (const char* name : {"papi-hardware", "papi-software", "rusage", "cachegrind"}) {
+        sources.push_back(source_json(name, groups, missing));
+    }
+    return sources;
 }
 
 Json noise_json(const Noise& noise) {
@@ -132,7 +125,6 @@ Json examine_machine(double noise_seconds) {
     Json machine = some_of(told, {"host", "operating_system", "cpu_model", "virtualised", "memory_bytes"});
     machine["memory_available_bytes"] = or_null(available_memory());
     Json affinity = some_of(told, {"affinity", "affinity_count", "hardware_threads", "cpu_quota"});
-    affinity["has_unread_cpu_quota"] = has_unread_cpu_quota();
     affinity["usable_processors"] = usable_processors();
     affinity["threads_by_default"] = default_threads();
     const PerfAccess perf = read_perf_access();

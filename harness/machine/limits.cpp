@@ -13,11 +13,14 @@
 
 #include "harness/machine/threads.hpp"
 #include "harness/support/errors.hpp"
+#include "harness/support/format.hpp"
 #include "harness/support/process_clock.hpp"
 #include "kernels/parallel_for.hpp"
 
 namespace carom {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 #if defined(__AVX512F__)
 constexpr int native_lanes = 8;
@@ -92,8 +95,7 @@ template <class Work> Rate measure(int threads, double amount, double seconds, c
     std::ranges::sort(rates);
     return {.best = rates.back(),
             .median = rates[rates.size() / 2],
-            .repetitions = static_cast<int>(rates.size()),
-            .threads = threads};
+            .repetitions = static_cast<int>(rates.size())};
 }
 
 using Array = std::unique_ptr<double[], decltype([](double* numbers) { std::free(numbers); })>;
@@ -188,19 +190,47 @@ Rate measure_arithmetic(Arithmetic arithmetic, int threads, double seconds) {
     return arithmetic == Arithmetic::scalar ? measure_chains_of(double{}) : measure_chains_of(Vector{});
 }
 
-Limits measure_limits(int threads, double seconds, std::int64_t most_bytes) {
+nlohmann::ordered_json measure_limits(int threads, double seconds, std::int64_t most_bytes) {
     require_threads(threads);
     const Topology topology = read_topology();
-    Limits limits;
+    const auto rate_json = [](const Rate& rate) {
+        return Json{{"best", rate.best}, {"median", rate.median}, {"repetitions", rate.repetitions}};
+    };
+    Json copy = Json::array();
+    Json arithmetic = Json::array();
     for (int count = 1; count <= threads; ++count) {
         for (const WorkingSet& set : working_sets(topology, most_bytes, count)) {
-            limits.copy.emplace_back(set, measure_copy(set, count, seconds));
+            copy.push_back({{"level", set.level},
+                            {"working_set_bytes", set.bytes},
+                            {"threads", count},
+                            {"bytes_per_second", rate_json(measure_copy(set, count, seconds))}});
         }
         for (const Arithmetic kind : {Arithmetic::scalar, Arithmetic::vector}) {
-            limits.arithmetic.emplace_back(lanes(kind), measure_arithmetic(kind, count, seconds));
+            const Rate rate = measure_arithmetic(kind, count, seconds);
+            arithmetic.push_back(
+                {{"lanes", lanes(kind)}, {"threads", count}, {"operations_per_second", rate_json(rate)}});
         }
     }
-    return limits;
+    return {{"copy", copy}, {"arithmetic", arithmetic}};
+}
+
+std::string limits_text(const nlohmann::ordered_json& limits) {
+    const auto rate_text = [](int threads, const Json& rate, const char* unit) {
+        return format("%3d %-7s %9.4g %s (median %.4g of %d)\n", threads, threads == 1 ? "thread" : "threads",
+                      1e-9 * rate["best"].get<double>(), unit, 1e-9 * rate["median"].get<double>(),
+                      rate["repetitions"].get<int>());
+    };
+    std::string text = "best rates\n";
+    for (const Json& one : limits["copy"]) {
+        text += format("copy within %7lld KiB, %-6s ", one["working_set_bytes"].get<long long>() / 1024,
+                       one["level"].get<std::string>().c_str()) +
+                rate_text(one["threads"], one["bytes_per_second"], "GB/s");
+    }
+    for (const Json& one : limits["arithmetic"]) {
+        text += format("x * a + b, %d at once           ", one["lanes"].get<int>()) +
+                rate_text(one["threads"], one["operations_per_second"], "Gflop/s");
+    }
+    return text;
 }
 
 } // namespace carom

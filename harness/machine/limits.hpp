@@ -17,7 +17,6 @@ struct Rate {
     double best = 0;
     double median = 0;
     int repetitions = 0;
-    int threads = 1; ///< that did the work
 };
 
 /// How much memory a copy works in, both arrays together over all threads, and the level that can hold it.
@@ -49,20 +48,11 @@ int lanes(Arithmetic arithmetic);
 /// not wait for each other. Repeats and throws like `measure_copy`.
 Rate measure_arithmetic(Arithmetic arithmetic, int threads, double seconds);
 
-/// What a machine can do at most, on each number of threads.
-struct Limits {
-    std::vector<std::pair<WorkingSet, Rate>> copy;
-    std::vector<std::pair<int, Rate>> arithmetic; ///< by `lanes`
-};
-
-/// All of it for 1 ... `threads` threads; each rate takes about so many seconds, and no copy more than
-/// `most_bytes`. Throws like `measure_copy`.
-Limits measure_limits(int threads, double seconds, std::int64_t most_bytes);
-
-/// As the record's `limits`.
-nlohmann::ordered_json limits_json(const Limits& limits);
+/// What this machine can do at most, for 1 ... `threads` threads, as the record's `limits`; each rate takes
+/// about so many seconds, and no copy more than `most_bytes`. Throws like `measure_copy`.
+nlohmann::ordered_json measure_limits(int threads, double seconds, std::int64_t most_bytes);
 
 /// As lines for the reader.
-std::string limits_text(const Limits& limits);
+std::string limits_text(const nlohmann::ordered_json& limits);
 
 } // namespace carom

@@ -1,11 +1,11 @@
 #include "harness/machine/machine.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <fstream>
-#include <initializer_list>
 #include <set>
-#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -15,7 +15,7 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
-#include "harness/machine/cpu_quota.hpp"
+#include "harness/machine/threads.hpp"
 #include "harness/support/json.hpp"
 
 namespace carom {
@@ -62,53 +62,42 @@ std::string read_operating_system() {
     return distribution + ", " + kernel.sysname + " " + kernel.release + " " + kernel.machine;
 }
 
-constexpr int most_cpus = 1 << 16;
-
-/// Adds the CPUs of OpenMP's places. Where threads are bound, the main thread has been moved to the first
-/// place before main began, and its own mask no longer tells what the process was given.
-void add_places(cpu_set_t* set, std::size_t bytes) {
-    for (int place = 0; place < omp_get_num_places(); ++place) {
-        std::vector<int> cpus(static_cast<std::size_t>(omp_get_place_num_procs(place)));
-        omp_get_place_proc_ids(place, cpus.data());
-        for (const int cpu : cpus) {
-            if (cpu >= 0 && cpu < most_cpus) {
-                CPU_SET_S(static_cast<std::size_t>(cpu), bytes, set);
+/// The CPUs that this process was given. Where threads are bound, the main thread has been moved to the first
+/// of OpenMP's places before main began, and its own mask no longer tells. More CPUs than a cpu_set_t holds
+/// are no error.
+std::set<int> read_affinity() {
+    std::set<int> cpus;
+    std::array<cpu_set_t, 64> mask{};
+    if (sched_getaffinity(0, sizeof mask, mask.data()) == 0) {
+        for (std::size_t cpu = 0; cpu < 8 * sizeof mask; ++cpu) {
+            if (CPU_ISSET_S(cpu, sizeof mask, mask.data())) {
+                cpus.insert(static_cast<int>(cpu));
             }
         }
     }
+    for (int place = 0; place < omp_get_num_places(); ++place) {
+        std::vector<int> of_place(static_cast<std::size_t>(omp_get_place_num_procs(place)));
+        omp_get_place_proc_ids(place, of_place.data());
+        cpus.insert(of_place.begin(), of_place.end());
+    }
+    return cpus;
 }
 
-/// The CPUs as 0-3,8, and how many they are. The set is as large as the system needs: more CPUs than
-/// cpu_set_t holds are no error.
-std::pair<std::string, int> read_affinity() {
-    std::pair<std::string, int> found{"", 1};
-    cpu_set_t* set = CPU_ALLOC(most_cpus);
-    const std::size_t bytes = CPU_ALLOC_SIZE(most_cpus);
-    CPU_ZERO_S(bytes, set);
-    if (sched_getaffinity(0, bytes, set) == 0) {
-        add_places(set, bytes);
-        found.second = CPU_COUNT_S(bytes, set);
-        std::ostringstream ranges;
-        int first = most_cpus;
-        for (int cpu = 0; cpu < most_cpus; ++cpu) {
-            if (!CPU_ISSET_S(static_cast<std::size_t>(cpu), bytes, set)) {
-                continue;
-            }
-            first = std::min(first, cpu);
-            int last = cpu;
-            while (last + 1 < most_cpus && CPU_ISSET_S(static_cast<std::size_t>(last + 1), bytes, set)) {
-                ++last;
-            }
-            ranges << (cpu > first ? "," : "") << cpu;
-            if (last > cpu) {
-                ranges << '-' << last;
-            }
-            cpu = last;
+/// As 0-3,8.
+std::string ranges_text(const std::set<int>& numbers) {
+    std::string text;
+    for (const int first : numbers) {
+        if (numbers.contains(first - 1)) {
+            continue;
         }
-        found.first = ranges.str();
+        int last = first;
+        while (numbers.contains(last + 1)) {
+            ++last;
+        }
+        text += (text.empty() ? "" : ",") + std::to_string(first) +
+                (last > first ? "-" + std::to_string(last) : "");
     }
-    CPU_FREE(set);
-    return found;
+    return text;
 }
 
 } // namespace
@@ -126,13 +115,13 @@ nlohmann::ordered_json read_machine() {
     utsname kernel{};
     uname(&kernel);
     const CpuInfo info = read_cpu_info();
-    const auto [affinity, affinity_count] = read_affinity();
+    const std::set<int> affinity = read_affinity();
     return {{"host", kernel.nodename},
             {"cpu_model", info.model},
             {"cores", or_null(info.cores.empty() ? std::nullopt : std::optional(info.cores.size()))},
             {"hardware_threads", std::max(1L, sysconf(_SC_NPROCESSORS_ONLN))},
-            {"affinity", affinity},
-            {"affinity_count", affinity_count},
+            {"affinity", ranges_text(affinity)},
+            {"affinity_count", std::max<std::size_t>(affinity.size(), 1)},
             {"cpu_quota", or_null(read_cpu_quota())},
             {"memory_bytes", std::int64_t{sysconf(_SC_PHYS_PAGES)} * sysconf(_SC_PAGE_SIZE)},
             {"virtualised", info.hypervisor},

@@ -37,12 +37,12 @@ Json openmp_json() {
             {"dynamic", omp_get_dynamic() != 0},
             {"proc_bind", bind < binds.size() ? binds[bind] : "unknown"},
             {"places", omp_get_num_places()},
-            {"environment", variables_with_prefixes(own_environment(), {"OMP_", "GOMP_", "KMP_"})}};
+            {"environment", variables_with_prefixes({"OMP_", "GOMP_", "KMP_"})}};
 }
 
 std::map<std::string, std::string> slurm_variables() {
-    return variables_with_prefixes(own_environment(), {"SLURM_JOB_", "SLURM_ARRAY_", "SLURMD_NODENAME",
-                                                       "SLURM_RESTART_COUNT", "SLURM_CPUS_PER_TASK"});
+    return variables_with_prefixes(
+        {"SLURM_JOB_", "SLURM_ARRAY_", "SLURMD_NODENAME", "SLURM_RESTART_COUNT", "SLURM_CPUS_PER_TASK"});
 }
 
 std::string commit_text(const std::string& unknown) {

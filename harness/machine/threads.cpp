@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <new>
 #include <string>
@@ -17,10 +18,10 @@
 #include <pthread.h>
 #include <unistd.h>
 
-#include "harness/machine/cpu_quota.hpp"
 #include "harness/machine/machine.hpp"
 #include "harness/support/errors.hpp"
 #include "harness/support/free_memory.hpp"
+#include "harness/support/own_cgroup.hpp"
 #include "harness/support/text.hpp"
 #include "kernels/parallel_for.hpp"
 
@@ -63,6 +64,21 @@ void require_room_for_stacks(int threads) {
 
 } // namespace
 
+std::optional<double> read_cpu_quota(const std::filesystem::path& root) {
+    std::optional<double> least;
+    for (const std::filesystem::path& group : own_cgroups(root)) {
+        const std::string line = first_line(group / "cpu.max").value_or("");
+        const std::size_t blank = std::min(line.find(' '), line.size());
+        const auto quota = parse_number<std::int64_t>(line.substr(0, blank));
+        const auto period = parse_number<std::int64_t>(line.substr(std::min(blank + 1, line.size())));
+        if (quota && period && *quota > 0 && *period > 0) {
+            const double processors = static_cast<double>(*quota) / static_cast<double>(*period);
+            least = std::min(processors, least.value_or(processors));
+        }
+    }
+    return least;
+}
+
 int default_threads() {
     const int wanted =
         std::getenv("OMP_NUM_THREADS") != nullptr ? omp_get_max_threads() : usable_processors();
@@ -81,17 +97,11 @@ int free_processors() {
     return std::clamp(online - others_running(), 1, usable_processors());
 }
 
-std::optional<int> parse_running(std::string_view line) {
-    std::size_t begin = 0;
-    for (int average = 0; average < 3; ++average) {
-        begin = line.find(' ', begin) + 1;
-        if (begin == 0) {
-            return std::nullopt;
-        }
-    }
-    const std::size_t slash = line.find('/', begin);
-    return slash == std::string_view::npos ? std::nullopt
-                                           : parse_number<int>(line.substr(begin, slash - begin));
+std::optional<int> parse_running(const std::string& line) {
+    int running = 0;
+    char behind = '\0';
+    const int read = std::sscanf(line.c_str(), "%*s %*s %*s %d%c", &running, &behind);
+    return read == 2 && behind == '/' ? std::optional(running) : std::nullopt;
 }
 
 void wait_asleep() {

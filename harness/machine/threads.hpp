@@ -1,11 +1,18 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
-#include <string_view>
+#include <string>
 
 namespace carom {
 
 inline constexpr int most_threads = 1024;
+
+/// How many processors' time the control groups of this process let it use, such as 1.5: the least that its
+/// own group and those around it allow (`cpu.max`, Documentation/admin-guide/cgroup-v2.rst of Linux). Empty
+/// where none limits it. A container or a service has such a limit (`docker run --cpus`, CPUQuota= of
+/// systemd); the processors that it sees are all the same. What cannot be understood is no limit.
+std::optional<double> read_cpu_quota(const std::filesystem::path& root = "/");
 
 /// As many threads as OMP_NUM_THREADS says, or else one for each processor that may be used; no more than
 /// OpenMP grants.
@@ -21,7 +28,7 @@ int free_processors();
 
 /// How many threads of all programs run or are ready to, from the line of /proc/loadavg (man proc_loadavg);
 /// empty if it is no such line.
-std::optional<int> parse_running(std::string_view line);
+std::optional<int> parse_running(const std::string& line);
 
 /// From now on threads that wait for each other sleep at once, where the runtime can still be told, which is
 /// LLVM's: for a machine whose processors other programs have. The other way it knows is to look out for

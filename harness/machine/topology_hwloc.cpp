@@ -1,6 +1,6 @@
 // The topology where the program is built with hwloc.
 
-#include <array>
+#include <optional>
 #include <utility>
 
 #include <hwloc.h>
@@ -9,68 +9,39 @@
 #include "harness/support/silence.hpp"
 
 namespace carom {
-namespace {
-
-/// hwloc's view of this machine, given back when this is gone.
-class Hwloc {
-  public:
-    Hwloc() {
-        if (hwloc_topology_init(&topology_) == 0) {
-            hwloc_topology_set_icache_types_filter(topology_, HWLOC_TYPE_FILTER_KEEP_ALL);
-            loaded_ = hwloc_topology_load(topology_) == 0;
-        }
-    }
-    ~Hwloc() {
-        if (topology_ != nullptr) {
-            hwloc_topology_destroy(topology_);
-        }
-    }
-    Hwloc(const Hwloc&) = delete;
-    Hwloc& operator=(const Hwloc&) = delete;
-
-    /// How many objects of the type there are; empty if hwloc cannot tell.
-    std::optional<int> count(hwloc_obj_type_t type) const {
-        const int objects = loaded_ ? hwloc_get_nbobjs_by_type(topology_, type) : 0;
-        return objects > 0 ? std::optional(objects) : std::nullopt;
-    }
-
-    std::optional<CacheLevel> cache(const std::string& name, hwloc_obj_type_t type) const {
-        const auto objects = count(type);
-        if (!objects) {
-            return std::nullopt;
-        }
-        const hwloc_obj_t first = hwloc_get_obj_by_type(topology_, type, 0);
-        return CacheLevel{.name = name,
-                          .bytes = static_cast<std::int64_t>(first->attr->cache.size),
-                          .count = *objects,
-                          .hardware_threads = hwloc_bitmap_weight(first->cpuset)};
-    }
-
-  private:
-    hwloc_topology_t topology_ = nullptr;
-    bool loaded_ = false;
-};
-
-} // namespace
 
 Topology read_topology() {
     const Silence silence; // it warns of what a virtual machine's system tells wrongly
-    const Hwloc hwloc;
-    Topology topology{.source = "hwloc",
-                      .packages = hwloc.count(HWLOC_OBJ_PACKAGE),
-                      .cores = hwloc.count(HWLOC_OBJ_CORE),
-                      .hardware_threads = hwloc.count(HWLOC_OBJ_PU).value_or(1),
-                      .numa_nodes = hwloc.count(HWLOC_OBJ_NUMANODE)};
-    const std::array<std::pair<const char*, hwloc_obj_type_t>, 5> caches{{{"L1d", HWLOC_OBJ_L1CACHE},
-                                                                          {"L1i", HWLOC_OBJ_L1ICACHE},
-                                                                          {"L2", HWLOC_OBJ_L2CACHE},
-                                                                          {"L3", HWLOC_OBJ_L3CACHE},
-                                                                          {"L4", HWLOC_OBJ_L4CACHE}}};
-    for (const auto& [name, type] : caches) {
-        if (const auto cache = hwloc.cache(name, type)) {
-            topology.caches.push_back(*cache);
+    Topology topology{.source = "hwloc"};
+    hwloc_topology_t machine = nullptr;
+    if (hwloc_topology_init(&machine) != 0) {
+        return topology;
+    }
+    hwloc_topology_set_icache_types_filter(machine, HWLOC_TYPE_FILTER_KEEP_ALL);
+    if (hwloc_topology_load(machine) == 0) {
+        const auto count = [machine](hwloc_obj_type_t type) {
+            const int objects = hwloc_get_nbobjs_by_type(machine, type);
+            return objects > 0 ? std::optional(objects) : std::nullopt;
+        };
+        topology.packages = count(HWLOC_OBJ_PACKAGE);
+        topology.cores = count(HWLOC_OBJ_CORE);
+        topology.hardware_threads = count(HWLOC_OBJ_PU).value_or(1);
+        topology.numa_nodes = count(HWLOC_OBJ_NUMANODE);
+        for (const auto& [name, type] : {std::pair{"L1d", HWLOC_OBJ_L1CACHE},
+                                         {"L1i", HWLOC_OBJ_L1ICACHE},
+                                         {"L2", HWLOC_OBJ_L2CACHE},
+                                         {"L3", HWLOC_OBJ_L3CACHE},
+                                         {"L4", HWLOC_OBJ_L4CACHE}}) {
+            if (const auto caches = count(type)) {
+                const hwloc_obj_t first = hwloc_get_obj_by_type(machine, type, 0);
+                topology.caches.push_back({.name = name,
+                                           .bytes = static_cast<std::int64_t>(first->attr->cache.size),
+                                           .count = *caches,
+                                           .hardware_threads = hwloc_bitmap_weight(first->cpuset)});
+            }
         }
     }
+    hwloc_topology_destroy(machine);
     return topology;
 }
 

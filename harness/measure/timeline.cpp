@@ -2,44 +2,30 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
+#include <cstddef>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "harness/support/format.hpp"
 #include "harness/support/output_file.hpp"
 
 namespace carom {
 namespace {
 
-std::string name_of(const Span& span) {
-    std::string phase(word(span.phase));
-    switch (span.kind) {
-    case Span::Kind::phase:
-        return phase;
-    case Span::Kind::sweep:
-        return "sweep";
-    case Span::Kind::loop:
-        return phase + " loop";
-    case Span::Kind::wait:
-        return "wait";
-    case Span::Kind::chunk:
-        return phase + " chunk";
-    }
-    return phase;
-}
-
 std::string event_text(const Span& span, int thread) {
-    std::array<char, 256> text{};
-    int size = std::snprintf(text.data(), text.size(),
-                             R"({"name":"%s","ph":"X","pid":1,"tid":%d,"ts":%.3f,"dur":%.3f)",
-                             name_of(span).c_str(), thread, 1e6 * span.begin, 1e6 * (span.end - span.begin));
-    if (span.kind == Span::Kind::chunk) {
-        size += std::snprintf(text.data() + size, text.size() - static_cast<std::size_t>(size),
-                              R"(,"args":{"first":%lld,"count":%lld})", static_cast<long long>(span.first),
-                              static_cast<long long>(span.count));
-    }
-    return std::string(text.data(), static_cast<std::size_t>(size)) + "}";
+    // Of the kinds, in their order; behind a blank what stands behind the phase.
+    constexpr std::array<std::string_view, 5> kinds{" ", "sweep", " loop", "wait", " chunk"};
+    const std::string kind(kinds[static_cast<std::size_t>(span.kind)]);
+    const std::string name =
+        kind.front() != ' ' ? kind : std::string(word(span.phase)) + (kind == " " ? "" : kind);
+    const std::string chunk =
+        span.kind == Span::Kind::chunk
+            ? format(R"(,"args":{"first":%lld,"count":%lld})", static_cast<long long>(span.first),
+                     static_cast<long long>(span.count))
+            : "";
+    return format(R"({"name":"%s","ph":"X","pid":1,"tid":%d,"ts":%.3f,"dur":%.3f%s})", name.c_str(), thread,
+                  1e6 * span.begin, 1e6 * (span.end - span.begin), chunk.c_str());
 }
 
 /// Outer spans before inner ones that begin with them.

@@ -4,17 +4,22 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <optional>
+#include <sstream>
 #include <utility>
 
 #include <fcntl.h>
+#include <nlohmann/json.hpp>
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "harness/machine/cpu_quota.hpp"
 #include "harness/support/own_cgroup.hpp"
 #include "harness/support/process_clock.hpp"
 #include "harness/support/text.hpp"
@@ -24,16 +29,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the hierarchy of version 2 is mounted, alone or beside those of version 1; empty if it is not.
-std::string hierarchy() {
-    const auto mounts = cgroup_mounts();
-    return mounts.empty() ? "" : mounts.front().place.string();
-}
-
 /// What tells the processes of one name space from those of others, which have the same numbers.
 std::string name_space() {
     struct stat status{};
     return stat("/proc/self/ns/pid", &status) == 0 ? std::to_string(status.st_ino) : "0";
+}
+
+/// The number in a file behind a text, and behind another one that follows it; none where there is none.
+std::optional<double> number_in(const std::string& path, const char* text, const char* then = "") {
+    std::ifstream file(path);
+    const std::string all(std::istreambuf_iterator<char>(file), {});
+    const std::size_t begin = all.find(then, all.find(text));
+    std::istringstream rest(
+        begin == std::string::npos ? "" : all.substr(begin + std::strlen(*then != 0 ? then : text)));
+    double number = 0;
+    return rest >> number ? std::optional(number) : std::nullopt;
 }
 
 bool write_into(const std::string& path, const char* text) {
@@ -98,12 +108,12 @@ bool is_frozen(int events) {
 
 std::unique_ptr<Cgroup> Cgroup::make() {
     static int number = 0;
-    static const std::string root = hierarchy();
-    if (root.empty()) {
+    const std::vector<fs::path> groups = own_cgroups();
+    if (groups.empty()) {
         return nullptr;
     }
-    const std::string own = own_cgroup("/").value_or("/").string();
-    for (const std::string& folder : {root + (own == "/" ? "" : own), root}) {
+    for (const fs::path& group : {groups.front(), groups.back()}) {
+        const std::string folder = group.string();
         if (number == 0) {
             remove_abandoned(folder);
         }
@@ -135,7 +145,7 @@ Cgroup::~Cgroup() {
     remove_group(path_);
 }
 
-bool Cgroup::stop(double most_seconds) {
+bool Cgroup::stop(double most_seconds) const {
     const double until = process_seconds() + most_seconds;
     bool is_in_time = write_into(path_ + "/cgroup.freeze", "1");
     while (is_in_time && !is_frozen(events_)) {
@@ -148,44 +158,32 @@ bool Cgroup::stop(double most_seconds) {
     return is_in_time;
 }
 
-void Cgroup::go_on() { write_into(path_ + "/cgroup.freeze", "0"); }
+void Cgroup::go_on() const { write_into(path_ + "/cgroup.freeze", "0"); }
 
 void Cgroup::kill() const {
     write_into(path_ + "/cgroup.kill", "1");
     write_into(path_ + "/cgroup.freeze", "0");
 }
 
-std::optional<UserAndSystem> Cgroup::cpu_time() const {
-    std::ifstream file(path_ + "/cpu.stat");
-    std::optional<double> user;
-    std::optional<double> system;
-    double microseconds = 0;
-    for (std::string name; file >> name >> microseconds;) {
-        if (name == "user_usec") {
-            user = 1e-6 * microseconds;
-        } else if (name == "system_usec") {
-            system = 1e-6 * microseconds;
-        }
+void Cgroup::tell(nlohmann::ordered_json& facts, double waited_before) const {
+    const auto user = number_in(path_ + "/cpu.stat", "user_usec ");
+    const auto system = number_in(path_ + "/cpu.stat", "system_usec ");
+    if (user && system) {
+        facts["user_seconds"] = 1e-6 * *user;
+        facts["system_seconds"] = 1e-6 * *system;
     }
-    return user && system ? std::optional(UserAndSystem{*user, *system}) : std::nullopt;
+    if (const auto waited = waited_seconds()) {
+        facts["waited_seconds"] = std::max(0.0, *waited - waited_before);
+    }
+    if (const auto peak = number_in(path_ + "/memory.peak", "")) {
+        facts["peak_memory_bytes"] = static_cast<std::int64_t>(*peak);
+        facts["memory_of"] = "all of its processes together, with the files that they hold in memory";
+    }
 }
 
 std::optional<double> Cgroup::waited_seconds() const {
-    std::ifstream file(path_ + "/cpu.pressure");
-    for (std::string line; std::getline(file, line);) {
-        const auto total = line.find("total=");
-        if (line.starts_with("full ") && total != std::string::npos) {
-            const auto microseconds = parse_number<std::uint64_t>(line.substr(total + 6));
-            return microseconds ? std::optional(1e-6 * static_cast<double>(*microseconds)) : std::nullopt;
-        }
-    }
-    return std::nullopt;
-}
-
-std::optional<std::int64_t> Cgroup::peak_memory() const {
-    std::ifstream file(path_ + "/memory.peak");
-    std::int64_t bytes = 0;
-    return file >> bytes ? std::optional(bytes) : std::nullopt;
+    const auto microseconds = number_in(path_ + "/cpu.pressure", "full ", "total=");
+    return microseconds ? std::optional(1e-6 * *microseconds) : std::nullopt;
 }
 
 } // namespace carom

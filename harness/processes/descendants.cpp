@@ -3,11 +3,12 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <map>
+#include <filesystem>
+#include <iterator>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -15,6 +16,8 @@
 
 namespace carom {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// What a file of /proc holds; empty if the process is gone.
 std::string text_of(const std::string& path) {
@@ -44,69 +47,22 @@ bool is_gone_or(std::string_view states, pid_t process) {
     return state.empty() || states.find(state.front()) != std::string_view::npos;
 }
 
-/// Appends the numbers that stand in a row, each with a blank behind it.
-void append_numbers(std::string_view text, std::vector<pid_t>& numbers) {
-    for (std::size_t end = 0; (end = text.find(' ')) != std::string_view::npos; text.remove_prefix(end + 1)) {
-        numbers.push_back(parse_number<pid_t>(text.substr(0, end)).value_or(0));
-    }
-}
-
-/// What the names of a folder's entries are numbers of; none if the folder is gone.
-std::vector<pid_t> numbers_in(const std::string& folder) {
-    std::vector<pid_t> numbers;
-    DIR* const listing = opendir(folder.c_str());
-    if (listing == nullptr) {
-        return numbers;
-    }
-    while (const dirent* const entry = readdir(listing)) {
-        if (const auto number = parse_number<pid_t>(entry->d_name)) {
-            numbers.push_back(*number);
-        }
-    }
-    closedir(listing);
-    return numbers;
-}
-
-/// Where the kernel tells the children of each thread (CONFIG_PROC_CHILDREN).
-bool tells_children() {
-    static const bool tells = access("/proc/thread-self/children", R_OK) == 0;
-    return tells;
-}
-
-std::vector<pid_t> children_of(pid_t process) {
-    std::vector<pid_t> children;
-    const std::string threads = folder_of(process) + "/task/";
-    for (const pid_t thread : numbers_in(threads)) {
-        append_numbers(text_of(threads + std::to_string(thread) + "/children"), children);
-    }
-    return children;
-}
-
-std::multimap<pid_t, pid_t> all_by_parent() {
-    std::multimap<pid_t, pid_t> by_parent;
-    for (const pid_t process : numbers_in("/proc")) {
-        std::istringstream rest(after_name(process));
-        char state = 0;
-        pid_t parent = 0;
-        if (rest >> state >> parent) {
-            by_parent.emplace(parent, process);
-        }
-    }
-    return by_parent;
-}
-
 } // namespace
+
+bool tells_children() { return access("/proc/thread-self/children", R_OK) == 0; }
+
 std::vector<pid_t> descendants_of(pid_t root) {
     std::vector<pid_t> found;
-    const auto by_parent = tells_children() ? std::multimap<pid_t, pid_t>() : all_by_parent();
     std::vector<pid_t> open_ends{root};
     while (!open_ends.empty()) {
-        const pid_t parent = open_ends.back();
+        const std::string threads = folder_of(open_ends.back()) + "/task";
         open_ends.pop_back();
-        std::vector<pid_t> children = tells_children() ? children_of(parent) : std::vector<pid_t>();
-        const auto [begin, end] = by_parent.equal_range(parent);
-        for (auto one = begin; one != end; ++one) {
-            children.push_back(one->second);
+        std::vector<pid_t> children;
+        std::error_code gone;
+        for (fs::directory_iterator thread(threads, gone); !gone && thread != fs::directory_iterator();
+             thread.increment(gone)) {
+            std::istringstream numbers(text_of(thread->path().string() + "/children"));
+            children.insert(children.end(), std::istream_iterator<pid_t>(numbers), {});
         }
         for (const pid_t child : children) {
             open_ends.push_back(child);

@@ -7,6 +7,9 @@
 
 namespace carom {
 
+/// Whether the kernel tells the children of each thread (CONFIG_PROC_CHILDREN, which distributions set).
+bool tells_children();
+
 /// All that a process has started, and what that has started, as /proc lists them; without those that have
 /// ended and are only to be waited for. What lost its parent counts if the process is its subreaper.
 std::vector<pid_t> descendants_of(pid_t root);

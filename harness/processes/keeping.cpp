@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,13 +21,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "harness/processes/cgroup.hpp"
 #include "harness/processes/descendants.hpp"
 #include "harness/processes/event_counts.hpp"
 #include "harness/processes/kept_program.hpp"
 #include "harness/processes/output_tail.hpp"
 #include "harness/processes/priority.hpp"
+#include "harness/processes/process_facts.hpp"
+#include "harness/support/format.hpp"
 #include "harness/support/json.hpp"
 #include "harness/support/process_clock.hpp"
+#include "harness/support/text.hpp"
+#include "harness/support/usage.hpp"
 
 namespace carom {
 namespace {
@@ -165,24 +169,18 @@ class Keeping {
             if (ended <= 0) {
                 return;
             }
-            user_seconds_ += seconds_of(usage.ru_utime);
-            system_seconds_ += seconds_of(usage.ru_stime);
             most_kilobytes_ = std::max(most_kilobytes_, usage.ru_maxrss);
-            count(usage);
+            for (const auto& [name, amount] : counts_of(usage)) {
+                Json& sum = name.ends_with("_seconds") ? facts_[name] : facts_["counted"][name];
+                sum = (sum.is_null() ? 0 : sum.get<double>()) + amount;
+            }
             if (ended == program_) {
-                status_ = status;
+                facts_["exit_code"] = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+                facts_["signal"] = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
                 program_has_ended_ = true;
                 program_ended_at_ = process_seconds();
             }
         }
-    }
-
-    /// What getrusage(2) tells of one that ended.
-    void count(const rusage& usage) {
-        counted_["minor_page_faults"] += static_cast<double>(usage.ru_minflt);
-        counted_["major_page_faults"] += static_cast<double>(usage.ru_majflt);
-        counted_["voluntary_context_switches"] += static_cast<double>(usage.ru_nvcsw);
-        counted_["involuntary_context_switches"] += static_cast<double>(usage.ru_nivcsw);
     }
 
     /// Again and again, since some may be starting others. What cannot be ended is left: after ten seconds if
@@ -190,7 +188,7 @@ class Keeping {
     void end_all() {
         const double until = process_seconds() + 10;
         if (program_has_ended_ && !has_ended_) {
-            went_on_ = names_of(descendants_of(getpid()));
+            facts_["went_on"] = names_of(descendants_of(getpid()));
         }
         while (!has_ended_ && program_ > 0 && process_seconds() < until) {
             const std::vector<pid_t> all = descendants_of(getpid());
@@ -220,33 +218,51 @@ class Keeping {
         }
     }
 
-    static Json printed_json(OutputTail& tail) {
-        const Printed printed = tail.printed();
-        return {{"bytes", printed.bytes}, {"end", printed.end}};
+    /// A process begins with the mark of memory of whoever forked it (setrlimit's ru_maxrss survives execve),
+    /// so that less than that, or hardly more, cannot be seen.
+    void tell_memory() {
+        constexpr long hardly_more = 256;
+        const long seen = beginning_->inherited_kilobytes + hardly_more;
+        if (most_kilobytes_ > seen) {
+            facts_["peak_memory_bytes"] = std::int64_t{most_kilobytes_} * 1024;
+            facts_["memory_of"] = "the largest of its processes";
+        } else {
+            facts_["memory_of"] = format("no more than %.1f MB, which a process has from whoever starts it",
+                                         1024e-6 * static_cast<double>(seen));
+        }
+    }
+
+    Json facts() {
+        if (const int error = program_ > 0 ? beginning_->error : error_of_fork_; error != 0) {
+            Json none = no_facts();
+            none["not_started"] = std::strerror(error);
+            return none;
+        }
+        if (!has_ended_) {
+            facts_["unknown"] = "it could not be ended: " + left_;
+        } else if (!program_has_ended_) {
+            facts_["unknown"] = "the system does not tell";
+        }
+        if (has_ended_) {
+            facts_["counted"].update(Json(events_->read()));
+        }
+        if (program_has_ended_) {
+            facts_["seconds_left_behind"] = ended_at_ - program_ended_at_;
+        }
+        facts_["output_bytes"] = output_.bytes();
+        facts_["error_bytes"] = error_.bytes();
+        facts_["output_end"] = output_.end();
+        facts_["error_end"] = last_line(error_.end());
+        tell_memory();
+        if (group_ != nullptr) {
+            group_->tell(facts_, waited_before_);
+        }
+        return facts_;
     }
 
     Json report() {
-        if (events_ != nullptr && has_ended_) {
-            counted_.merge(events_->read());
-        }
-        const int error = program_ > 0 ? beginning_->error : error_of_fork_;
-        return {{"error", error},
-                {"known", program_has_ended_},
-                {"left", has_ended_ || program_ <= 0 ? "" : left_},
-                {"exit_code", WIFEXITED(status_) ? WEXITSTATUS(status_) : 0},
-                {"signal", WIFSIGNALED(status_) ? WTERMSIG(status_) : 0},
-                {"went_on", went_on_},
-                {"user_seconds", user_seconds_},
-                {"system_seconds", system_seconds_},
-                {"most_kilobytes", most_kilobytes_},
-                {"inherited_kilobytes", program_ > 0 ? beginning_->inherited_kilobytes : 0},
-                {"counted", counted_},
-                {"began_at", program_ > 0 ? beginning_->at : 0.0},
-                {"waited_before", waited_before_},
-                {"ended_at", ended_at_},
-                {"seconds_left_behind", program_has_ended_ ? ended_at_ - program_ended_at_ : 0.0},
-                {"output", printed_json(output_)},
-                {"error_output", printed_json(error_)}};
+        return {
+            {"facts", facts()}, {"began_at", program_ > 0 ? beginning_->at : 0.0}, {"ended_at", ended_at_}};
     }
 
     double most_seconds_behind_;
@@ -260,19 +276,15 @@ class Keeping {
     bool parent_is_gone_ = false;
     OutputTail output_;
     OutputTail error_;
-    int status_ = 0;
+    Json facts_ = no_facts();
     bool program_has_ended_ = false;
     bool has_ended_ = false; ///< it and all that it started
     double program_ended_at_ = 0;
     double ended_at_ = 0;
     double waited_before_ = 0; ///< for a processor, before it became the program
-    double user_seconds_ = 0;
-    double system_seconds_ = 0;
     long most_kilobytes_ = 0;
     std::unique_ptr<EventCounts> events_;
-    std::map<std::string, double> counted_;
-    std::string left_;    ///< what could not be ended so far, and why
-    std::string went_on_; ///< the names of what did so after the program's own end
+    std::string left_; ///< what could not be ended so far, and why
 };
 
 } // namespace

@@ -9,8 +9,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "harness/processes/process_end.hpp"
-
 namespace carom {
 
 /// What a program prints, as it comes: its end is kept and the rest only counted, so that however much it is
@@ -28,34 +26,29 @@ class OutputTail {
     OutputTail& operator=(const OutputTail&) = delete;
 
     void take(std::span<const char> bytes) {
-        if (file_ >= 0 && printed_.bytes < most_bytes_in_file &&
+        if (file_ >= 0 && bytes_ < most_bytes_in_file &&
             write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) {
             close(file_);
             file_ = -1;
         }
-        printed_.bytes += static_cast<std::int64_t>(bytes.size());
-        printed_.end.append(bytes.data(), bytes.size());
-        keep_end(2 * kept_bytes);
+        bytes_ += static_cast<std::int64_t>(bytes.size());
+        end_.append(bytes.data(), bytes.size());
+        end_.erase(0, end_.size() - std::min(end_.size(), kept_bytes));
     }
 
-    /// All of it, once nothing comes any more.
-    Printed printed() {
-        keep_end(kept_bytes);
-        return printed_;
-    }
+    /// How much it was.
+    std::int64_t bytes() const { return bytes_; }
+
+    /// The last of it: enough to know what kind of program it is.
+    const std::string& end() const { return end_; }
 
   private:
-    static constexpr std::size_t kept_bytes = 65536;
+    static constexpr std::size_t kept_bytes = 4096;
     static constexpr std::int64_t most_bytes_in_file = 1 << 28;
 
-    void keep_end(std::size_t most) {
-        if (printed_.end.size() > most) {
-            printed_.end.erase(0, printed_.end.size() - kept_bytes);
-        }
-    }
-
     int file_ = -1;
-    Printed printed_;
+    std::int64_t bytes_ = 0;
+    std::string end_;
 };
 
 } // namespace carom

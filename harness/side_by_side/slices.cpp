@@ -39,12 +39,12 @@ void take_slices(std::vector<Sliced>& all, double slice_seconds, std::uint64_t s
         std::ranges::shuffle(left, random);
         for (const std::size_t k : left) {
             Process& process = *all[k].process;
-            const double before = process.end().wall_seconds();
+            const double before = process.wall_seconds();
             process.advance(
                 left.size() == 1 ? 1e9 : slices[k] * std::clamp(share / most_of_a_slice, 1.0, most_longer));
             share += weight_of_one * (process.seconds_to_stop() / slices[k] - share);
             if (left.size() == 1 && all.size() > 1) {
-                all[k].seconds_alone = std::max(0.0, process.end().wall_seconds() - before);
+                all[k].seconds_alone = std::max(0.0, process.wall_seconds() - before);
             }
         }
         std::erase_if(left, [&all](std::size_t k) { return all[k].process->has_ended(); });

@@ -20,16 +20,13 @@ inline std::vector<std::string> own_environment() {
     return variables;
 }
 
-/// Those of an environment whose names start with one of the prefixes, by name.
+/// Those of this process whose names start with one of the prefixes, by name.
 inline std::map<std::string, std::string>
-variables_with_prefixes(const std::vector<std::string>& environment,
-                        std::initializer_list<std::string_view> prefixes) {
+variables_with_prefixes(std::initializer_list<std::string_view> prefixes) {
     std::map<std::string, std::string> found;
-    for (const std::string& variable : environment) {
-        const auto equals = variable.find('=');
-        const bool is_wanted =
-            std::ranges::any_of(prefixes, [&](auto prefix) { return variable.starts_with(prefix); });
-        if (is_wanted && equals != std::string::npos) {
+    for (const std::string& variable : own_environment()) {
+        if (std::ranges::any_of(prefixes, [&](auto prefix) { return variable.starts_with(prefix); })) {
+            const auto equals = variable.find('=');
             found.emplace(variable.substr(0, equals), variable.substr(equals + 1));
         }
     }

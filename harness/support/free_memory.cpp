@@ -43,17 +43,14 @@ std::int64_t bytes_of_files(const fs::path& group) {
 
 std::optional<std::int64_t> left_by_cgroups(const fs::path& root) {
     std::optional<std::int64_t> least;
-    const fs::path top = root / "sys/fs/cgroup";
-    for (fs::path own = own_cgroup(root).value_or("").relative_path();; own = own.parent_path()) {
-        const auto most = number_in(top / own / "memory.max"); // "max" is no number
-        const auto now = number_in(top / own / "memory.current");
+    for (const fs::path& group : own_cgroups(root)) {
+        const auto most = number_in(group / "memory.max"); // "max" is no number
+        const auto now = number_in(group / "memory.current");
         if (most && now) {
-            keep_least(least, std::max(*most - *now + bytes_of_files(top / own), std::int64_t{0}));
-        }
-        if (own.empty()) {
-            return least;
+            keep_least(least, std::max(*most - *now + bytes_of_files(group), std::int64_t{0}));
         }
     }
+    return least;
 }
 
 std::string gibibytes(std::int64_t bytes) {

@@ -40,31 +40,6 @@ TEST_F(BenchCommand, RatesAreOfTheRunsWhoseTimesStandBesideThem) {
     EXPECT_NEAR(row["disc_steps_per_second"].get<double>() / expected, 1, 1e-9);
 }
 
-TEST_F(BenchCommand, RefusesValuesThatGoogleBenchmarkWouldAnswerWithItsUsage) {
-    EXPECT_TRUE(refused(bench({"--benchmark_format=xml"}), 1,
-                        {"--benchmark_format: found 'xml', expected console, json or csv"}));
-    EXPECT_TRUE(refused(bench({"--benchmark_format"}), 1, {"--benchmark_format: found ''"}));
-    EXPECT_TRUE(refused(bench({"--benchmark_out_format=xml"}), 1, {"--benchmark_out_format: found 'xml'"}));
-    EXPECT_TRUE(refused(bench({"--benchmark_time_unit=h"}), 1, {"found 'h', expected ns, us, ms or s"}));
-    EXPECT_TRUE(refused(bench({"--benchmark_color="}), 1, {"--benchmark_color="}));
-}
-
-TEST_F(BenchCommand, RefusesFlagsThatGoogleBenchmarkDoesNotTake) {
-    EXPECT_TRUE(
-        refused(bench({"--benchmark_frobnicate=1"}), 1, {"found '--benchmark_frobnicate=1', expected"}));
-    EXPECT_TRUE(refused(bench({"--benchmark_repetitions=many"}), 1, {"--benchmark_repetitions", "many"}));
-    EXPECT_TRUE(refused(bench({"--benchmark_perf_counters=CYCLES"}), 1, {"carom profile --counters"}));
-}
-
-TEST_F(BenchCommand, RefusesAFilterThatMatchesNothing) {
-    for (const std::string filter : {"nothing", "["}) {
-        EXPECT_TRUE(refused(bench({"--benchmark_filter=" + filter}), 1,
-                            {"--benchmark_filter: found '" + filter + "', expected a regular expression",
-                             "such as 'published/scene.in/threads:1'"}));
-    }
-    EXPECT_EQ(bench({"--benchmark_filter=published", "--repetitions", "1"}).exit_code, 0);
-}
-
 TEST_F(BenchCommand, ExplainsWhereGoogleBenchmarkWarnsOfItsOwnBuild) {
     const ProgramResult result = bench({"--repetitions", "1"});
     EXPECT_EQ(result.error.find("Library was built as DEBUG"), std::string::npos) << result.error;

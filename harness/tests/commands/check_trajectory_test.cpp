@@ -136,39 +136,6 @@ TEST_F(CheckTrajectory, RefusesEnergyThatIsAMillionthOff) {
     EXPECT_TRUE(refused(check(text), 2, {"step 6: "}));
 }
 
-TEST_F(CheckTrajectory, RefusesAStepThatIsMissing) {
-    std::string text;
-    std::istringstream lines(right);
-    for (std::string line; std::getline(lines, line);) {
-        if (!line.starts_with("3 ")) {
-            text += line + "\n";
-        }
-    }
-    EXPECT_TRUE(refused(check(text), 1, {"trajectory:241: step: found '4', expected 3"}));
-}
-
-TEST_F(CheckTrajectory, RefusesWhatIsNoTrajectoryOfTheScene) {
-    const std::string first = right.substr(0, right.find('\n') + 1);
-    const auto all = [](const std::string& line) { return line; };
-    EXPECT_TRUE(refused(check(right.substr(0, right.size() / 2)), 1, {"trajectory:"}));
-    EXPECT_TRUE(
-        refused(check(""), 1, {"trajectory:0: the trajectory ends with 0 discs of step 0, expected 80"}));
-    EXPECT_TRUE(refused(check(first + first), 1, {"trajectory:2: i: found disc 0 twice in step 0"}));
-    EXPECT_TRUE(refused(check(all("0 80 1 1 0 0\n")), 1, {"trajectory:1: i: found '80'", "0 to 79"}));
-    EXPECT_TRUE(refused(check(all("0 0 1 1 0\n")), 1, {"trajectory:1: found 5 words, expected 6"}));
-    EXPECT_TRUE(refused(check(all("0 0 1 nan 0 0\n")), 1, {"trajectory:1: y: found 'nan'", "finite number"}));
-    EXPECT_TRUE(
-        refused(check(std::string(5000, ' ') + "\n"), 1, {"trajectory:1: found a line of more than"}));
-    EXPECT_TRUE(refused(check(right + "7 0 1 1 0 0\n"), 1, {"after the last step, 6"}));
-    EXPECT_TRUE(
-        refused(check(changed([](int step, std::vector<Disc>& discs) { discs[5].x += step == 0 ? 0.5 : 0; })),
-                1, {"trajectory: begins with disc 5 at", "expected the scene's"}));
-    EXPECT_TRUE(
-        refused(check_file(directory / "none"), 1, {"none: cannot be read", "expected a trajectory"}));
-    EXPECT_TRUE(refused(check_file(directory / ""), 1, {"is a folder"}));
-    EXPECT_TRUE(refused(check(right, {"--substeps", "2"}), 1, {"--substeps"}));
-}
-
 TEST_F(CheckTrajectory, SaysWhenTheFileHasTooFewDigits) {
     std::string text;
     std::istringstream lines(right);

@@ -71,25 +71,5 @@ TEST_F(ErrorBelow, SaysWhatIsBestWhereNothingReachesTheBound) {
                         {"--error-below 1e-30", "found no method with so small an error", "the best is"}));
 }
 
-TEST_F(ErrorBelow, RefusesWhatIsNoBoundAndNoMeasure) {
-    for (const std::string wrong : {"0", "-1", "nan", "inf", "a"}) {
-        EXPECT_TRUE(refused(run({"--error-below", wrong}), 1, {"--error-below", wrong})) << wrong;
-    }
-    EXPECT_TRUE(refused(run({"--error-below", "0.1", "--measure", "paths"}), 1, {"paths", "path"}));
-    EXPECT_TRUE(refused(run({"--measure", "path"}), 1, {"--measure", "--error-below"}));
-    EXPECT_TRUE(refused(run({"--error-below", "0.1", "--variant", "nine"}), 1, {"--variant"}));
-    EXPECT_TRUE(refused(run({"--error-below", "0.1", "--substeps", "2"}), 1, {"--substeps"}));
-}
-
-TEST_F(ErrorBelow, RefusesASceneWithoutAnExactRun) {
-    const std::string overlapping = directory.write("over.in", scene_text(tests::overlapping_starts()));
-    EXPECT_TRUE(refused(run_carom({"run", overlapping, "--error-below", "0.1"}), 1,
-                        {"overlap", "no exact run to measure an error by"}));
-    Scene still = tests::cradle();
-    still.steps = 0;
-    const std::string no_steps = directory.write("still.in", scene_text(still));
-    EXPECT_TRUE(refused(run_carom({"run", no_steps, "--error-below", "0.1"}), 1, {"0 steps"}));
-}
-
 } // namespace
 } // namespace carom

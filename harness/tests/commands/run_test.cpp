@@ -45,7 +45,6 @@ class RunCommand : public testing::Test {
 
     TemporaryDirectory directory;
     std::string scene = directory.write("scene.in", scene_text(busy));
-    std::string wedged = directory.write("wedged.in", "1\n2\n1\n3\n0 0.5 1 0.5 0\n");
 };
 
 TEST_F(RunCommand, SummarisesTheRunAsJson) {
@@ -130,83 +129,28 @@ TEST_F(RunCommand, RunsScenesWithoutDiscsOrSteps) {
     EXPECT_EQ(json["sweeps_per_step"], 0);
 }
 
-TEST_F(RunCommand, TakesTheFastestVariantByItself) {
-    const auto json = summary({scene});
-    EXPECT_EQ(json["variant"], fastest_variant(busy).name);
-    EXPECT_EQ(json["variant"], summary({scene, "--variant", "auto"})["variant"]);
-}
-
-TEST_F(RunCommand, PrintsAShortSummary) {
-    const ProgramResult result = run_carom({"run", scene, "2"});
-    EXPECT_EQ(result.exit_code, 0);
-    EXPECT_EQ(result.error, "");
-    for (const char* part : {"150 discs", "6 steps", "variant ", "2 threads", "reading", "setting up",
-                             "whole process", "steps/s", "disc-steps/s", "overlaps", "pair resolves",
-                             "sweeps", "energy drift", "discs outside"}) {
-        EXPECT_PRED_FORMAT2(testing::IsSubstring, part, result.output);
-    }
-}
-
-struct TrajectoryLine {
-    int step;
-    std::size_t disc;
-    Disc state;
-};
-
-/// Reads six columns exactly from every line.
-std::vector<TrajectoryLine> trajectory_in(const std::string& path) {
-    std::vector<TrajectoryLine> lines;
-    std::istringstream text(content_of(path));
-    for (std::string line; std::getline(text, line);) {
-        std::istringstream columns(line);
-        TrajectoryLine read{};
-        std::string rest;
-        columns >> read.step >> read.disc >> read.state.x >> read.state.y >> read.state.vx >> read.state.vy;
-        EXPECT_FALSE(columns.fail()) << line;
-        EXPECT_FALSE(columns >> rest) << line;
-        lines.push_back(read);
-    }
-    return lines;
-}
-
-TEST_F(RunCommand, WritesTheTrajectoryInThePublishedColumns) {
+TEST_F(RunCommand, WritesTheTrajectoryInThePublishedColumnsOncePerUnitOfTime) {
     const std::string path = directory / "trajectory";
-    EXPECT_EQ(run_carom({"run", scene, "--variant", "published", "--trajectory", path}).exit_code, 0);
-    const auto lines = trajectory_in(path);
-    ASSERT_EQ(lines.size(), 7u * 150u) << "the start and six steps";
-    const auto simulation = find_variant("published")->simulate(busy, {});
-    std::size_t line = 0;
-    for (int step = 0; step <= 6; ++step) {
-        for (std::size_t disc = 0; disc < 150; ++disc, ++line) {
-            ASSERT_EQ(lines[line].step, step);
-            ASSERT_EQ(lines[line].disc, disc);
-            ASSERT_TRUE(tests::same_bits(lines[line].state, simulation->discs()[disc]));
+    for (const int substeps : {1, 5}) {
+        const Tuning tuning{.substeps = substeps};
+        EXPECT_EQ(run_carom({"run", scene, "--variant", "published", "--substeps", std::to_string(substeps),
+                             "--trajectory", path})
+                      .exit_code,
+                  0);
+        const auto simulation = find_variant("published")->simulate(busy, tuning);
+        std::istringstream text(content_of(path));
+        std::string line;
+        for (int step = 0; step <= 6; ++step) {
+            for (std::size_t disc = 0; disc < 150; ++disc) {
+                std::string expected = std::to_string(step) + " ";
+                append_disc(expected, disc, simulation->discs()[disc]);
+                ASSERT_TRUE(std::getline(text, line));
+                ASSERT_EQ(line + "\n", expected);
+            }
+            simulation->steps(substeps);
         }
-        simulation->step();
+        EXPECT_FALSE(std::getline(text, line));
     }
-}
-
-TEST_F(RunCommand, WritesTheTrajectoryOncePerUnitOfTime) {
-    const std::string path = directory / "trajectory";
-    EXPECT_EQ(run_carom({"run", scene, "--substeps", "5", "--trajectory", path}).exit_code, 0);
-    EXPECT_EQ(trajectory_in(path).size(), 7u * 150u);
-}
-
-TEST_F(RunCommand, RefusesATrajectoryThatCannotBeWritten) {
-    const std::string path = directory / "missing/trajectory";
-    EXPECT_TRUE(refused(run_carom({"run", scene, "--trajectory", path}), 1, {path, "cannot be written"}));
-}
-
-TEST_F(RunCommand, GivesUpAResolveThatDoesNotEndAndLeavesNoTrajectory) {
-    const std::string path = directory / "trajectory";
-    const ProgramResult result = run_carom({"run", wedged, "--sweep-limit", "50", "--trajectory", path});
-    EXPECT_TRUE(
-        refused(result, 2, {wedged, "step 1: the resolve did not end within 50 sweeps: disc 0 at (1, 1)"}));
-    EXPECT_FALSE(std::filesystem::exists(path));
-}
-
-TEST_F(RunCommand, GivesUpByItself) {
-    EXPECT_TRUE(refused(run_carom({"run", wedged}), 2, {"100000 sweeps"}));
 }
 
 TEST_F(RunCommand, SummarisesASceneWhoseNameIsNoUtf8) {
@@ -215,20 +159,22 @@ TEST_F(RunCommand, SummarisesASceneWhoseNameIsNoUtf8) {
     EXPECT_EQ(json["particles"], 150);
 }
 
-TEST_F(RunCommand, TellsStepsFromUnitsOfTime) {
-    const std::string text = run_carom({"run", scene, "2", "--substeps", "8"}).output;
-    EXPECT_PRED_FORMAT2(testing::IsSubstring, "150 discs, 6 units of time in 48 steps, variant ", text);
+TEST_F(RunCommand, PrintsAShortSummaryAndTellsStepsFromUnitsOfTime) {
+    const std::string one = directory.write("one.in", "1\n10\n1\n1\n0 5 5 1 0\n");
+    const std::string text =
+        run_carom({"run", scene, "2", "--substeps", "8"}).output + run_carom({"run", one, "1"}).output;
+    for (const char* part :
+         {"150 discs, 6 units of time in 48 steps, variant ", ", 2 threads\n", ": 1 disc, 1 step, variant ",
+          ", 1 thread\n", "reading", "setting up", "whole process", "steps/s", "disc-steps/s", "overlaps",
+          "pair resolves", "sweeps", "energy drift", "discs outside"}) {
+        EXPECT_PRED_FORMAT2(testing::IsSubstring, part, text);
+    }
     const auto json = summary({scene, "--substeps", "8"});
+    EXPECT_EQ(json["variant"], fastest_variant(busy).name) << "by itself";
+    EXPECT_EQ(json["variant"], summary({scene, "--variant", "auto"})["variant"]);
     EXPECT_EQ(json["steps"], 6);
     EXPECT_EQ(json["steps_simulated"], 48);
     EXPECT_NEAR(json["steps_per_second"].get<double>() * json["steps_seconds"].get<double>(), 48, 1e-6);
-}
-
-TEST_F(RunCommand, CountsOneWithoutAPlural) {
-    const std::string one = directory.write("one.in", "1\n10\n1\n1\n0 5 5 1 0\n");
-    EXPECT_PRED_FORMAT2(testing::IsSubstring, ": 1 disc, 1 step, variant ",
-                        run_carom({"run", one, "1"}).output);
-    EXPECT_PRED_FORMAT2(testing::IsSubstring, ", 1 thread\n", run_carom({"run", one, "1"}).output);
 }
 
 /// As a user runs it: this test's own environment fixes the threads.
@@ -298,17 +244,6 @@ TEST_F(RunCommand, EndsInTheSameBitsWhereTheEventDrivenSimulationTakesSeveralThr
     EXPECT_LE(shared["threads"], 10) << "as many as there are tiles";
     EXPECT_EQ(shared["state_hash"], alone["state_hash"]);
     EXPECT_EQ(shared["pair_resolves_per_step"], alone["pair_resolves_per_step"]);
-}
-
-TEST_F(RunCommand, RefusesWhatTheEventDrivenSimulationCannot) {
-    const std::string apart = directory.write("apart.in", scene_text(tests::cradle()));
-    const std::vector<std::string> exact{"--variant", "event_driven"};
-    EXPECT_TRUE(refused(run_carom({"run", scene, exact[0], exact[1]}), 1,
-                        {"--variant event_driven", "overlap", "expected discs apart"}));
-    EXPECT_TRUE(refused(run_carom({"bench", scene, exact[0], exact[1]}), 1, {"expected discs apart"}));
-    EXPECT_TRUE(refused(run_carom({"run", apart, exact[0], exact[1], "--substeps", "2"}), 1,
-                        {"--substeps 2", "it takes no steps"}));
-    EXPECT_TRUE(refused(run_carom({"profile", apart, exact[0], exact[1]}), 1, {"a variant without phases"}));
 }
 
 } // namespace

@@ -1,11 +1,11 @@
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "harness/counters/cachegrind.hpp"
-#include "harness/counters/cachegrind_output.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/tests/counters/simulated_scene.hpp"
 #include "harness/tests/program.hpp"
@@ -14,16 +14,44 @@
 namespace carom {
 namespace {
 
-/// The reason that all counts have for having no value.
-std::string only_reason(const std::vector<CounterValue>& rows) {
-    EXPECT_EQ(rows.size(), simulated_counts().size());
-    for (const CounterValue& row : rows) {
-        EXPECT_FALSE(row.value.has_value());
-        EXPECT_EQ(row.source, "cachegrind");
-        EXPECT_EQ(row.reason, rows.front().reason);
-        EXPECT_NE(row.remedy, "");
+const std::string header = "desc: I1 cache:         32768 B, 64 B, 8-way associative\n"
+                           "desc: D1 cache:         49152 B, 64 B, 12-way associative\n"
+                           "desc: LL cache:         8388608 B, 64 B, 16-way associative\n"
+                           "cmd: carom run scene.in 1\n";
+const std::string events = "events: Bim Ir I1mr ILmr Dr D1mr DLmr Dw D1mw DLmw Bc Bcm Bi\n";
+const std::string summary = "summary: 1 2 3 4 5 6 7 8 9 10 11 12 13\n";
+
+TEST(SimulatedOutput, HasTotalsInTheOrderOfItsEventsAndCacheSizes) {
+    const auto values =
+        parse_cachegrind(header + events + "fl=step.hpp\nfn=step\n12 5 0 0 2 0 0 1 0 0 1 0 0 0\n" + summary);
+    for (const auto& [name, value] : {std::pair{"indirect_branch_misses", 1},
+                                      {"instructions", 2},
+                                      {"l1_read_misses", 6},
+                                      {"llc_write_misses", 10},
+                                      {"indirect_branches", 13},
+                                      {"l1_data_cache_bytes", 49152},
+                                      {"llc_bytes", 8388608}}) {
+        EXPECT_EQ(values.at(name), value) << name;
     }
-    return rows.front().reason;
+    EXPECT_EQ(values.size(), simulated_counts().size() + 3);
+}
+
+TEST(SimulatedOutput, SaysWhatIsWrong) {
+    for (const auto& [text, said] :
+         {std::pair{header + summary, "found '' for Ir"},
+          {header + events, "found '' for Ir"},
+          {events + summary, "found '' for I1"},
+          {header + events + "summary: 1 2\n", "found '' for I1mr"},
+          {header + events + "summary: 1 2 x 4 5 6 7 8 9 10 11 12 13\n", "found 'x' for I1mr"},
+          {std::string(), "found '' for Ir"}}) {
+        try {
+            parse_cachegrind(text);
+            ADD_FAILURE() << "accepted: " << text;
+        } catch (const CounterError& error) {
+            EXPECT_EQ(error.what(), "cachegrind's output: " + std::string(said) + ", expected a number");
+            EXPECT_NE(error.remedy, "");
+        }
+    }
 }
 
 class SimulatedCounters : public testing::Test {
@@ -35,23 +63,23 @@ class SimulatedCounters : public testing::Test {
     }
 };
 
-TEST_F(SimulatedCounters, AProgramThatFailsIsTheReason) {
+TEST_F(SimulatedCounters, SayWhyTheyHaveNoValue) {
     const tests::TemporaryDirectory directory;
-    const std::string program =
-        directory.write("failing", "#!/bin/sh\necho 'carom: something went wrong' >&2\nexit 3\n");
-    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
-    const std::string reason =
-        only_reason(simulate_counters(tests::simulated_scene(), "published", {}, 1, program));
-    EXPECT_NE(reason.find("exit code 3: carom: something went wrong"), std::string::npos) << reason;
-}
-
-TEST_F(SimulatedCounters, AnInstructionThatValgrindDoesNotKnowIsTheReason) {
-    const tests::TemporaryDirectory directory;
-    const std::string program = directory.write("dying", "#!/bin/sh\nkill -ILL $$\n");
-    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
-    const std::string reason =
-        only_reason(simulate_counters(tests::simulated_scene(), "published", {}, 1, program));
-    EXPECT_NE(reason.find("does not know an instruction of this program"), std::string::npos) << reason;
+    for (const auto& [script, reason] :
+         {std::pair{"echo 'carom: something went wrong' >&2\nexit 3\n",
+                    "exit code 3: carom: something went wrong"},
+          {"kill -ILL $$\n", "does not know an instruction of this program"}}) {
+        const std::string program = directory.write("failing", std::string("#!/bin/sh\n") + script);
+        std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+        const auto rows = simulate_counters(tests::simulated_scene(), "published", {}, 1, program);
+        EXPECT_EQ(rows.size(), simulated_counts().size());
+        for (const CounterValue& row : rows) {
+            EXPECT_FALSE(row.value.has_value());
+            EXPECT_EQ(row.source, "cachegrind");
+            EXPECT_PRED_FORMAT2(testing::IsSubstring, reason, row.reason);
+            EXPECT_NE(row.remedy, "");
+        }
+    }
 }
 
 /// What `carom profile` prints of a step under valgrind, in an environment with this setting.

@@ -40,29 +40,18 @@ TEST(WorkingSets, GrowByFactorsOfFourUpToEightTimesTheLastLevel) {
         EXPECT_EQ(sets[k].bytes, (32 * kibi) << (2 * k));
     }
     EXPECT_EQ(sets.back().bytes, 256 * mebi);
+    EXPECT_EQ(working_sets(four_cores(), 13 * mebi, 1).back().bytes, 13 * mebi) << "no more than they may";
 }
 
 TEST(WorkingSets, AreInTheSmallestLevelOfDataCacheThatHoldsThem) {
-    EXPECT_EQ(levels_of(working_sets(four_cores(), 64 * gibi, 1)), "L1d L2 L2 L2 L3 memory memory memory");
-}
-
-TEST(WorkingSets, FindMoreCacheWithMoreThreadsButNotBeyondWhatThereIs) {
-    EXPECT_EQ(levels_of(working_sets(four_cores(), 64 * gibi, 8)), "L1d L1d L2 L2 L2 L3 memory memory");
-    EXPECT_EQ(levels_of(working_sets(four_cores(), 64 * gibi, 100)), "L1d L1d L2 L2 L2 L3 memory memory");
-}
-
-TEST(WorkingSets, TakeNoMoreThanTheyMay) {
-    const auto sets = working_sets(four_cores(), 13 * mebi, 1);
-    EXPECT_EQ(levels_of(sets), "L1d L2 L2 L2 L3");
-    EXPECT_EQ(sets.back().bytes, 13 * mebi);
-}
-
-TEST(WorkingSets, AreInMemoryAloneWhereNobodyTellsOfCaches) {
     Topology unknown = four_cores();
     unknown.caches.clear();
-    const auto sets = working_sets(unknown, 64 * gibi, 2);
-    EXPECT_EQ(levels_of(sets), "memory memory memory memory memory memory memory memory");
-    EXPECT_EQ(sets.back().bytes, 512 * mebi);
+    const std::string by_all = "L1d L1d L2 L2 L2 L3 memory memory";
+    EXPECT_EQ(levels_of(working_sets(four_cores(), 64 * gibi, 1)), "L1d L2 L2 L2 L3 memory memory memory");
+    EXPECT_EQ(levels_of(working_sets(four_cores(), 64 * gibi, 8)), by_all);
+    EXPECT_EQ(levels_of(working_sets(four_cores(), 64 * gibi, 100)), by_all) << "no more than there is";
+    EXPECT_EQ(levels_of(working_sets(unknown, 64 * gibi, 2)),
+              "memory memory memory memory memory memory memory memory");
 }
 
 void expect_a_rate(const Rate& rate) {
@@ -109,16 +98,12 @@ TEST(Arithmetic, OfAWholeRegisterIsFasterThanOfOneDouble) {
     EXPECT_TRUE(faster);
 }
 
-/// The rates as an example that needs no measuring.
-Limits example() {
-    const auto rate = [](int threads) {
-        return Rate{.best = 12.5e9, .median = 12e9, .repetitions = 7, .threads = threads};
-    };
-    return {.copy = {{{"memory", 256 * mebi}, rate(2)}}, .arithmetic = {{2, rate(1)}}};
-}
-
 TEST(LimitsText, SaysWhatWasMeasuredAndInWhichUnits) {
-    EXPECT_EQ(limits_text(example()),
+    EXPECT_EQ(limits_text(nlohmann::ordered_json::parse(R"({
+                  "copy": [{"level": "memory", "working_set_bytes": 268435456, "threads": 2,
+                            "bytes_per_second": {"best": 12.5e9, "median": 12e9, "repetitions": 7}}],
+                  "arithmetic": [{"lanes": 2, "threads": 1, "operations_per_second": {
+                                      "best": 12.5e9, "median": 12e9, "repetitions": 7}}]})")),
               "best rates\n"
               "copy within  262144 KiB, memory   2 threads      12.5 GB/s (median 12 of 7)\n"
               "x * a + b, 2 at once             1 thread       12.5 Gflop/s (median 12 of 7)\n");
@@ -145,12 +130,6 @@ TEST(LimitsCommand, MeasuresEveryNumberOfThreadsAndRecordsWhatItPrints) {
     EXPECT_EQ(record["tags"]["site"], "local");
     EXPECT_EQ(record["limits"], printed);
     EXPECT_TRUE(record["provenance"].contains("binary_sha256"));
-}
-
-TEST(LimitsCommand, RefusesToReportThreadsThatItDoesNotGet) {
-    EXPECT_TRUE(tests::refused(
-        tests::run_carom({"limits", "--threads", "2", "--seconds", "0"}, {"OMP_THREAD_LIMIT=1"}), 1,
-        {"--threads", "found 2", "OpenMP grants 1"}));
 }
 
 } // namespace

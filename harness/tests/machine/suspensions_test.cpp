@@ -21,15 +21,7 @@ TEST(Suspensions, AreNoticedByTheSignalThatEndsThem) {
     EXPECT_THROW(suspensions.require_none("a"), InputError);
 }
 
-TEST(Suspensions, OfBeforeAreForgotten) {
-    Suspensions suspensions;
-    suspensions.start();
-    std::raise(SIGCONT);
-    suspensions.start();
-    EXPECT_FALSE(suspensions.noticed());
-}
-
-TEST(Suspensions, AreNoticedByWhomeverLooks) {
+TEST(Suspensions, AreNoticedByWhomeverLooksAndForgottenByWhoeverStartsAgain) {
     Suspensions one;
     Suspensions other;
     one.start();
@@ -37,6 +29,8 @@ TEST(Suspensions, AreNoticedByWhomeverLooks) {
     std::raise(SIGCONT);
     EXPECT_TRUE(one.noticed());
     EXPECT_TRUE(other.noticed());
+    one.start();
+    EXPECT_FALSE(one.noticed());
 }
 
 TEST(Suspensions, AreNoticedWhereTheSignalWasBlocked) {

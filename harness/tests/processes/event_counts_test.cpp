@@ -53,13 +53,10 @@ TEST(EventCounts, AreOfTheProgramWithAllThatItStarts) {
 }
 
 TEST(EventCounts, TellWhatTheSystemKeepsOfEachProcess) {
-    const ProcessCommand command{.words = {"/bin/sh", "-c", "sleep 0.01; /bin/true"}};
-    const ProcessEnd end = run_undisturbed(command);
-    EXPECT_GT(end.counted.at("minor_page_faults"), 0);
-    EXPECT_GT(end.counted.at("voluntary_context_switches"), 0);
-    EXPECT_GE(end.counted.at("major_page_faults"), 0);
-    EXPECT_GE(end.counted.at("involuntary_context_switches"), 0);
-    for (const auto& [name, amount] : end.counted) {
+    const auto facts = run_undisturbed({.words = {"/bin/sh", "-c", "sleep 0.01; /bin/true"}});
+    EXPECT_GT(facts["counted"]["minor_page_faults"], 0);
+    EXPECT_GT(facts["counted"]["voluntary_context_switches"], 0);
+    for (const auto& [name, amount] : facts["counted"].items()) {
         EXPECT_GE(amount, 0) << name;
     }
 }

@@ -22,12 +22,6 @@ GeneratorArguments small(std::uint64_t seed) {
             .seed = seed};
 }
 
-TEST(Generate, StandsOnTheEngineThatTheStandardFixes) {
-    std::mt19937_64 engine;
-    engine.discard(9'999);
-    EXPECT_EQ(engine(), 9981545732273789042u);
-}
-
 TEST(Generate, GivesTheSameDiscsOnEveryPlatform) {
     // Worked out by another program from Matsumoto and Nishimura's definition of the 64-bit Mersenne Twister.
     const std::vector<Disc> expected{
@@ -46,17 +40,9 @@ TEST(Generate, GivesTheSameThousandDiscsOnEveryPlatform) {
                                   .largest_velocity = 5,
                                   .seed = 7});
     EXPECT_EQ(state_hash(scene.discs), "38cb40fd1763c02b");
-}
-
-TEST(Generate, TakesTheLargestSeed) {
-    GeneratorArguments arguments = small(UINT64_MAX);
-    arguments.count = 2;
-    EXPECT_EQ(state_hash(generate(arguments).discs), "f427abf1d782ca32");
-}
-
-TEST(Generate, GivesAnotherSceneForAnotherSeedAndTheSameForTheSame) {
-    EXPECT_TRUE(same_bits(generate(small(5)).discs, generate(small(5)).discs));
-    EXPECT_FALSE(same_bits(generate(small(5)).discs, generate(small(6)).discs));
+    GeneratorArguments largest_seed = small(UINT64_MAX);
+    largest_seed.count = 2;
+    EXPECT_EQ(state_hash(generate(largest_seed).discs), "f427abf1d782ca32");
 }
 
 TEST(Generate, PassesOnTheOtherArguments) {
@@ -65,36 +51,6 @@ TEST(Generate, PassesOnTheOtherArguments) {
     EXPECT_EQ(scene.radius, 1);
     EXPECT_EQ(scene.steps, 9);
     EXPECT_EQ(scene.discs.size(), 3u);
-}
-
-TEST(Generate, FillsTheRangesThatItIsGiven) {
-    GeneratorArguments arguments = small(2);
-    arguments.count = 20'000;
-    double sum_x = 0;
-    double sum_vx = 0;
-    for (const Disc& disc : generate(arguments).discs) {
-        for (const double position : {disc.x, disc.y}) {
-            ASSERT_GE(position, 0);
-            ASSERT_LT(position, 100);
-        }
-        for (const double velocity : {disc.vx, disc.vy}) {
-            ASSERT_GE(velocity, -2);
-            ASSERT_LE(velocity, 5);
-        }
-        sum_x += disc.x;
-        sum_vx += disc.vx;
-    }
-    EXPECT_NEAR(sum_x / arguments.count, 50, 1);
-    EXPECT_NEAR(sum_vx / arguments.count, 1.5, 0.07);
-}
-
-TEST(Generate, GivesEveryDiscTheSameVelocityInAnEmptyRange) {
-    GeneratorArguments arguments = small(3);
-    arguments.least_velocity = arguments.largest_velocity = 0.1;
-    for (const Disc& disc : generate(arguments).discs) {
-        EXPECT_EQ(disc.vx, 0.1);
-        EXPECT_EQ(disc.vy, 0.1);
-    }
 }
 
 } // namespace

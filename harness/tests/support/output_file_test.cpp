@@ -1,5 +1,6 @@
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <string>
 
 #include <fcntl.h>
@@ -15,123 +16,78 @@ namespace carom {
 namespace {
 
 using tests::content_of;
-using tests::TemporaryDirectory;
 
-std::string refusal_to_write(const std::string& path) {
-    try {
-        OutputFile file(path);
-        file.write("text");
-        file.finish();
-    } catch (const InputError& error) {
-        return error.what();
+class OutputFileTest : public testing::Test {
+  protected:
+    static std::string refusal_to_write(const std::string& path) {
+        try {
+            OutputFile file(path);
+            file.write("text");
+            file.finish();
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "accepted";
     }
-    return "accepted";
-}
 
-TEST(OutputFile, TakesItsNameWhenFinished) {
-    const TemporaryDirectory directory;
+    tests::TemporaryDirectory directory;
     const std::string path = directory / "result";
+};
+
+TEST_F(OutputFileTest, TakesItsNameWhenFinishedAndLeavesNothingElse) {
+    const std::string more_than_the_system_takes_at_once(20'000'000, 'x');
     OutputFile file(path);
     file.write("one ");
     file.write("");
-    file.write("two");
+    file.write(more_than_the_system_takes_at_once);
     EXPECT_FALSE(std::filesystem::exists(path));
     file.finish();
-    EXPECT_EQ(content_of(path), "one two");
+    EXPECT_EQ(content_of(path), "one " + more_than_the_system_takes_at_once);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory.path()), {}), 1);
 }
 
-TEST(OutputFile, LeavesNothingBesideItsResult) {
-    const TemporaryDirectory directory;
+TEST_F(OutputFileTest, LeavesAllAsItWasUnlessFinished) {
     {
-        OutputFile file(directory / "result");
-        file.write("text");
-        file.finish();
-    }
-    const std::filesystem::directory_iterator entries(directory / "");
-    EXPECT_EQ(std::distance(begin(entries), end(entries)), 1);
-}
-
-TEST(OutputFile, LeavesNothingUnlessFinished) {
-    const TemporaryDirectory directory;
-    {
-        OutputFile file(directory / "result");
+        OutputFile file(path);
         file.write("text");
         EXPECT_FALSE(directory.empty());
     }
     EXPECT_TRUE(directory.empty());
-}
-
-TEST(OutputFile, LeavesTheFileOfThatNameAloneUnlessFinished) {
-    const TemporaryDirectory directory;
-    const std::string path = directory.write("result", "old");
+    directory.write("result", "old");
     {
         OutputFile file(path);
         file.write("new");
     }
     EXPECT_EQ(content_of(path), "old");
-    {
-        OutputFile file(path);
-        file.write("new");
-        file.finish();
-    }
-    EXPECT_EQ(content_of(path), "new");
+    EXPECT_EQ(refusal_to_write(path), "accepted");
+    EXPECT_EQ(content_of(path), "text");
 }
 
-TEST(OutputFile, WritesMoreThanTheSystemTakesAtOnce) {
-    const TemporaryDirectory directory;
-    std::string text;
-    text.resize(20'000'000, 'x');
-    OutputFile file(directory / "result");
-    file.write(text);
-    file.finish();
-    EXPECT_EQ(content_of(directory / "result"), text);
-}
-
-TEST(OutputFile, SaysWhyItCannotBeWritten) {
-    const TemporaryDirectory directory;
-    const std::string path = directory / "missing/result";
-    EXPECT_EQ(refusal_to_write(path),
-              path + ": cannot be written (No such file or directory), expected a writable place with room");
-}
-
-TEST(OutputFile, ReplacesNoFolder) {
-    const TemporaryDirectory directory;
-    const std::string path = directory / "folder";
+TEST_F(OutputFileTest, ReplacesNoFolder) {
     std::filesystem::create_directory(path);
     EXPECT_TRUE(refusal_to_write(path).starts_with(path + ": cannot be written (Is a directory)"));
     EXPECT_TRUE(std::filesystem::is_directory(path));
-    std::filesystem::remove(path);
-    EXPECT_TRUE(directory.empty());
 }
 
-TEST(OutputFile, IsRefusedBeforeTheWorkThatItIsFor) {
-    const TemporaryDirectory directory;
+TEST_F(OutputFileTest, IsRefusedBeforeTheWorkThatItIsFor) {
     EXPECT_THROW(require_writable(directory / "missing/result"), InputError);
-    require_writable(directory / "result");
+    require_writable(path);
     EXPECT_TRUE(directory.empty());
-    const std::string there = directory.write("result", "old");
-    require_writable(there);
-    EXPECT_EQ(content_of(there), "old");
-    const std::string pipe = directory / "pipe";
-    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    require_writable(pipe); // waits for no reader
+    directory.write("result", "old");
+    require_writable(path);
+    EXPECT_EQ(content_of(path), "old");
 }
 
-TEST(OutputFile, ReplacesNoDeviceOrPipe) {
+TEST_F(OutputFileTest, ReplacesNoDeviceOrPipe) {
     // As root, a result renamed to /dev/null would take the device's place. A named pipe stands for it here.
-    const TemporaryDirectory directory;
-    const std::string path = directory / "pipe";
     ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+    require_writable(path); // waits for no reader
     const int reader = open(path.c_str(), O_RDONLY | O_NONBLOCK);
     ASSERT_GE(reader, 0);
-    {
-        OutputFile file(path);
-        file.write("result");
-        file.finish();
-    }
+    EXPECT_EQ(refusal_to_write(path), "accepted");
     std::array<char, 16> text{};
-    EXPECT_EQ(read(reader, text.data(), text.size()), 6);
-    EXPECT_STREQ(text.data(), "result");
+    EXPECT_EQ(read(reader, text.data(), text.size()), 4);
+    EXPECT_STREQ(text.data(), "text");
     close(reader);
     EXPECT_TRUE(std::filesystem::is_fifo(path));
 }
