@@ -11,6 +11,22 @@ from support.home import ROOT
 
 SCHEMA_FILE = ROOT / "harness" / "record.schema.json"
 
+VERSION = 2
+"""Of the schema."""
+
+
+def refusal(content: object) -> str | None:
+    """Why the content of a file is no record of this version, with what to do about one of another."""
+    if not isinstance(content, dict) or "schema_version" not in content:
+        return "not a Carom record (no schema_version)"
+    version = content["schema_version"]
+    if version == VERSION:
+        return None
+    return (
+        f"schema version {version!r}, expected {VERSION}: measure it again, "
+        "or read it with the release of Carom that wrote it"
+    )
+
 
 def is_record(content: object) -> bool:
     """Whether the content of a file is a record of any kind."""

@@ -1,7 +1,9 @@
 """What the files of a results folder hold, each of them read once as long as it stays as it is."""
 
+import contextlib
 import hashlib
 import math
+import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,24 +14,24 @@ import pandas as pd
 
 from analysis.records import tables
 from analysis.records.checking import checked
-from support.known_files import Stamp, files_below, lasting
 
 Rows = list[tuple[Any, ...]]
 
-_KIND = {"limits": "limits", "failures": "failure"}
-"""The kind of record that each table of its own is of."""
+Stamp = tuple[int, int, int]
+"""Of a file: its size, its time in nanoseconds, its number on the disk. A record comes by a rename: another
+one has another number.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """A file: what it was like when it was read, the sum of its content, and its rows of each table, which
-    begin with what all of them have, the `context`; or the `problem` why it is not counted.
+    """A file: what it was like when it was read, the sum of its content, and its rows of each table; or the
+    `problem` why it is not counted.
     """
 
     stamp: Stamp | None
     problem: str | None = None
     digest: str = ""
-    context: tuple[Any, ...] = ()
     rows: Mapping[str, Rows] = field(default_factory=dict)
 
 
@@ -37,16 +39,12 @@ def read(results: Path, before: Mapping[str, File]) -> dict[str, File]:
     """Return the files of a folder by their paths from there, in the order of these; those that are as they
     were `before` are not read again.
     """
-    there = {
-        f"{folder}/{name}": stamp
-        for folder in ("records", "failures")
-        for name, stamp in files_below(results / folder)
-    }
+    there = sorted(_walk(os.fspath(results / "records"), "records/"), key=lambda one: one[0].split("/"))
     return {
         name: before[name]
         if name in before and before[name].stamp is not None and before[name].stamp == stamp
         else _read(results / name, name, stamp)
-        for name, stamp in there.items()
+        for name, stamp in there
     }
 
 
@@ -68,7 +66,7 @@ def frames(files: Mapping[str, File]) -> dict[str, pd.DataFrame]:
     columns = {name: [*tables.CONTEXT, *own] for name, own in tables.OF_PARTS.items()} | tables.ALONE
     found = {}
     for table, names in columns.items():
-        rows = [one.context + row for one in counted for row in one.rows.get(table, ())]
+        rows = [row for one in counted for row in one.rows.get(table, ())]
         floats = dict.fromkeys(tables.FLOATS.get(table, ()), float)
         found[table] = pd.DataFrame(rows, columns=names).astype(floats)
     return found
@@ -79,19 +77,41 @@ def _read(path: Path, name: str, stamp: Stamp | None) -> File:
         content = path.read_bytes()
     except OSError as error:
         return File(None, error.strerror)
-    problem, record = checked(content, failures=name.startswith("failures/"))
-    context, rows = ((), {}) if problem else _rows_of(name, record)
-    return File(lasting(stamp), problem, hashlib.sha256(content).hexdigest(), context, rows)
+    problem, record = checked(content)
+    rows = {} if problem else _rows_of(name, record)
+    return File(stamp, problem, hashlib.sha256(content).hexdigest(), rows)
 
 
-def _rows_of(name: str, record: tables.Record) -> tuple[tuple[Any, ...], dict[str, Rows]]:
-    """Return what all rows of a record begin with, and its rows of each table."""
-    for table, columns in tables.ALONE.items():
-        if record["kind"] == _KIND[table]:
-            return (), {table: _tuples(getattr(tables, table)(name, record), columns)}
-    [context] = _tuples([tables.context(name, record)], tables.CONTEXT)
-    parts = {table: _tuples(getattr(tables, table)(record), own) for table, own in tables.OF_PARTS.items()}
-    return context, parts
+def _walk(folder: str, prefix: str) -> Iterator[tuple[str, Stamp | None]]:
+    """The JSON files below a folder by their paths; the stamp is None where one cannot be looked at."""
+    with contextlib.suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.name.endswith(".json"):
+                yield prefix + entry.name, _stamp_of(entry)
+            elif entry.is_dir(follow_symlinks=False):
+                yield from _walk(entry.path, f"{prefix}{entry.name}/")
+
+
+def _stamp_of(entry: "os.DirEntry[str]") -> Stamp | None:
+    try:
+        status = entry.stat()
+    except OSError:
+        return None  # it is gone, or a link to nothing
+    return status.st_size, status.st_mtime_ns, status.st_ino
+
+
+def _rows_of(name: str, record: tables.Record) -> dict[str, Rows]:
+    """Return the rows of a record in each table."""
+    rows: dict[str, Rows] = {}
+    for own, one in tables.contenders(name, record):
+        if table := tables.TABLE_OF.get(one["kind"]):
+            rows.setdefault(table, []).extend(_tuples(getattr(tables, table)(own, one), tables.ALONE[table]))
+            continue
+        [context] = _tuples([tables.context(own, one)], tables.CONTEXT)
+        for table, columns in tables.OF_PARTS.items():
+            parts = _tuples(getattr(tables, table)(one), columns)
+            rows.setdefault(table, []).extend(context + part for part in parts)
+    return rows
 
 
 def _tuples(rows: Iterable[Mapping[str, Any]], columns: Sequence[str]) -> Rows:

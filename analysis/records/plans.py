@@ -8,8 +8,7 @@ from support.vocabulary import PLAN
 
 
 def planned_runs(results: Path, scale: str, experiment: str, points: Collection[str]) -> int | None:
-    """Return how many runs the experiment is to have at that scale, those included that stand in blocks which
-    were begun and left.
+    """Return how many runs the experiment is to have at that scale.
 
     None where the folder has no such plan, or where it is not the plan of these `points`, as for records that
     were collected from elsewhere.

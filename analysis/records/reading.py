@@ -8,7 +8,6 @@ from pathlib import Path
 import pandas as pd
 
 from analysis.records import known
-from analysis.records.joint_turns import joined
 from support.errors import InputError
 
 MEASURED = ["runs", "times", "trajectory", "phases", "threads", "counters"]
@@ -19,9 +18,10 @@ MEASURED = ["runs", "times", "trajectory", "phases", "threads", "counters"]
 class Tables:
     """Records as tables, each with the columns that the function of its name tells.
 
-    `runs` has a row per record, `times` per process that was timed, `trajectory` per comparison with the
-    reference, `phases` per phase and `threads` per phase and thread of a profiled run, `counters` per counter
-    and thread, `limits` per rate that a machine reached at most, `failures` per failed point.
+    `runs` has a row per contender of a record, `times` per contender that was timed, `trajectory` per
+    comparison with the reference, `phases` per phase and `threads` per phase and thread of a profiled run,
+    `counters` per counter and thread, `limits` per rate that a machine reached at most, `failures` per
+    failed point.
     """
 
     runs: pd.DataFrame
@@ -48,17 +48,24 @@ new.
 
 
 def load(results: Path, warn: Callable[[str], None] | None = None) -> Records:
-    """Read `results/records/**.json` and `results/failures/**.json`.
+    """Read `results/records/**.json`.
 
     A file that is torn, foreign or of another schema version is passed to `warn` (default: standard error)
-    as one line and is not counted. Raises InputError if `results` is not a folder.
+    as one line, with all others of the same reason, and is not counted. Raises InputError if `results` is not
+    a folder.
     """
     if not results.is_dir():
         raise InputError(f"{results}: no such folder (records are made by `make experiments`)")
     place = results.resolve()
     files = _KNOWN[place] = known.read(place, _KNOWN.get(place, {}))
-    skipped = [f"{results / name}: skipped: {why}" for name, why in known.told(files) if why is not None]
+    alike: dict[str, list[str]] = {}
+    for name, why in known.told(files):
+        if why is not None:
+            alike.setdefault(why, []).append(name)
+    skipped = [
+        f"{results / first}: skipped: {why}" + (f" (and {len(others)} more alike)" if others else "")
+        for why, (first, *others) in alike.items()
+    ]
     for line in skipped:
         warn(line) if warn else print(line, file=sys.stderr)
-    frames = known.frames(files)
-    return Records(**{**frames, "times": joined(frames["times"])}, skipped=skipped)
+    return Records(**known.frames(files), skipped=skipped)

@@ -1,18 +1,19 @@
 """From a validated record to the rows of flat tables: what each table is made of, and where a record stands.
 
-Every table of what was measured carries the same columns of context (see `context`).
+A record holds all that were compared in one process; each of these has rows of its own. Every table of what
+was measured carries the same columns of context (see `context`).
 """
 
 import math
 import shlex
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 
-from analysis.records.joint_turns import PLACES
+from analysis.statistics.neighbours import FEWEST, contender_logs
 from analysis.statistics.pairs import rounds_of, runs_of
-from analysis.statistics.turns import excess
+from analysis.statistics.turns import excess, location
 
 Record = dict[str, Any]
 Row = dict[str, Any]
@@ -54,7 +55,7 @@ CONTEXT = [
 ]  # fmt: skip
 OF_PARTS = {
     "runs": [*WORK, *ERRORS, *CHECKS],
-    "times": ["lost_by_turns", "stops", "own_seconds", "steps_seconds", _RUNS, _ROUNDS, PLACES],
+    "times": ["lost_by_turns", "stops", "own_seconds", "steps_seconds", _RUNS, _ROUNDS],
     "trajectory": ["time", "rms_distance"],
     "phases": ["phase", "wall_seconds", "serial_seconds"],
     "threads": ["phase", "thread", "busy_seconds", "waiting_seconds"],
@@ -66,11 +67,54 @@ ALONE = {
                "best", "median", "repetitions"],
     "failures": ["file", *TAGS, "command", "exit_code", "reason", "recorded_at", "owner", "program_sha256"],
 }  # fmt: skip
-"""The tables of records of other kinds, each made by the function of its name."""
+"""The tables of other kinds, each made by the function of its name."""
+TABLE_OF = {"limits": "limits", "failure": "failures"}
+"""By kind of what is in a table of its own."""
 FLOATS = {
     "runs": [*ERRORS, "pair_attempts"], "times": ["steps_seconds"], "trajectory": ["rms_distance"],
 }  # fmt: skip
 """Columns that are numbers, NaN where nothing is known, even where that is everywhere."""
+
+
+def contenders(name: str, record: Record) -> Iterator[tuple[str, Record]]:
+    """Yield each contender of a process as if it had a record of its own, with a name of its own."""
+    those = record["contenders"]
+    turns = _turns_of(record)
+    for number, one in enumerate(those):
+        own = {key: value for key, value in record.items() if key not in ("contenders", "turns")} | one
+        own["provenance"] = record.get("provenance", {}) | one.get("provenance", {})
+        own["turns"] = turns.get(number)
+        if "reason" in one:
+            own["kind"] = "failure"
+        yield (f"{name}#{number}" if len(those) > 1 else name), own
+
+
+def _turns_of(record: Record) -> dict[int, Record]:
+    """Return the turns that each contender of a process took. Of many of one scene what each of them takes
+    beside its neighbours in the order of time is `joint`, one turn instead of all of them.
+    """
+    turns, those = record.get("turns") or {}, record["contenders"]
+    if "rounds" not in turns:
+        return {}
+    whose = np.array(turns["contenders"])
+    seconds, steps = np.array(turns["seconds"]), np.array(turns["steps"])
+    returning = np.array(turns["returning_seconds"], dtype=float)
+    found: dict[int, Record] = {
+        number: {
+            "rounds": turns["rounds"],
+            "seconds": seconds[whose == number],
+            "steps": steps[whose == number],
+            "returning_seconds": returning[whose == number],
+        }
+        for number in range(len(those))
+    }
+    is_of_one_scene = len({(one.get("scene") or {}).get("sha256") for one in those}) == 1
+    if len(those) >= FEWEST and is_of_one_scene and (seconds > 0).all():
+        logs = np.log(np.stack([own["seconds"] for own in found.values()]))
+        joint = location(logs.mean(axis=0)) + contender_logs(logs, whose.reshape(-1, len(those)))
+        for number, log in enumerate(joint):
+            found[number]["joint"] = np.exp([log])
+    return found
 
 
 def context(name: str, record: Record) -> Row:
@@ -100,7 +144,7 @@ def context(name: str, record: Record) -> Row:
         "proc_bind": origin["openmp"]["proc_bind"],
         "environment": " ".join(f"{k}={v}" for k, v in sorted(origin["openmp"]["environment"].items())),
         "warm_ups": record["warm_ups"],
-        "in_turns": bool(record.get("turns")),
+        "in_turns": bool(record["turns"] or record.get("slices")),
         "time_from": record.get("process", {}).get("time_from"),
         "undisturbed": record.get("process", {}).get("undisturbed"),
         "command": shlex.join(record["process"]["command"]) if record["kind"] == "process" else None,
@@ -166,29 +210,27 @@ def times(record: Record) -> Iterable[Row]:
     cold caches took, and `stops`, in how many slices a run of a whole program was, 0 if it was never stopped;
     NaN where not known. `steps_seconds` is the median of its runs, whose times are beside it, and those of
     its turns, run by run, if it took any; of a whole process they are its own, as seen from outside or as it
-    says itself. `own_seconds` is the median of the runs less what they waited for a processor; `places` are
-    those of its turns among all of the process.
+    says itself. `own_seconds` is the median of the runs less what they waited for a processor.
     """
     if record["kind"] not in ("bench", "process") or not record["repetitions"]:
         return
     seconds = np.array([one["steps_seconds"] for one in record["repetitions"]], dtype=float)
     waited = np.array([one.get("waited_seconds") for one in record["repetitions"]], dtype=float)
-    turns = record.get("turns") or {}
+    turns = record["turns"] or {}
     yield {
         "lost_by_turns": _lost_by_turns(record),
         "stops": _stops(record),
         "own_seconds": float(np.median(seconds - waited)),
         "steps_seconds": float(np.median(seconds)),
         _RUNS: seconds,
-        _ROUNDS: np.array(turns["seconds"] if "rounds" in turns else [], dtype=float),
-        PLACES: np.array(turns.get("places", ()), dtype=np.int64),
+        _ROUNDS: turns.get("joint", turns.get("seconds", np.array([]))),
     }
 
 
 def _lost_by_turns(record: Record) -> float:
     """Return the share of a process's time, NaN where it is not known."""
-    turns = record.get("turns") or {}
-    if "steps" not in turns:
+    turns = record["turns"]
+    if turns is None:
         return math.nan
     return excess(turns["seconds"], turns["returning_seconds"], turns["steps"], turns["rounds"])
 
@@ -196,7 +238,7 @@ def _lost_by_turns(record: Record) -> float:
 def _stops(record: Record) -> float:
     if record["kind"] != "process":
         return math.nan
-    slices, runs = len((record.get("turns") or {}).get("seconds", [])), len(record["repetitions"])
+    slices, runs = len((record["slices"] or {}).get("seconds", [])), len(record["repetitions"])
     return slices / runs if slices > runs else 0.0
 
 

@@ -124,7 +124,7 @@ def digest(*parts: object) -> str:
 def bench(
     experiment: str, point: Point, block: int, seconds: Iterable[float], machine: Machine, **tags: str | float
 ) -> dict[str, Any]:
-    """Return one record of a timed run."""
+    """Return one timed run, as a contender of a record with what the record says of its process."""
     axes, scene = AXES | point.axes, SCENE | point.scene
     area = scene["particles"] * np.pi * scene["radius"] ** 2 / scene["side"] ** 2
     repetitions = [{"steps_seconds": float(value), "cpu_seconds": float(value) * 1.9} for value in seconds]
@@ -134,7 +134,7 @@ def bench(
         "scene": {**scene, "sha256": digest(scene), "area_fraction": float(area)},
         "warm_ups": 1,
         "repetitions": repetitions,
-        "turns": {"contenders": 2, "seed": 1, "rounds": ROUNDS, "seconds": turns} if point.in_turns else None,
+        "turns": turns_of(turns, ROUNDS) if point.in_turns else None,
         "parse_seconds": 0.01,
         "process_seconds": float(sum(value["steps_seconds"] for value in repetitions)) + 0.02,
         "work": {
@@ -153,10 +153,17 @@ def bench(
     }
 
 
+def turns_of(seconds: list[float], rounds: int) -> dict[str, Any]:
+    """Return what a record says of turns of the one contender that it has."""
+    count = len(seconds)
+    own = {"contenders": [0] * count, "steps": [1] * count, "returning_seconds": [None] * count}
+    return {"seed": 1, "rounds": rounds, "seconds": seconds, **own}
+
+
 def record(kind: str, tags: Mapping[str, str | float], minute: int = 0) -> dict[str, Any]:
     """Return what records of every kind have."""
     recorded_at = f"2024-05-01T10:{minute:02}:00Z"
-    return {"schema_version": 1, "kind": kind, "recorded_at": recorded_at, "tags": dict(tags)}
+    return {"schema_version": 2, "kind": kind, "recorded_at": recorded_at, "tags": dict(tags)}
 
 
 def tags_of(experiment: str, point: Point, block: int, machine: Machine) -> dict[str, str | float]:
@@ -202,6 +209,7 @@ def process(
         "process_seconds": seconds,
         "process": {**own, **spent, "undisturbed": None, "time_from": "outside", **told},
         "turns": None,
+        "slices": None,
         "check": {"verdict": "unchecked" if scope == "nothing" else "passed", "scope": scope, "reason": None},
         "provenance": Machine().provenance("GNU 12", 2),
     }
@@ -297,11 +305,22 @@ def failure(experiment: str, series: str, reason: str, **tags: str) -> dict[str,
     }
 
 
+OF_PROCESS = ("schema_version", "kind", "recorded_at", "turns", "provenance")
+"""What a record has once, whoever was measured."""
+
+
+def whole(*contenders: dict[str, Any]) -> dict[str, Any]:
+    """Return the record of a process with these contenders, each with what the record says of its process."""
+    common = {key: value for key, value in contenders[0].items() if key in OF_PROCESS}
+    own = [{key: value for key, value in one.items() if key not in OF_PROCESS} for one in contenders]
+    return common | {"contenders": [{"provenance": {}} | one for one in own]}
+
+
 def write(folder: Path, records: Iterable[dict[str, Any]]) -> None:
-    """Write records where a results folder keeps them."""
+    """Write records of one contender each where a results folder keeps them."""
     for record in records:
-        kind = "failures" if record["kind"] == "failure" else "records"
         tags = record["tags"]
-        path = folder / kind / tags["experiment"] / f"{tags.get('point', 'p0')}-b{tags['block']}.json"
+        own = folder / "records" / tags["experiment"] / f"b{tags['block']}"
+        path = own / f"{tags.get('point', 'p0')}-b{tags['block']}.json"
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(record), encoding="utf-8")
+        path.write_text(json.dumps(whole(record)), encoding="utf-8")

@@ -7,8 +7,8 @@ from docs.generate.schema import Schema, definition, read, told, type_of
 from support.record_schema import SCHEMA_FILE
 
 OPENING = (
-    "A record is a JSON file: one measured process of one point, or one failure. It is written once and "
-    "never edited. A value that was not measured is null, and a field beside it says why. "
+    "A record is a JSON file: one measured process with all that were compared in it, its contenders. It is "
+    "written once and never edited. A value that was not measured is null, and a field beside it says why. "
     "A field whose type stands in brackets may be absent."
 )
 UNITS = {"seconds": "s", "bytes": "B"}
@@ -22,18 +22,9 @@ def render() -> str:
     named = [
         f"## {name}\n\n{sentence(told(schema, node))}\n\n{table(HEAD, _rows(schema, node))}"
         for name, node in schema["$defs"].items()
+        if "properties" in node
     ]
-    return page("Fields of a record", OPENING, common, *_kinds(schema), *named)
-
-
-def _kinds(schema: Schema) -> Iterator[str]:
-    """A section for each kind of record."""
-    for rule in schema["allOf"]:
-        kind = rule["if"]["properties"]["kind"]
-        names = " and ".join(f"`{one}`" for one in kind.get("enum", [kind.get("const")]))
-        about = rule["then"].get("description", "")
-        rows = table(HEAD, _rows(schema, rule["then"]))
-        yield "\n\n".join(filter(None, [f"## Records of the kind {names}", sentence(about), rows]))
+    return page("Fields of a record", OPENING, common, *named)
 
 
 def _rows(schema: Schema, node: Schema, prefix: str = "") -> Iterator[tuple[str, ...]]:

@@ -52,26 +52,26 @@ class Kind:
 
 def variants(program: Program, openmp: Mapping[str, str], folder: Path) -> Kind:
     """One variant on one thread, with so many steps more."""
-    contenders, records = [], [folder / f"record-{number}.json" for number in range(len(PERCENT_MORE))]
-    for record, percent in zip(records, PERCENT_MORE, strict=True):
+    contenders, record = [], folder / "record.json"
+    for percent in PERCENT_MORE:
         scene = replace(_SCENE, steps=_SCENE.steps * (100 + percent) // 100)
         path = folder / f"{scene.steps}.in"
         if not path.exists():
             generate(program, scene, path)
-        contenders.append([str(path), "--threads", "1", "--record", str(record)])
+        contenders.append([str(path), "--threads", "1"])
     file = folder / "variants.json"
     file.write_text(json.dumps(contenders), encoding="utf-8")
     # A turn is a whole run, however long that is.
-    command = (str(program.path), "turns", str(file), "--turn", "1000000", "--runs", str(_RUNS))
+    words = ("turns", str(file), "--record", str(record), "--turn", "1000000", "--runs", str(_RUNS))
 
     def call(seed: int) -> tuple[Rounds, Any]:
-        done = process.run((*command, "--seed", str(seed)), clean_environment(openmp), _LIMIT_SECONDS)
+        command = (str(program.path), *words, "--seed", str(seed))
+        done = process.run(command, clean_environment(openmp), _LIMIT_SECONDS)
         if done.exit_code != 0:
             raise InputError(done.reason)
-        found = [read_json(record) for record in records]
-        for record in records:
-            record.unlink()  # so that nothing is taken for what the next call left
-        return _rounds([_seconds(one) for one in found]), found[0]["provenance"]
+        found = read_json(record)
+        record.unlink()  # so that nothing is taken for what the next call left
+        return _rounds([_seconds(one) for one in found["contenders"]]), found["provenance"]
 
     return Kind("variants", call, _RUNS)
 

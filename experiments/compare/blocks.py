@@ -7,22 +7,21 @@ import random
 import statistics
 import time
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from experiments.compare.others import Others
 from experiments.compare.question import in_options
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
+from experiments.results.record import Record, is_failed, unusable
 from experiments.results.store import Store
-from experiments.results.summary import summary_of, unusable
 from experiments.run.host_lock import WAITS
 from experiments.run.processes import HINDERED_SECONDS
 from experiments.run.runner import Runner, Task
 from experiments.run.schedule import FIRST_LOOK
 from experiments.run.together import together
-from support.files import read_json, write_json
+from support.files import read_json
 from support.vocabulary import AGAIN
 
 PADDING = "CAROM_PADDING"
@@ -116,8 +115,8 @@ class Blocks:
 
     def again(self, experiment: Experiment) -> None:
         """Begin again with another experiment, as if nothing had been run but what failed."""
-        for point in self.experiment.points:
-            self._store.record_path(point, 0).unlink(missing_ok=True)
+        for path in self._store.files(self.experiment.name, 0):
+            path.unlink()
         before = self.runs
         self._plan(experiment)
         for key, one in before.items():
@@ -137,44 +136,52 @@ class Blocks:
         )
         self.experiment = replace(self.experiment, points=points)
 
-    def take_up(self, records: Sequence[Mapping[str, Any]]) -> str:
+    def take_up(self, records: Sequence[Record]) -> str:
         """Count what an earlier call measured; returns why it cannot be counted, and then counts nothing."""
         points = {point.id: point for point in self.experiment.points}
         of_block: dict[int, set[str]] = {}
         for record in records:
-            point, block = points.get(str(record["tags"].get("point"))), int(record["tags"].get("block", -1))
-            wrong = (
-                "other commands or options, or changed programs"
-                if point is None
-                else unusable(summary_of(record), point, block)
-            )
-            if point is None or wrong is not None:
-                return str(wrong)
-            of_block.setdefault(block, set()).add(point.id)
+            for one in record["contenders"]:
+                point, block = points.get(str(one["tags"].get("point"))), int(one["tags"].get("block", -1))
+                wrong = (
+                    "other commands or options, or changed programs"
+                    if point is None
+                    else unusable(record, one, point, block)
+                )
+                if point is None or wrong is not None:
+                    return str(wrong)
+                of_block.setdefault(block, set()).add(point.id)
         whole = next(
             block
             for block in itertools.count()
             if of_block.get(block) != {one.id for one in self._points(block)}
         )
         for record in records:
-            point, block = points[record["tags"]["point"]], record["tags"]["block"]
-            if block < whole:
-                write_json(self._store.record_path(point, block), record, self._store.temporary)
+            if record["contenders"][0]["tags"]["block"] < whole:
+                self._store.keep(record)
         for block in range(whole):
-            for point in self._points(block):
-                self._take_in(point, block)
+            self._take_in(block)
         self.done = self.before = whole
         self._ran = 0.0
         return ""
 
     @property
-    def records(self) -> list[Any]:
-        """All records of whole blocks."""
+    def records(self) -> list[Record]:
+        """All records of whole blocks, of what is still compared."""
         return [
-            read_json(self._store.record_path(point, block))
+            record | {"contenders": contenders}
             for block in range(self.done)
-            for point in self._points(block)
+            for record, contenders in self._measured(block)
         ]
+
+    def _measured(self, block: int) -> Iterator[tuple[Record, list[Record]]]:
+        """The records of a block, and what was measured in each of what is still compared."""
+        ids = {point.id for point in self._points(block)}
+        for path in self._store.files(self.experiment.name, block):
+            record = read_json(path)
+            own = [one for one in record["contenders"] if one["tags"]["point"] in ids and not is_failed(one)]
+            if own:
+                yield record, own
 
     def _points(self, block: int) -> tuple[Point, ...]:
         """What a block runs."""
@@ -222,16 +229,20 @@ class Blocks:
             for task, outcome in zip(tasks, outcomes, strict=True):
                 if outcome.seconds is None:
                     self.runs[key_of(task.point)].reason = in_options(outcome.reason)
-                else:
-                    self._take_in(task.point, block)
+        self._take_in(block)
         is_whole = len(self.failed) == failed
         self.done += is_whole
         return is_whole
 
-    def _take_in(self, point: Point, block: int) -> None:
-        record = read_json(self._store.record_path(point, block))
-        runs, process = self.runs[key_of(point)], record["process"]
-        taken = [one["steps_seconds"] for one in record["repetitions"]]
+    def _take_in(self, block: int) -> None:
+        points = {point.id: point for point in self._points(block)}
+        for _, contenders in self._measured(block):
+            for one in contenders:
+                self._take_in_one(self.runs[key_of(points[one["tags"]["point"]])], one, block)
+
+    def _take_in_one(self, runs: Runs, one: Record, block: int) -> None:
+        process = one["process"]
+        taken = [run["steps_seconds"] for run in one["repetitions"]]
         runs.blocks.append(block)
         runs.seconds.append(statistics.median(taken))
         runs.all += taken
@@ -245,8 +256,8 @@ class Blocks:
         runs.cores.append(busy / max(process["wall_seconds"], 1e-9))
         if process["peak_memory_bytes"] is not None:
             runs.bytes.append(process["peak_memory_bytes"])
-        runs.knows_waiting &= all(one.get("waited_seconds") is not None for one in record["repetitions"])
-        stops = len((record["turns"] or {}).get("seconds", ())) / len(taken)
+        runs.knows_waiting &= all(run.get("waited_seconds") is not None for run in one["repetitions"])
+        stops = len((one["slices"] or {}).get("seconds", ())) / len(taken)
         for name, amount in process.get("counted", {}).items():
             if amount is not None:
                 # Each stop is a wait that is none of the command's own.

@@ -104,7 +104,10 @@ def _read(path: Path) -> list[Session]:
         case {"schema_version": version, "sessions": [*sessions]} if version == SCHEMA_VERSION:
             return [_session(path, one) for one in sessions]
         case {"schema_version": version, "sessions": _}:
-            raise InputError(f"--append: {path}: found schema version {version!r}, expected {SCHEMA_VERSION}")
+            raise InputError(
+                f"--append: {path}: found schema version {version!r}, expected {SCHEMA_VERSION}; "
+                "give another file, and measure again"
+            )
     raise InputError(f"--append: {path}: is no file of an earlier call, expected one, or none")
 
 

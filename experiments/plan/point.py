@@ -141,10 +141,10 @@ class Point(Measurement):
         return tuple(words)
 
     def bench_words(
-        self, scene: Path, record: Path, tags: Tags, timeline: Path | None = None, besides: Sequence[str] = ()
+        self, scene: Path, tags: Tags, timeline: Path | None = None, besides: Sequence[str] = ()
     ) -> tuple[str, ...]:
-        """The command that measures the point once, does what else it is told to, and writes its record, and
-        the timeline of a profile.
+        """The command that measures the point once, does what else it is told to, and writes the timeline of
+        a profile; all but the place of its record.
         """
         words = self._words(self.verb, scene)
         words += ["--warm-up", str(self.warm_up)]
@@ -153,7 +153,7 @@ class Point(Measurement):
         words += besides
         if timeline is not None:
             words += ["--timeline", str(timeline), "--timeline-chunks"]
-        return (*words, "--record", str(record), *tag_arguments(tags))
+        return (*words, *tag_arguments(tags))
 
     def process_words(self, scene: Path | None, output: Path) -> tuple[str, ...]:
         """The command of the process that is timed as a whole: the program's own words, or `carom run`. A

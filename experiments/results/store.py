@@ -12,16 +12,14 @@ from pathlib import Path
 from typing import Any
 
 from experiments.plan.plan import Experiment
-from experiments.plan.point import Point, Tags
-from experiments.results.index import Index
-from experiments.results.summary import Summary, summary_of, unusable
-from experiments.support.process import Completed
+from experiments.plan.point import Point
+from experiments.results.record import Record, is_failed, runs_of, unusable
+from experiments.support.digest import digest
 from support.files import locked, move, read_json, write_json
-
-_Summaries = Mapping[str, Summary | None]
+from support.record_schema import is_record
 
 Key = tuple[str, int]
-"""A point's id and a block's number: one process, one record."""
+"""A point's id and a block's number."""
 
 
 @dataclass
@@ -29,20 +27,30 @@ class Found:
     """What a results folder holds of one experiment."""
 
     seconds: dict[Key, float] = field(default_factory=dict)
-    """Whole-process wall time of each finished process."""
+    """What each measured point took of its process, in wall time."""
     runs: dict[Key, Sequence[float]] = field(default_factory=dict)
     """The seconds of each of its timed runs, in their order: what of the process was in the clock."""
-    sessions: dict[Key, str] = field(default_factory=dict)
-    """Which session measured it."""
     failures: dict[Key, str] = field(default_factory=dict)
-    """Reason of each failed process that has not been measured since."""
-    stale: list[Path] = field(default_factory=list)
-    """Files that no longer belong to the plan."""
+    """The reason of each point that failed and was not measured since."""
+    sessions: dict[Key, str] = field(default_factory=dict)
+    """Which session measured it, or saw it fail."""
+    files: dict[Key, Path] = field(default_factory=dict)
+    """The record in which it is."""
+    stale: dict[Path, int] = field(default_factory=dict)
+    """Files that no longer belong to the plan, and how many contenders each has."""
 
-    def take(self, key: Key, seconds: float, runs: Sequence[float], session: str) -> None:
-        """Count a process that was measured."""
-        self.seconds[key], self.runs[key], self.sessions[key] = seconds, runs, session
-        self.failures.pop(key, None)
+    def take(self, record: Record, path: Path) -> None:
+        """Count all contenders of a process."""
+        for one in record["contenders"]:
+            tags = one["tags"]
+            key = tags["point"], tags["block"]
+            self.files[key], self.sessions[key] = path, str(tags.get("session", ""))
+            for there in (self.seconds, self.runs, self.failures):
+                there.pop(key, None)
+            if is_failed(one):
+                self.failures[key] = one["reason"]
+            else:
+                self.seconds[key], self.runs[key] = float(one["process_seconds"]), runs_of(record, one)
 
 
 class Store:
@@ -52,7 +60,6 @@ class Store:
         self.root = root
         self.session = session
         self.temporary = root / ".running" / session
-        self._index = Index(root)
 
     @contextmanager
     def opened(self) -> Iterator[None]:
@@ -74,73 +81,62 @@ class Store:
         finally:
             shutil.rmtree(self.temporary, ignore_errors=True)
 
-    def record_path(self, point: Point, block: int) -> Path:
-        """Where the record of one process belongs."""
-        return place_of(self.root / "records" / point.experiment, f"{point.id}-b{block}.json")
+    def path(self, points: Sequence[str], experiment: str, block: int) -> Path:
+        """Where the record of a process of these points belongs: a block has a folder of its own."""
+        own = points[0] if len(points) == 1 else "p" + digest(" ".join(sorted(points)))
+        return place_of(self.root / "records" / experiment, f"{own}-b{block}.json")
 
-    def failure_path(self, point: Point, block: int) -> Path:
-        """Where the failure of one process belongs."""
-        return place_of(self.root / "failures" / point.experiment, f"{point.id}-b{block}.json")
-
-    def find(self, experiment: Experiment) -> Found:
-        """What is there of an experiment; reads only."""
-        records, failures = (self._index.summaries(kind, experiment.name) for kind in ("records", "failures"))
-        return self._sorted(experiment, records, failures)
-
-    def find_block(self, experiment: Experiment, block: int) -> Found:
-        """What is there of one block: only files of its own names are read, however many others there are."""
-        names = [f"{point.id}-b{block}.json" for point in experiment.points]
-        records, failures = (
-            {
-                name: summary_of(read_json(place_of(self.root / kind / experiment.name, name)))
-                for name in names
-            }
-            for kind in ("records", "failures")
-        )
-        return self._sorted(experiment, records, failures)
-
-    def _sorted(self, experiment: Experiment, records: _Summaries, failures: _Summaries) -> Found:
-        points = {point.id: point for point in experiment.points}
-        found = Found()
-        for name, summary in records.items():
-            key = _key(name)
-            point = points.get(key[0]) if key else None
-            if key is None or point is None or unusable(summary, point, key[1]):
-                found.stale.append(self.root / "records" / experiment.name / name)
+    def find(self, experiment: Experiment, block: int | None = None) -> Found:
+        """What is there of an experiment, or of one block of it; reads only."""
+        found, points = Found(), {point.id: point for point in experiment.points}
+        for path in self.files(experiment.name, block):
+            record = read_json(path)
+            if self._path_of(record, points) == path:
+                found.take(record, path)
             else:
-                assert summary is not None
-                found.take(key, summary.seconds, summary.runs, str(summary.tags.get("session", "")))
-        for name, summary in failures.items():
-            key = _key(name)
-            is_failure = summary is not None and summary.kind == "failure"
-            if key is None or key[0] not in points or key in found.seconds or not is_failure:
-                found.stale.append(self.root / "failures" / experiment.name / name)
-            else:
-                assert summary is not None
-                found.failures[key] = summary.reason
+                found.stale[path] = len(record["contenders"]) if is_record(record) else 1
         return found
 
-    def has(self, point: Point, block: int) -> bool:
-        """Whether one process has been measured by now, perhaps by someone else."""
-        return unusable(summary_of(read_json(self.record_path(point, block))), point, block) is None
+    def files(self, experiment: str, block: int | None = None) -> list[Path]:
+        """The files of an experiment, or of one block of it; what was collected is none of them."""
+        folder = self.root / "records" / experiment
+        return sorted(folder.rglob("*.json") if block is None else (folder / f"b{block}").glob("*.json"))
+
+    def _path_of(self, record: Any, points: Mapping[str, Point]) -> Path | None:  # noqa: ANN401 - any JSON
+        """Where a record belongs, if it is one and all its contenders are still planned as they were."""
+        if not is_record(record):
+            return None
+        ids = [str(one["tags"].get("point")) for one in record["contenders"]]
+        block = record["contenders"][0]["tags"].get("block")
+        for contender, name in zip(record["contenders"], ids, strict=True):
+            point = points.get(name)
+            is_of_block = isinstance(block, int) and contender["tags"].get("block") == block
+            if point is None or not is_of_block:
+                return None
+            if not is_failed(contender) and unusable(record, contender, point, block):
+                return None
+        return self.path(ids, points[ids[0]].experiment, block)
 
     def settle(self, experiment: Experiment) -> Found:
         """Move what is stale out of the way and bring back what fits the plan again; say what is there then.
 
         Nothing is deleted: going from one scale to the other and back measures nothing twice.
         """
-        for path in self.find(experiment).stale:
+        found = self.find(experiment)
+        for path in found.stale:
             self.retire(path)
-        points = {point.id: point for point in experiment.points}
-        for path in (self.root / "stale" / "records" / experiment.name).rglob("*.json"):
-            key = _key(path.name)
-            point = points.get(key[0]) if key else None
-            if key is None or point is None:
-                continue
-            target = self.record_path(point, key[1])
-            if not target.exists() and not unusable(summary_of(read_json(path)), point, key[1]):
+        is_changed, points = bool(found.stale), {point.id: point for point in experiment.points}
+        for path in sorted((self.root / "stale" / "records" / experiment.name).rglob("*.json")):
+            target = self._path_of(read_json(path), points)
+            if target is not None and not target.exists():
                 move(path, target)
-        return self.find(experiment)
+                is_changed = True
+        return self.find(experiment) if is_changed else found
+
+    def clear(self, found: Found, keys: Iterable[Key]) -> None:
+        """Move the records out of the way in which these are: they are measured anew."""
+        for path in {found.files[key] for key in keys if key in found.files}:
+            self.retire(path)
 
     def retire(self, path: Path) -> None:
         """Move a file below `stale/`, beside any earlier one of the same name."""
@@ -153,26 +149,12 @@ class Store:
         with contextlib.suppress(FileNotFoundError):
             move(path, target)
 
-    def keep_record(self, point: Point, block: int, scratch: Path) -> None:
-        """Take in a finished record; an earlier failure of the same process is history then."""
-        path, failure = self.record_path(point, block), self.failure_path(point, block)
-        move(scratch, path)
-        if failure.exists():
-            self.retire(failure)
-
-    def keep_failure(self, point: Point, block: int, done: Completed, tags: Tags) -> None:
-        """Record that a process failed, why, where and with which program."""
-        failure = {
-            "schema_version": 1,
-            "kind": "failure",
-            "tags": {**tags, **_where(point)},
-            "axes": point.axes,
-            "command": list(done.command),
-            "exit_code": done.exit_code,
-            "reason": done.reason,
-            "recorded_at": datetime.now(UTC).isoformat(timespec="seconds"),
-        }
-        write_json(self.failure_path(point, block), failure, self.temporary)
+    def keep(self, record: Record) -> Path:
+        """Take in the record of a process; returns its place."""
+        tags = [one["tags"] for one in record["contenders"]]
+        path = self.path([one["point"] for one in tags], tags[0]["experiment"], tags[0]["block"])
+        write_json(path, record, self.temporary)
+        return path
 
     def keep_note(self, name: str, content: object) -> None:
         """Write `name`, a JSON file of the runner's own."""
@@ -183,43 +165,23 @@ class Store:
         return read_json(self.root / name)
 
 
-def _where(point: Point) -> Tags:
-    """The host, the partition under Slurm and the program: what a record of the process would tell."""
-    told = {
-        "host": os.uname().nodename,
-        "partition": os.environ.get("SLURM_JOB_PARTITION"),
-        "program_sha256": point.program.sha256,
-    }
-    return {key: value for key, value in told.items() if value}
-
-
 def new_session() -> str:
     """An id for one invocation of the runner, and no other: the time in UTC and the process."""
     return f"{datetime.now(UTC):%Y%m%dT%H%M%S.%f}-{os.uname().nodename}-{os.getpid()}"
 
 
 def measured_by_point(found: Iterable[Found]) -> dict[str, list[tuple[float, Sequence[float]]]]:
-    """Wall time of each whole process and its timed runs, by point id over all experiments: equal ids are the
-    same measurement.
+    """Wall time of each process and its timed runs, by point id over all experiments: equal ids are the same
+    measurement.
     """
     measured: dict[str, list[tuple[float, Sequence[float]]]] = {}
     for one in found:
         for key, value in one.seconds.items():
-            measured.setdefault(key[0], []).append((value, one.runs.get(key, ())))
+            measured.setdefault(key[0], []).append((value, one.runs[key]))
     return measured
 
 
 def place_of(folder: Path, name: str) -> Path:
-    """Where a file of a folder for one experiment belongs: of a process below the first three letters of its
-    point's id, so that no folder holds a hundred thousand files.
-    """
-    return folder / name[:3] / name if _key(name) else folder / name
-
-
-_NAME = re.compile(r"(.*?)-b([0-9]{1,9})\.json", re.DOTALL)
-
-
-def _key(name: str) -> Key | None:
-    """Of a file's name, with folders or without."""
-    found = _NAME.fullmatch(name, name.rfind("/") + 1)
-    return (found[1], int(found[2])) if found else None
+    """Where a file of a folder for one experiment belongs: of a process in the folder of its block."""
+    block = re.search(r"-(b[0-9]{1,9})\.json$", name)
+    return folder / block[1] / name if block else folder / name

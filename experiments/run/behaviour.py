@@ -2,9 +2,9 @@
 
 import statistics
 from dataclasses import dataclass, field
-from typing import Any
 
 from experiments.plan.point import Point
+from experiments.results.record import Record
 from experiments.results.store import Store
 from experiments.side_by_side.contest import LEFT_ALONE
 
@@ -35,12 +35,12 @@ class Behaviours:
             self._known[point.id] = _read(self._store.note(_note_of(point)))
         return self._known[point.id]
 
-    def learn(self, point: Point, record: Any, *, found_out: bool) -> str:  # noqa: ANN401 - read from a file
-        """Take in a record of the point; `found_out` says that it was left to the program to find out whether
-        the point may take turns. Returns why it does not, if that is news.
+    def learn(self, point: Point, there: Record, *, found_out: bool) -> str:
+        """Take in what was measured of the point; `found_out` says that it was left to the program to find
+        out whether the point may take turns. Returns why it does not, if that is news.
         """
-        process = record.get("process") if isinstance(record, dict) else None
-        if not isinstance(process, dict) or (point.command is not None and point.command.benchmark):
+        process = there.get("process")
+        if process is None or (point.command is not None and point.command.benchmark):
             return ""
         known = self.of(point)
         known.seconds.append(float(process["wall_seconds"]) / process.get("runs", 1))
@@ -49,7 +49,7 @@ class Behaviours:
             reason = None
         elif reason:
             known.turns = False
-        elif found_out and record["turns"]:
+        elif found_out and there["slices"]:
             known.turns = True
         self._store.keep_note(_note_of(point), {"turns": known.turns, "seconds": known.seconds})
         return str(reason or "")

@@ -195,22 +195,18 @@ def _kept(note: object) -> dict[str, Probe]:
 
 def _probe_all(group: Sequence[Point], scene: Path, folder: Path, time_limit: float) -> dict[str, Probe]:
     """Time a short run of each of these variants in one process, one after the other."""
-    records = [folder / f"probe-{at}.json" for at in range(len(group))]
-    words = [
-        [str(scene), "--variant", one.variant, "--threads", str(one.threads), "--record", str(record)]
-        for one, record in zip(group, records, strict=True)
-    ]
-    contenders = folder / "probes.json"
+    contenders, record = folder / "probes.json", folder / "probe.json"
+    words = [[str(scene), "--variant", one.variant, "--threads", str(one.threads)] for one in group]
     contenders.write_text(json.dumps(words), encoding="utf-8")
-    command = [str(group[0].program.path), "turns", str(contenders), "--counts"]
+    record.unlink(missing_ok=True)
+    command = [str(group[0].program.path), "turns", str(contenders), "--counts", "--record", str(record)]
     run_alone(command, group[0].openmp, time_limit)
     probes = {}
-    for point, record in zip(group, records, strict=True):
-        if told := read_json(record):
+    for point, told in zip(group, (read_json(record) or {}).get("contenders", ()), strict=False):
+        if told["repetitions"]:
             steps = float(told["repetitions"][0]["steps_seconds"])
             process = SECONDS_PER_PROCESS + max(0.0, float(told["process_seconds"]) - steps)
             probes[probe_key(point)] = Probe(steps / PROBE.steps, process)
-            record.unlink()
     return probes
 
 

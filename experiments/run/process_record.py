@@ -1,19 +1,17 @@
-"""What a whole process leaves: its record, or that of its failure, as harness/record.schema.json has them."""
+"""What whole processes leave that were measured beside each other, as harness/record.schema.json has it."""
 
 import json
 import statistics
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from typing import Any
 
 from experiments.plan.point import PROCESS, Tags
 from experiments.plan.site import OPENMP_VARIABLES
+from experiments.results.record import Record, new_record
 from experiments.run.sources import Sources
 from experiments.side_by_side.contest import Entrant
 from experiments.support.digest import digest_of_hashes
-
-Record = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -22,57 +20,59 @@ class Described:
 
     tags: Tags
     axes: Mapping[str, object]
+    sources: Sources
     checked: str = ""
     """How its result was checked beforehand; empty if it was not."""
     build: Mapping[str, Any] | None = None
     """Of the provenance, what is not as that of the program which measures."""
+    surroundings: tuple[Record, Any] = ({}, None)
+    """Its machine's provenance and its scene, as the sampler tells them."""
 
 
-def process_record(
-    one: Entrant,
-    its: Described,
-    sources: Sources,
-    surroundings: tuple[Record, Any],
-    contest: tuple[int, int],
-) -> Record:
-    """The record of a process of which a run counts. The `surroundings` are its machine's provenance and its
-    scene, as the sampler tells them; `contest` is how many were measured beside each other, and the seed of
-    their order. Without runs that count it is the record of its failure.
+def process_record(contest: Sequence[tuple[Entrant, Described]], seed: int) -> Record:
+    """The record of processes that were measured beside each other, in an order drawn by the seed; of those
+    of which no run counts with the reason.
     """
-    if one.failure:
-        return {
-            **_head("failure", its),
-            "command": [*one.contender.words],
-            "exit_code": one.exit_code,
-            "reason": one.failure,
-        }
-    process = _process(one, sources)
-    provenance, scene = surroundings
+    origins = [_provenance(its, one) for one, its in contest if not one.failure]
+    whole = origins[0] if origins else {}
+    contenders = [
+        _failed(one, its) if one.failure else _measured(one, its, whole, len(contest)) for one, its in contest
+    ]
+    is_shared = any(one.get("slices") for one in contenders)
+    turns = {"seed": seed} if is_shared else None
+    return new_record(PROCESS, contenders, turns=turns, provenance=whole)
+
+
+def _failed(one: Entrant, its: Described) -> Record:
     return {
-        **_head(PROCESS, its),
-        "scene": scene,
+        **_head(its),
+        "command": [*one.contender.words],
+        "exit_code": one.exit_code,
+        "reason": one.failure,
+    }
+
+
+def _measured(one: Entrant, its: Described, whole: Record, contenders: int) -> Record:
+    process, own = _process(one, its.sources), _provenance(its, one)
+    return {
+        **_head(its),
+        "scene": its.surroundings[1],
         "warm_ups": one.contender.warm_ups,
         "repetitions": _repetitions(one),
         "process_seconds": process["wall_seconds"],
         "process": process,
-        "turns": _turns(one, *contest),
+        "slices": _slices(one, contenders),
         "check": {
             "verdict": "passed" if its.checked else "unchecked",
             "scope": its.checked or "nothing",
             "reason": None,
         },
-        "provenance": _provenance(provenance, its, one.contender.environment, sources),
+        "provenance": {key: value for key, value in own.items() if value != whole[key]},
     }
 
 
-def _head(kind: str, its: Described) -> Record:
-    return {
-        "schema_version": 1,
-        "kind": kind,
-        "recorded_at": datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
-        "tags": {key: _number_or_text(value) for key, value in its.tags.items()},
-        "axes": dict(its.axes),
-    }
+def _head(its: Described) -> Record:
+    return {"tags": {key: _number_or_text(value) for key, value in its.tags.items()}, "axes": dict(its.axes)}
 
 
 def _number_or_text(value: str | float) -> str | int | float:
@@ -84,9 +84,10 @@ def _number_or_text(value: str | float) -> str | int | float:
     return number if isinstance(number, int | float) and not isinstance(number, bool) else value
 
 
-def _provenance(told: Record, its: Described, environment: Mapping[str, str], sources: Sources) -> Record:
+def _provenance(its: Described, one: Entrant) -> Record:
     """That of the program which measured it, but for build, environment and the hash of the program."""
-    build = its.build or {}
+    told, build, sources = its.surroundings[0], its.build or {}, its.sources
+    environment = one.contender.environment
     openmp = {key: value for key, value in environment.items() if key.startswith(OPENMP_VARIABLES)}
     return {
         **told,
@@ -96,13 +97,11 @@ def _provenance(told: Record, its: Described, environment: Mapping[str, str], so
     }
 
 
-def _turns(one: Entrant, contenders: int, seed: int) -> Record | None:
+def _slices(one: Entrant, contenders: int) -> Record | None:
     """None if no other took turns with it."""
     if contenders == 1 or (not one.is_sliced and len(one.runs) == 1):
         return None
     return {
-        "contenders": contenders,
-        "seed": seed,
         "seconds": [seconds for run in one.runs for seconds in run.seconds],
         "seconds_alone": sum(run.seconds_alone for run in one.runs) if one.is_sliced else 0.0,
     }

@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from experiments.plan.command import placed
-from experiments.plan.point import PROCESS, Point, Tags
+from experiments.plan.point import Point, Tags
 from experiments.plan.program import Program, build_of
 from experiments.plan.scenes import SceneFile
+from experiments.results.record import Record, is_failed
 from experiments.results.store import Store
 from experiments.run.behaviour import Behaviours
 from experiments.run.host_lock import host_lock
-from experiments.run.process_record import Described, Record, process_record
+from experiments.run.process_record import Described, process_record
 from experiments.run.progress import warn
 from experiments.run.sources import Sources
 from experiments.run.together import is_alike, is_left_open
@@ -50,16 +51,8 @@ class Asked:
     crowded: bool = False
 
 
-@dataclass(frozen=True)
-class Left:
-    """What was measured of a point: its record or failure, and what it wrote itself, if it was to."""
-
-    record: Record
-    output: Path
-
-
 class Processes:
-    """Measures whole processes beside each other, and tells the record, or the failure, of each.
+    """Measures whole processes beside each other, and tells their record.
 
     Where it `tells`, a line says of a program why it is not stopped; the record says it in any case.
     """
@@ -79,29 +72,30 @@ class Processes:
         self._slice = SLICE_SECONDS
         self._behaviours = Behaviours(store)
 
-    def measure(self, asked: Sequence[Asked], seed: int, slice_seconds: float) -> list[Left]:
-        """What is left of each; the shortest runs for so many seconds before the next does.
+    def measure(self, asked: Sequence[Asked], seed: int, slice_seconds: float) -> tuple[Record, list[Path]]:
+        """Their record, and what each wrote itself, if it was to; the shortest runs for so many seconds
+        before the next does.
 
         All are measured a second time where one turns out to mind being stopped and others were in slices: on
         a busy machine a program takes another time in slices than as a whole.
         """
         self._slice = slice_seconds
-        left = self._run(asked, seed)
-        found = self._learn(asked, left)
-        if any(found) and any(map(_was_sliced, asked, left)):
-            left = self._run(asked, seed)
-            _say_why_whole(asked, left, found)
-        for one, there in zip(asked, left, strict=True):
+        record, outputs = self._run(asked, seed)
+        found = self._learn(asked, record)
+        if any(found) and any(map(_was_sliced, asked, record["contenders"])):
+            record, outputs = self._run(asked, seed)
+            _say_why_whole(asked, record, found)
+        for one, there in zip(asked, record["contenders"], strict=True):
             if one.turns and one.crowded:
                 _say_why(there, CROWDED)
-        return left
+        return record, outputs
 
-    def _learn(self, asked: Sequence[Asked], left: Sequence[Left]) -> list[str]:
-        """Take in what the records tell; returns of each why it is not to be stopped, if that is news."""
+    def _learn(self, asked: Sequence[Asked], record: Record) -> list[str]:
+        """Take in what the record tells; returns of each why it is not to be stopped, if that is news."""
         is_open = [self._turns(one, asked) is None for one in asked]
         found = [
-            self._behaviours.learn(one.point, there.record, found_out=left_open)
-            for one, there, left_open in zip(asked, left, is_open, strict=True)
+            self._behaviours.learn(one.point, there, found_out=left_open)
+            for one, there, left_open in zip(asked, record["contenders"], is_open, strict=True)
         ]
         for one, said in zip(asked, found, strict=True):
             if said and self._tells:
@@ -118,7 +112,7 @@ class Processes:
             [ended] = Contest(sampler, [contender], self._slice, 1, self._folder()).measure()
         return Completed(words, ended.exit_code if ended.failure else 0, "", ended.failure)
 
-    def _run(self, asked: Sequence[Asked], seed: int) -> list[Left]:
+    def _run(self, asked: Sequence[Asked], seed: int) -> tuple[Record, list[Path]]:
         folder = self._folder()
         outputs = [folder.absolute() / f"{number}.output" for number in range(len(asked))]
         contenders = [
@@ -128,30 +122,27 @@ class Processes:
         sources = [_sources_of(one.point.program) for one in asked]
         # The instrument itself is bound nowhere: what it starts would inherit that.
         with host_lock(), Sampler(self._instrument.path) as sampler:
-            contest = Contest(sampler, contenders, self._slice, seed, folder)
-            return [
-                Left(self._record(sampler, ended, one, known, (len(asked), seed)), output)
-                for ended, one, known, output in zip(contest.measure(), asked, sources, outputs, strict=True)
-            ]
+            ended = Contest(sampler, contenders, self._slice, seed, folder).measure()
+            described = [self._described(sampler, *one) for one in zip(ended, asked, sources, strict=True)]
+        return process_record([*zip(ended, described, strict=True)], seed), outputs
 
-    def _record(
-        self, sampler: Sampler, ended: Entrant, one: Asked, sources: Sources, contest: tuple[int, int]
-    ) -> Record:
+    def _described(self, sampler: Sampler, ended: Entrant, one: Asked, sources: Sources) -> Described:
         point, scene = one.point, one.scene.path.absolute() if one.scene is not None else None
         is_other_build = point.command is None and point.program.sha256 != self._instrument.sha256
-        its = Described(
-            one.tags,
-            {key: value for key, value in point.axes.items() if value is not None},
-            one.checked,
-            build_of(point.program) if is_other_build else None,
-        )
         surroundings: tuple[Record, Any] = {}, None
         try:
             if not ended.failure:
                 surroundings = sampler.surroundings(point.threads, scene)
         except SamplerError as error:
             ended.failure = str(error)
-        return process_record(ended, its, sources, surroundings, contest)
+        return Described(
+            one.tags,
+            {key: value for key, value in point.axes.items() if value is not None},
+            sources,
+            one.checked,
+            build_of(point.program) if is_other_build else None,
+            surroundings,
+        )
 
     def _folder(self) -> Path:
         folder = self._store.temporary / "processes"
@@ -221,22 +212,22 @@ def _is_alike(one: Asked) -> bool:
     return _said(one) is None and is_alike(one.point)
 
 
-def _was_sliced(one: Asked, left: Left) -> bool:
+def _was_sliced(one: Asked, there: Record) -> bool:
     """Whether it was, and is not to be if another minds."""
-    return _is_alike(one) and bool(left.record.get("turns"))
+    return _is_alike(one) and bool(there.get("slices"))
 
 
-def _say_why_whole(asked: Sequence[Asked], left: Sequence[Left], found: Sequence[str]) -> None:
-    """Let the records say why nobody was stopped, `found` of those that mind."""
+def _say_why_whole(asked: Sequence[Asked], record: Record, found: Sequence[str]) -> None:
+    """Let the record say why nobody was stopped, `found` of those that mind."""
     minds = next(one.point.series for one, said in zip(asked, found, strict=True) if said)
-    for one, there, said in zip(asked, left, found, strict=True):
+    for one, there, said in zip(asked, record["contenders"], found, strict=True):
         if _is_alike(one):
             _say_why(there, said or f"{minds} must not be, and all are measured alike")
 
 
-def _say_why(left: Left, why: str) -> None:
-    if left.record["kind"] == PROCESS:
-        left.record["process"]["undisturbed"] = why
+def _say_why(there: Record, why: str) -> None:
+    if not is_failed(there):
+        there["process"]["undisturbed"] = why
 
 
 def _sources_of(program: Program) -> Sources:

@@ -2,7 +2,7 @@
 
 import json
 import shutil
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,17 +10,25 @@ from experiments.plan.plan import Experiment
 from experiments.plan.point import PROCESS, Point, Tags
 from experiments.plan.program import CHECK_FAILED, Program, generate
 from experiments.plan.scenes import AnyScene, NoScene, SceneFile, SceneFolder
-from experiments.results.store import Store
-from experiments.results.summary import summary_of, unusable
+from experiments.results.record import (
+    Record,
+    failed,
+    is_failed,
+    new_record,
+    runs_of,
+    together_in,
+    unusable,
+)
+from experiments.results.store import Found, Store
 from experiments.run.host_lock import run_alone
 from experiments.run.machine_limits import measure_limits
-from experiments.run.processes import Asked, Left, Processes, slice_of
+from experiments.run.processes import Asked, Processes, slice_of
 from experiments.run.together import have_room, is_alike
 from experiments.run.verify import Verifier, representative, scope_of
 from experiments.support.digest import digest
 from experiments.support.process import NOT_FOUND, Completed
 from support.errors import InputError
-from support.files import move, read_json, write_json
+from support.files import move, read_json
 from support.record_schema import is_record
 from support.vocabulary import COUNTS
 
@@ -60,7 +68,9 @@ class Task:
 
 @dataclass(frozen=True)
 class ProcessResult:
-    """Seconds of the whole process and of its timed runs, or the reason of its failure with the exit code."""
+    """Seconds that a point took of its process, and of its timed runs, or the reason of its failure with the
+    exit code.
+    """
 
     seconds: float | None
     reason: str = ""
@@ -73,7 +83,7 @@ Ready = tuple[Task, SceneFile | None]
 
 
 class Runner:
-    """Runs tasks, one process at a time; each leaves a record or a failure in the store."""
+    """Runs tasks, one process at a time; each process leaves a record in the store."""
 
     def __init__(
         self,
@@ -84,76 +94,96 @@ class Runner:
         slice_seconds: float | None = None,
         *,
         tells: bool = True,
+        refuse: Callable[[Point], Completed | None] = lambda _: None,
     ) -> None:
+        """`refuse` says why a point cannot be measured on this machine, if so."""
         self._store = store
         self._scenes = scenes
         self._generator = generator
         self._time_limit = time_limit
         self.slice_seconds = slice_seconds
         """How long a whole program runs before the next does; see `slice_of` without it."""
+        self._refuse = refuse
         self._processes = Processes(store, generator, time_limit, tells=tells)
         self._verifier = Verifier(store, generator, self._processes, time_limit)
 
-    def run(self, tasks: Sequence[Task]) -> list[ProcessResult]:
+    def run(self, tasks: Sequence[Task], found: Found | None = None) -> list[ProcessResult]:
         """Verify the points' variants as far as that is still to be done, then measure the points: several of
-        them in turns, in one process.
+        them in turns, in one process. What came of it is taken into what was `found`.
 
         Raises InputError only for what concerns the whole study: a program that changed under it.
         """
         prepared = [self._prepare(task) for task in tasks]
         ready = [
-            (task, scene)
-            for task, scene in zip(tasks, prepared, strict=True)
-            if not isinstance(scene, ProcessResult)
+            (task, one) for task, one in zip(tasks, prepared, strict=True) if not isinstance(one, Completed)
         ]
-        measured = iter(self._measure_undisturbed(ready))
-        return [one if isinstance(one, ProcessResult) else next(measured) for one in prepared]
+        record = self._measure_undisturbed(ready) if ready else new_record("failure", ())
+        measured = iter(record["contenders"])
+        contenders = [
+            self._failed(task, one) if isinstance(one, Completed) else next(measured)
+            for task, one in zip(tasks, prepared, strict=True)
+        ]
+        for task, one in zip(tasks, contenders, strict=True):
+            if is_failed(one):
+                _require_unchanged(task.point)
+        is_measured = not all(map(is_failed, contenders))
+        record = record | {"contenders": contenders} if is_measured else new_record("failure", contenders)
+        path = self._store.keep(record)
+        if found is not None:
+            found.take(record, path)
+        for task, one in zip(tasks, contenders, strict=True):
+            if not is_failed(one):
+                task.point.program.require_nothing_made()
+        return [_result(record, one) for one in contenders]
 
-    def _measure_undisturbed(self, ready: Sequence[Ready]) -> list[ProcessResult]:
+    def _measure_undisturbed(self, ready: Sequence[Ready]) -> Record:
         """All of them, and all of them again if one was suspended: alone it would be no pair."""
         for attempt in range(1, _MOST_SUSPENSIONS + 1):
-            ended = self._measure_all(ready)
-            if attempt == _MOST_SUSPENSIONS or not any(SUSPENDED in one.reason for one in ended):
+            record = self._measure_all(ready)
+            ended = record["contenders"]
+            if attempt == _MOST_SUSPENSIONS or not any(SUSPENDED in one.get("reason", "") for one in ended):
                 break
-        return ended
+        return record
 
-    def _measure_all(self, ready: Sequence[Ready]) -> list[ProcessResult]:
-        if ready and ready[0][0].point.verb == PROCESS:
+    def _measure_all(self, ready: Sequence[Ready]) -> Record:
+        if ready[0][0].point.verb == PROCESS:
             return self._measure_processes(ready)
         if len(ready) > 1:
-            ended = self._measure_in_turns(ready)
-            if ended is not None:
-                return ended
-        return [self._measure(task, scene) for task, scene in ready]
+            record = self._measure_in_turns(ready)
+            if record is not None:
+                return record
+        return together_in([self._measure(task, scene) for task, scene in ready])
 
-    def _prepare(self, task: Task) -> SceneFile | ProcessResult | None:
+    def _prepare(self, task: Task) -> SceneFile | Completed | None:
         """The point's scene, if it has one, once what runs is verified; or why it cannot be measured."""
         point = task.point
+        refused = self._refuse(point)
         if point.refused:
             assert point.command is not None
-            return self._fail(task, Completed(point.command.words, NOT_FOUND, "", point.refused))
+            refused = Completed(point.command.words, NOT_FOUND, "", point.refused)
+        if refused is not None:
+            return refused
         if isinstance(point.scene, NoScene):
             return None
         if point.program.sha256 is None:
             command = (str(point.program.path), point.verb)
-            return self._fail(task, Completed(command, NOT_FOUND, "", point.program.remedy))
+            return Completed(command, NOT_FOUND, "", point.program.remedy)
         try:
             scene = self.scene(point.scene)
             checked = self.scene(representative(task.experiment, point).scene)
         except InputError as error:
-            return self._fail(task, Completed((str(self._generator.path), "generate"), 1, "", str(error)))
+            return Completed((str(self._generator.path), "generate"), 1, "", str(error))
         if point.is_checked:
             verdict = self._verifier.check(representative(task.experiment, point), checked)
             if verdict.exit_code != 0:
-                return self._fail(task, verdict)
-        failed = measure_limits(self._store, point, self._time_limit)
-        return self._fail(task, failed) if failed is not None else scene
+                return verdict
+        return measure_limits(self._store, point, self._time_limit) or scene
 
     def scene(self, scene: AnyScene) -> SceneFile:
         """The scene's file, generated if need be."""
         return self._scenes.get(scene, lambda wanted, path: generate(self._generator, wanted, path))
 
-    def _measure_processes(self, ready: Sequence[Ready]) -> list[ProcessResult]:
+    def _measure_processes(self, ready: Sequence[Ready]) -> Record:
         """Whole processes that are compared, side by side in slices of time."""
         first = ready[0][0]
         is_crowded = not have_room(first.experiment, first.point)
@@ -168,26 +198,26 @@ class Runner:
             )
             for task, scene in ready
         ]
-        left = self._processes.measure(
-            asked, seed_of(first), self.slice_seconds or slice_of(first.point, first.block)
-        )
-        return [
-            self._keep_process(task, scene, there) for (task, scene), there in zip(ready, left, strict=True)
+        slice_seconds = self.slice_seconds or slice_of(first.point, first.block)
+        record, outputs = self._processes.measure(asked, seed_of(first), slice_seconds)
+        done = Completed((str(self._generator.path), "processes"), 0, "", "")
+        measured = zip(ready, record["contenders"], outputs, strict=True)
+        contenders = [
+            self._checked_output(task, scene, self._usable(task, record, one, done), output)
+            for (task, scene), one, output in measured
         ]
+        return record | {"contenders": contenders}
 
-    def _keep_process(self, task: Task, scene: SceneFile | None, left: Left) -> ProcessResult:
-        """Take in the record of a process; of one that wrote a trajectory only if that is right."""
-        command, path = task.point.command, self._store.temporary / "record.json"
-        is_measured = left.record["kind"] == PROCESS
-        if is_measured and command is not None and command.writes_trajectory and scene is not None:
-            wrong = self._verifier.check_own_output(task.point, scene, left.output)
-            left.output.unlink(missing_ok=True)
-            if wrong is not None:
-                return self._fail(task, wrong)
-        write_json(path, left.record, self._store.temporary)
-        return self._keep(task, path, Completed((str(self._generator.path), "processes"), 0, "", ""))
+    def _checked_output(self, task: Task, scene: SceneFile | None, one: Record, output: Path) -> Record:
+        """A process; of one that wrote a trajectory only if that is right."""
+        command = task.point.command
+        if is_failed(one) or command is None or not command.writes_trajectory or scene is None:
+            return one
+        wrong = self._verifier.check_own_output(task.point, scene, output)
+        output.unlink(missing_ok=True)
+        return one if wrong is None else self._failed(task, wrong)
 
-    def _measure_in_turns(self, ready: Sequence[Ready]) -> list[ProcessResult] | None:
+    def _measure_in_turns(self, ready: Sequence[Ready]) -> Record | None:
         """All of them in one process; None if it broke off: each must show alone what is wrong with it.
 
         Nothing is wrong with those that stood still: they have failed, and are measured together again by the
@@ -197,64 +227,71 @@ class Runner:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
         commands = [
-            task.point.bench_words(_path(scene), folder / f"{number}.json", task.tags(self._store.session))
-            for number, (task, scene) in enumerate(ready)
+            task.point.bench_words(_path(scene), task.tags(self._store.session)) for task, scene in ready
         ]
         first = ready[0][0]
-        contenders = folder / "contenders.json"
+        contenders, scratch = folder / "contenders.json", folder / "record.json"
         contenders.write_text(json.dumps([words[2:] for words in commands]), encoding="utf-8")
         is_count = first.point.kind == COUNTS
         options = ("--counts",) if is_count else ("--seed", str(seed_of(first)), "--runs", str(first.runs))
-        command = (commands[0][0], "turns", str(contenders), *options)
+        command = (commands[0][0], "turns", str(contenders), "--record", str(scratch), *options)
         done = run_alone(command, first.point.openmp, self._time_limit * len(ready) * first.runs)
-        if done.exit_code not in (0, CHECK_FAILED):
-            is_suspended = done.exit_code > 0 and SUSPENDED in done.reason
-            return [self._fail(task, done) for task, _ in ready] if is_suspended else None
-        return [
-            self._keep(task, folder / f"{number}.json", Completed(words, done.exit_code, "", done.error))
-            for number, ((task, _), words) in enumerate(zip(ready, commands, strict=True))
-        ]
+        if done.exit_code > 0 and SUSPENDED in done.reason:
+            return new_record("failure", [self._failed(task, done) for task, _ in ready])
+        record = read_json(scratch)
+        if done.exit_code not in (0, CHECK_FAILED) or not is_record(record):
+            return None
+        measured = zip(ready, commands, record["contenders"], strict=True)
+        return record | {
+            "contenders": [
+                self._usable(task, record, one, Completed(words, done.exit_code, "", done.error))
+                for (task, _), words, one in measured
+            ]
+        }
 
-    def _measure(self, task: Task, scene: SceneFile | None) -> ProcessResult:
+    def _measure(self, task: Task, scene: SceneFile | None) -> Record:
         point = task.point
         scratch = self._store.temporary / "record.json"
         scratch.unlink(missing_ok=True)
-        tags = task.tags(self._store.session)
         drawn = is_drawn(point, task.block)
         timeline = self._store.temporary / "timeline.json" if drawn else None
-        command = point.bench_words(_path(scene), scratch, tags, timeline, point.besides(task.block))
-        done = run_alone(command, point.openmp, self._time_limit)
-        result = self._keep(task, scratch, done)
-        if result.seconds is not None and timeline is not None and timeline.exists():
-            move(timeline, self._store.root / "timelines" / point.timeline)
-        return result
-
-    def _keep(self, task: Task, scratch: Path, done: Completed) -> ProcessResult:
-        """Take in the record that a process left of a point, or the reason why there is none."""
+        words = point.bench_words(
+            _path(scene), task.tags(self._store.session), timeline, point.besides(task.block)
+        )
+        done = run_alone((*words, "--record", str(scratch)), point.openmp, self._time_limit)
         record = read_json(scratch)
-        if is_record(record) and record["kind"] == "failure":
-            return self._fail(
-                task, Completed(tuple(record["command"]), record["exit_code"], "", record["reason"])
-            )
-        if done.exit_code not in (0, CHECK_FAILED) and task.point.verb != PROCESS:
-            return self._fail(task, done)
-        summary = summary_of(record)
-        wrong = unusable(summary, task.point, task.block)
-        if wrong is None:
-            assert summary is not None
-            self._store.keep_record(task.point, task.block, scratch)
-            task.point.program.require_nothing_made()
-            return ProcessResult(summary.seconds, runs=summary.runs)
-        violation = _violation(record)
-        if done.exit_code == CHECK_FAILED and (violation or record is None):
-            return self._fail(task, Completed(done.command, CHECK_FAILED, "", violation or done.reason))
-        said = "left no record" if record is None else f"left a record that cannot be used: {wrong}"
-        return self._fail(task, Completed(done.command, 1, "", said))
+        if done.exit_code not in (0, CHECK_FAILED) or not is_record(record):
+            if done.exit_code == 0:
+                unlike = "a record that cannot be used: it does not match the record schema"
+                done = Completed(done.command, 1, "", f"left {'no record' if record is None else unlike}")
+            return new_record("failure", [self._failed(task, done)])
+        one = self._usable(task, record, record["contenders"][0], done)
+        if timeline is not None and timeline.exists() and not is_failed(one):
+            move(timeline, self._store.root / "timelines" / point.timeline)
+        return new_record("failure", [one]) if is_failed(one) else record | {"contenders": [one]}
 
-    def _fail(self, task: Task, done: Completed) -> ProcessResult:
-        _require_unchanged(task.point)
-        self._store.keep_failure(task.point, task.block, done, task.tags(self._store.session))
-        return ProcessResult(None, done.reason, done.exit_code)
+    def _usable(self, task: Task, record: Record, one: Record, done: Completed) -> Record:
+        """A contender as a process left it, or why it does not count."""
+        if is_failed(one):
+            return self._failed(task, Completed(tuple(one["command"]), one["exit_code"], "", one["reason"]))
+        wrong = unusable(record, one, task.point, task.block)
+        if wrong is None:
+            return one
+        violation = one["check"]["reason"]
+        if done.exit_code == CHECK_FAILED and violation:
+            return self._failed(task, Completed(done.command, CHECK_FAILED, "", violation))
+        return self._failed(
+            task, Completed(done.command, 1, "", f"left a record that cannot be used: {wrong}")
+        )
+
+    def _failed(self, task: Task, done: Completed) -> Record:
+        return failed(task.point, done, task.tags(self._store.session))
+
+
+def _result(record: Record, one: Record) -> ProcessResult:
+    if is_failed(one):
+        return ProcessResult(None, one["reason"], one["exit_code"])
+    return ProcessResult(float(one["process_seconds"]), runs=runs_of(record, one))
 
 
 def _require_unchanged(point: Point) -> None:
@@ -279,9 +316,3 @@ def seed_of(task: Task) -> int:
 def is_drawn(point: Point, block: int) -> bool:
     """Whether the process leaves a timeline: one a point of the phases is enough to see who waits."""
     return point.verb == "profile" and point.kind == "phases" and block == 0
-
-
-def _violation(record: object) -> str | None:
-    """The first violation that a record of a failed check names."""
-    check = record.get("check") if isinstance(record, dict) else None
-    return check.get("reason") if isinstance(check, dict) else None

@@ -1,6 +1,6 @@
 """How many blocks each experiment has, what is still to be run, and what that costs."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 
 from experiments.plan.claims import published_claims
@@ -8,12 +8,12 @@ from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.results.store import Found, Store
 from experiments.run.costs import Costs
+from experiments.run.missing import missing
 from experiments.run.next_blocks import Waiting
 from experiments.run.progress import Status
 from experiments.run.runner import ProcessResult, Task
-from experiments.run.together import together
+from experiments.run.together import Position, together
 from experiments.run.verdicts import Verdicts
-from experiments.run.whole_blocks import WholeBlocks
 from support.vocabulary import CONTROL, PLAN
 
 FIRST_LOOK = 6
@@ -27,10 +27,9 @@ DECIDING = ("comparison", "schedule", CONTROL)
 
 
 class Part:
-    """One experiment of a study: the blocks that it was `given`, what its records hold, what it still costs.
+    """One experiment of a study: the blocks that it is to have, what its records hold, what it still costs.
 
-    It begins with its least number of blocks, or with what an earlier session gave it. The number grows, and
-    is written down before a block begins.
+    It begins with its least number of blocks, or with what is there. The number grows.
     """
 
     def __init__(self, experiment: Experiment, store: Store, found: Found, costs: Costs) -> None:
@@ -41,45 +40,57 @@ class Part:
         self._store = store
         self._costs = costs
         self._given_up: set[str] = set()
-        kept = (store.note(PLAN) or {}).get(experiment.points[0].scale, {}).get(self.name)
-        # A question that now asks for more blocks than it was given has changed, and is decided anew.
-        self.is_begun = bool(kept and found.seconds and self.asked.minimum <= kept["blocks"])
-        self.given = int(kept["blocks"]) if self.is_begun else self.asked.minimum
+        self.blocks = max([self.asked.minimum, *(block + 1 for _, block in found.seconds)])
 
     def forget(self) -> None:
         """Let what follows from records and costs be worked out anew."""
-        for name in ("blocks", "_seconds_by_point", "status"):
+        for name in ("lacking", "_seconds_by_point", "status"):
             vars(self).pop(name, None)
 
+    def give_up(self, points: Iterable[str]) -> None:
+        """Try these points no further."""
+        self._given_up.update(points)
+        self.forget()
+
     @cached_property
-    def blocks(self) -> WholeBlocks:
-        """Its blocks, as its records stand now."""
-        return WholeBlocks(self.experiment, self.given, self.found, self._store.session, self._given_up)
+    def lacking(self) -> dict[int, list[Position]]:
+        """The blocks in which something is still to be run, and what, in the block's order."""
+        about = self.experiment, self.found
+        there = {one: missing(*about, one, self._store.session, self._given_up) for one in range(self.blocks)}
+        return {block: positions for block, positions in there.items() if positions}
+
+    @property
+    def next(self) -> int | None:
+        """The first block in which something is still to be run."""
+        return next(iter(self.lacking), None)
 
     @property
     def left(self) -> list[Point]:
         """The points of all processes that are still to be run."""
-        return [point for missing in self.blocks.lacking.values() for _, point in missing]
+        return [point for positions in self.lacking.values() for _, point in positions]
+
+    @property
+    def planned(self) -> int:
+        """How many points there are in all blocks together."""
+        return self.blocks * len(self.experiment.points)
 
     @property
     def is_complete(self) -> bool:
         """Whether nothing of it is still to be run."""
-        return not self.blocks.lacking
+        return not self.lacking
 
     def give(self, blocks: int) -> None:
         """Give it so many blocks; it loses none."""
-        self.given = max(self.given, blocks)
+        self.blocks = max(self.blocks, blocks)
         self.forget()
 
     def begin(self) -> None:
-        """Write down its number of blocks, which it gets for certain from now on, and how many runs there are
-        once it has them.
+        """Write down how many blocks it gets for certain from now on, and how many runs there are once it has
+        them.
         """
-        self.is_begun = True
-        runs = len({*self.found.seconds, *self.blocks.keys})
         entry = {
-            "blocks": self.given,
-            "runs": runs,
+            "blocks": self.blocks,
+            "runs": self.planned,
             "order_seed": self.experiment.order_seed,
             "points": [point.id for point in self.experiment.points],
         }
@@ -89,15 +100,9 @@ class Part:
             of_scale[self.name] = entry
             self._store.keep_note(PLAN, plan)
 
-    def finish(self, tasks: Sequence[Task], ended: Sequence[ProcessResult]) -> None:
-        """Processes of a block ended. The point of one that failed is not tried again."""
-        for task, result in zip(tasks, ended, strict=True):
-            key = (task.point.id, task.block)
-            if result.seconds is None:
-                self._given_up.add(task.point.id)
-                continue
-            self.found.take(key, result.seconds, result.runs, self._store.session)
-        self.forget()
+    def clear(self, block: int) -> None:
+        """Move what is to be measured anew in a block out of the way."""
+        self._store.clear(self.found, [(point.id, block) for _, point in self.lacking.get(block, ())])
 
     def waiting(self, verdicts: Verdicts) -> Waiting | None:
         """What it lacks to its next look, where something in it is open. Who has its blocks waits for the
@@ -109,7 +114,7 @@ class Part:
         found = verdicts.open.get(self.name)
         if found is None or self._given_up or self.name == CONTROL:
             return None
-        lacking = len(self.blocks.lacking) + max(0, found.next - self.given)
+        lacking = len(self.lacking) + max(0, found.next - self.blocks)
         each, spent = self.seconds_each, found.needed - self.asked.minimum
         return Waiting(self.name, lacking, each, each * spent, found.blocks < FIRST_LOOK) if lacking else None
 
@@ -118,12 +123,12 @@ class Part:
         """The blocks by which it may grow at a time: two, since an even number is balanced in position
         exactly, or what it lacks to what it wants.
         """
-        return max(0, min(2, self.asked.wanted - self.given))
+        return max(0, min(2, self.asked.wanted - self.blocks))
 
     @property
     def share(self) -> float:
         """How far it is between the least that it needs and what it wants."""
-        return (self.given - self.asked.minimum) / max(1, self.asked.wanted - self.asked.minimum)
+        return (self.blocks - self.asked.minimum) / max(1, self.asked.wanted - self.asked.minimum)
 
     @cached_property
     def _seconds_by_point(self) -> dict[str, float]:
@@ -157,23 +162,15 @@ class Part:
 
     @cached_property
     def status(self) -> Status:
-        """How far it is; what is left counts checks. What stands without its partners is no part of it."""
-        keys, found = self.blocks.keys, self.found.seconds
-        done = [found[key] for key in keys if key in found]
-        left = sum(self._seconds_by_point[point.id] for point in self.left)
+        """How far it is; what is left counts checks."""
+        again = {(point.id, block) for block, positions in self.lacking.items() for _, point in positions}
+        done = self.found.seconds.keys() - again
+        left = sum(self._seconds_by_point[point] for point, _ in again)
         return Status(
-            len(keys), len(done), sum(done), left + (0.0 if self.is_complete else self._seconds_once)
-        )
-
-    def measured_again(self) -> str:
-        """What is to be said where it has lost partners: what is measured again with them."""
-        blocks = self.blocks
-        if not blocks.broken or self.is_complete:
-            return ""
-        lost = f"without {', '.join(blocks.lost())}" if blocks.lost() else "not of one session"
-        return (
-            f"{self.name}: {len(blocks.broken)} earlier blocks are {lost} (changed, failed or cut off); "
-            "what lost its partner is measured again with it"
+            self.planned,
+            len(done),
+            sum(self.found.seconds[key] for key in done),
+            left + (0.0 if self.is_complete else self._seconds_once),
         )
 
 
@@ -185,9 +182,10 @@ class Schedule:
         self.costs = costs
 
     def finish(self, tasks: Sequence[Task], ended: Sequence[ProcessResult], seconds: float) -> None:
-        """Processes of a block ended, measured in so many seconds, their checks and the like included."""
+        """A process ended, measured in so many seconds, its checks and the like included."""
         self.costs.learn([task.point for task in tasks], ended, seconds)
-        self.parts[tasks[0].experiment.name].finish(tasks, ended)
+        failed = [task.point.id for task, one in zip(tasks, ended, strict=True) if one.seconds is None]
+        self.parts[tasks[0].experiment.name].give_up(failed)
         for one in self.parts.values():
             if not one.found.seconds:
                 one.forget()  # what others took is all that is known of its costs
@@ -195,10 +193,6 @@ class Schedule:
     def waiting(self, verdicts: Verdicts) -> Iterator[Waiting]:
         """What is open and may be measured on."""
         return (found for one in self.parts.values() if (found := one.waiting(verdicts)) is not None)
-
-    def measured_again(self) -> Iterator[str]:
-        """Say of each experiment that has lost partners what is measured again with them."""
-        return filter(None, (one.measured_again() for one in self.parts.values()))
 
     def status(self) -> Status:
         """How far the study is."""

@@ -48,8 +48,6 @@ def run(settings: Settings) -> int:
         keep_claims(settings.questions, settings.results)
         runner = study.runner()
         schedule = study.schedule(runner, settle=True)
-        for line in schedule.measured_again():
-            display.line(line)
         display.line(summary(schedule, study.budget_seconds))
         if limits := what_limits():
             display.line(limits)
@@ -138,8 +136,8 @@ class Session:
     def _first_block(self, part: Part) -> None:
         """Measure the first block, which is all of what wants no more."""
         self._run_control(everything=False)
-        while (block := part.blocks.next(most=1)) is not None:
-            self._block(part, block)
+        while part.next == 0:
+            self._block(part, 0)
         if part.asked.wanted == 1:
             self._measure([part])
 
@@ -213,7 +211,7 @@ class Session:
         ]
         chosen = min(growing, key=lambda one: (one.name in verdicts.open, one.share), default=None)
         if chosen is not None:
-            chosen.give(chosen.given + chosen.growth)
+            chosen.give(chosen.blocks + chosen.growth)
         return chosen
 
     def _measure(self, parts: Sequence[Part]) -> None:
@@ -221,13 +219,13 @@ class Session:
         for one in parts:
             one.begin()
         of_name = {one.name: one for one in parts}
-        for name in in_turns({one.name: len(one.blocks.lacking) for one in parts}):
+        for name in in_turns({one.name: len(one.lacking) for one in parts}):
             self._run_control(everything=False)
-            if (block := of_name[name].blocks.next()) is not None:
+            if (block := of_name[name].next) is not None:
                 self._block(of_name[name], block)
         for one in parts:
             # There are more where something that had failed succeeded.
-            while (block := one.blocks.next()) is not None:
+            while (block := one.next) is not None:
                 self._block(one, block)
             one.begin()
 
@@ -241,10 +239,10 @@ class Session:
         if control.is_complete:
             if everything or self._study.settings.blocks is not None or not self._has_more:
                 return
-            control.give(control.given + 1)
+            control.give(control.blocks + 1)
         control.begin()
         began = time.monotonic()
-        while (block := control.blocks.next()) is not None:
+        while (block := control.next) is not None:
             self._block(control, block)
             if not everything:
                 break
@@ -257,15 +255,16 @@ class Session:
 
     def _block(self, part: Part, block: int) -> None:
         stop_if_asked()
-        laid_out, blocks, experiment = part.blocks, part.given, part.experiment
-        missing, size = laid_out.missing(block), laid_out.size(block)
-        what = f"{part.name}, block {laid_out.ordinal(block)} of {blocks}"
-        for group in together(experiment, block, missing):
+        blocks, experiment = part.blocks, part.experiment
+        what, size = f"{part.name}, block {block + 1} of {blocks}", len(experiment.points)
+        groups = together(experiment, block, part.lacking[block])
+        part.clear(block)
+        for group in groups:
             self._display.now(what, self._schedule.status)
             runs = self._schedule.costs.runs([point for _, point in group])
             tasks = [Task(experiment, point, block, at, blocks, size, runs) for at, point in group]
             began = time.monotonic()
-            ended = self._runner.run(tasks)
+            ended = self._runner.run(tasks, part.found)
             self._schedule.finish(tasks, ended, time.monotonic() - began)
             for (_, point), result in zip(group, ended, strict=True):
                 if result.seconds is None:
@@ -316,5 +315,5 @@ class Session:
                 self._display.line(f"the study is complete: {root / 'records'}")
             return 0
         points = ", ".join(f"{name} ({number})" for name, number in self._failures.items())
-        warn(f"points failed: {points}; the reasons are in {root / 'failures'} and in the report")
+        warn(f"points failed: {points}; the reasons are in {root / 'records'} and in the report")
         return POINTS_FAILED

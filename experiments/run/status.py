@@ -23,19 +23,18 @@ class Row:
     def __init__(self, experiment: Experiment, store: Store) -> None:
         found = store.find(experiment)
         part = Part(experiment, store, found, Costs())
-        # A run that was told how many blocks to make may have made more than the question asks for.
-        part.give(part.blocks.whole)
-        keys, failed_points = part.blocks.keys, {point for point, _ in found.failures}
+        failed_points = {point for point, _ in found.failures}
+        part.give_up(failed_points)
         self.name = experiment.name
         self.points = len(experiment.points)
-        self.blocks, self.is_decided = part.given, part.is_begun
-        self.planned = len(keys)
-        self.done = sum(key in found.seconds for key in keys)
-        self.failed = sum(key not in found.seconds and key[0] in failed_points for key in keys)
-        self.missing = self.planned - self.done - self.failed
-        self.stale = len(found.stale)
-        self.alone = len(found.seconds.keys() - set(keys))
-        """Records of blocks that are not of one session, and give no ratio."""
+        self.blocks, self.is_decided = part.blocks, bool(found.seconds) and part.is_complete
+        self.planned = part.planned
+        self.missing = len(part.left)
+        self.failed = sum(
+            (point, block) not in found.seconds for point in failed_points for block in range(part.blocks)
+        )
+        self.done = self.planned - self.failed - self.missing
+        self.stale = sum(found.stale.values())
         self.seconds = sum(found.seconds.values())
         self.in_the_clock = sum(sum(runs) for runs in found.runs.values())
         """Of the seconds of its processes those of timed runs."""
@@ -63,9 +62,6 @@ def show_status(settings: Settings) -> int:
     for row in state:
         if row.failed:
             console.print(f"{row.name}: failed: {row.reason}")
-        if row.alone:
-            said = "more records are in blocks that no session measured whole"
-            console.print(f"{row.name}: {row.alone} {said}")
     return 0
 
 
@@ -85,12 +81,12 @@ def show_plan(settings: Settings) -> int:
     table = new_table("experiment", "points", "blocks", "to be run", "figure", "claim", "title")
     for experiment in study.experiments:
         part, question = schedule.parts[experiment.name], experiment.question
-        counts = (len(experiment.points), part.given, len(part.left))
+        counts = (len(experiment.points), part.blocks, len(part.left))
         told = (question.figure, question.claim or "-", question.title)
         table.add_row(experiment.name, *map(str, counts), *told)
     console = new_console()
     console.print(table)
-    for line in (*schedule.measured_again(), summary(schedule, study.budget_seconds), what_limits(), others):
+    for line in (summary(schedule, study.budget_seconds), what_limits(), others):
         if line:
             console.print(line)
     return 0

@@ -19,9 +19,9 @@ from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.plan.program import GENERATOR, find_programs
 from experiments.plan.site import Machine, Site, load_site
+from experiments.run.missing import missing
 from experiments.run.progress import about
 from experiments.run.study import Settings, Study
-from experiments.run.whole_blocks import WholeBlocks
 from experiments.slurm.scheduler import Queue
 from support.errors import InputError
 from support.files import read_json
@@ -179,7 +179,6 @@ class Standing:
         }
         """What of the study waits or runs."""
         self.found = {one.name: study.store.find(one) for one in study.experiments}
-        self.blocks = {one.name: self._blocks(one) for one in study.experiments}
         self.block_seconds = {
             one.name: len(one.points) * fmean(self.found[one.name].seconds.values())
             for one in study.experiments
@@ -187,24 +186,27 @@ class Standing:
         }
         """About how long a block takes, of the experiments of which something was measured."""
 
-    def _blocks(self, one: Experiment) -> WholeBlocks:
-        """The experiment's blocks; those that wait in a queue or run count, whatever they hold."""
-        busy = {block for name, block in self.active if name == one.name}
-        given, found = one.question.blocks.minimum, self.found[one.name]
-        return WholeBlocks(one, given, found, self.study.store.session, busy=busy)
-
     @cached_property
     def missing(self) -> dict[Unit, list[Point]]:
         """What is not measured yet, by block; the first blocks of all experiments come before the second
         ones, so that the control is spread over all.
         """
-        ends = {name: blocks.end() for name, blocks in self.blocks.items()}
+        least = [one.question.blocks.minimum for one in self.study.experiments]
         return {
-            (name, block): [point for _, point in missing]
-            for block in range(max(ends.values()))
-            for name, blocks in self.blocks.items()
-            if block < ends[name] and (missing := blocks.missing(block))
+            (one.name, block): points
+            for block in range(max(least))
+            for one in self.study.experiments
+            if block < one.question.blocks.minimum and (points := self._missing(one, block))
         }
+
+    def _missing(self, one: Experiment, block: int) -> list[Point]:
+        """What a block lacks; of one that runs or waits what is there is not taken for unfinished."""
+        found, is_active = self.found[one.name], (one.name, block) in self.active
+        return [
+            point
+            for _, point in missing(one, found, block, self.study.store.session)
+            if not (is_active and (point.id, block) in found.seconds)
+        ]
 
     @cached_property
     def wanted(self) -> dict[Unit, int]:
@@ -221,7 +223,9 @@ class Standing:
         another one would be submitted for ever.
         """
         most = self.folder.partition.measuring_seconds
-        return [name for name, took in self.block_seconds.items() if took > most and self.blocks[name].broken]
+        begun = {(name, block) for name, found in self.found.items() for _, block in found.seconds}
+        cut_off = {name for name, _ in (begun & self.missing.keys()) - self.active.keys()}
+        return [name for name, took in self.block_seconds.items() if took > most and name in cut_off]
 
     def said_of_too_long(self) -> list[str]:
         """Lines on what is not submitted any more."""

@@ -76,10 +76,12 @@ def _queue() -> Queue | None:
 
 def rows(one: Standing) -> list[Row]:
     """The state of each experiment on one partition."""
-    result = {name: Row(name, Counter(), Counter()) for name in one.blocks}
-    for name, blocks in one.blocks.items():
-        result[name].counts["done"] = sum(key in one.found[name].seconds for key in blocks.keys)
+    result = {
+        each.name: Row(each.name, Counter(done=len(each.points) * each.question.blocks.minimum), Counter())
+        for each in one.study.experiments
+    }
     for (name, block), points in one.missing.items():
+        result[name].counts["done"] -= len(points)
         for point in points:
             state = one.active.get((name, block))
             reason = one.found[name].failures.get((point.id, block))

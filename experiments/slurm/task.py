@@ -10,11 +10,11 @@ from experiments.plan.point import Point
 from experiments.plan.scenes import SceneFolder
 from experiments.plan.site import Machine, this_machine, what_limits
 from experiments.run.costs import Costs
+from experiments.run.missing import missing
 from experiments.run.progress import ProgressDisplay, several
 from experiments.run.runner import ProcessResult, Runner, Task
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import together
-from experiments.run.whole_blocks import WholeBlocks
 from experiments.slurm.jobs import folders, read_job
 from experiments.support.process import Completed
 from support.errors import InputError
@@ -26,7 +26,7 @@ def work(manifest: Path, index: int) -> int:
     Others may work in the same folder, even at the same points: a copy of this task that Slurm started
     because it had lost sight of this one. So everything half-made is in a folder of this process's own, a
     record comes to its place whole, by a rename, and the last one stays. A block that another session has
-    begun is left as it is: what is compared is measured by one.
+    begun is measured anew: what is compared is measured by one.
     """
     job = read_job(manifest)
     if not 0 <= index < len(job.tasks):
@@ -53,46 +53,38 @@ class _Worker:
     ) -> None:
         self._study = study
         self._display = display
-        self._partition = partition
-        self._machine = machine
         store = study.store
         # Scenes of its own, since a task with another program would empty a common folder.
         scenes = SceneFolder(store.temporary / "scenes", store.temporary, str(study.generator.sha256))
-        self._runner = Runner(store, scenes, study.generator, study.site.time_limit_seconds)
+        self._runner = Runner(
+            store,
+            scenes,
+            study.generator,
+            study.site.time_limit_seconds,
+            refuse=lambda point: refusal(point, partition, machine),
+        )
         self.failed: set[tuple[str, str]] = set()
         # What this task has seen itself: others may measure elsewhere.
         self._costs = Costs()
 
     def measure(self, experiment: Experiment, block: int) -> None:
         """Measure what is missing of a block."""
-        found = self._study.store.find_block(experiment, block)
-        given, session = experiment.question.blocks.minimum, self._study.store.session
-        missing = WholeBlocks(experiment, given, found, session).missing_if_given(block)
-        hopeful = [one for one in missing if (experiment.name, one[1].id) not in self.failed]
-        size = len(experiment.points)
+        store = self._study.store
+        found = store.find(experiment, block)
+        lacking = missing(experiment, found, block, store.session)
+        hopeful = [one for one in lacking if (experiment.name, one[1].id) not in self.failed]
+        store.clear(found, [(point.id, block) for _, point in lacking])
+        blocks, size = experiment.question.blocks.minimum, len(experiment.points)
         for group in together(experiment, block, hopeful):
             runs = self._costs.runs([point for _, point in group])
-            tasks = [Task(experiment, point, block, at, given, size, runs) for at, point in group]
-            self._measure([one for one in tasks if not self._study.store.has(one.point, block)])
+            self._measure([Task(experiment, point, block, at, blocks, size, runs) for at, point in group])
 
-    def _measure(self, asked: Sequence[Task]) -> None:
-        tasks = [one for one in asked if not self._refuse(one)]
-        if not tasks:
-            return
+    def _measure(self, tasks: Sequence[Task]) -> None:
         began = time.monotonic()
         ended = self._runner.run(tasks)
         self._costs.learn([one.point for one in tasks], ended, time.monotonic() - began)
         for task, result in zip(tasks, ended, strict=True):
             self._tell(task, result)
-
-    def _refuse(self, task: Task) -> bool:
-        """Whether the point's threads cannot have the processors that they were planned for; says so then."""
-        refused = refusal(task.point, self._partition, self._machine)
-        if refused is None:
-            return False
-        self._study.store.keep_failure(task.point, task.block, refused, task.tags(self._study.store.session))
-        self._tell(task, ProcessResult(None, refused.reason, refused.exit_code))
-        return True
 
     def _tell(self, task: Task, result: ProcessResult) -> None:
         point = task.point

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -83,12 +84,25 @@ class Workplace:
         return path
 
     def records(self, experiment: str = "*") -> dict[str, dict[str, Any]]:
-        """File name -> record."""
-        paths = self.results.glob(f"records/{experiment}/**/*.json")
-        return {path.name: json.loads(path.read_text(encoding="utf-8")) for path in paths}
+        """Point and block of whoever was measured -> what is told of it and of its process."""
+        there = (one for one in self._contenders(experiment) if one["kind"] != "failure")
+        return {f"{one['tags'].get('point')}-b{one['tags'].get('block')}": one for one in there}
 
     def failures(self) -> list[dict[str, Any]]:
-        return [json.loads(path.read_text()) for path in self.results.glob("failures/*/*/*.json")]
+        return [one for one in self._contenders("*") if one["kind"] == "failure"]
+
+    def _contenders(self, experiment: str) -> Iterator[dict[str, Any]]:
+        for path in self.files(experiment):
+            record = json.loads(path.read_text(encoding="utf-8"))
+            for one in record.pop("contenders"):
+                kind = "failure" if "reason" in one else record["kind"]
+                origin = record.get("provenance", {}) | one.get("provenance", {})
+                yield record | one | {"kind": kind, "provenance": origin, "file": path.name}
+
+    def files(self, experiment: str = "*", block: str = "") -> list[Path]:
+        """The records, in the order of their paths."""
+        name = f"*-b{block}.json" if block else "*.json"
+        return sorted(self.results.glob(f"records/{experiment}/**/{name}"))
 
     def start(self, verb: str = "run", *more: str) -> "subprocess.Popen[str]":
         """The command line, as a user starts it; its analysis is one in this folder, if there is one."""

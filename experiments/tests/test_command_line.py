@@ -199,7 +199,7 @@ def test_the_report_comes_last_and_of_everything(workplace: Workplace) -> None:
     assert (finish(first)[0], (workplace.root / "told").exists()) == (0, False), "another part follows"
     code, output, error = finish(workplace.start())
     assert (code, error) == (0, "no ink\n")
-    assert (workplace.root / "told").read_text() == "follow --results results report 16\n"
+    assert (workplace.root / "told").read_text() == "follow --results results report 7\n"
     assert output.splitlines()[-2:] == ["the study is complete: results/records", "results/report.html"]
     (workplace.root / "no_paper").touch()
     code, _, error = finish(workplace.start())

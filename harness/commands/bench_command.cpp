@@ -189,21 +189,21 @@ void register_case(BenchCase& one, const BenchOptions& options) {
     }
 }
 
-/// The record without the error measures, if these are not asked for or the check failed; else with them,
+/// The case without the error measures, if these are not asked for or the check failed; else with them,
 /// from one more run, which must end in the same state as the timed ones.
-nlohmann::ordered_json record_with_errors(BenchCase& one, bool errors) {
+nlohmann::ordered_json with_errors(BenchCase& one, bool errors) {
     const Measurement& measurement = one.measurement();
-    auto record = record_json(measurement);
+    auto json = contender_json(measurement);
     if (errors && !measurement.violation) {
         const ErrorMeasures measures =
             measure_errors(measurement.scene, measurement.variant, measurement.tuning);
         if (measures.discs != measurement.repetitions.back().discs) {
             one.fail("the run that measures errors ends in another state than the timed ones");
-            return record_json(measurement);
+            return contender_json(measurement);
         }
-        record["errors"] = error_measures_json(measures);
+        json["errors"] = error_measures_json(measures);
     }
-    return record;
+    return json;
 }
 
 /// Writes the record asked for, then fails with the first violation, if any. What stood still has no record,
@@ -212,7 +212,9 @@ void finish(std::deque<BenchCase>& cases, const BenchOptions& options) {
     for (BenchCase& one : cases) {
         const bool counts = one.measurement().violation || !one.suspended();
         if (!options.measurement.record.empty() && !one.measurement().repetitions.empty() && counts) {
-            write_record(options.measurement.record, record_with_errors(one, options.errors));
+            write_record(options.measurement.record, "bench",
+                         nlohmann::ordered_json::array({with_errors(one, options.errors)}),
+                         one.measurement().tuning.threads);
         }
     }
     for (const BenchCase& one : cases) {

@@ -40,9 +40,8 @@ void limits(const LimitsOptions& options) {
     suspensions.require_none("limits");
     std::cout << (options.json ? json_text(found, 2) + "\n" : limits_text(found));
     if (!options.record.empty()) {
-        write_record(options.record,
-                     record_of("limits", options.tags,
-                               {{"limits", found}, {"provenance", provenance_json(options.threads)}}));
+        const nlohmann::ordered_json one{{"tags", tags_json(options.tags)}, {"limits", found}};
+        write_record(options.record, "limits", nlohmann::ordered_json::array({one}), options.threads);
     }
 }
 

@@ -110,11 +110,10 @@ void profile(const ProfileOptions& options) {
     }
     if (!options.measurement.record.empty()) {
         measurement.repetitions.push_back(std::move(run));
-        auto record = record_json(measurement);
-        record["kind"] = "profile";
-        record["repetitions"] = nlohmann::ordered_json::array();
-        record["profile"] = profile_json(result);
-        write_record(options.measurement.record, record);
+        auto one = contender_json(measurement);
+        one["repetitions"] = nlohmann::ordered_json::array();
+        one["profile"] = profile_json(result);
+        write_record(options.measurement.record, "profile", nlohmann::ordered_json::array({one}), threads);
     }
     note_crowding(threads);
     note_if_busy(watch, threads);

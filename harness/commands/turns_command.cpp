@@ -31,6 +31,7 @@ namespace {
 
 struct TurnsOptions {
     std::string file;
+    std::string record;
     double turn_seconds = 0.002;
     int runs = 1;
     std::uint64_t seed = 1;
@@ -51,19 +52,16 @@ ContenderOptions parse_contender(const std::vector<std::string>& words, const st
     parser.set_help_flag();
     add_simulation_options(parser, options.simulation);
     add_measurement_options(parser, options.measurement);
+    parser.remove_option(parser.get_option("--record"));
     parser.add_option("--repetitions", options.repetitions)->check(one_of({"1"}));
     try {
         parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::ParseError& error) {
         throw InputError(where + ": " + usage_message(parser, error));
     }
-    if (options.measurement.record.empty()) {
-        throw InputError(where + ": found no --record, expected a file for it");
-    }
     if (options.simulation.variant != automatic) {
         require_variant(options.simulation.variant);
     }
-    require_writable(options.measurement.record);
     require_threads(options.simulation.tuning.threads);
     tags_json(options.measurement.tags);
     return options;
@@ -95,9 +93,8 @@ Measurement measurement_of(const LoadedScene& scene, const ContenderOptions& sai
                           said.measurement);
 }
 
-/// Lets them run; returns how.
-TurnsPlan compete(std::deque<VariantContender>& contenders, const TurnsOptions& options,
-                  std::vector<std::vector<TurnTime>>& turns) {
+/// Lets them run; returns how, as the record has it.
+nlohmann::ordered_json compete(std::deque<VariantContender>& contenders, const TurnsOptions& options) {
     std::vector<double> expected;
     std::vector<Contender*> everyone;
     int fewest_steps = contenders.front().steps();
@@ -109,20 +106,24 @@ TurnsPlan compete(std::deque<VariantContender>& contenders, const TurnsOptions& 
     const TurnsPlan plan{.runs = options.runs,
                          .rounds = count_rounds(expected, fewest_steps, options.turn_seconds),
                          .seed = options.seed};
-    turns = take_turns(everyone, plan);
-    return plan;
+    return turns_json(plan, take_turns(everyone, plan));
 }
 
-/// Writes the record; notes what is wrong with the run in `failure` if nothing was noted before.
-void keep(const Measurement& measurement, const std::string& record, std::optional<std::string>& failure) {
-    write_record(record, record_json(measurement));
-    if (measurement.violation && !failure) {
-        failure = measurement.name() + ": " + *measurement.violation;
+/// Contenders as the record has them, and what is wrong with the first of which something is.
+struct Measured {
+    nlohmann::ordered_json contenders = nlohmann::ordered_json::array();
+    nlohmann::ordered_json turns = nullptr;
+    std::optional<std::string> failure;
+
+    void add(const Measurement& measurement) {
+        contenders.push_back(contender_json(measurement));
+        if (measurement.violation && !failure) {
+            failure = measurement.name() + ": " + *measurement.violation;
+        }
     }
-}
+};
 
-std::optional<std::string> take_turns(const std::vector<ContenderOptions>& said,
-                                      const TurnsOptions& options) {
+Measured take_turns(const std::vector<ContenderOptions>& said, const TurnsOptions& options) {
     std::map<std::string, LoadedScene> scenes;
     std::deque<VariantContender> contenders;
     for (const ContenderOptions& one : said) {
@@ -135,23 +136,21 @@ std::optional<std::string> take_turns(const std::vector<ContenderOptions>& said,
     }
     Suspensions suspensions;
     suspensions.start();
-    std::vector<std::vector<TurnTime>> turns;
-    const TurnsPlan plan = compete(contenders, options, turns);
+    Measured measured;
+    measured.turns = compete(contenders, options);
     suspensions.require_none("turns of " + counted(contenders.size(), "contender"));
-    std::optional<std::string> failure;
-    for (std::size_t k = 0; k < contenders.size(); ++k) {
-        contenders[k].finish(
-            {.contenders = static_cast<int>(contenders.size()), .plan = plan, .turns = std::move(turns[k])});
-        keep(contenders[k].measurement(), said[k].measurement.record, failure);
+    for (VariantContender& one : contenders) {
+        one.finish(options.runs);
+        measured.add(one.measurement());
     }
-    return failure;
+    return measured;
 }
 
 /// One after the other, each gone before the next begins.
-std::optional<std::string> count(const std::vector<ContenderOptions>& said) {
+Measured count(const std::vector<ContenderOptions>& said) {
     std::optional<LoadedScene> scene;
     std::string path;
-    std::optional<std::string> failure;
+    Measured measured;
     Suspensions suspensions;
     suspensions.start();
     for (const ContenderOptions& one : said) {
@@ -165,15 +164,19 @@ std::optional<std::string> count(const std::vector<ContenderOptions>& said) {
         measurement.add(measurement.run_alone(measurement.scope));
         measurement.own_seconds = process_seconds() - start;
         suspensions.require_none(measurement.name());
-        keep(measurement, one.measurement.record, failure);
+        measured.add(measurement);
     }
-    return failure;
+    return measured;
 }
 
 void turns(const TurnsOptions& options) {
+    require_writable(options.record);
     const std::vector<ContenderOptions> said = read_contenders(options.file);
-    if (const auto failure = options.counts ? count(said) : take_turns(said, options)) {
-        throw CheckError(*failure);
+    const Measured measured = options.counts ? count(said) : take_turns(said, options);
+    write_record(options.record, "bench", measured.contenders, said.front().simulation.tuning.threads,
+                 measured.turns);
+    if (measured.failure) {
+        throw CheckError(*measured.failure);
     }
 }
 
@@ -187,8 +190,9 @@ void add_turns_command(CLI::App& program) {
         ->add_option(
             "CONTENDERS", options->file,
             "JSON file: a list with, for each contender, a list of the words that `carom bench` would be "
-            "given, --record among them")
+            "given, but for --record")
         ->required();
+    command->add_option("--record", options->record, "File for the record of all of them")->required();
     add_number(*command, "--turn", options->turn_seconds, 1e-6, 1e6,
                "Seconds that a turn is to last, a step at least");
     add_number(*command, "--runs", options->runs, 1, 1'000'000,

@@ -11,13 +11,6 @@
 
 namespace carom {
 
-/// How runs were timed that took turns with others in their process.
-struct Turns {
-    int contenders = 0; ///< that took turns, this one among them
-    TurnsPlan plan;
-    std::vector<TurnTime> turns; ///< of all runs, one run after the other
-};
-
 /// What of a measured process goes into its record (record.schema.json).
 struct Measurement {
     const Scene& scene;
@@ -31,7 +24,6 @@ struct Measurement {
     std::vector<std::string> tags = {}; ///< KEY=VALUE
     std::vector<Run> repetitions = {};  ///< all of them, in the order they ran; only the last has its discs
     std::optional<std::string> violation = {}; ///< of the first run that failed its check
-    std::optional<Turns> turns = {};           ///< empty if it had its process for itself
     std::optional<double> own_seconds = {};    ///< of a process of several: those spent on this one
 
     /// Adds a run from the scene's initial state, as all are: it must end in the same bits as the one before,

@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "harness/measure/measurement.hpp"
 #include "harness/measure/turns.hpp"
@@ -45,18 +44,14 @@ class VariantContender final : public Contender {
 
     TurnTime advance(int steps) override { return run_ ? run_->advance(steps) : TurnTime{}; }
 
-    /// Ends the last run. A violation is told with the run that has it, if there were several.
-    void finish(Turns turns) {
+    /// Ends the last of so many runs. A violation is told with the run that has it, if there were several.
+    void finish(int runs) {
         end_run();
         simulation_.reset();
-        if (runs_ == 0) {
-            return;
+        if (measurement_.violation && runs > 1) {
+            measurement_.violation = "run " + std::to_string(runs_) + " of " + std::to_string(runs) + ": " +
+                                     *measurement_.violation;
         }
-        if (measurement_.violation && turns.plan.runs > 1) {
-            measurement_.violation = "run " + std::to_string(runs_) + " of " +
-                                     std::to_string(turns.plan.runs) + ": " + *measurement_.violation;
-        }
-        measurement_.turns = std::move(turns);
     }
 
     const Measurement& measurement() const { return measurement_; }

@@ -1,8 +1,10 @@
 #include "harness/records/record.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <ctime>
+#include <utility>
 
 #include "harness/machine/provenance.hpp"
 #include "harness/measure/energy_drift.hpp"
@@ -41,29 +43,6 @@ Json work_json(const Measurement& measurement, const Tally& work) {
             {"wall_resolves", work.wall_resolves},
             {"pair_attempts", work.pair_attempts},
             {"sweeps", work.sweeps}};
-}
-
-Json turns_json(const std::optional<Turns>& turns) {
-    if (!turns) {
-        return nullptr;
-    }
-    Json places = Json::array();
-    Json steps = Json::array();
-    Json seconds = Json::array();
-    Json returning_seconds = Json::array();
-    for (const TurnTime& turn : turns->turns) {
-        places.push_back(turn.place);
-        steps.push_back(turn.steps);
-        seconds.push_back(turn.seconds);
-        returning_seconds.push_back(or_null(turn.returning_seconds));
-    }
-    return {{"contenders", turns->contenders},
-            {"seed", turns->plan.seed},
-            {"rounds", turns->plan.rounds},
-            {"places", places},
-            {"steps", steps},
-            {"seconds", seconds},
-            {"returning_seconds", returning_seconds}};
 }
 
 Json errors_json(const Measurement& measurement, const Run& last) {
@@ -113,13 +92,26 @@ Json scene_json(const Scene& scene, const std::string& name, const std::string& 
             {"area_fraction", area_fraction(scene)}};
 }
 
-Json record_of(const char* kind, const std::vector<std::string>& tags, const Json& fields) {
-    Json record{{"schema_version", 1}, {"kind", kind}, {"recorded_at", utc_now()}, {"tags", tags_json(tags)}};
-    record.update(fields);
-    return record;
+Json turns_json(const TurnsPlan& plan, const std::vector<std::vector<TurnTime>>& turns) {
+    std::vector<std::pair<std::size_t, const TurnTime*>> in_order;
+    for (std::size_t contender = 0; contender < turns.size(); ++contender) {
+        for (const TurnTime& turn : turns[contender]) {
+            in_order.emplace_back(contender, &turn);
+        }
+    }
+    std::ranges::sort(in_order, {}, [](const auto& one) { return one.second->place; });
+    Json json{{"seed", plan.seed},      {"rounds", plan.rounds},    {"contenders", Json::array()},
+              {"steps", Json::array()}, {"seconds", Json::array()}, {"returning_seconds", Json::array()}};
+    for (const auto& [contender, turn] : in_order) {
+        json["contenders"].push_back(contender);
+        json["steps"].push_back(turn->steps);
+        json["seconds"].push_back(turn->seconds);
+        json["returning_seconds"].push_back(or_null(turn->returning_seconds));
+    }
+    return json;
 }
 
-Json record_json(const Measurement& measurement) {
+Json contender_json(const Measurement& measurement) {
     const Run& last = measurement.repetitions.back();
     Json repetitions = Json::array();
     if (!measurement.violation) {
@@ -127,27 +119,27 @@ Json record_json(const Measurement& measurement) {
             repetitions.push_back({{"steps_seconds", run.steps_seconds}, {"cpu_seconds", run.cpu_seconds}});
         }
     }
-    return record_of(
-        "bench", measurement.tags,
-        {{"axes", axes_json(measurement.variant, measurement.tuning)},
-         {"scene", scene_json(measurement.scene, measurement.scene_name, measurement.scene_sha256)},
-         {"warm_ups", measurement.warm_ups},
-         {"repetitions", repetitions},
-         {"parse_seconds", measurement.parse_seconds},
-         {"process_seconds", measurement.own_seconds.value_or(process_seconds())},
-         {"turns", turns_json(measurement.turns)},
-         {"work", work_json(measurement, last.work)},
-         {"errors", errors_json(measurement, last)},
-         {"check",
-          {{"verdict", measurement.violation ? "failed" : "passed"},
-           {"scope", word(measurement.scope)},
-           {"reason", or_null(measurement.violation)}}},
-         {"state_hash", state_hash(last.discs)},
-         {"provenance", provenance_json(measurement.tuning.threads)}});
+    return {{"tags", tags_json(measurement.tags)},
+            {"axes", axes_json(measurement.variant, measurement.tuning)},
+            {"scene", scene_json(measurement.scene, measurement.scene_name, measurement.scene_sha256)},
+            {"warm_ups", measurement.warm_ups},
+            {"repetitions", repetitions},
+            {"parse_seconds", measurement.parse_seconds},
+            {"process_seconds", measurement.own_seconds.value_or(process_seconds())},
+            {"work", work_json(measurement, last.work)},
+            {"errors", errors_json(measurement, last)},
+            {"check",
+             {{"verdict", measurement.violation ? "failed" : "passed"},
+              {"scope", word(measurement.scope)},
+              {"reason", or_null(measurement.violation)}}},
+            {"state_hash", state_hash(last.discs)}};
 }
 
-void write_record(const std::string& path, const Json& record) {
+void write_record(const std::string& path, const char* kind, const Json& contenders, int threads,
+                  const Json& turns) {
     OutputFile file(path);
+    const Json record{{"schema_version", 2},      {"kind", kind},   {"recorded_at", utc_now()},
+                      {"contenders", contenders}, {"turns", turns}, {"provenance", provenance_json(threads)}};
     file.write(json_text(record, 1) + "\n");
     file.finish();
 }

@@ -6,20 +6,21 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/measure/measurement.hpp"
+#include "harness/measure/turns.hpp"
 #include "kernels/scene.hpp"
 
 namespace carom {
 
-/// The record of a process, of kind "bench", without a profile. Where the check failed it holds no times.
-nlohmann::ordered_json record_json(const Measurement& measurement);
+/// What a record says of a variant that was measured. Where the check failed it holds no times.
+nlohmann::ordered_json contender_json(const Measurement& measurement);
 
-/// A record of this kind: what every record begins with, the tags as `tags_json` has them, then these fields.
-/// Throws InputError.
-nlohmann::ordered_json record_of(const char* kind, const std::vector<std::string>& tags,
-                                 const nlohmann::ordered_json& fields);
+/// All turns of a process in the order of time; `turns` has those of each contender.
+nlohmann::ordered_json turns_json(const TurnsPlan& plan, const std::vector<std::vector<TurnTime>>& turns);
 
-/// Writes a record under a temporary name, flushes and renames it. Throws InputError.
-void write_record(const std::string& path, const nlohmann::ordered_json& record);
+/// Writes a record of this kind, with its list of contenders, under a temporary name, flushes and renames it.
+/// So many threads were asked for. Throws InputError.
+void write_record(const std::string& path, const char* kind, const nlohmann::ordered_json& contenders,
+                  int threads, const nlohmann::ordered_json& turns = nullptr);
 
 /// Tags as an object: a value that is a JSON number becomes one, any other is text. Throws InputError.
 nlohmann::ordered_json tags_json(const std::vector<std::string>& tags);

@@ -30,7 +30,7 @@ def results(tmp_path: Path) -> Path:
                 made["tags"] |= {"figure": PAUSES, "label": label, "point": f"{series}-{label}"}
                 made["tags"]["series_number"] = number + 1
                 if series == "spinning" and label != WITHOUT:
-                    made["turns"] = {"contenders": 2, "seed": 1, "seconds": [seconds]}
+                    made["slices"] = {"seconds": [seconds], "seconds_alone": 0.0}
                 write(tmp_path, [made])
     return tmp_path
 

@@ -10,7 +10,7 @@ from analysis.figures.comparisons import bias_sentence
 from analysis.figures.studies import draw_all
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
-from analysis.tests.synthetic import write
+from analysis.tests.synthetic import turns_of, write
 from analysis.tests.synthetic_noise import QUIET
 from analysis.tests.synthetic_points import TRUE_BIAS
 from analysis.tests.synthetic_study import study
@@ -49,7 +49,7 @@ def test_the_bias_stands_beside_tables_of_what_took_turns_alone(tmp_path: Path) 
     for record in records:
         if record["tags"]["experiment"] == "neighbourhood":
             seconds = [one["steps_seconds"] for one in record["repetitions"]]
-            record["turns"] = {"contenders": 2, "seed": 1, "seconds": seconds}
+            record["turns"] = turns_of(seconds, len(seconds))
     write(tmp_path, records)
     captions = {one.entry.experiment: one.caption for one in draw_all(tmp_path)}
     assert "2 ratios by turns came out +" in captions["neighbourhood"]

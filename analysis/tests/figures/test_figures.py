@@ -18,7 +18,7 @@ from analysis.figures.style import Data, Point, new_figure, styled
 from analysis.figures.sweeps import level_of
 from analysis.statistics.verdicts import Ratio
 from analysis.tests.claims.judging import verdicts_of
-from analysis.tests.synthetic import Machine, write
+from analysis.tests.synthetic import Machine, turns_of, write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
 from analysis.tests.synthetic_study import study, trace
@@ -102,7 +102,7 @@ def test_a_block_that_was_left_has_another_in_its_place(tmp_path: Path) -> None:
     assert len(left) < 50
     write(tmp_path, left)
     assert "artial" not in draw_all(tmp_path)[0].caption
-    for path in tmp_path.glob("records/steps/*-b4.json"):
+    for path in tmp_path.glob("records/steps/b4/*.json"):
         path.unlink()
     missing = 50 - len(left)
     assert draw_all(tmp_path)[0].caption.endswith(f"Partial: {40 - missing} of 40 runs.")
@@ -148,7 +148,7 @@ def test_a_figure_and_the_claim_about_it_tell_one_ratio(tmp_path: Path) -> None:
         each = [0.1 + 0.01 * (number % 5) + 0.001 * turn for turn in range(8)]
         each[3] *= 1 + 20 * (number % 2)
         seconds = each * len(one["repetitions"])
-        one["turns"] = {"contenders": 2, "seed": 1, "rounds": 8, "seconds": seconds}
+        one["turns"] = turns_of(seconds, 8)
         write(tmp_path, [one])
     (drawn,) = draw_all(tmp_path, ["neighbourhood"])
     measured = str(verdicts_of(tmp_path).loc["four_boxes", "measured"])

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from analysis.records.reading import load
 from analysis.records.studies import split
 from analysis.tests.fuzzing import for_a_while
-from analysis.tests.synthetic import write
+from analysis.tests.synthetic import whole
 from analysis.tests.synthetic_study import failures, study
 from support.record_schema import definition, is_record
 
-VALID: list[dict[str, Any]] = [*study(["neighbourhood", "phases"], blocks=1), *failures()]
+VALID = [whole(one) for one in (*study(["neighbourhood", "phases"], blocks=1), *failures())]
 
 numbers = st.one_of(st.integers(), st.floats(), st.sampled_from([0, -1, 10**30, 1e308, 2**63]))
 leaves = st.one_of(
@@ -68,29 +68,28 @@ def torn_records(draw: st.DrawFn) -> bytes:
 anything = st.one_of(damaged_records(), torn_records(), st.binary(), junk.map(json.dumps).map(str.encode))
 
 
-def is_counted_or_named(content: bytes, folder: str) -> None:
+def is_counted_or_named(content: bytes) -> None:
     with tempfile.TemporaryDirectory() as results:
-        path = Path(results, folder, "neighbourhood", "any.json")
+        path = Path(results, "records", "neighbourhood", "any.json")
         path.parent.mkdir(parents=True)
         path.write_bytes(content)
         lines: list[str] = []
         records = load(Path(results), lines.append)
         split(records)
-        assert len(lines) + len(records.runs) + len(records.failures) == 1
+        assert len(lines) + len(records.runs) + len(records.failures) + len(records.limits) == 1
         for line in lines:
             assert line.startswith(f"{path}: skipped: ")
             assert "\n" not in line
             line.encode()
 
 
-folders = st.sampled_from(["records", "failures"])
 quick = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
-@given(anything, folders)
+@given(anything)
 @quick
-def test_whatever_lies_there_is_counted_or_named(content: bytes, folder: str) -> None:
-    is_counted_or_named(content, folder)
+def test_whatever_lies_there_is_counted_or_named(content: bytes) -> None:
+    is_counted_or_named(content)
 
 
 def is_judged_as_the_schema_says(content: bytes) -> None:
@@ -120,7 +119,7 @@ def test_the_quick_validator_says_what_the_schema_says_for_a_while() -> None:
 
 @pytest.mark.fuzz
 def test_whatever_lies_there_for_a_while() -> None:
-    for_a_while(given(anything, folders)(is_counted_or_named))
+    for_a_while(given(anything)(is_counted_or_named))
 
 
 @pytest.mark.parametrize(
@@ -128,8 +127,8 @@ def test_whatever_lies_there_for_a_while() -> None:
     [
         ("[" * 100_000, "nested too deeply"),
         ("1" * 5000, "not JSON"),
-        ('{"schema_version": 1, "kind": "failure", "exit_code": NaN}', "NaN"),
-        ('{"schema_version": 1, "kind": "failure", "exit_code": 1e999}', "1e999"),
+        ('{"schema_version": 2, "kind": "failure", "exit_code": NaN}', "NaN"),
+        ('{"schema_version": 2, "kind": "failure", "exit_code": 1e999}', "1e999"),
         ('"\\ud800"', "not a Carom record"),
     ],
 )
@@ -143,8 +142,8 @@ def test_json_that_no_record_may_hold(tmp_path: Path, content: str, said: str) -
 
 
 def test_a_record_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
-    write(tmp_path, VALID[:1])
-    (tmp_path / "records" / "folder.json").mkdir()
+    (tmp_path / "records" / "folder.json").mkdir(parents=True)
+    (tmp_path / "records" / "a.json").write_text(json.dumps(VALID[0]))
     (tmp_path / "records" / "gone.json").symlink_to(tmp_path / "absent")
     (tmp_path / "records" / "round.json").symlink_to(tmp_path / "records" / "round.json")
     lines: list[str] = []

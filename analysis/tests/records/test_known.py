@@ -68,7 +68,7 @@ def test_no_record_is_read_again(results: Path, monkeypatch: pytest.MonkeyPatch)
 
 def test_a_changed_a_new_and_a_removed_record_are_noticed(results: Path) -> None:
     anew(results)
-    changed, removed, moved = sorted((results / "records").rglob("*.json"))[:3]
+    changed, removed, moved = sorted((results / "records" / "steps").rglob("*.json"))[:3]
     text = changed.read_text(encoding="utf-8")
     changed.write_text(text.replace("Example CPU", "Elpmaxe CPU", 1), encoding="utf-8")
     os.utime(changed, (OLD + 1, OLD + 1))  # as large as before

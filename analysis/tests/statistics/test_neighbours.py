@@ -1,10 +1,8 @@
 """Many contenders in turns: what each takes, by the turns just before its own."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
-from analysis.records.joint_turns import joined
 from analysis.statistics.neighbours import Order, contender_logs
 from analysis.support.values import Floats
 
@@ -61,43 +59,3 @@ def test_a_burst_spoils_little() -> None:
     burst, _ = drawn(random, noise)
     moved = np.abs(contender_logs(burst, order) - contender_logs(clean, order))
     assert moved.max() < 0.02, "a turn ten times as long is a sixth of 2.3 in a mean"
-
-
-def process(contenders: int, rounds: int, block: int = 0) -> pd.DataFrame:
-    """The rows of a process of contenders that took turns, in which contender 1 takes 10 % more than 0, on a
-    machine whose speed changes after every tenth turn.
-    """
-    random = np.random.default_rng(block)
-    order = np.array([random.permutation(contenders) for _ in range(rounds)])
-    places = np.argsort(order, axis=1) + contenders * np.arange(rounds)[:, None]
-    speed = np.repeat(1 + 0.5 * random.integers(2, size=contenders * rounds // 10 + 1), 10)
-    values = {"experiment": "e", "session": "s", "node": "n", "block": block, "scene": "x", "threads": 2}
-    rows = [
-        values
-        | {
-            "binary_sha256": "p",
-            "places": places[:, who],
-            "steps_seconds_of_rounds": (1 + 0.1 * (who == 1)) * speed[places[:, who]],
-        }
-        for who in range(contenders)
-    ]
-    return pd.DataFrame(rows)
-
-
-def test_of_many_one_value_each_is_left() -> None:
-    rows = joined(pd.concat([process(20, 6, block) for block in range(2)], ignore_index=True))
-    rounds = rows["steps_seconds_of_rounds"]
-    assert rounds.map(len).tolist() == [1] * 40
-    for block in range(2):
-        assert rounds[20 * block + 1][0] / rounds[20 * block][0] == pytest.approx(1.1, rel=0.02)
-
-
-@pytest.mark.parametrize("what", ["few", "one is lost", "older records"])
-def test_of_others_the_rounds_are_left(what: str) -> None:
-    rows = process(4 if what == "few" else 6, 8)
-    if what == "one is lost":
-        rows = rows.drop(index=3)
-    if what == "older records":
-        rows["places"] = [np.array([], dtype=np.int64)] * len(rows)
-    left = joined(rows)["steps_seconds_of_rounds"]
-    assert left.map(len).tolist() == [8] * len(rows)

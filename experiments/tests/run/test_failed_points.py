@@ -29,7 +29,9 @@ def test_a_failed_point_is_recorded_and_the_others_go_on(
     workplace.behave(**{behaviour: "nine"})
     assert run(workplace.settings) == POINTS_FAILED
     [failure] = workplace.failures()
-    jsonschema.validate(failure, SCHEMA)
+    for file in workplace.files():
+        jsonschema.validate(json.loads(file.read_text(encoding="utf-8")), SCHEMA)
+    assert len(workplace.files("pair")) == 2, "what failed stands beside what was measured"
     assert (failure["reason"], failure["exit_code"]) == (reason, code)
     assert failure["axes"]["variant"] == "nine"
     assert failure["tags"]["experiment"] == "pair"
@@ -79,6 +81,9 @@ def test_a_build_that_is_missing_is_a_gap_with_a_remedy(workplace: Workplace) ->
     assert run(workplace.settings) == 0
     [failure] = workplace.failures()
     assert "is not built; build it with `make build COMPILER=clang`" in failure["reason"]
+    done = workplace.measured()
+    assert run(workplace.settings) == 0
+    assert workplace.measured() == done, "as long as it is not there, nothing else is measured again"
     workplace.build("clang")
     assert run(workplace.settings) == 0
     assert workplace.is_whole()

@@ -32,23 +32,23 @@ def test_ten_kills_lose_at_most_one_process_each(empty_workplace: Workplace) -> 
         process.communicate()
         no_child_is_left(workplace)
         records = workplace.records()
-        assert before.items() <= records.items(), "what was finished is there, unchanged"
-        for record in records.values():
-            jsonschema.validate(record, json.loads(SCHEMA_FILE.read_text(encoding="utf-8")))
+        lost = [name for name, record in before.items() if records.get(name) != record]
+        assert len(lost) <= 1, "what was finished is there, but for the half of a block cut through before"
+        for file in workplace.files():
+            jsonschema.validate(
+                json.loads(file.read_bytes()), json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
+            )
         before = records
     assert before, "something was finished"
     assert not workplace.is_whole(), "the kills came while there was something to do"
     assert run(workplace.settings) == 0
     after = workplace.records()
-    assert before.items() <= after.items()
+    assert len([name for name, record in before.items() if after[name] != record]) <= 1
     rows = workplace.rows().values()
     least = [3 * BLOCKS, 2 * BLOCKS, 2 * BLOCKS]
     assert all(row.done >= done and not row.missing for row, done in zip(rows, least, strict=True))
     most_together = 3
-    of_control = 2 * BLOCKS
-    assert len(after) <= 7 * BLOCKS + of_control + (most_together - 1) * KILLS, (
-        "each kill cuts through one block at most"
-    )
+    assert len(after) <= (3 + 2) * BLOCKS + 2 * (BLOCKS + KILLS), "no block but the control's is one too many"
     assert workplace.measured() <= len(after) + most_together * KILLS, "each kill cost one process at most"
     assert not (workplace.results / ".running").exists()
     assert not workplace.failures()

@@ -53,7 +53,7 @@ def test_another_program_has_limits_of_its_own(place: Workplace) -> None:
     assert run(place.settings) == 0
     place.build(extra="# another one")
     assert run(place.settings) == 0
-    assert len(place.records(FOLDER)) == 2
+    assert len(place.files(FOLDER)) == 2
 
 
 def test_without_limits_nothing_is_profiled_and_the_reason_is_kept(place: Workplace) -> None:

@@ -203,7 +203,7 @@ def test_a_locale_with_decimal_commas_changes_nothing(
     assert states[0] == states[1]
     record = tmp_path / "record.json"
     carom("bench", scene, "--record", record, "--tag", "x=1.5", env=comma_locale)
-    assert json.loads(record.read_text())["tags"]["x"] == 1.5
+    assert json.loads(record.read_text())["contenders"][0]["tags"]["x"] == 1.5
     refused = carom("generate", 50, "100,5", "1,25", 3, 0, 1, env=comma_locale)
     assert (refused.returncode, len(refused.stderr.splitlines())) == (1, 1)
 
@@ -216,4 +216,4 @@ def test_any_name_does_for_a_file(tmp_path: Path, scene: Path, name: str) -> Non
     assert carom("run", awkward, "--trajectory", trajectory).returncode == 0
     assert trajectory.stat().st_size > 0
     assert carom("bench", awkward, "--record", record).returncode == 0
-    assert json.loads(record.read_text())["scene"]["name"] == awkward.name
+    assert json.loads(record.read_text())["contenders"][0]["scene"]["name"] == awkward.name

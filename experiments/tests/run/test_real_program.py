@@ -47,8 +47,9 @@ def test_a_small_study_end_to_end(workplace: Workplace) -> None:
     workplace.question("errors", ERRORS)
     assert run(replace(workplace.settings, build=BUILD)) == 0
     schema = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
+    for path in workplace.files():
+        jsonschema.validate(json.loads(path.read_bytes()), schema)
     for record in workplace.records().values():
-        jsonschema.validate(record, schema)
         assert record["check"]["verdict"] == "passed"
         if record["tags"].get("scene_name") != "cradle":
             assert record["scene"]["particles"] == 100

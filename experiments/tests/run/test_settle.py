@@ -27,7 +27,7 @@ for line in sys.stdin:
         continue
     records = [json.load(open(path)) for path in glob.glob("results/records/*/*/*.json")]
     blocks = {}
-    for one in records:
+    for one in [one for record in records for one in record["contenders"]]:
         name = one["tags"]["experiment"]
         blocks[name] = max(blocks.get(name, 0), one["tags"]["block"] + 1)
     answer = {"open": {}, "settled": [], "said": {}}

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from experiments.run.process_record import Described, Record, process_record
+from experiments.run.process_record import Described, process_record
 from experiments.run.sources import Sources
 from experiments.side_by_side.contest import Contender, Contest, Entrant, may_disagree, why_idle
 from experiments.side_by_side.run_result import RunResult
@@ -361,17 +361,15 @@ def test_the_record_says_what_was_run_and_what_became_of_it(
     )  # fmt: skip
     ended = measure(often, scripted("echo it took 250 ms", pattern="took ([0-9]+)"), seed=9)
     build = {"compiler": "GNU 1", "openmp": {"runtime": "none"}}
-    its = Described({"a": "1", "b": "x"}, {"threads": 3}, "trajectory", build)
-    sources = Sources([Path("/bin/sh")], {})
-
-    def record_of(one: Entrant) -> Record:
-        record = process_record(one, its, sources, sampler.surroundings(3, None), (2, 9))
-        assert is_record(record)
-        return record
-
-    record, printed = (record_of(one) for one in ended)
-    process, provenance = record["process"], record["provenance"]
-    assert (record["kind"], record["tags"], record["axes"]) == ("process", {"a": 1, "b": "x"}, {"threads": 3})
+    sources, around = Sources([Path("/bin/sh")], {}), sampler.surroundings(3, None)
+    its = Described({"a": "1", "b": "x"}, {"threads": 3}, sources, "trajectory", build, around)
+    whole = process_record([(one, its) for one in ended], 9)
+    assert is_record(whole)
+    assert (whole["kind"], whole["turns"]) == ("process", {"seed": 9})
+    record, printed = whole["contenders"]
+    process, provenance = record["process"], whole["provenance"] | record["provenance"]
+    assert (record["tags"], record["axes"]) == ({"a": 1, "b": "x"}, {"threads": 3})
+    assert printed["provenance"].keys() == {"openmp"}, "all else is as of the first"
     assert record["check"] == {"verdict": "passed", "scope": "trajectory", "reason": None}
     assert (process["command"], process["time_from"]) == ([*often.words], "outside")
     assert (process["exit_codes"], process["exit_code"], process["runs"]) == ([1, 0, 1], 1, 3)
@@ -381,26 +379,25 @@ def test_the_record_says_what_was_run_and_what_became_of_it(
     assert provenance["openmp"]["environment"] == {"OMP_NUM_THREADS": "3"}
     assert (provenance["openmp"]["runtime"], provenance["compiler"]) == ("none", "GNU 1")
     assert "compiler_flags" in provenance, "what is not said stays that of the sampler"
-    assert (record["turns"]["contenders"], record["turns"]["seed"]) == (2, 9)
-    assert len(record["turns"]["seconds"]) == len(record["repetitions"]) == 3
+    assert len(record["slices"]["seconds"]) == len(record["repetitions"]) == 3
     assert sum(one["steps_seconds"] for one in record["repetitions"]) == pytest.approx(
         record["process_seconds"]
     )
     assert (tmp_path / "out").read_text() == "3\n"
     assert printed["repetitions"][0]["steps_seconds"] == pytest.approx(0.25)
-    assert (printed["process"]["time_from"], printed["turns"]) == ("the program", None)
+    assert (printed["process"]["time_from"], printed["slices"]) == ("the program", None)
     ended[0].failure = "no room"
-    failure = process_record(ended[0], its, sources, ({}, None), (2, 9))
-    assert is_record(failure)
-    assert (failure["kind"], failure["reason"]) == ("failure", "no room")
+    partly = process_record([(one, its) for one in ended], 9)
+    assert is_record(partly)
+    assert (partly["kind"], partly["contenders"][0]["reason"]) == ("process", "no room")
 
 
 @needs_carom
 def test_the_most_memory_of_all_runs_is_told(sampler: Sampler, measure: Measure, tmp_path: Path) -> None:
     large = "head -c 200000000 /dev/zero | tail -n 1 > /dev/null"
     ended = measure(scripted(f"mkdir {tmp_path}/once 2> /dev/null && {large}; exit 0", rounds=2))
-    its = Described({}, {"threads": 1})
-    record = process_record(ended[0], its, Sources([CAROM], {}), sampler.surroundings(1, None), (1, 1))
+    its = Described({}, {"threads": 1}, Sources([CAROM], {}), surroundings=sampler.surroundings(1, None))
+    [record] = process_record([(ended[0], its)], 1)["contenders"]
     assert record["process"]["peak_memory_bytes"] > 150_000_000
 
 

@@ -54,7 +54,7 @@ TEST_F(BenchCommand, ReadsTheSceneFromStandardInput) {
     const ProgramResult result =
         run_carom({"bench", "-", "--threads", "1", "--record", record}, {}, "", scene);
     ASSERT_EQ(result.exit_code, 0) << result.error;
-    const auto found = nlohmann::json::parse(tests::content_of(record));
+    const auto found = nlohmann::json::parse(tests::content_of(record))["contenders"][0];
     EXPECT_EQ(found["scene"]["name"], "standard input");
     EXPECT_EQ(found["scene"]["particles"], 300);
 }

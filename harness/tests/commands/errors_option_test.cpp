@@ -26,7 +26,7 @@ class ErrorsOption : public testing::Test {
         arguments.insert(arguments.end(), more.begin(), more.end());
         const ProgramResult result = run_carom(arguments);
         EXPECT_EQ(result.exit_code, 0) << result.error;
-        return nlohmann::json::parse(content_of(directory / "record"));
+        return nlohmann::json::parse(content_of(directory / "record"))["contenders"][0];
     }
 
     tests::TemporaryDirectory directory;

@@ -41,11 +41,11 @@ class Suspended : public testing::Test {
 };
 
 TEST_F(Suspended, WhatIsMeasuredHasNoRecord) {
-    const nlohmann::json contenders{{scene, "--threads", "1", "--record", record},
-                                    {scene, "--threads", "1", "--variant", "nine", "--record", record}};
+    const nlohmann::json contenders{{scene, "--threads", "1"},
+                                    {scene, "--threads", "1", "--variant", "nine"}};
     const std::string file = directory.write("contenders.json", contenders.dump());
     for (const auto& [words, name] :
-         {std::pair{std::vector<std::string>{"turns", file}, "turns of 2 contenders: "},
+         {std::pair{std::vector<std::string>{"turns", file, "--record", record}, "turns of 2 contenders: "},
           {{"bench", scene, "--threads", "1", "--record", record}, "published/scene.in/threads:1: "},
           {{"profile", scene, "--threads", "1", "--record", record}, "scene.in, variant published: "}}) {
         const auto end = suspended(words);

@@ -127,8 +127,8 @@ TEST(LimitsCommand, MeasuresEveryNumberOfThreadsAndRecordsWhatItPrints) {
         nlohmann::ordered_json::parse(tests::content_of(directory / "limits.json"), nullptr, false);
     ASSERT_TRUE(record.is_object());
     EXPECT_EQ(record["kind"], "limits");
-    EXPECT_EQ(record["tags"]["site"], "local");
-    EXPECT_EQ(record["limits"], printed);
+    EXPECT_EQ(record["contenders"][0]["tags"]["site"], "local");
+    EXPECT_EQ(record["contenders"][0]["limits"], printed);
     EXPECT_TRUE(record["provenance"].contains("binary_sha256"));
 }
 

@@ -168,7 +168,7 @@ TEST(VariantContender, EndsAsIfItHadRunAlone) {
     int number = 0;
     for (VariantContender* one : {&published, &track}) {
         const auto turns = all_turns[static_cast<std::size_t>(number++)];
-        one->finish({.contenders = 2, .plan = plan, .turns = turns});
+        one->finish(plan.runs);
         const Measurement& measurement = one->measurement();
         ASSERT_EQ(measurement.repetitions.size(), 2);
         EXPECT_FALSE(measurement.violation);

@@ -18,7 +18,7 @@ def test_three_partitions_give_one_figure_with_three_machines(place: ClusterWork
     for path in place.records():
         record = json.loads(path.read_text())
         partition = path.parents[3].name
-        assert record["axes"]["threads"] == 16
+        assert record["contenders"][0]["axes"]["threads"] == 16
         assert record["provenance"]["slurm"]["SLURMD_NODENAME"] == node_of(partition)
         assert record["provenance"]["slurm"]["SLURM_JOB_PARTITION"] == partition
         assert record["provenance"]["slurm"]["SLURM_CPUS_PER_TASK"] == str(PARTITIONS[partition])
