@@ -120,7 +120,7 @@ TEST_F(TurnsCommand, CountsOneAfterTheOther) {
     EXPECT_EQ(contender(0)["work"], of_one["work"]);
     EXPECT_EQ(contender(0)["state_hash"], of_one["state_hash"]);
     EXPECT_TRUE(record()["turns"].is_null());
-    for (const std::size_t place : {0, 1}) {
+    for (const std::size_t place : {0U, 1U}) {
         EXPECT_EQ(contender(place)["repetitions"].size(), 1);
         EXPECT_EQ(contender(place)["check"]["verdict"], "passed");
     }
