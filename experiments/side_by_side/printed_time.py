@@ -54,8 +54,8 @@ _OTHER_UNIT = re.compile(
     r"|(?:days?|weeks?|fps|[kKMG]?ops|[tqr]ps|iterations?|items?|frames?|requests?|calls?|rows?)\b)"
 )
 """What is no time, or none that is understood: a capital makes another unit of a short one."""
-_IN_FRONT = re.compile(rf"[(\[]([{_MICRO}]?[A-Za-z]+)[)\]][ \t]*[:=]?[ \t]*$")
-"""A unit in brackets before a number, as in time [ms]: 12."""
+_IN_FRONT = re.compile(rf"(?<![A-Za-z])[(\[](?!m[)\]])([{_MICRO}]?[A-Za-z]+)[)\]][ \t]*[:=]?[ \t]*$")
+"""A unit in brackets before a number, as in time [ms]: 12; neither metres nor run(s)."""
 _PER_TIME = re.compile(
     r"\^?-1|\N{SUPERSCRIPT MINUS}\N{SUPERSCRIPT ONE}|/(?:s|sec\w*|min\w*|h|hours?|d|days?)\b"
 )

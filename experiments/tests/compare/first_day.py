@@ -39,6 +39,7 @@ TIMED, PRINTED, WRITTEN, LISTS, ENDS, TIME = (
 )  # fmt: skip
 
 _TOOK = ("--time-from", r"took (\S+ ?[^\d\s]*)")
+_BEHIND, _MS = ("--time-from", "took .*: ([0-9]+)"), ("--unit", "ms")
 _NUMBER = ("--time-from", "took ([0-9.,e'+-]+)")
 
 _TOOK_NUMBER = ("--time-from", "took ([0-9.]+)")
@@ -59,9 +60,11 @@ def _refused(input_: str, printed: str, told: str, pattern: tuple[str, ...] = _N
     )  # fmt: skip
 
 
-def _read(input_: str, first: str, second: str, change: str, *words: str) -> Case:
+def _read(
+    input_: str, first: str, second: str, change: str, *words: str, pattern: tuple[str, ...] = _NUMBER
+) -> Case:
     return Case(
-        PRINTED, input_, "both are read in their units", (*words, *_NUMBER, "./a", "./b"),
+        PRINTED, input_, "both are read in their units", (*words, *pattern, "./a", "./b"),
         (f"b against a   {change} % [",), code=0, files=_prints(first, second), time="60s",
     )  # fmt: skip
 
@@ -88,11 +91,8 @@ CASES = (
     _refused("a word behind the number", "5 parsecs", "at most a unit", ("--time-from", "took (.*)")),
     _refused("a count, and --unit", "5 fps", "with the unit 'fps'", (*_NUMBER, "--unit", "ms")),
     _refused("a letter that may be metres", "5m", "such as min where minutes are meant"),
-    Case(
-        PRINTED, "a unit in brackets before the number", "it counts, also beside --unit",
-        ("--time-from", "took .*: ([0-9]+)", "--unit", "ms", "./a", "./b"),
-        ("b against a   +100.0 % [",), files=_prints("time [s]: 1", "time (ms): 2000"), time="60s",
-    ),
+    _read("a unit in brackets before the number", "[s]: 1", "(ms): 2000", "+100.0", *_MS, pattern=_BEHIND),
+    _read("brackets that are no unit", "3 run(s): 1", "way [m]: 2", "+100.0", *_MS, pattern=_BEHIND),
     _refused("letters that are no unit", "5kms", "with the unit 'kms'", ("--time-from", "took ([0-9]+)")),
     _refused("seconds and milliseconds", "2 s 300 ms", "a longer number", ("--time-from", "took ([0-9.]+)")),
     _refused("a unit in capitals, and --unit", "12 MS", "with the unit 'MS'", (*_NUMBER, "--unit", "us")),
