@@ -1,7 +1,6 @@
 """The verb `calibrate`: six streams, three kinds of contenders quiet and beside busy loops, into one file."""
 
 import argparse
-import tempfile
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from experiments.plan.site import load_site, this_machine
 from experiments.run.progress import ProgressDisplay
 from experiments.support.busy import busy
 from experiments.support.places import BUILDS
+from experiments.support.vanishing import vanishing_folder
 from support.command_line import number_above_zero
 from support.errors import InputError
 from support.files import locked, read_json, require_room_for_folder, write_json
@@ -49,16 +49,12 @@ def calibrate(options: argparse.Namespace) -> int:
     if program.sha256 is None:
         raise InputError(program.remedy)
     openmp = where.binding.environment(1, this_machine())
-    with (
-        locked(results),
-        ProgressDisplay() as display,
-        tempfile.TemporaryDirectory(prefix="carom-") as folder,
-    ):
+    with locked(results), ProgressDisplay() as display, vanishing_folder("carom-calibrate-") as folder:
         content = _begun(results / UNFINISHED, program, options.seconds)
         known = {(one["kind"], one["condition"]) for one in content["streams"]}
         for make in KINDS:
             display.now(f"{make.__name__}: making ready")
-            kind = make(program, openmp, Path(folder))
+            kind = make(program, openmp, folder)
             for condition, loops in CONDITIONS.items():
                 if (kind.name, condition) in known:
                     continue
