@@ -158,6 +158,10 @@ def _over_seeds(before: pd.DataFrame, after: pd.DataFrame, value: str) -> pd.Ser
     return ratios.replace([np.inf, -np.inf], np.nan).dropna()
 
 
+_NOTHING = 1e-3
+"""Of a step: where a disturbed process makes it less, it counts as this, which is far below all others."""
+
+
 def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str) -> Outcome:
     """Test that the published variant spends more than half of a step in `phase`, with what it does of it
     early, in the phase `early`.
@@ -179,7 +183,8 @@ def phase_dominates(evidence: Evidence, experiment: str, phase: str, early: str)
             return no_records(experiment, f"{phase} and {early} of the variant {variant}")
     with_early, without = (walls.dropna()[variant] for variant in VARIANTS)
     whole, resolved_early = with_early.sum(axis=1), with_early[early] - without[early]
-    late, resolving = with_early[phase], with_early[phase] + resolved_early
+    late = with_early[phase]
+    resolving = (late + resolved_early).clip(lower=_NOTHING * whole)
     parts = pd.DataFrame({"late": late, early: with_early[early], "early": resolved_early, "all": resolving})
     part = parts.div(whole, axis=0).median().map(share)
     late_row, row = (

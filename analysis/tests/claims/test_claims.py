@@ -267,6 +267,8 @@ CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
     # phases: finding, resolving, finding without early resolves
     ("late alone", lambda: profiled(0.30, 0.60, 0.30), "resolve_dominates", HOLDS, {}),
     ("with early", lambda: profiled(0.40, 0.45, 0.30), "resolve_dominates", HOLDS, {}),
+    ("with early, one process disturbed", lambda: profiled(0.4, 0.45, 0.3, (*[1] * 21, 10, *[1] * 9)),
+     "resolve_dominates", OPEN, {"measured": "rest is 1.38"}),
     ("half", lambda: profiled(0.45, 0.45, 0.45), "resolve_dominates", FAILS, {}),
     ("hardly more", lambda: profiled(0.40, 0.502, 0.30), "resolve_dominates", HOLDS, {}),
     ("two speeds hide nothing that a process tells",
