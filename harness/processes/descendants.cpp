@@ -47,24 +47,50 @@ bool is_gone_or(std::string_view states, pid_t process) {
     return state.empty() || states.find(state.front()) != std::string_view::npos;
 }
 
+/// The names in a folder of /proc that are numbers; none if it is gone.
+std::vector<pid_t> numbers_in(const std::string& folder) {
+    std::vector<pid_t> numbers;
+    std::error_code gone;
+    for (fs::directory_iterator entry(folder, gone); !gone && entry != fs::directory_iterator();
+         entry.increment(gone)) {
+        if (const auto number = parse_number<pid_t>(entry->path().filename().string())) {
+            numbers.push_back(*number);
+        }
+    }
+    return numbers;
+}
+
 } // namespace
 
-bool tells_children() { return access("/proc/thread-self/children", R_OK) == 0; }
+std::vector<pid_t> children_by_thread(pid_t parent) {
+    std::vector<pid_t> children;
+    const std::string threads = folder_of(parent) + "/task/";
+    for (const pid_t thread : numbers_in(threads)) {
+        std::istringstream numbers(text_of(threads + std::to_string(thread) + "/children"));
+        children.insert(children.end(), std::istream_iterator<pid_t>(numbers), {});
+    }
+    return children;
+}
+
+std::vector<pid_t> children_by_parent(pid_t parent) {
+    std::vector<pid_t> children = numbers_in("/proc");
+    std::erase_if(children, [parent](pid_t one) {
+        std::istringstream rest(after_name(one));
+        char state = 0;
+        pid_t its_parent = 0;
+        return !(rest >> state >> its_parent) || its_parent != parent;
+    });
+    return children;
+}
 
 std::vector<pid_t> descendants_of(pid_t root) {
+    static const bool tells_children = access("/proc/thread-self/children", R_OK) == 0;
     std::vector<pid_t> found;
     std::vector<pid_t> open_ends{root};
     while (!open_ends.empty()) {
-        const std::string threads = folder_of(open_ends.back()) + "/task";
+        const pid_t parent = open_ends.back();
         open_ends.pop_back();
-        std::vector<pid_t> children;
-        std::error_code gone;
-        for (fs::directory_iterator thread(threads, gone); !gone && thread != fs::directory_iterator();
-             thread.increment(gone)) {
-            std::istringstream numbers(text_of(thread->path().string() + "/children"));
-            children.insert(children.end(), std::istream_iterator<pid_t>(numbers), {});
-        }
-        for (const pid_t child : children) {
+        for (const pid_t child : tells_children ? children_by_thread(parent) : children_by_parent(parent)) {
             open_ends.push_back(child);
             if (!is_gone_or("ZX", child)) {
                 found.push_back(child);

@@ -7,8 +7,12 @@
 
 namespace carom {
 
-/// Whether the kernel tells the children of each thread (CONFIG_PROC_CHILDREN, which distributions set).
-bool tells_children();
+/// What a process has started, as its threads tell it: where the kernel has CONFIG_PROC_CHILDREN, as
+/// distributions set it.
+std::vector<pid_t> children_by_thread(pid_t parent);
+
+/// The same by asking all processes for their parents, which every kernel tells.
+std::vector<pid_t> children_by_parent(pid_t parent);
 
 /// All that a process has started, and what that has started, as /proc lists them; without those that have
 /// ended and are only to be waited for. What lost its parent counts if the process is its subreaper.

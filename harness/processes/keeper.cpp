@@ -65,10 +65,6 @@ void end_orphans() {
 } // namespace
 
 Keeper::Keeper(const ProcessCommand& command, const Cgroup* group) {
-    if (!tells_children()) {
-        throw InputError(
-            "/proc/thread-self/children: not there, expected a kernel with CONFIG_PROC_CHILDREN");
-    }
     std::array<int, 2> line{};
     prctl(PR_SET_CHILD_SUBREAPER, 1);
     std::signal(SIGCHLD, SIG_DFL);

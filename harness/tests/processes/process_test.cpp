@@ -252,6 +252,7 @@ TEST_P(ProcessKept, OneThatIsGivenUpHalfwayLeavesNothingBehind) {
             process.advance(0.02);
         }
         ASSERT_EQ(kill(std::stoi(tests::content_of(directory / "pid")), 0), 0);
+        EXPECT_TRUE(std::ranges::is_permutation(children_by_parent(getpid()), children_by_thread(getpid())));
     }
     EXPECT_TRUE(is_gone(std::stoi(tests::content_of(directory / "pid"))));
 }
