@@ -41,10 +41,8 @@ class Found:
 
     def take(self, record: Record, path: Path) -> None:
         """Count all contenders of a process."""
-        for one in record["contenders"]:
-            tags = one["tags"]
-            key = tags["point"], tags["block"]
-            self.files[key], self.sessions[key] = path, str(tags.get("session", ""))
+        for key, one in zip(keys_of(record), record["contenders"], strict=True):
+            self.files[key], self.sessions[key] = path, str(one["tags"].get("session", ""))
             for there in (self.seconds, self.runs, self.failures):
                 there.pop(key, None)
             if is_failed(one):
@@ -120,16 +118,19 @@ class Store:
     def settle(self, experiment: Experiment) -> Found:
         """Move what is stale out of the way and bring back what fits the plan again; say what is there then.
 
-        Nothing is deleted: going from one scale to the other and back measures nothing twice.
+        Nothing is deleted: going from one scale to the other and back measures nothing twice. What was
+        measured anew since does not come back.
         """
         found = self.find(experiment)
         for path in found.stale:
             self.retire(path)
         is_changed, points = bool(found.stale), {point.id: point for point in experiment.points}
         for path in sorted((self.root / "stale" / "records" / experiment.name).rglob("*.json")):
-            target = self._path_of(read_json(path), points)
-            if target is not None and not target.exists():
+            record = read_json(path)
+            target = self._path_of(record, points)
+            if target is not None and found.files.keys().isdisjoint(keys_of(record)):
                 move(path, target)
+                found.take(record, target)
                 is_changed = True
         return self.find(experiment) if is_changed else found
 
@@ -163,6 +164,11 @@ class Store:
     def note(self, name: str) -> Any:  # noqa: ANN401 - JSON is any value
         """The content of a file of the runner's own, or None."""
         return read_json(self.root / name)
+
+
+def keys_of(record: Record) -> list[Key]:
+    """What each contender of a record is: its point and its block."""
+    return [(one["tags"]["point"], one["tags"]["block"]) for one in record["contenders"]]
 
 
 def new_session() -> str:

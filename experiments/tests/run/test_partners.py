@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import pytest
 
+from experiments.results.store import keys_of
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.tests.conftest import ERRORS, PAIR, Workplace
@@ -65,6 +66,8 @@ def nothing_is_left_to_do(pair: Workplace) -> None:
     done = pair.measured()
     assert run(pair.settings) == 0
     assert pair.measured() == done, "a finished study is left alone"
+    there = [key for path in pair.files() for key in keys_of(json.loads(path.read_text()))]
+    assert len(there) == len({*there}), "what was measured anew did not come back"
 
 
 @pytest.mark.parametrize("text", [PAIR, SWEPT_APART], ids=["in turns", "apart"])
