@@ -1,14 +1,12 @@
 """The verbs of `carom` that tell of what was measured: report, claims, figures, export and a few more."""
 
 import argparse
-import json
 import signal
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 from support.command_line import Parser, exit_code_of, print_anything
 from support.errors import InputError
@@ -39,21 +37,16 @@ def _parser() -> argparse.ArgumentParser:
             command.add_argument("--results", type=Path, default=Path(results), metavar="DIR", help=told)
         return command
 
-    asked: Any = {
-        "metavar": "A,B",
-        "default": "",
-        "help": "the questions that were asked, which lead the report",
-    }
     figures = verb(_figures, "draw the figures of whatever records are there", "results")
     figures.add_argument("--experiment", metavar="A,B", help="only the figures of these experiments")
-    verb(_report, "write report.html", "results").add_argument("--study", **asked)
+    told = "the questions that were asked, which lead the report"
+    report = verb(_report, "write report.html", "results")
+    report.add_argument("--study", metavar="A,B", default="", help=told)
     claims = verb(_claims, "print each published claim with its verdict, a line each", "results")
     claims.add_argument("--verbose", action="store_true", help="and below it all that is known of it")
     export = verb(_export, "write a CSV table with a row a timed repetition, for other tools", "results")
     told = "default: measurements.csv in the results; - is standard output"
     export.add_argument("--output", type=Path, metavar="FILE", help=told)
-    told = "answer each line of standard input, as a running study asks: open, page, report"
-    verb(_follow, told, "results").add_argument("--study", **asked)
     told = "tell how often verdicts are wrong here, from what `carom study calibrate` measured"
     verb(_calibration, told, "results/calibration")
     _add_movie(verb(_movie, "draw a run as an animation, or one step of it as a picture"))
@@ -101,38 +94,11 @@ def _figures(options: argparse.Namespace) -> int:
     return 0
 
 
-def _follow(options: argparse.Namespace) -> int:
-    """Answer a line with a line of JSON: `open` with what is open; `report` with the file of the report,
-    `report HOW FAR` with that of what is there so far.
-    """
-    from analysis.claims import Tested
-    from analysis.commands.open_questions import open_questions
-
-    remembered: Tested = {}
-    for line in sys.stdin:
-        match line.split():
-            case ["open"]:
-                answer: object = open_questions(options.results, remembered)
-            case ["report", *how_far]:
-                from analysis.report import write
-
-                answer = str(write(options.results, _asked(options), " ".join(how_far)))
-            case _:
-                expected = "expected `open`, `report` or `report ...`"
-                raise InputError(f"follow: found {line.strip()!r}, {expected}")
-        print(json.dumps(answer), flush=True)
-    return 0
-
-
 def _report(options: argparse.Namespace) -> int:
     from analysis.report import write
 
-    print(write(options.results, _asked(options)))
+    print(write(options.results, options.study.replace(",", " ").split()))
     return 0
-
-
-def _asked(options: argparse.Namespace) -> list[str]:
-    return list(options.study.replace(",", " ").split())
 
 
 def _claims(options: argparse.Namespace) -> int:

@@ -1,7 +1,6 @@
 """`carom study`: plan, run and look after a study."""
 
 import argparse
-import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import fields
@@ -27,7 +26,6 @@ from experiments.slurm.status import show_cluster_status
 from experiments.slurm.submit import resume, submit
 from experiments.slurm.task import work
 from experiments.support.interrupts import stop_at_signals
-from experiments.support.places import analysis
 from support.command_line import Parser, exit_code_of, number_above_zero, print_anything
 from support.errors import InputError
 from support.files import require_room_for_folder
@@ -99,7 +97,11 @@ def _submit(hand: Callable[..., int], options: argparse.Namespace) -> int:
 
 def _calibrate(options: argparse.Namespace) -> int:
     """Measure, then tell."""
-    return calibrate(options) or subprocess.call(analysis("calibration", "--results", str(options.results)))
+    if code := calibrate(options):
+        return code
+    from analysis.cli import main as tell
+
+    return tell(["calibration", "--results", str(options.results)])
 
 
 def _settings(options: argparse.Namespace) -> Settings:

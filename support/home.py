@@ -3,3 +3,6 @@
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
+
+BUILDS = ROOT / "build"
+"""The folder of Carom's programs, one folder a compiler."""

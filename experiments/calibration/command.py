@@ -11,11 +11,11 @@ from experiments.plan.program import GENERATOR, Program, find_programs
 from experiments.plan.site import load_site, this_machine
 from experiments.run.progress import ProgressDisplay
 from experiments.support.busy import busy
-from experiments.support.places import BUILDS
 from experiments.support.vanishing import vanishing_folder
 from support.command_line import number_above_zero
 from support.errors import InputError
 from support.files import locked, read_json, require_room_for_folder, write_json
+from support.home import BUILDS
 
 FILE = "calibration.json"
 UNFINISHED = "unfinished.json"

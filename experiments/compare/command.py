@@ -33,9 +33,9 @@ from experiments.run.runner import Runner
 from experiments.support import process
 from experiments.support.descendants import children, end_all_but
 from experiments.support.interrupts import signals_held
-from experiments.support.places import BUILDS
 from experiments.support.vanishing import marked, vanishing_folder
 from support.errors import InputError, Interrupted
+from support.home import BUILDS
 from support.vocabulary import AGAIN, ASKED, WALL
 
 COMMAND_FAILED, WITHDRAWN = 2, 5

@@ -1,10 +1,12 @@
 """The whole study on this machine: measure, decide, report; and go on where an earlier run stopped."""
 
-import json
+import contextlib
+import io
 import math
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 from experiments.plan.point import Point
 from experiments.plan.site import what_limits
@@ -14,13 +16,12 @@ from experiments.run.runner import ProcessResult, Runner, Task
 from experiments.run.schedule import FIRST_LOOK, Part, Schedule, may_decide
 from experiments.run.study import POINTS_FAILED, REPORT_FAILED, Settings, Study, keep_claims, summary
 from experiments.run.together import together
-from experiments.run.verdicts import Verdicts, ask
+from experiments.run.verdicts import Analysis, Verdicts
 from experiments.support.interrupts import stop_if_asked
-from experiments.support.process import Coprocess
+from support.errors import InputError, cannot
 from support.vocabulary import CONTROL
 
-REPORT_LIMIT = 600.0
-"""Seconds after which a report is given up."""
+Answer = TypeVar("Answer")
 
 DECIDING_SHARE = 0.25
 """The part of a scale's time that what is open gets for certain."""
@@ -51,8 +52,7 @@ def run(settings: Settings) -> int:
         display.line(summary(schedule, study.budget_seconds))
         if limits := what_limits():
             display.line(limits)
-        with Coprocess(study.analysis_command()) as analysis:
-            return Session(study, runner, schedule, display, analysis).run()
+        return Session(study, runner, schedule, display).run()
 
 
 class Session:
@@ -60,15 +60,13 @@ class Session:
     is open; then the least number of blocks of all, and the rest of the time shared out.
     """
 
-    def __init__(
-        self, study: Study, runner: Runner, schedule: Schedule, display: ProgressDisplay, analysis: Coprocess
-    ) -> None:
+    def __init__(self, study: Study, runner: Runner, schedule: Schedule, display: ProgressDisplay) -> None:
         self._began = time.monotonic()
         self._study = study
         self._runner = runner
         self._schedule = schedule
         self._display = display
-        self._analysis = analysis
+        self._analysis = Analysis(study.store.root, study.settings.study)
         self._failures: Counter[str] = Counter()
         self._report_due = time.monotonic() + REPORT_PAUSE
         self._said: set[str] = set()
@@ -172,9 +170,9 @@ class Session:
         while True:
             self._display.now("looking at what is decided", self._schedule.status)
             began = time.monotonic()
-            verdicts = ask(self._analysis)
-            if isinstance(verdicts, str):
-                warn(f"what is open is not known, so that nothing is measured to settle it: {verdicts}")
+            unknown = "what is open is not known, so that nothing is measured to settle it"
+            verdicts = _told(unknown, self._analysis.verdicts)
+            if verdicts is None:
                 return Verdicts()
             for name, said in verdicts.said.items():
                 if name not in self._said:
@@ -285,26 +283,22 @@ class Session:
         if not self._study.settings.figures or began < self._report_due:
             return
         self._display.now("writing the report of what is there")
-        done = self._analysis.ask(f"report {self._schedule.status()}", REPORT_LIMIT)
+        failed, how_far = "the report of what is there could not be written", str(self._schedule.status())
+        page = _told(failed, lambda: self._analysis.report(how_far))
         now = time.monotonic()
         self._report_due = now + max(REPORT_PAUSE, (now - began) / REPORT_SHARE)
-        if done.exit_code == 0:
-            self._display.line(f"report of what is there: {json.loads(done.output)}")
-        else:
-            warn(f"the report of what is there could not be written: {done.reason}")
+        if page is not None:
+            self._display.line(f"report of what is there: {page}")
 
     def _report_all(self) -> int:
         """Write the report with all its figures. Returns the exit code."""
         if not self._study.settings.figures:
             return 0
         self._display.now("writing the report")
-        done = self._analysis.ask("report", REPORT_LIMIT)
-        if done.exit_code != 0:
-            warn(f"the report could not be written: {done.reason}")
+        page = _told("the report could not be written", self._analysis.report)
+        if page is None:
             return REPORT_FAILED
-        for line in done.error.splitlines():
-            warn(line)
-        self._display.line(json.loads(done.output))
+        self._display.line(str(page))
         return 0
 
     def _failed(self) -> int:
@@ -317,3 +311,20 @@ class Session:
         points = ", ".join(f"{name} ({number})" for name, number in self._failures.items())
         warn(f"points failed: {points}; the reasons are in {root / 'records'} and in the report")
         return POINTS_FAILED
+
+
+def _told(failed: str, ask: Callable[[], Answer]) -> Answer | None:
+    """What the analysis answers, and the lines that it says besides; None, and why, where it does not."""
+    answer, said = None, io.StringIO()
+    with contextlib.redirect_stderr(said):
+        try:
+            answer = ask()
+        except InputError as error:
+            print(f"{failed}: {error}", file=said)
+        except OSError as error:
+            print(f"{failed}: {cannot(error)}", file=said)
+        except Exception as error:
+            print(f"{failed}: {type(error).__name__}: {error}", file=said)
+    for line in said.getvalue().splitlines():
+        warn(line)
+    return answer

@@ -17,10 +17,9 @@ from experiments.run.costs import Costs, probed
 from experiments.run.progress import about
 from experiments.run.runner import Runner
 from experiments.run.schedule import Part, Schedule
-from experiments.support.places import BUILDS, analysis
 from support.errors import InputError
 from support.files import write_text
-from support.home import ROOT
+from support.home import BUILDS, ROOT
 
 FINISHED = "finished.json"
 BEGUN = "begun.json"
@@ -74,11 +73,6 @@ class Study:
         self.experiments: tuple[Experiment, ...] = tuple(
             plan(with_blocks(self.scale.question(one), settings.blocks), around) for one in questions
         )
-
-    def analysis_command(self) -> list[str]:
-        """What says what is open, and writes the report."""
-        asked = ["--study", ",".join(self.settings.study)] if self.settings.study else []
-        return analysis("follow", "--results", str(self.store.root), *asked)
 
     def runner(self) -> Runner:
         """What runs one task; the results folder must be held."""

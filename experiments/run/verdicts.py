@@ -1,13 +1,11 @@
-"""What the analysis program says so far: what is settled, and how many blocks the rest needs."""
+"""What the analysis says so far: what is settled, how many blocks the rest needs, and the report."""
 
-import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
-from experiments.support.process import Coprocess
-
-_LIMIT = 600.0
-"""Seconds after which an answer is given up."""
+from experiments.support.interrupts import signals_held
 
 
 @dataclass(frozen=True)
@@ -30,14 +28,26 @@ class Verdicts:
     said: Mapping[str, str] = field(default_factory=dict)
 
 
-def ask(analysis: Coprocess) -> Verdicts | str:
-    """Ask the analysis program; its reason, in a line, where it does not answer."""
-    done = analysis.ask("open", _LIMIT)
-    if done.exit_code != 0:
-        return done.reason
-    answer = json.loads(done.output)
-    return Verdicts(
-        {name: Open(one["blocks"], one["next"], one["needed"]) for name, one in answer["open"].items()},
-        frozenset(answer["settled"]),
-        answer["said"],
-    )
+class Analysis:
+    """The analysis of a folder of results, in which the questions `asked` by name lead the report. It is
+    loaded when first needed: a study of one block needs none.
+    """
+
+    def __init__(self, results: Path, asked: Sequence[str]) -> None:
+        self._results = results
+        self._asked = asked
+        self._remembered: dict[Any, Any] = {}
+
+    def verdicts(self) -> Verdicts:
+        """What the records say. What was tested of the same records is not tested again."""
+        with signals_held():
+            from analysis.commands.open_questions import open_questions
+        told = open_questions(self._results, self._remembered)
+        opened = {name: Open(**one) for name, one in told["open"].items()}
+        return Verdicts(opened, frozenset(told["settled"]), told["said"])
+
+    def report(self, how_far: str = "") -> Path:
+        """Write the report and return its file; `how_far` the study is, if it goes on."""
+        with signals_held():
+            from analysis.report import write
+        return write(self._results, self._asked, how_far)

@@ -1,5 +1,6 @@
 """A workplace in a temporary folder: a fake program, two small questions, a results folder."""
 
+import errno
 import json
 import os
 import signal
@@ -16,10 +17,12 @@ import pytest
 from experiments.__main__ import main
 from experiments.plan.point import Point
 from experiments.plan.scenes import Scene
-from experiments.run import status
+from experiments.run import session, status
 from experiments.run.study import Settings, Study
+from experiments.run.verdicts import Open, Verdicts
 from experiments.side_by_side.contest import Contender, Contest, Entrant
 from experiments.tests.forks import Forking, forked
+from support.errors import InputError
 
 ROOT = Path(__file__).parents[2]
 FAKE = Path(__file__).with_name("fake_carom.py")
@@ -105,8 +108,8 @@ class Workplace:
         return sorted(self.results.glob(f"records/{experiment}/**/{name}"))
 
     def start(self, verb: str = "run", *more: str) -> "subprocess.Popen[str]":
-        """The command line, as a user starts it; its analysis is one in this folder, if there is one."""
-        return start([verb, *self.arguments, *more], self.root, PYTHONPATH=f"{self.root}{os.pathsep}{ROOT}")
+        """The command line, as a user starts it."""
+        return start([verb, *self.arguments, *more], self.root)
 
     def calls(self) -> list[dict[str, Any]]:
         """What the fake program was asked to do, if it logs."""
@@ -209,3 +212,49 @@ def workplace(empty_workplace: Workplace) -> Workplace:
     empty_workplace.question("pair", PAIR)
     empty_workplace.question("control", CONTROL)
     return empty_workplace
+
+
+class FakeAnalysis:
+    """An analysis that wants as many blocks as the file `needed` of a workplace says."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+
+    def verdicts(self) -> Verdicts:
+        if (self.root / "broken").exists():
+            raise InputError("no statistics")
+        blocks: dict[str, int] = {}
+        for path in (self.root / "results" / "records").glob("*/*/*.json"):
+            for one in json.loads(path.read_text())["contenders"]:
+                name = one["tags"]["experiment"]
+                blocks[name] = max(blocks.get(name, 0), one["tags"]["block"] + 1)
+        opened, settled, said = {}, set(), {}
+        for claim, needed in json.loads((self.root / "needed").read_text()).items():
+            names = claim.split("+")
+            least = min(blocks[name] for name in names)
+            if least >= needed:
+                settled.update(names)
+                said[claim] = f"holds from {least} blocks"
+            else:
+                opened.update(dict.fromkeys(names, Open(least, least + 3, needed)))
+        self._note("looks", json.dumps(blocks))
+        return Verdicts(opened, frozenset(settled), said)
+
+    def report(self, how_far: str = "") -> Path:
+        if (self.root / "broken").exists():
+            raise OSError(errno.ENOSPC, "No space left on device", "report.html")
+        print("no ink", file=sys.stderr)
+        self._note("reports", how_far)
+        return Path("results/report.html")
+
+    def _note(self, name: str, line: str) -> None:
+        with (self.root / name).open("a") as file:
+            print(line, file=file)
+
+
+@pytest.fixture
+def needing(workplace: Workplace) -> Workplace:
+    """A workplace whose analysis wants as many blocks as the file `needed` says."""
+    fake = FakeAnalysis(workplace.root)
+    workplace.monkeypatch.setattr(session, "Analysis", lambda *_: fake)
+    return workplace

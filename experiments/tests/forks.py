@@ -7,7 +7,6 @@ import contextlib
 import faulthandler
 import gc
 import os
-import runpy
 import shutil
 import signal
 import subprocess
@@ -55,7 +54,7 @@ def forked(main: Main, words: Sequence[str], **options: Any) -> "subprocess.Pope
 
 
 class Forking(_Popen):
-    """Popen, but that stand-ins are forks, and so is the analysis unless PYTHONPATH may mean another one."""
+    """Popen, but that stand-ins are forks."""
 
     def __new__(cls, args: Sequence[str], **options: Any) -> Any:  # noqa: ANN401
         main = _main_of(args, options.get("env") or os.environ)
@@ -63,8 +62,6 @@ class Forking(_Popen):
 
 
 def _main_of(words: Sequence[str], environment: Mapping[str, str]) -> Main | None:
-    if words[0] == sys.executable and tuple(words[2:4]) == ("-m", "analysis"):
-        return None if "PYTHONPATH" in environment else _analysis
     file = shutil.which(words[0], path=environment.get("PATH"))
     if file is None:
         return None
@@ -72,12 +69,6 @@ def _main_of(words: Sequence[str], environment: Mapping[str, str]) -> Main | Non
         content = opened.read(max(map(len, STAND_INS)))
     stand_ins = (one for text, one in STAND_INS.items() if content.startswith(text))
     return next((partial(_stand_in, one, file) for one in stand_ins), None)
-
-
-def _analysis(words: Sequence[str]) -> int:
-    sys.argv = ["analysis", *words[3:]]
-    runpy.run_module("analysis", run_name="__main__")
-    return 0
 
 
 def _stand_in(module: ModuleType, file: str, words: Sequence[str]) -> int:

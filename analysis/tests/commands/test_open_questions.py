@@ -1,7 +1,5 @@
 """What is open, as a running study asks for it: blocks, the next look, and those that are needed."""
 
-import io
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -10,7 +8,6 @@ import numpy as np
 import pytest
 
 from analysis import claims
-from analysis.cli import main
 from analysis.commands.open_questions import open_questions
 from analysis.statistics.noise import MOST_BLOCKS, blocks_to_decide
 from analysis.statistics.verdicts import judge_one
@@ -67,20 +64,6 @@ def test_what_hardware_lacks_is_not_open(tmp_path: Path) -> None:
 def test_an_empty_folder_has_nothing_open(tmp_path: Path) -> None:
     (tmp_path / "records").mkdir()
     assert open_questions(tmp_path) == {"open": {}, "settled": [], "said": {}}
-
-
-def test_the_conversation_is_a_line_for_a_line(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    write(tmp_path, study(["neighbourhood"], blocks=4, noise=QUIET, threads=20))
-    monkeypatch.setattr("sys.stdin", io.StringIO("open\nreport\ndance\n"))
-    assert main(["follow", "--results", str(tmp_path)]) == 1
-    said = capsys.readouterr()
-    answer, written = map(json.loads, said.out.splitlines())
-    assert set(answer) == {"open", "settled", "said"}
-    assert written == str(tmp_path / "report.html")
-    assert "found 'dance', expected `open`, `report` or `report ...`" in said.err
-    assert (tmp_path / "figures" / "neighbourhood.svg").exists()
 
 
 @pytest.mark.parametrize("effect", [0.0, 0.04, 0.06])

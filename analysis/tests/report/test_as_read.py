@@ -1,8 +1,6 @@
 """The report as a person reads it: what was asked first, places that links lead to, words that agree."""
 
-import json
 import re
-from io import StringIO
 from pathlib import Path
 
 import pytest
@@ -134,13 +132,10 @@ def test_the_box_on_noise_agrees_with_the_verdicts(tmp_path: Path) -> None:
     }
 
 
-def test_a_report_of_a_study_that_goes_on_says_when_and_how_far(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_report_of_a_study_that_goes_on_says_when_and_how_far(tmp_path: Path) -> None:
     write(tmp_path, study(["steps"], blocks=2))
-    monkeypatch.setattr("sys.stdin", StringIO("report 20 of 80 processes done, about 12 min left\n"))
-    assert main(["follow", "--results", str(tmp_path), "--study", "steps"]) == 0
-    assert json.loads(capsys.readouterr().out) == str(tmp_path / "report.html")
+    how_far = "20 of 80 processes done, about 12 min left"
+    assert report.write(tmp_path, ["steps"], how_far) == tmp_path / "report.html"
     text = text_of((tmp_path / "report.html").read_text(encoding="utf-8"))
     told = r"the study goes on: this is what it had at \d{4}-\d\d-\d\d \d\d:\d\d UTC, 20 of 80 processes done"
     assert re.search(told, text)

@@ -1,7 +1,6 @@
 """What is open is measured on until it is settled, as the analysis program says, and no further."""
 
 import json
-import os
 import re
 import shutil
 from collections.abc import Mapping
@@ -14,50 +13,8 @@ from experiments.run import session
 from experiments.run.schedule import Schedule
 from experiments.run.session import run
 from experiments.run.study import Study
-from experiments.run.verdicts import Open, Verdicts
+from experiments.run.verdicts import Analysis, Open, Verdicts
 from experiments.tests.conftest import CHUNKS, PAIR, Workplace, finish
-
-ANALYSIS = """
-import glob, json, sys
-for line in sys.stdin:
-    if line.startswith("report"):
-        with open(REPORTS, "a") as file:
-            file.write(line)
-        print(json.dumps("results/report.html"), flush=True)
-        continue
-    records = [json.load(open(path)) for path in glob.glob("results/records/*/*/*.json")]
-    blocks = {}
-    for one in [one for record in records for one in record["contenders"]]:
-        name = one["tags"]["experiment"]
-        blocks[name] = max(blocks.get(name, 0), one["tags"]["block"] + 1)
-    answer = {"open": {}, "settled": [], "said": {}}
-    for claim, needed in json.loads(open(NEEDED).read()).items():
-        names = claim.split("+")
-        least = min(blocks[name] for name in names)
-        if least >= needed:
-            answer["settled"] += names
-            answer["said"][claim] = f"holds from {least} blocks"
-        else:
-            for name in names:
-                answer["open"][name] = {"blocks": least, "next": least + 3, "needed": needed}
-    with open(LOG, "a") as file:
-        print(json.dumps(blocks), file=file)
-    print(json.dumps(answer), flush=True)
-"""
-
-
-@pytest.fixture
-def needing(workplace: Workplace) -> Workplace:
-    """A workplace whose analysis wants as many blocks as the file `needed` says."""
-    folder = workplace.root / "analysis"
-    folder.mkdir()
-    workplace.monkeypatch.setenv("PYTHONPATH", str(workplace.root))
-    (folder / "__init__.py").touch()
-    program = ANALYSIS
-    for word, name in (("NEEDED", "needed"), ("LOG", "looks"), ("REPORTS", "reports")):
-        program = program.replace(word, repr(os.fspath(workplace.root / name)))
-    (folder / "__main__.py").write_text(program)
-    return workplace
 
 
 def blocks_of(workplace: Workplace, experiment: str) -> int:
@@ -71,7 +28,7 @@ def want(workplace: Workplace, **blocks: int) -> None:
 def test_what_is_open_goes_on_from_look_to_look_and_what_is_settled_stops(needing: Workplace) -> None:
     want(needing, pair=7, chunks=2)
     code, output, error = finish(needing.start("run", "--budget", "5"))
-    assert (code, error) == (0, "")
+    assert (code, error) == (0, "no ink\n")
     assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (7, 4)
     looks = [json.loads(line)["pair"] for line in (needing.root / "looks").read_text().splitlines()]
     assert looks == [1, 4, 7], "nothing is looked at between two looks"
@@ -83,7 +40,7 @@ def test_what_rests_on_two_questions_gets_blocks_of_both(needing: Workplace) -> 
     """The blocks of such a claim are the fewest: more of the question that has them would settle nothing."""
     want(needing, **{"pair+chunks": 5})
     code, output, error = finish(needing.start("run", "--budget", "5"))
-    assert (code, error) == (0, "")
+    assert (code, error) == (0, "no ink\n")
     assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (7, 7)
     assert "decided: pair+chunks holds from 7 blocks" in output
 
@@ -151,13 +108,14 @@ def test_a_killed_study_comes_to_the_same_decisions(needing: Workplace) -> None:
 
 
 def test_an_analysis_that_fails_leaves_the_budget_to_the_old_rule(needing: Workplace) -> None:
-    (needing.root / "analysis" / "__main__.py").write_text("import sys; sys.exit('no statistics')")
+    (needing.root / "broken").touch()
     needing.question("pair", PAIR.replace("wanted = 2", "wanted = 4"))
     code, _, error = finish(needing.start("run", "--budget", "5"))
     assert code == 1
     assert error.splitlines() == [
         "what is open is not known, so that nothing is measured to settle it: no statistics",
-        "the report could not be written: no statistics",
+        "the report could not be written: report.html: No space left on device, expected a writable place"
+        " with room",
     ]
     assert blocks_of(needing, "pair") == 4
 
@@ -173,16 +131,26 @@ def test_the_report_of_what_is_there_is_written_while_the_study_runs(
     assert run(settings) == 0
     *asked, last = (needing.root / "reports").read_text().splitlines()
     assert len(asked) >= 7, "after each block"
-    assert last == "report"
-    assert all(
-        re.fullmatch(r"report \d+ of \d+ processes done, about \d+ (s|min) left", line) for line in asked
-    )
+    assert last == ""
+    assert all(re.fullmatch(r"\d+ of \d+ processes done, about \d+ (s|min) left", line) for line in asked)
     assert capfd.readouterr().out.count("report of what is there: results/report.html") == len(asked)
     (needing.root / "reports").unlink()
     monkeypatch.setattr(session, "REPORT_PAUSE", 300.0)
     shutil.rmtree(needing.results)
     assert run(settings) == 0
-    assert (needing.root / "reports").read_text() == "report\n", "a short study needs no other"
+    assert (needing.root / "reports").read_text() == "\n", "a short study needs no other"
+
+
+def test_the_analysis_itself_is_asked_and_writes(workplace: Workplace) -> None:
+    run(workplace.settings)
+    analysis = Analysis(workplace.results, ["pair"])
+    expected = Open(blocks=2, next=6, needed=6)
+    assert {name: one for name, one in analysis.verdicts().open.items() if name == "pair"} == {
+        "pair": expected
+    }
+    assert analysis.verdicts().settled == frozenset()
+    page = analysis.report("2 of 9 processes done")
+    assert (page, "2 of 9 processes done" in page.read_text()) == (workplace.results / "report.html", True)
 
 
 def test_values_taken_out_of_a_finished_question_are_no_longer_planned(workplace: Workplace) -> None:
