@@ -196,8 +196,12 @@ class Blocks:
 
     @property
     def seconds_each(self) -> float:
-        """What a block of this call took. The first one does more: it finds out who minds being stopped."""
-        if len(self._took) == 1 and self._ran:
+        """What a block of this call took. The first one does more: it finds out who minds being stopped. What
+        comes before and after each run is there in every block.
+        """
+        commands = [one.command for one in self.experiment.points if one.command is not None]
+        has_more = self.experiment.question.warm_up or any(one.prepare or one.conclude for one in commands)
+        if len(self._took) == 1 and self._ran and not has_more:
             return min(self._took[0], _BESIDES * self._ran)
         return statistics.median(self._took[1:] or self._took or [0.0])
 

@@ -152,12 +152,14 @@ def _remarks(course: Course, by_wall: Sequence[Difference]) -> tuple[str, ...]:
         remarks.append(f"runs of each in a block, in random order and none of them stopped: {told}")
     if not (asked.has_printed_times or asked.cases):
         runs_of = {one.name: len(course.blocks.runs[one.name, 0].all) for one in asked.commands}
-        once = [name for name, number in runs_of.items() if number == 1 < max(runs_of.values())]
-        remarks += [f"{name} ran once, and a first run may find more to do than others" for name in once]
+        once = [name for name, number in runs_of.items() if number == 1]
+        names = ["each command"] if len(once) == len(runs_of) else once
+        remarks += [f"{name} ran once, and a first run may find more to do than others" for name in names]
         for one in asked.commands:
-            if (runs := course.blocks.runs[one.name, 0]).all:
-                of_both = [course.first.get((name, 0), 0.0) for name in (one.name, one.name + AGAIN)]
-                remarks += unlike_runs(one, max(of_both), runs)
+            both = [(name, 0) for name in (one.name, one.name + AGAIN)]
+            if course.blocks.runs[one.name, 0].all:
+                of_both = [course.blocks.runs[key] for key in both if key in course.blocks.runs]
+                remarks += unlike_runs(one, max(course.first.get(key, 0.0) for key in both), of_both)
     if _has_unread():
         remarks.append("standard input has something that no command was given: `--input FILE` gives it")
     codes = {one.name: course.blocks.runs[one.name, 0].codes for one in asked.commands}

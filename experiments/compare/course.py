@@ -15,6 +15,7 @@ from experiments.compare.first_run import (
     NotMeantError,
     note_idle,
     require_alike,
+    require_fine,
     require_meant,
     rounds_of,
     unstoppable,
@@ -216,6 +217,7 @@ class Course:
         self.blocks.began += load()
         clock = clock_of(self.asked, self.blocks)
         self.answer = answer = ask(self._results, self.asked.many, clock).without(self.left_out)
+        require_fine(self.asked, self.blocks.runs, answer)
         self._earlier.keep(self.blocks, self.how)
         blocks, needed = self.blocks, answer.needed
         more = None if needed is None else (needed - blocks.done) * blocks.seconds_each

@@ -15,7 +15,7 @@ from experiments.compare.pages import markdown, page, title
 from experiments.plan.executable import found as file_of
 from experiments.plan.executable import is_file
 from support.command_line import print_lines
-from support.errors import InputError
+from support.errors import InputError, cannot
 from support.files import descriptor_of, require_place, write_out
 
 SCHEMA_VERSION = 2
@@ -55,8 +55,8 @@ def _place(path: Path) -> object:
 
 def write(found: Found, said: list[str], first: str, draw: Callable[[], Path]) -> None:
     """Write what was asked for, each file whole or not at all: `said` are the lines of the result, `first` is
-    the verdict in a line if it is another than the usual one, `draw` makes the picture. Raises the first
-    OSError or InputError once all others are written.
+    the verdict in a line if it is another than the usual one, `draw` makes the picture. Once all others are
+    written, raises the OSError or InputError of the one that cannot be, or InputError with those of several.
     """
     first = first or title(found)
     again = shlex.join(["carom", *sys.argv[1:]])
@@ -72,6 +72,8 @@ def write(found: Found, said: list[str], first: str, draw: Callable[[], Path]) -
             write_out(path, text)
         except (OSError, InputError) as error:
             errors.append(error)
+    if len(errors) > 1:
+        raise InputError("; ".join(cannot(one) if isinstance(one, OSError) else str(one) for one in errors))
     if errors:
         raise errors[0]
 

@@ -5,8 +5,9 @@ import os
 import re
 import stat
 import statistics
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from experiments.compare.answer import Answer
 from experiments.compare.benchmarks import call_of
 from experiments.compare.blocks import Key, Runs
 from experiments.compare.commands import Compared
@@ -14,6 +15,7 @@ from experiments.compare.options import Asked
 from experiments.compare.texts import duration
 from experiments.plan.executable import found, is_file
 from experiments.side_by_side.contest import LEAST_IDLE, idle_told
+from experiments.side_by_side.printed_time import half_a_digit
 from support.errors import InputError
 
 SHORT = 0.05
@@ -99,11 +101,27 @@ def require_meant(asked: Asked, runs: Mapping[Key, Runs], benchmark: str | None)
             raise NotMeantError(f"{told}; {expected}")
 
 
-def unlike_runs(one: Compared, first: float, runs: Runs) -> list[str]:
-    """Lines on runs that took so much longer or shorter than the others that they did something else, and on
-    what may have failed without an exit code.
+def require_fine(asked: Asked, runs: Mapping[Key, Runs], answer: Answer) -> None:
+    """Raises InputError for printed times that are always the same and have too few digits for the margin,
+    where all that is known of a difference is that it is below half of the last digit.
     """
-    name, usual, told = one.name, runs.median("all"), []
+    for one in asked.commands:
+        of_one = runs[one.name, 0]
+        half = half_a_digit(of_one.output, one.time_from) if one.time_from else 0.0
+        is_hidden = any(abs(each.ratio - 1) <= half for each in answer.commands)
+        if half > asked.margin and is_hidden and len({*of_one.all}) == 1:
+            told = f"{one.called}: prints {duration(of_one.all[0])} in all of {len(of_one.all)} runs"
+            expected = f"expected more digits for a margin of {100 * asked.margin:g} %"
+            raise NotMeantError(f"{told}, which is known to {100 * half:.2g} %; {expected}")
+
+
+def unlike_runs(one: Compared, first: float, of_both: Sequence[Runs]) -> list[str]:
+    """Lines on runs that took so much longer or shorter than the others that they did something else, and on
+    what may have failed without an exit code. `of_both` are those of the command, and of the reference also
+    those under its second name: of a single block one of the two tells what the other found to do.
+    """
+    name, runs, told = one.name, of_both[0], []
+    usual = min(each.median("all") for each in of_both if each.all)
     if first - usual > _LEAST and first > usual * 3:
         took = f"the first run of {name} took {duration(first)}, the others {duration(usual)}"
         told.append(

@@ -32,7 +32,7 @@ def cases(
         asked = [*words, "--benchmark_list_tests=true", f"--benchmark_filter={of_filter}"]
         done = process.run(asked, environment, _LIST_SECONDS, folder)
         if done.exit_code != 0:
-            raise InputError(f"{key}: {done.reason}")
+            raise InputError(f"{key}: asked for its cases by --benchmark_list_tests: {done.reason}")
         if done.dropped:
             raise InputError(f"{key}: found a list of cases that is far too long, expected some MB at most")
         return [line.removesuffix("\r") for line in done.output.split("\n") if line.strip()]

@@ -121,6 +121,13 @@ def printed_time(lines: Iterable[bytes], pattern: str, unit_seconds: float | Non
     return _seconds_of(group, pattern, unit_seconds)
 
 
+def half_a_digit(text: str, pattern: str) -> float:
+    """Half of the last digit of the time in a text, as a share of it; 0 where the pattern finds none."""
+    found = re.search(pattern, text, re.ASCII)
+    digits = re.sub(r"[eE].*|[^0-9]", "", found[1] or "") if found else ""
+    return 0.5 / int(digits) if digits.strip("0") else 0.0
+
+
 def _group_of(line: str, match: re.Match[str]) -> _Group:
     begin, end = match.span(1) if match[1] is not None else (len(line), len(line))
     text = line[begin:end].strip(" \t")

@@ -126,6 +126,28 @@ CASES = (
         }, time="2s",
     ),
     Case(
+        TIMED, "a first run that takes far longer, in the only block",
+        "the same line, by the second run of the reference",
+        ("-n", "a", "-n", "b", "./a", "./a"),
+        ("1 block", "the first run of a took", "--prepare", "each command ran once"), code=None,
+        files={"a": f"[ -e built_a ] || {{ sleep 0.9; touch built_a; }}; {LOOP.format(times=40000)}"},
+    ),
+    Case(
+        TIME, "six blocks of a command with --prepare, foretold from one", "the preparation counts",
+        ("--prepare", "sleep 0.6", "sleep 0.1", "true"), ("1 block", "`--time 1"), ("`--time 1s`",),
+        code=None,
+    ),
+    Case(
+        PRINTED, "the same time of a single digit", "no verdict: one line that says how little it tells",
+        (*_TOOK, "./a", "./b"), ("a: prints 100 ms in all of", "known to 50 %; expected more digits"), code=1,
+        files={"a": "sleep 0.06; echo took 0.1 s\n", "b": "sleep 0.09; echo took 0.1 s\n"}, time="4s",
+    ),
+    Case(
+        PRINTED, "the same digit of two programs that differ by more", "their difference",
+        (*_TOOK, "./a", "./b"), ("+100.0",), code=None,
+        files=_prints("0.1 s", "0.2 s"),
+    ),
+    Case(
         PRINTED, "an amount of something else, with --unit", "one line that says what stands there",
         (*_NUMBER, "--unit", "s", "./a", "./b"), ("found '12' with the unit 'MB/s', expected a time",),
         code=2, files={"a": "echo took 12 MB/s\n", "b": "echo took 13 MB/s\n"},
@@ -428,6 +450,12 @@ CASES = (
         LISTS, "one of several that fails", "the others go on, it is listed",
         ("-L", "t", "0.1,0.12,oops,0.15", "sleep {t}"),
         ("sleep oops: failed after 0 runs", "  sleep 0.12  ", "  sleep 0.15  "), code=2, time="2s",
+    ),
+    Case(
+        WRITTEN, "two exports that cannot be written", "each is named, and the third is there",
+        ("--export-json", "full", "--export-csv", "kept/b", "--export-markdown", "c", "./gone", "true"),
+        ("full: No space left on device", "kept: File exists"), code=1, left=("c",),
+        files={"gone": "rm -rf kept; : > kept\n"}, setup="ln -s /dev/full full; mkdir kept",
     ),
     Case(
         WRITTEN, "an export to a device", "written to it; what it refuses is told, and it stays a device",
