@@ -1,27 +1,19 @@
-"""How long a point takes: the median of what was measured; until then as a probe of its variant foretells.
+"""How long a point takes: the median of what was measured; until then a guess by the size of its scene.
 
-A first block of each question overrules what was foretold. So the constants are round: too high costs a few
-blocks, too low a little more than the budget.
+A first block of each question overrules the guess. So the constants are round: too high costs a few blocks,
+too low a little more than the budget.
 """
 
-import contextlib
-import json
 import statistics
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from pathlib import Path
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
 
 from experiments.plan.point import PROCESS, Point
-from experiments.plan.scenes import Scene, SceneFile
-from experiments.results.store import Store
-from experiments.run.host_lock import run_alone
+from experiments.plan.scenes import Scene
 from experiments.run.runner import ProcessResult
-from support.files import read_json
 from support.vocabulary import COUNTS
 
-NOTE = "costs.json"
-PROBE = Scene(particles=10000, side=3162, radius=16, steps=10, min_velocity=2, max_velocity=5)
-
+_SECONDS_PER_DISC, _SECONDS_BESIDE = 2e-7, 0.05
+"""Of a step, and of a process that reads no discs: about what two threads of the published variant take."""
 _SECONDS_PER_DISC_READ = 7e-7
 _RUNS_OF_A_PROFILE = 3
 _HARD_CASE = 0.4
@@ -49,16 +41,6 @@ MOST_SECONDS = 3.0
 """Of the runs of a process, unless one lasts longer: a study looks at its time between processes."""
 
 
-class Probe(NamedTuple):
-    """What one process of a variant took on the probe scene: seconds a step, and seconds beside the steps."""
-
-    step: float
-    process: float
-
-
-_UNPROBED = Probe(0.01, 0.05)
-"""Of a variant whose probe failed: several times what the published one takes."""
-
 Measured = tuple[float, Sequence[float]]
 """Seconds of a whole process, and of its timed runs."""
 
@@ -66,13 +48,8 @@ Measured = tuple[float, Sequence[float]]
 class Costs:
     """Estimates in seconds of wall time."""
 
-    def __init__(
-        self,
-        probes: Mapping[str, Probe] | None = None,
-        measured: Mapping[str, Sequence[Measured]] | None = None,
-    ) -> None:
+    def __init__(self, measured: Mapping[str, Sequence[Measured]] | None = None) -> None:
         """`measured` has by point what its processes took, by their own account."""
-        self._probes = probes or {}
         self._measured = {
             point: [(seconds + SECONDS_PER_PROCESS, runs) for seconds, runs in processes]
             for point, processes in (measured or {}).items()
@@ -105,12 +82,8 @@ class Costs:
         return max(0.0, self.point(point) - point.repetitions * self.run(point))
 
     def runs(self, group: Sequence[Point]) -> int:
-        """How many timed runs the next process of these points makes, by what is known of their times; one
-        where nothing is known of a point.
-        """
+        """How many timed runs the next process of these points makes, by what is known of their times."""
         if len(group) < 2 or group[0].verb == PROCESS or group[0].kind == COUNTS:
-            return 1
-        if not all(one.id in self._measured or probe_key(one) in self._probes for one in group):
             return 1
         runs = choose_runs(sum(map(self.fixed, group)), sum(map(self.run, group)))
         return runs if all(one.id in self._measured for one in group) else min(runs, FIRST_RUNS)
@@ -135,7 +108,7 @@ class Costs:
         runs = point.warm_up + (_RUNS_OF_A_PROFILE if point.verb == "profile" else point.repetitions)
         seconds = runs * self._foretold_run(point)
         if point.command is None:
-            seconds += self._probe(point).process
+            seconds += _SECONDS_BESIDE
             if isinstance(point.scene, Scene):
                 seconds += point.scene.particles * _SECONDS_PER_DISC_READ
         return seconds
@@ -146,11 +119,7 @@ class Costs:
             return _UNKNOWN_PROGRAM
         if not isinstance(point.scene, Scene):
             return _HARD_CASE
-        steps = point.scene.steps * point.substeps
-        return steps * self._probe(point).step * _work(point.scene) / _work(PROBE)
-
-    def _probe(self, point: Point) -> Probe:
-        return self._probes.get(probe_key(point), _UNPROBED)
+        return _SECONDS_PER_DISC * point.scene.steps * point.substeps * _work(point.scene)
 
 
 def choose_runs(fixed_seconds: float, run_seconds: float) -> int:
@@ -159,55 +128,6 @@ def choose_runs(fixed_seconds: float, run_seconds: float) -> int:
     """
     one = max(run_seconds, 1e-9)
     return max(1, round(min(IN_THE_CLOCK * fixed_seconds / one, MOST_RUNS, MOST_SECONDS / one)))
-
-
-def probe_key(point: Point) -> str:
-    """What a probe depends on."""
-    return f"{str(point.program.sha256)[:12]} {point.variant} {point.threads}"
-
-
-def probed(
-    points: Iterable[Point], store: Store, scene: Callable[[Scene], SceneFile], time_limit: float
-) -> dict[str, Probe]:
-    """The probes of the points' variants, those made that are not kept. What a probe leaves no record of is
-    left out: the run proper explains why.
-    """
-    probes = _kept(store.note(NOTE))
-    can = (point for point in points if point.program.sha256 is not None and point.command is None)
-    groups: dict[object, list[Point]] = {}
-    for key, point in {probe_key(point): point for point in can}.items():
-        if key not in probes:
-            groups.setdefault((point.program.path, point.openmp, point.threads), []).append(point)
-    for group in groups.values():
-        probes |= _probe_all(group, scene(PROBE).path, store.temporary, time_limit)
-    if groups:
-        store.keep_note(NOTE, probes)
-    return probes
-
-
-def _kept(note: object) -> dict[str, Probe]:
-    """The probes that were kept; of anything else that stands in their place nothing."""
-    with contextlib.suppress(TypeError, ValueError):
-        found = {str(key): Probe(*map(float, one)) for key, one in dict(note).items()}  # type: ignore[call-overload]
-        return {key: one for key, one in found.items() if one.step > 0 and one.process >= 0}
-    return {}
-
-
-def _probe_all(group: Sequence[Point], scene: Path, folder: Path, time_limit: float) -> dict[str, Probe]:
-    """Time a short run of each of these variants in one process, one after the other."""
-    contenders, record = folder / "probes.json", folder / "probe.json"
-    words = [[str(scene), "--variant", one.variant, "--threads", str(one.threads)] for one in group]
-    contenders.write_text(json.dumps(words), encoding="utf-8")
-    record.unlink(missing_ok=True)
-    command = [str(group[0].program.path), "turns", str(contenders), "--counts", "--record", str(record)]
-    run_alone(command, group[0].openmp, time_limit)
-    probes = {}
-    for point, told in zip(group, (read_json(record) or {}).get("contenders", ()), strict=False):
-        if told["repetitions"]:
-            steps = float(told["repetitions"][0]["steps_seconds"])
-            process = SECONDS_PER_PROCESS + max(0.0, float(told["process_seconds"]) - steps)
-            probes[probe_key(point)] = Probe(steps / PROBE.steps, process)
-    return probes
 
 
 def _work(scene: Scene) -> float:

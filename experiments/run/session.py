@@ -48,7 +48,7 @@ def run(settings: Settings) -> int:
         display.now("planning")
         keep_claims(settings.questions, settings.results)
         runner = study.runner()
-        schedule = study.schedule(runner, settle=True)
+        schedule = study.schedule(settle=True)
         display.line(summary(schedule, study.budget_seconds))
         if limits := what_limits():
             display.line(limits)

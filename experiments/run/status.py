@@ -1,6 +1,5 @@
 """What of the study is done, missing or failed, as a table for a terminal."""
 
-import os
 from collections.abc import Sequence
 
 from rich.console import Console
@@ -73,11 +72,9 @@ def _in_columns(state: Sequence[Row]) -> list[str]:
 
 
 def show_plan(settings: Settings) -> int:
-    """Print what a run would do and about how long it would take; variants are probed, no point is run."""
+    """Print what a run would do and about how long it would take; nothing is run."""
     study = Study(settings)
-    others = others_at_work()
-    with study.store.opened():
-        schedule = study.schedule(study.runner(), settle=False)
+    schedule = study.schedule(settle=False)
     table = new_table("experiment", "points", "blocks", "to be run", "figure", "claim", "title")
     for experiment in study.experiments:
         part, question = schedule.parts[experiment.name], experiment.question
@@ -86,21 +83,10 @@ def show_plan(settings: Settings) -> int:
         table.add_row(experiment.name, *map(str, counts), *told)
     console = new_console()
     console.print(table)
-    for line in (summary(schedule, study.budget_seconds), what_limits(), others):
+    for line in (summary(schedule, study.budget_seconds), what_limits()):
         if line:
             console.print(line)
     return 0
-
-
-def others_at_work() -> str:
-    """What to say of a probe's times where other programs run; nothing where they leave most processors."""
-    load, processors = os.getloadavg()[0], len(os.sched_getaffinity(0))
-    if load < processors / 2:
-        return ""
-    return (
-        f"Other programs were at work (load {load:.1f} on {processors} processors): "
-        "what was foretold is for a machine as busy as this, a quiet one takes less."
-    )
 
 
 def new_console() -> Console:

@@ -13,7 +13,7 @@ from experiments.plan.scale import find_scale
 from experiments.plan.scenes import SceneFolder
 from experiments.plan.site import Machine
 from experiments.results.store import Store, measured_by_point, new_session
-from experiments.run.costs import Costs, probed
+from experiments.run.costs import Costs
 from experiments.run.progress import about
 from experiments.run.runner import Runner
 from experiments.run.schedule import Part, Schedule
@@ -79,13 +79,11 @@ class Study:
         scenes = SceneFolder(self.store.root / "scenes", self.store.temporary, str(self.generator.sha256))
         return Runner(self.store, scenes, self.generator, self.site.time_limit_seconds)
 
-    def schedule(self, runner: Runner, *, settle: bool) -> Schedule:
+    def schedule(self, *, settle: bool) -> Schedule:
         """What is there and what is to be run; `settle` moves stale records out of the way first."""
         look = self.store.settle if settle else self.store.find
         found = {one.name: look(one) for one in self.experiments}
-        points = (point for one in self.experiments for point in one.points)
-        probes = probed(points, self.store, runner.scene, self.site.time_limit_seconds)
-        costs = Costs(probes, measured_by_point(found.values()))
+        costs = Costs(measured_by_point(found.values()))
         return Schedule([Part(one, self.store, found[one.name], costs) for one in self.experiments], costs)
 
     @property

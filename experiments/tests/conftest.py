@@ -116,7 +116,7 @@ class Workplace:
         return [json.loads(line) for line in (self.root / "log").read_text().splitlines()]
 
     def measured(self) -> int:
-        """How many processes were run to measure a point: a probe has no tag."""
+        """How many processes were run to measure a point."""
         return sum("--tag" in call["words"] for call in self.calls())
 
     def rows(self) -> dict[str, status.Row]:

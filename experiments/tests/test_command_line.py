@@ -33,7 +33,7 @@ def test_a_run_and_a_status_tell_how_much_and_how_long(workplace: Workplace) -> 
     assert re.search(r"^all +7 +16 +0 +0 +0 +[\d.]+ +\d+ %$", output, re.MULTILINE)
 
 
-def test_status_and_plan_write_no_record(workplace: Workplace) -> None:
+def test_status_and_plan_write_nothing(workplace: Workplace) -> None:
     code, output, error = finish(workplace.start("status"))
     assert (code, error) == (0, "")
     assert not workplace.results.exists()
@@ -42,7 +42,7 @@ def test_status_and_plan_write_no_record(workplace: Workplace) -> None:
     assert (code, error) == (0, "")
     assert re.search(r"^pair +2 +2 +4 +comparison +four_boxes +Pair", output, re.MULTILINE)
     assert re.search(r"16 processes; 16 of them to be run: about \d+ (s|min)", output)
-    assert not workplace.records()
+    assert not workplace.results.exists()
 
 
 @pytest.mark.parametrize(("study", "builds"), [("threads", "gcc\n"), ("threads,compiler", "gcc clang\n")])

@@ -68,7 +68,7 @@ def test_anything_in_a_results_folder_is_put_aside_or_counted_once(
         target = {
             "record": records[0],
             "new": records[0].with_name(data.draw(NAMES)),
-            "note": data.draw(st.sampled_from([results / "costs.json", *(results / "checks").iterdir()])),
+            "note": data.draw(st.sampled_from([results / "plan.json", *(results / "checks").iterdir()])),
         }[victim]
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(damage, encoding="utf-8", errors="surrogatepass")

@@ -168,7 +168,7 @@ def test_the_cheapest_to_settle_comes_first(workplace: Workplace) -> None:
     run(replace(workplace.settings, figures=False))
     study = Study(workplace.settings)
     with study.store.opened():
-        schedule = study.schedule(study.runner(), settle=False)
+        schedule = study.schedule(settle=False)
     one, other = Open(2, 4, 6), Open(2, 4, 40)
     for first, pair, chunks in (("pair", one, other), ("chunks", other, one)):
         assert cheapest(schedule, {"pair": pair, "chunks": chunks}) == first
