@@ -108,6 +108,7 @@ bool is_frozen(int events) {
 
 std::unique_ptr<Cgroup> Cgroup::make() {
     static int number = 0;
+    static std::string entered; // to find out takes as long as a short program: a fork, and a move
     const std::vector<fs::path> groups = own_cgroups();
     if (groups.empty()) {
         return nullptr;
@@ -126,7 +127,8 @@ std::unique_ptr<Cgroup> Cgroup::make() {
         const int events = open((path + "/cgroup.events").c_str(), O_RDONLY | O_CLOEXEC);
         const bool complete = access((path + "/cgroup.freeze").c_str(), W_OK) == 0 &&
                               access((path + "/cgroup.kill").c_str(), W_OK) == 0;
-        if (entrance >= 0 && events >= 0 && complete && can_be_entered(entrance)) {
+        if (entrance >= 0 && events >= 0 && complete && (entered == folder || can_be_entered(entrance))) {
+            entered = folder;
             return std::unique_ptr<Cgroup>(new Cgroup(std::move(path), entrance, events));
         }
         close(entrance);
