@@ -107,7 +107,7 @@ def require_fine(asked: Asked, runs: Mapping[Key, Runs], answer: Answer) -> None
     """
     for one in asked.commands:
         of_one = runs[one.name, 0]
-        half = half_a_digit(of_one.output, one.time_from) if one.time_from else 0.0
+        half = half_a_digit(of_one.output.encode().split(b"\n"), one.time_from) if one.time_from else 0.0
         is_hidden = any(abs(each.ratio - 1) <= half for each in answer.commands)
         if half > asked.margin and is_hidden and len({*of_one.all}) == 1:
             told = f"{one.called}: prints {duration(of_one.all[0])} in all of {len(of_one.all)} runs"

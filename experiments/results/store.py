@@ -121,18 +121,17 @@ class Store:
         Nothing is deleted: going from one scale to the other and back measures nothing twice. What was
         measured anew since does not come back.
         """
-        found = self.find(experiment)
+        found, points = self.find(experiment), {point.id: point for point in experiment.points}
         for path in found.stale:
             self.retire(path)
-        is_changed, points = bool(found.stale), {point.id: point for point in experiment.points}
+        found.stale.clear()
         for path in sorted((self.root / "stale" / "records" / experiment.name).rglob("*.json")):
             record = read_json(path)
             target = self._path_of(record, points)
             if target is not None and found.files.keys().isdisjoint(keys_of(record)):
                 move(path, target)
                 found.take(record, target)
-                is_changed = True
-        return self.find(experiment) if is_changed else found
+        return found
 
     def clear(self, found: Found, keys: Iterable[Key]) -> None:
         """Move the records out of the way in which these are: they are measured anew."""

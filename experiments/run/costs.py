@@ -40,7 +40,6 @@ FIRST_RUNS = 3
 MOST_SECONDS = 3.0
 """Of the runs of a process, unless one lasts longer: a study looks at its time between processes."""
 
-
 Measured = tuple[float, Sequence[float]]
 """Seconds of a whole process, and of its timed runs."""
 

@@ -319,10 +319,8 @@ def _told(failed: str, ask: Callable[[], Answer]) -> Answer | None:
     with contextlib.redirect_stderr(said):
         try:
             answer = ask()
-        except InputError as error:
-            print(f"{failed}: {error}", file=said)
-        except OSError as error:
-            print(f"{failed}: {cannot(error)}", file=said)
+        except (InputError, OSError) as error:
+            print(f"{failed}: {cannot(error) if isinstance(error, OSError) else error}", file=said)
         except Exception as error:
             print(f"{failed}: {type(error).__name__}: {error}", file=said)
     for line in said.getvalue().splitlines():

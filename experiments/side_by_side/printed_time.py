@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import NoReturn
 
@@ -100,18 +100,11 @@ def printed_time(lines: Iterable[bytes], pattern: str, unit_seconds: float | Non
     or several, takes a part of a longer number or time, or what stands there is ambiguous, no positive
     number, or without any unit.
     """
-    expression = re.compile(pattern, re.ASCII)
     first = last = ""
     group, number = _Group("", "", "", ends_match=False), 0
-    for raw in lines:
-        if len(raw) > LONGEST_LINE + 1:
-            continue
-        line = _COLOURS.sub(b"", raw.rstrip(b"\r\n")).decode(errors="replace")
-        for at, match in enumerate(expression.finditer(line)):
-            # An empty one is what (.*) leaves behind a first.
-            if match[0] or at == 0:
-                first, last = (first if number else match[0]), match[0]
-                group, number = _group_of(line, match), number + 1
+    for line, match in _matches(lines, pattern):
+        first, last = (first if number else match[0]), match[0]
+        group, number = _group_of(line, match), number + 1
     if number == 0:
         told = "expected one (what goes to standard error is read with `2>&1` behind the command)"
         raise InputError(f"time: '{pattern}' matches 0 lines of standard output, {told}")
@@ -121,11 +114,24 @@ def printed_time(lines: Iterable[bytes], pattern: str, unit_seconds: float | Non
     return _seconds_of(group, pattern, unit_seconds)
 
 
-def half_a_digit(text: str, pattern: str) -> float:
-    """Half of the last digit of the time in a text, as a share of it; 0 where the pattern finds none."""
-    found = re.search(pattern, text, re.ASCII)
-    digits = re.sub(r"[eE].*|[^0-9]", "", found[1] or "") if found else ""
+def half_a_digit(lines: Iterable[bytes], pattern: str) -> float:
+    """Half of the last digit of the time that lines have, as a share of it; 0 where they have none."""
+    texts = [_group_of(line, match).text for line, match in _matches(lines, pattern)]
+    digits = re.sub(r"[eE].*|[^0-9]", "", texts[-1]) if texts else ""
     return 0.5 / int(digits) if digits.strip("0") else 0.0
+
+
+def _matches(lines: Iterable[bytes], pattern: str) -> Iterator[tuple[str, re.Match[str]]]:
+    """The lines that match, without colours, each with a match."""
+    expression = re.compile(pattern, re.ASCII)
+    for raw in lines:
+        if len(raw) > LONGEST_LINE + 1:
+            continue
+        line = _COLOURS.sub(b"", raw.rstrip(b"\r\n")).decode(errors="replace")
+        for at, match in enumerate(expression.finditer(line)):
+            # An empty one is what (.*) leaves behind a first.
+            if match[0] or at == 0:
+                yield line, match
 
 
 def _group_of(line: str, match: re.Match[str]) -> _Group:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from experiments.side_by_side.printed_time import LONGEST_LINE, printed_time
+from experiments.side_by_side.printed_time import LONGEST_LINE, half_a_digit, printed_time
 from support.errors import InputError
 
 
@@ -130,3 +130,13 @@ REFUSED = (
 def test_what_is_none_is_refused_with_what_stands_there(text: str, pattern: str, told: str) -> None:
     assert said(text, pattern).startswith("time: ")
     assert told in said(text, pattern)
+
+
+@pytest.mark.parametrize(
+    ("text", "half"),
+    [("0.1 s", 0.5), ("\x1b[1m0.1\x1b[0m s", 0.5), ("200 ms", 0.0025), ("1.5e-3 s", 1 / 30), ("0.0 s", 0)],
+)
+def test_half_of_the_last_digit_is_a_share_of_the_time(text: str, half: float) -> None:
+    lines = [b"begun 12 s\n", f"took {text}\n".encode()]
+    assert half_a_digit(lines, "^took ([^ ]+)") == pytest.approx(half)
+    assert half_a_digit(lines[:1], "^took ([^ ]+)") == 0
