@@ -12,11 +12,11 @@ from experiments.plan.scenes import Scene
 from experiments.run.runner import ProcessResult
 from support.vocabulary import COUNTS
 
-_SECONDS_PER_DISC, _SECONDS_BESIDE = 2e-7, 0.05
+_SECONDS_PER_DISC, _SECONDS_BESIDE = 1.5e-7, 0.01
 """Of a step, and of a process that reads no discs: about what two threads of the published variant take."""
 _SECONDS_PER_DISC_READ = 7e-7
 _RUNS_OF_A_PROFILE = 3
-_HARD_CASE = 0.4
+_HARD_CASE = 0.1
 """Seconds of one on average: most take none, and one takes three."""
 _UNKNOWN_PROGRAM = 1.0
 """Seconds of somebody else's program until it has run once: a guess."""
