@@ -125,7 +125,6 @@ struct Measured {
 
 Measured take_turns(const std::vector<ContenderOptions>& said, const TurnsOptions& options) {
     std::map<std::string, LoadedScene> scenes;
-    LastChecked last;
     std::deque<VariantContender> contenders;
     for (const ContenderOptions& one : said) {
         const std::string& path = one.simulation.scene;
@@ -133,7 +132,7 @@ Measured take_turns(const std::vector<ContenderOptions>& said, const TurnsOption
         if (loaded == scenes.end()) {
             loaded = scenes.emplace(path, load_scene(path)).first;
         }
-        contenders.emplace_back(measurement_of(loaded->second, one), last);
+        contenders.emplace_back(measurement_of(loaded->second, one));
     }
     Suspensions suspensions;
     suspensions.start();

@@ -117,11 +117,8 @@ void RunInParts::step(int substep) {
 }
 
 std::optional<std::string> RunInParts::violation_after(const std::vector<Disc>& after) const {
-    if (check_.collisions != nullptr) {
-        return check_.collisions->step(before_, after);
-    }
-    return check_.last != nullptr ? check_.last->step(checker_, before_, after)
-                                  : checker_.step(before_, after);
+    return check_.collisions != nullptr ? check_.collisions->step(before_, after)
+                                        : checker_.step(before_, after);
 }
 
 /// What is wrong with a step that did not end, if it is not that alone.

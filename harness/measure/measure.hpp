@@ -22,20 +22,17 @@ namespace carom {
 enum class CheckScope { nothing, last_step, every_step };
 
 /// What the checker looks at, and whose precision and time of impact it expects. `collisions`,
-/// if it is not null, is who is told every collision of the run: then it checks the steps. `last`, if it is
-/// not null, knows the step that was checked last, of this run or of another one.
+/// if it is not null, is who is told every collision of the run: then it checks the steps.
 struct Check {
     CheckScope scope;
     Engine engine = Engine::steps;
     Policies policies;
     CollisionChecker* collisions = nullptr;
-    LastChecked* last = nullptr;
 
     Check(CheckScope some_scope) : scope(some_scope) {} // NOLINT(*-explicit-*)
-    Check(CheckScope some_scope, const Variant& variant, CollisionChecker* some_collisions = nullptr,
-          LastChecked* some_last = nullptr)
-        : scope(some_scope), engine(variant.engine), policies(variant.policies), collisions(some_collisions),
-          last(some_last) {}
+    Check(CheckScope some_scope, const Variant& variant, CollisionChecker* some_collisions = nullptr)
+        : scope(some_scope), engine(variant.engine), policies(variant.policies), collisions(some_collisions) {
+    }
 };
 
 /// A run of all S steps of a scene.

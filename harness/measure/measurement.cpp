@@ -1,17 +1,24 @@
 #include "harness/measure/measurement.hpp"
 
+#include <cstring>
 #include <utility>
 
-#include "harness/verify/disc_states.hpp"
-
 namespace carom {
+namespace {
+
+bool same_bits(const std::vector<Disc>& one, const std::vector<Disc>& two) {
+    return one.size() == two.size() && std::memcmp(one.data(), two.data(), one.size() * sizeof(Disc)) == 0;
+}
+
+} // namespace
+
 void Measurement::add(Run run) {
     if (!violation) {
         violation = run.violation;
     }
     if (!repetitions.empty()) {
         Run& before = repetitions.back();
-        if (!violation && !equal_bits(before.discs, run.discs)) {
+        if (!violation && !same_bits(before.discs, run.discs)) {
             violation = "the final state differs from the one of the run before";
         } else if (!violation && before.work != run.work) {
             violation = "the work differs from that of the run before, and the final state does not";

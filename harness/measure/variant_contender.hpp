@@ -14,13 +14,11 @@
 namespace carom {
 
 /// A variant on a scene with its tunings, as one of those that take turns. All its runs, the untimed ones
-/// among them, are of one simulation. The last step of the first one is checked, unless it is that which the
-/// contender before it ended with; its other runs must end in the same bits after the same work.
+/// among them, are of one simulation. The last step of the first one is checked; the others must end in the
+/// same bits after the same work, of which the verdict would be the same.
 class VariantContender final : public Contender {
   public:
-    /// `last` is shared by those that take turns.
-    VariantContender(Measurement measurement, LastChecked& last)
-        : measurement_(std::move(measurement)), last_(last) {}
+    explicit VariantContender(Measurement measurement) : measurement_(std::move(measurement)) {}
 
     /// Runs what a process runs untimed. Returns the seconds that the whole run may be expected to take.
     double prepare() {
@@ -39,7 +37,7 @@ class VariantContender final : public Contender {
             simulation_->restart(measurement_.scene);
             const CheckScope scope = ++runs_ == 1 ? CheckScope::last_step : CheckScope::nothing;
             run_.emplace(measurement_.scene, *simulation_, measurement_.tuning,
-                         Check(scope, measurement_.variant, nullptr, &last_));
+                         Check(scope, measurement_.variant));
         }
         *measurement_.own_seconds += process_seconds() - start;
     }
@@ -68,7 +66,6 @@ class VariantContender final : public Contender {
     }
 
     Measurement measurement_;
-    LastChecked& last_;
     std::unique_ptr<Simulation> simulation_;
     std::optional<RunInParts> run_;
     int runs_ = 0; ///< that have been started

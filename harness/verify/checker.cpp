@@ -55,17 +55,6 @@ std::optional<std::string> Checker::step(const std::vector<Disc>& before,
                                          : conservation_violation(free, after, pairs, walls_, impact_);
 }
 
-std::optional<std::string> LastChecked::step(const Checker& checker, const std::vector<Disc>& before,
-                                             const std::vector<Disc>& after) {
-    if (checker_ != checker || !equal_bits(before_, before) || !equal_bits(after_, after)) {
-        violation_ = checker.step(before, after);
-        checker_ = checker;
-        before_ = before;
-        after_ = after;
-    }
-    return violation_;
-}
-
 std::optional<std::string> Checker::left_colliding(const std::vector<Disc>& free,
                                                    const std::vector<Disc>& after,
                                                    const std::vector<OverlappingPair>& pairs) const {

@@ -22,8 +22,6 @@ class Checker {
     Checker(double side, double radius, double dt, Tolerance tolerance, const Rounding& rounding = Rounding(),
             Impact impact = Impact::step_end, Engine engine = Engine::steps);
 
-    bool operator==(const Checker&) const = default;
-
     /// The first violation, named with its discs and numbers, or nothing:
     ///  - every disc was moved by exactly v dt (v before the step), and its state is finite;
     ///  - no overlapping pair and no wall is left colliding (with twice the kernel's tolerance for approach);
@@ -65,21 +63,6 @@ class Checker {
     Rounding rounding_;
     Impact impact_;
     Engine engine_;
-};
-
-/// The step that was checked last. One of the same bits and the same checker gets its verdict: of variants
-/// that end in the same bits only the first is checked.
-class LastChecked {
-  public:
-    /// What is wrong with the step.
-    std::optional<std::string> step(const Checker& checker, const std::vector<Disc>& before,
-                                    const std::vector<Disc>& after);
-
-  private:
-    std::optional<Checker> checker_;
-    std::vector<Disc> before_;
-    std::vector<Disc> after_;
-    std::optional<std::string> violation_;
 };
 
 /// Says so if the state of disc i is not finite.

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <cmath>
-#include <cstring>
 #include <string>
-#include <vector>
 
 #include "harness/support/format.hpp"
 #include "kernels/scene.hpp"
@@ -21,10 +19,6 @@ inline double speed_of(const Disc& disc) { return std::hypot(disc.vx, disc.vy); 
 
 /// The distance times the speed at which it grows: below 0 while they approach.
 inline double parting_of(const Disc& seen) { return seen.x * seen.vx + seen.y * seen.vy; }
-
-inline bool equal_bits(const std::vector<Disc>& one, const std::vector<Disc>& two) {
-    return one.size() == two.size() && std::memcmp(one.data(), two.data(), one.size() * sizeof(Disc)) == 0;
-}
 
 /// "(1, 2), velocity (0.5, 0)", so that it reads back as the same numbers.
 inline std::string state_text(const Disc& disc) {

@@ -19,7 +19,6 @@ class Rounding {
     /// `epsilon` is the machine epsilon of double or of float.
     explicit Rounding(double epsilon = std::numeric_limits<double>::epsilon()) : epsilon_(epsilon) {}
 
-    bool operator==(const Rounding&) const = default;
     double operator()(double value) const { return is_double() ? value : to_float(value); }
 
     double epsilon() const { return epsilon_; }

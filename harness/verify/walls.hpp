@@ -10,7 +10,6 @@ struct Walls {
     double radius;
     Rounding rounding;
 
-    bool operator==(const Walls&) const = default;
     bool touches_low(double position) const { return position - radius <= 0; }
     bool touches_high(double position) const { return rounding(position + radius) >= side; }
     bool touches(double position) const { return touches_low(position) || touches_high(position); }

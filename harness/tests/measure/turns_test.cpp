@@ -158,9 +158,8 @@ TEST(VariantContender, ALaterRunHasToEndInTheSameBitsAfterTheSameWork) {
 
 TEST(VariantContender, EndsAsIfItHadRunAlone) {
     const Scene scene = tests::random_scene_of_density(300, 0.4, 12, 5);
-    LastChecked last;
-    VariantContender published(measurement_of(scene, "published"), last);
-    VariantContender track(measurement_of(scene, "track", CheckScope::every_step), last);
+    VariantContender published(measurement_of(scene, "published"));
+    VariantContender track(measurement_of(scene, "track", CheckScope::every_step));
     EXPECT_GT(published.prepare(), 0);
     EXPECT_GT(track.prepare(), 0);
     const std::vector<Contender*> both{&published, &track};

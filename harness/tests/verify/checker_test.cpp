@@ -172,24 +172,5 @@ TEST(KineticEnergy, IsHalfTheSumOfSquaredSpeeds) {
     EXPECT_EQ(kinetic_energy({{1, 2, 3, 4}, {5, 6, -1, 0}}), 13);
 }
 
-TEST(LastChecked, JudgesWhatDiffersInAnyBitOfItsStatesOrInItsCheckerAnew) {
-    const Checker checker(side, radius, 1, Tolerance::relative);
-    LastChecked last;
-    const std::vector<Disc> right = rightly_stepped();
-    std::vector<Disc> wrong = right;
-    wrong[lone].vx = std::nextafter(wrong[lone].vx, 2);
-    std::vector<Disc> elsewhere = before;
-    elsewhere[lone].x = std::nextafter(elsewhere[lone].x, 2);
-    for (int time = 0; time < 2; ++time) {
-        EXPECT_EQ(last.step(checker, before, right), std::nullopt);
-        EXPECT_EQ(last.step(checker, before, wrong), checker.step(before, wrong));
-        EXPECT_NE(last.step(checker, before, wrong), std::nullopt);
-    }
-    EXPECT_EQ(last.step(checker, before, right), std::nullopt);
-    EXPECT_NE(last.step(checker, elsewhere, right), std::nullopt);
-    EXPECT_EQ(last.step(checker, before, right), std::nullopt);
-    EXPECT_NE(last.step(Checker(side, radius, 0.5, Tolerance::relative), before, right), std::nullopt);
-}
-
 } // namespace
 } // namespace carom
