@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from experiments.compare.commands import Compared
+from experiments.compare.commands import Compared, words_in
 from experiments.plan.benchmark_cases import cases
 from experiments.plan.executable import UnfitError, found, require_executable
 from experiments.run.progress import about, warn
@@ -61,6 +61,9 @@ def call_of(command: Compared) -> Call | None:
     becomes it, as `taskset` does. None of them is run to find out.
     """
     words = command.words
+    if "-S" in words[1:-1] and os.path.basename(words[0]) == "env":  # noqa: PTH119 - a word
+        split = words.index("-S")
+        words = (*words[:split], *words_in(words[split + 1]), *words[split + 2 :])
     at = _BEHIND_INPUT if words[:2] == ("sh", "-c") and len(words) > _BEHIND_INPUT else 0
     if os.path.basename(words[at]) in _WRAPPERS:  # noqa: PTH119 - a word
         at = next((k for k, word in enumerate(words) if _is_benchmark(word, command.folder)), 0)

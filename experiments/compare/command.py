@@ -132,7 +132,10 @@ def _exit_code(blocks: Blocks, found: Found, stopped: int | None) -> int:
 
 
 def _stopped_by(number: int | None) -> tuple[str, ...]:
-    return () if number is None else (f"stopped by {signal.Signals(number).name} before it was done",)
+    if number is None:
+        return ()
+    left = "a command that ran then was killed, and may leave files of its own"
+    return (f"stopped by {signal.Signals(number).name} before it was done: {left}",)
 
 
 def _write_down(asked: Asked, store: Store) -> None:

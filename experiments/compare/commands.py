@@ -226,13 +226,16 @@ def names_of(commands: Sequence[Sequence[str]], lines: Sequence[str]) -> list[st
     return list(lines)
 
 
+_SHORT_PATH = 3
+"""Parts of a path that is told whole, the root among them."""
+
+
 def _short(word: str) -> str:
     """The last two parts of a path."""
-    return (
-        os.fspath(Path(*Path(word).parts[-2:]))
-        if "/" in word and not word.startswith("./")
-        else word.removeprefix("./")
-    )
+    parts = Path(word).parts
+    if "/" not in word or word.startswith("./") or (word.startswith("/") and len(parts) <= _SHORT_PATH):
+        return word.removeprefix("./")
+    return os.fspath(Path(*parts[-2:]))
 
 
 def _is_number(text: str) -> bool:

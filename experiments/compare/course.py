@@ -159,6 +159,9 @@ class Course:
         if asked.warm_up:
             runs = (asked.warm_up + 1) * len(blocks.experiment.points)
             warn(f"carom: --warmup: the first block is {runs} runs, however long they take")
+        if asked.turns:
+            told = "nobody looks whether a command waits for one that is stopped; --turns auto does"
+            warn(f"carom: --turns: {told}")
         line.show(lambda: f"one run of each, {blocks.seconds:.0f} s")
         for name in unstoppable(asked):
             warn(f"carom: {name}: runs as another user, so that it can be neither stopped nor ended here")

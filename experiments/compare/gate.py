@@ -17,6 +17,8 @@ from experiments.compare.same_program import (
     require_two_files,
     require_two_libraries,
     require_two_programs,
+    tell_own_path,
+    tell_shared_places,
 )
 from experiments.compare.watch import Require
 from experiments.compare.worktrees import Commit, Repository, Tree, build, repository
@@ -99,8 +101,10 @@ def _built(
             raise InputError(f"{name} {commit.short}: {told}; expected {how} if it is to be built")
     if commits["base"].sha != commits["head"].sha:
         require_two_files(run, trees["base"], trees["head"], since, is_accepted=options.same_bytes)
+        tell_own_path(trees["base"])
         if not options.same_bytes:
             require_two_programs(run, trees["base"], trees["head"])
+            tell_shared_places(options.build or "", trees["base"], since)
     words, line, pattern = tuple(run), " ".join(run), options.time_from
     commands = tuple(
         Compared(name, words, line, folder=tree.folder, time_from=pattern, called=name)

@@ -203,7 +203,7 @@ def add_measuring(parser: argparse.ArgumentParser) -> None:
         dest="seconds",
         default=60.0,
         metavar="60s",
-        help="the longest time to measure",
+        help="the longest time to measure; each command runs once, and the reference twice, in any case",
     )
     told = "stop a run that takes longer (default: five times --time, a minute at least)"
     add("--timeout", type=values.duration, metavar="300s", help=told)

@@ -1,5 +1,6 @@
 """Whether each of two commits runs what was built of it: builds that share a place make both run one file."""
 
+import contextlib
 import filecmp
 import os
 import re
@@ -22,8 +23,14 @@ _NO_SOURCE = re.compile(
 )
 """The names of files that go into no program: pages, tests, examples, settings of tools."""
 
-_LEADING = ("PYTHONPATH", "LD_LIBRARY_PATH", "LD_PRELOAD")
-"""Variables by which programs find parts of themselves."""
+_LEADING = re.compile(r"(?!(MAN|INFO)?PATH|GITHUB_|CI_)\w*(PATH|LIB|PRELOAD)")
+"""The names of variables by which programs find parts of themselves."""
+
+_ABSOLUTE = re.compile(r"(?:(?<![\w.$})~/])|(?<=\s-[A-Z]))/[\w.+/-]+")
+"""A path in a line of a shell or of a Makefile, also one that an option has without a blank."""
+
+_OF_A_BUILD = ("Makefile", "makefile", "GNUmakefile")
+"""What a build reads although its line does not name it."""
 
 _LONGEST_SCRIPT = 1 << 16
 """Bytes of a script whose words are looked at."""
@@ -38,12 +45,7 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
         _require_own(words[0], head)
     own, trees = base.repository.resolve(), base.top.resolve().parent
     of_base, of_head = (set(_read(words, tree.folder)) for tree in (base, head))
-    led = [
-        (f"{name}={part}", part) for name in _LEADING for part in os.environ.get(name, "").split(os.pathsep)
-    ]
-    named = [*((word, word) for word in _parts(words)), *led]
-    folders = {(told, Path(path).resolve()) for told, path in named if path.startswith("/")}
-    for word, path in sorted(of_head | folders):
+    for word, path in sorted(of_head | _folders(words)):
         if path.exists() and path.is_relative_to(own) and not path.is_relative_to(trees):
             told = "of your own checkout: both commits would use it"
             raise InputError(f"found {word}, {told}; expected a path inside the checkout, such as ./prog")
@@ -65,12 +67,52 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
         warn(f"carom: {told}")
 
 
+def tell_own_path(base: Tree) -> None:
+    """Say which folders of PATH lie in the user's own checkout: both commits run what is named there."""
+    own, trees = base.repository.resolve(), base.top.resolve().parent
+    for part in os.environ.get("PATH", "").split(os.pathsep):
+        path = Path(part).resolve()
+        if part.startswith("/") and path.is_relative_to(own) and not path.is_relative_to(trees):
+            warn(f"carom: PATH={part}, of your own checkout: both commits run programs that lie there")
+
+
+def _folders(words: Sequence[str]) -> set[tuple[str, Path]]:
+    """The absolute paths that words name, and variables by which programs find parts of themselves."""
+    led = [
+        (f"{name}={part}", part)
+        for name, value in os.environ.items()
+        if _LEADING.fullmatch(name)
+        for part in value.split(os.pathsep)
+    ]
+    named = [*((word, word) for word in _parts(words)), *led]
+    return {(told, Path(path).resolve()) for told, path in named if path.startswith("/")}
+
+
 def require_two_libraries(loaded: Sequence[Path], trees: Path, since: int) -> None:
     """Raises NotMeantError for a library outside the trees that was written since they were made."""
     for path in loaded:
         if not path.is_relative_to(trees.resolve()) and path.stat().st_ctime_ns > since:
             told = "written by the builds and loaded: both commits use what was built last"
             raise NotMeantError(f"found {path}, {told}; expected it inside the checkout")
+
+
+def tell_shared_places(line: str, base: Tree, since: int) -> None:
+    """Say which places outside the trees, named by the line that builds or by what it runs, the builds have
+    written to since a time of the file system: what one commit left there may be in the program of the other.
+    """
+    trees = base.top.resolve().parent
+    read = {path for _, path in _named([*words_in(line), *_OF_A_BUILD], base.folder)}
+    scripts = " ".join(" ".join(_words_of_script(path)) for path in read if path.is_relative_to(trees))
+    said = f" {line} {scripts}".replace(" ~/", " $HOME/")
+    for word in sorted(set(_ABSOLUTE.findall(os.path.expandvars(said)))):
+        path = Path(word).resolve()
+        if path.is_relative_to("/dev") or path.is_relative_to(trees) or trees.is_relative_to(path):
+            continue
+        with contextlib.suppress(OSError):
+            inside = (path, *path.iterdir()) if path.is_dir() else (path,)
+            if any(one.lstat().st_ctime_ns > since for one in inside):
+                told = "which both builds share: what one left there may be in the program of the other"
+                warn(f"carom: --build writes to {word}, {told}")
 
 
 def _require_own(word: str, tree: Tree) -> None:

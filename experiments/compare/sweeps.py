@@ -138,7 +138,8 @@ def require_filled(what: str, line: str) -> None:
     """
     if left := named_in([_OF_GIT.sub("", _QUOTED.sub("", line))]):
         name = min(left)
-        raise InputError(f"{what}: found {{{name}}}, expected a list or range of that name: -L {name} A,B")
+        told = f"expected a list or range of that name: -L {name} A,B"
+        raise InputError(f"{what}: found {{{name}}}, {told}; or quotes around braces of the command's own")
 
 
 def contrasts(levels: Mapping[str, Levels]) -> list[Contrast]:

@@ -105,6 +105,8 @@ class Runner:
         """How long a whole program runs before the next does; see `slice_of` without it."""
         self._refuse = refuse
         self._processes = Processes(store, generator, time_limit, tells=tells)
+        self._right_ends: dict[str, str] = {}
+        """By point, the hash of the final state whose last step was found right: it is the same each time."""
         self._verifier = Verifier(store, generator, self._processes, time_limit)
 
     def run(self, tasks: Sequence[Task], found: Found | None = None) -> list[ProcessResult]:
@@ -234,6 +236,9 @@ class Runner:
         contenders.write_text(json.dumps([words[2:] for words in commands]), encoding="utf-8")
         is_count = first.point.kind == COUNTS
         options = ("--counts",) if is_count else ("--seed", str(seed_of(first)), "--runs", str(first.runs))
+        ends = {self._right_ends[one.point.id] for one, _ in ready if one.point.id in self._right_ends}
+        if ends and not is_count:
+            options = (*options, "--right-ends", *sorted(ends))
         command = (commands[0][0], "turns", str(contenders), "--record", str(scratch), *options)
         done = run_alone(command, first.point.openmp, self._time_limit * len(ready) * first.runs)
         if done.exit_code > 0 and SUSPENDED in done.reason:
@@ -241,7 +246,10 @@ class Runner:
         record = read_json(scratch)
         if done.exit_code not in (0, CHECK_FAILED) or not is_record(record):
             return None
-        measured = zip(ready, commands, record["contenders"], strict=True)
+        measured = [*zip(ready, commands, record["contenders"], strict=True)]
+        for (task, _), _, one in measured:
+            if not is_failed(one) and one["check"]["verdict"] == "passed":
+                self._right_ends[task.point.id] = one["state_hash"]
         return record | {
             "contenders": [
                 self._usable(task, record, one, Completed(words, done.exit_code, "", done.error))

@@ -60,6 +60,8 @@ _PER_TIME = re.compile(
     r"\^?-1|\N{SUPERSCRIPT MINUS}\N{SUPERSCRIPT ONE}|/(?:s|sec\w*|min\w*|h|hours?|d|days?)\b"
 )
 """What makes a rate of a time: 12 ns/day, 12 s^-1."""
+_LABELS = re.compile(r"[ \t]*[=:]?[ \t]*[0-9]")
+"""What may make a label of what looks like a unit: mean 12.51 min 10.22."""
 _AND_MORE = re.compile(r"(?:,? | and )?(?=[0-9])")
 _COLOURS = re.compile(rb"\x1b\[[0-9;]*m")
 """Of a terminal."""
@@ -250,18 +252,32 @@ def _has_more(read: _Reading) -> bool:
     return more.value * more.unit < read.unit and more.unit < read.unit
 
 
+def _is_label(read: _Reading, said: float | None) -> bool:
+    """Whether what looks like a unit, and not like the one that is `said`, names the number behind it."""
+    next_one = _LABELS.match(read.rest)
+    if not read.unit or next_one is None:
+        return False
+    has_unit = _read_number(read.rest[next_one.end() - 1 :]).unit is not None
+    return read.unit >= _MINUTE or (bool(said) and read.unit != said and not has_unit)
+
+
 def _seconds_of(group: _Group, pattern: str, unit_seconds: float | None) -> float:
     behind = "" if _says(pattern, group.behind[:1], is_before=False) else group.behind
     read = _read_time(group.text + behind)
     if read.number and _is_cut(group, read, behind, pattern):
         line = in_quotes(group.before + group.text + group.behind)
         _refuse(group, f" within a longer number in {line}, expected a pattern that takes all of it")
+    in_front = _IN_FRONT.search(group.before)
+    said = (in_front and _seconds_in(in_front[1])) or unit_seconds
+    if read.number == group.text and _is_label(read, said):
+        word = behind[: len(behind) - len(read.rest)].strip()
+        told = f", behind which {word} may be its unit or the name of the next number"
+        _refuse(group, f"{told}, expected a group that takes the unit, or that number on another line")
     if _AMBIGUOUS.fullmatch(read.number):
         _refuse(group, ", which is ambiguous (thousands, or decimals?), expected a decimal point")
     # Beyond the number it may take the unit, or the point of a whole number.
     is_point = group.text == f"{read.number}." and read.number.isdecimal()
-    in_front = _IN_FRONT.search(group.before)
-    unit = read.unit or (in_front and _seconds_in(in_front[1])) or unit_seconds
+    unit = read.unit or said
     seconds = (read.value or 0.0) * (unit or 1.0)
     is_time = 0 < seconds < math.inf
     if (len(read.rest) > len(behind) and not is_point) or not is_time:

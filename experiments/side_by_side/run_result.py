@@ -75,7 +75,7 @@ class RunResult:
         if self.suspended:
             return self.suspended
         if self.out_of_time:
-            how = f"; {self.unknown}" if self.unknown else " and was stopped"
+            how = f"; {self.unknown}" if self.unknown else " and was killed"
             went_on = f"; it had ended, and what it had started went on: {self.went_on}"
             return f"took longer than {most_seconds:g} s{how}{went_on if self.went_on else ''}"
         if self.went_on:

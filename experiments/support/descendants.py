@@ -56,10 +56,10 @@ def end_all_but(known: frozenset[int]) -> None:
     until = began + _LONGEST_SECONDS
     while (others := children() - known) and time.monotonic() < until:
         for number in others:
+            with contextlib.suppress(ChildProcessError):
+                os.waitpid(number, os.WNOHANG)
             if time.monotonic() - began < _PATIENCE and _name(number) == _KEEPER:
                 continue  # it ends what it looks after, and removes its control group
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.kill(number, signal.SIGKILL)
-            with contextlib.suppress(ChildProcessError):
-                os.waitpid(number, os.WNOHANG)
         time.sleep(0.001)

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ namespace {
 struct TurnsOptions {
     std::string file;
     std::string record;
+    std::vector<std::string> right_ends;
     double turn_seconds = 0.002;
     int runs = 1;
     std::uint64_t seed = 1;
@@ -125,6 +127,7 @@ struct Measured {
 
 Measured take_turns(const std::vector<ContenderOptions>& said, const TurnsOptions& options) {
     std::map<std::string, LoadedScene> scenes;
+    std::set<std::string> right_ends(options.right_ends.begin(), options.right_ends.end());
     std::deque<VariantContender> contenders;
     for (const ContenderOptions& one : said) {
         const std::string& path = one.simulation.scene;
@@ -132,7 +135,7 @@ Measured take_turns(const std::vector<ContenderOptions>& said, const TurnsOption
         if (loaded == scenes.end()) {
             loaded = scenes.emplace(path, load_scene(path)).first;
         }
-        contenders.emplace_back(measurement_of(loaded->second, one));
+        contenders.emplace_back(measurement_of(loaded->second, one), right_ends);
     }
     Suspensions suspensions;
     suspensions.start();
@@ -199,13 +202,16 @@ void add_turns_command(CLI::App& program) {
                "Whole runs of each contender, all in turns; all start again together");
     add_number(*command, "--seed", options->seed, 0, std::numeric_limits<std::uint64_t>::max(),
                "Of the order of the turns");
+    command->add_option("--right-ends", options->right_ends,
+                        "Hashes of final states (state_hash of a record) that need no check: it was passed");
     command
         ->add_flag("--counts", options->counts,
                    "Only count the work: no turns and nothing warmed up, one contender after the other, each "
                    "in memory alone; those of one scene should follow one another")
         ->excludes(command->get_option("--turn"))
         ->excludes(command->get_option("--runs"))
-        ->excludes(command->get_option("--seed"));
+        ->excludes(command->get_option("--seed"))
+        ->excludes(command->get_option("--right-ends"));
     command->callback([options] { turns(*options); });
 }
 

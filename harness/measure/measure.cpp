@@ -117,8 +117,18 @@ void RunInParts::step(int substep) {
 }
 
 std::optional<std::string> RunInParts::violation_after(const std::vector<Disc>& after) const {
-    return check_.collisions != nullptr ? check_.collisions->step(before_, after)
-                                        : checker_.step(before_, after);
+    if (check_.collisions != nullptr) {
+        return check_.collisions->step(before_, after);
+    }
+    const std::string end = check_.right_ends != nullptr ? state_hash(after) : "";
+    if (check_.right_ends != nullptr && check_.right_ends->contains(end)) {
+        return std::nullopt;
+    }
+    auto violation = checker_.step(before_, after);
+    if (check_.right_ends != nullptr && !violation) {
+        check_.right_ends->insert(end);
+    }
+    return violation;
 }
 
 /// What is wrong with a step that did not end, if it is not that alone.

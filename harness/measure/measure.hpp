@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,15 @@ namespace carom {
 enum class CheckScope { nothing, last_step, every_step };
 
 /// What the checker looks at, and whose precision and time of impact it expects. `collisions`,
-/// if it is not null, is who is told every collision of the run: then it checks the steps.
+/// if it is not null, is who is told every collision of the run: then it checks the steps. `right_ends`, if
+/// it is not null, has the hashes of final states whose last step was found right: one that ends in the same
+/// bits is right, one that is found right is added.
 struct Check {
     CheckScope scope;
     Engine engine = Engine::steps;
     Policies policies;
     CollisionChecker* collisions = nullptr;
+    std::set<std::string>* right_ends = nullptr;
 
     Check(CheckScope some_scope) : scope(some_scope) {} // NOLINT(*-explicit-*)
     Check(CheckScope some_scope, const Variant& variant, CollisionChecker* some_collisions = nullptr)

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -14,11 +15,13 @@
 namespace carom {
 
 /// A variant on a scene with its tunings, as one of those that take turns. All its runs, the untimed ones
-/// among them, are of one simulation. The last step of the first one is checked; the others must end in the
-/// same bits after the same work, of which the verdict would be the same.
+/// among them, are of one simulation. The last step of the first one is checked, unless it ends in bits that
+/// were found right; the others must end in the same bits after the same work.
 class VariantContender final : public Contender {
   public:
-    explicit VariantContender(Measurement measurement) : measurement_(std::move(measurement)) {}
+    /// `right_ends` is shared by those that take turns (see Check).
+    VariantContender(Measurement measurement, std::set<std::string>& right_ends)
+        : measurement_(std::move(measurement)), right_ends_(right_ends) {}
 
     /// Runs what a process runs untimed. Returns the seconds that the whole run may be expected to take.
     double prepare() {
@@ -36,8 +39,9 @@ class VariantContender final : public Contender {
         if (!measurement_.violation) {
             simulation_->restart(measurement_.scene);
             const CheckScope scope = ++runs_ == 1 ? CheckScope::last_step : CheckScope::nothing;
-            run_.emplace(measurement_.scene, *simulation_, measurement_.tuning,
-                         Check(scope, measurement_.variant));
+            Check check(scope, measurement_.variant);
+            check.right_ends = &right_ends_;
+            run_.emplace(measurement_.scene, *simulation_, measurement_.tuning, check);
         }
         *measurement_.own_seconds += process_seconds() - start;
     }
@@ -66,6 +70,7 @@ class VariantContender final : public Contender {
     }
 
     Measurement measurement_;
+    std::set<std::string>& right_ends_;
     std::unique_ptr<Simulation> simulation_;
     std::optional<RunInParts> run_;
     int runs_ = 0; ///< that have been started

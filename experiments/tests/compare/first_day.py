@@ -377,6 +377,12 @@ CASES = (
         ("SIGABRT: killed",), code=2, files={"a": "kill -ABRT $$", "b": _FAST},
     ),
     Case(
+        TIMED, "turns although nobody knows whether they wait for one another", "that nobody looks",
+        ("--turns", "10ms", "-n", "a", "-n", "b", "./a", "./a"),
+        ("carom: --turns: nobody looks whether a command waits for one that is stopped; --turns auto does",),
+        files={"a": LOOP.format(times=20000)},
+    ),
+    Case(
         TIMED, "programs that wait for one lock by spinning", "none of them is stopped, and why",
         ("./a", "./b"), ("never stopped",), code=None, time="8s",
         files={

@@ -328,6 +328,18 @@ PROGRAMS = {
         ("found PYTHONPATH=HERE/a repository/src, of your own checkout: both commits would use it",),
         env={"PYTHONPATH": "HERE/a repository/src"},
     ),
+    "modules of the user's own checkout, for another interpreter": Case(
+        SLOWER,
+        1,
+        ("found NODE_PATH=HERE/a repository, of your own checkout: both commits would use it",),
+        env={"NODE_PATH": "HERE/a repository"},
+    ),
+    "programs of the user's own checkout on PATH": Case(
+        SLOWER,
+        3,
+        ("carom: PATH=HERE/a repository, of your own checkout: both commits run programs that", FAILED),
+        env={"PATH": f"HERE/a repository:{os.environ['PATH']}"},
+    ),
     "installed, one commit": Case(START, 0, (PASSED,), build=INSTALL, run=("HERE/fixed/prog",)),
     "installed on PATH": Case(
         SLOWER,
@@ -413,6 +425,18 @@ PROGRAMS = {
     "a tool": Case(SLOWER, 3, (FAILED,), build=f"{COPY} && ln -s /bin/sh tool", run=("./tool", "prog")),
     "the same bytes": Case(SLOWER, 1, (f"{SAME}prog.in; do the builds share something",), build=ONCE),
     "the same bytes, accepted": Case(SLOWER, 0, (PASSED,), ("--same-bytes",), build=ONCE),
+    "an object in a fixed place, linked into programs with another version": Case(
+        f"{START} printf 'prog:\\n\\t[ -e HERE/part ] || cp prog.in HERE/part\\n\\tcp HERE/part prog\\n"
+        "\\techo : $$PWD >> prog\\n' > Makefile && commit x && git checkout -q -B main && "
+        "git checkout -q -b branch && prints 150 && commit slower",
+        0,
+        (
+            "carom: --build writes to HERE/part, which both builds share: what one left there may be in",
+            PASSED,
+        ),
+        build="make",
+        run=("sh", "prog"),
+    ),
     "how it is built differs": Case(
         f"{START} git checkout -q -b branch && touch CMakeLists.txt && commit x",
         1,

@@ -107,13 +107,13 @@ def test_what_wait_for_one_another_are_measured_without_a_pause(measure: Measure
 @needs_carom
 def test_what_finds_a_lock_left_ends_at_its_limit(measure: Measure, tmp_path: Path) -> None:
     one = scripted(f"until mkdir {tmp_path} 2> /dev/null; do :; done", most_seconds=0.3)
-    assert [each.failure for each in measure(one, one)] == ["took longer than 0.3 s and was stopped"] * 2
+    assert [each.failure for each in measure(one, one)] == ["took longer than 0.3 s and was killed"] * 2
 
 
 FAILURES: dict[str, tuple[Contender, int, str]] = {
     "exit": (scripted("echo first >&2; echo last >&2; exit 4"), 4, "exit code 4: last"),
     "signal": (scripted("kill -ABRT $$"), -6, "killed by SIGABRT"),
-    "limit": (scripted("sleep 60", most_seconds=0.05), 124, "took longer than 0.05 s and was stopped"),
+    "limit": (scripted("sleep 60", most_seconds=0.05), 124, "took longer than 0.05 s and was killed"),
     "missing": (Contender(("/no/such/program",)), 127, "cannot be run: No such file or directory"),
     "folder": (
         scripted("", folder="/no/such"), 127, "cannot be run in /no/such: No such file or directory"

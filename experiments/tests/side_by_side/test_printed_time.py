@@ -32,6 +32,17 @@ def test_a_unit_stands_behind_the_number_or_with_it(unit: str, its_seconds: floa
     assert seconds(f"it took 2.5{unit}", "took (.*)") == pytest.approx(2.5 * its_seconds)
 
 
+@pytest.mark.parametrize(
+    "text", ["mean 12.51 min 10.22", "mean 12.51 min: 10", "mean 12.51 s=0.22 n=15", "mean 12.51 s 0.22"]
+)
+def test_the_name_of_the_next_number_is_no_unit(text: str) -> None:
+    assert "'12.51', behind which " in said(text, "mean ([0-9.]+)", 1e-3)
+    assert "expected a group that takes the unit" in said(text, "mean ([0-9.]+)", 1e-3)
+    assert said(f"(us) {text}", "mean ([0-9.]+)", 60.0).startswith("time: found '12.51', behind which")
+    taken = seconds(text, "mean ([0-9.]+ [a-z]+)", 1e-3)
+    assert taken == (12.51 if " s" in text else 750.6)
+
+
 RIGHT = (
     ("reading 3.5 ms\nsteps took 12.25 ms of it\ndone", "steps took ([0-9.]+) ms", 0.01225),
     ("1e-3", r"^(\S+)$", 0.001), ("took 12. Done", "took ([0-9.]+)", 12), ("1.5e-3 s", "(.*)", 0.0015),

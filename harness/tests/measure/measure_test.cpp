@@ -2,6 +2,8 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -67,6 +69,23 @@ TEST(RunScene, LooksAtTheLastStepAloneOrNothingIfAskedTo) {
     EXPECT_EQ(run_leaky(5, CheckScope::nothing).violation, std::nullopt);
     EXPECT_NE(run_leaky(5, CheckScope::last_step).violation, std::nullopt);
     EXPECT_EQ(run_leaky(6, CheckScope::last_step).violation, std::nullopt);
+}
+
+TEST(RunScene, ChecksNoLastStepThatEndsInBitsWhichWereFoundRight) {
+    std::set<std::string> right_ends;
+    Check check(CheckScope::last_step);
+    check.right_ends = &right_ends;
+    const auto violation_of = [&check](int wrong_step) {
+        Leaky simulation(find_variant("published")->simulate(scene, {}), wrong_step);
+        return run_scene(scene, simulation, {}, check).violation;
+    };
+    EXPECT_NE(violation_of(5), std::nullopt);
+    EXPECT_TRUE(right_ends.empty()) << "what is wrong is not kept";
+    EXPECT_EQ(violation_of(6), std::nullopt);
+    EXPECT_EQ(right_ends, (std::set{state_hash(run_published(scene).discs)}));
+    EXPECT_NE(violation_of(5), std::nullopt) << "other bits are checked all the same";
+    right_ends.insert(state_hash(run_leaky(5, CheckScope::nothing).discs));
+    EXPECT_EQ(violation_of(5), std::nullopt) << "what is known is not checked";
 }
 
 /// A simulation without discs that notes how many steps it is asked for at once, and does not settle in one.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -158,8 +159,9 @@ TEST(VariantContender, ALaterRunHasToEndInTheSameBitsAfterTheSameWork) {
 
 TEST(VariantContender, EndsAsIfItHadRunAlone) {
     const Scene scene = tests::random_scene_of_density(300, 0.4, 12, 5);
-    VariantContender published(measurement_of(scene, "published"));
-    VariantContender track(measurement_of(scene, "track", CheckScope::every_step));
+    std::set<std::string> right_ends;
+    VariantContender published(measurement_of(scene, "published"), right_ends);
+    VariantContender track(measurement_of(scene, "track", CheckScope::every_step), right_ends);
     EXPECT_GT(published.prepare(), 0);
     EXPECT_GT(track.prepare(), 0);
     const std::vector<Contender*> both{&published, &track};
