@@ -167,7 +167,8 @@ def _how_long(found: Found) -> str:
     said = f"measured for {found.seconds:.0f} s, {blocks}"
     if not found.blocks or not answer.commands:
         more = found.seconds + max(1, answer.next - found.blocks) * found.seconds_each
-        option = f", which `--time {math.ceil(1.2 * more)}s` gives" if found.blocks else ""
+        enough = max(math.ceil(1.2 * more), math.floor(asked.seconds) + 1)
+        option = f", which `--time {enough}s` gives" if found.blocks else ""
         return f"{said}: an interval needs {answer.next} blocks{option}"
     if answer.needed is None:
         return f"{said}: no number of blocks in sight would settle it; the difference may lie on the margin"

@@ -145,7 +145,7 @@ CASES = (
     Case(
         PRINTED, "the same digit of two programs that differ by more", "their difference",
         (*_TOOK, "./a", "./b"), ("+100.0",), code=None,
-        files=_prints("0.1 s", "0.2 s"),
+        files=_prints("0.1 s", "0.2 s"), time="10s",
     ),
     Case(
         PRINTED, "an amount of something else, with --unit", "one line that says what stands there",
