@@ -19,7 +19,7 @@ from analysis.claims.outcome import OPEN, TOO_FEW, Outcome, judged, no_records, 
 from analysis.statistics.looks import ERROR
 from analysis.statistics.pairs import PAIR, log_ratios, ratios_of
 from analysis.statistics.verdicts import Ratio, judge_one, judge_pairs
-from analysis.support.wording import blocks, change, count, exact, number, share
+from analysis.support.wording import blocks, change, count, number, share
 from support.vocabulary import COUNTS
 
 CODE_ALONE = "g++'s code with the runtime of clang++, which its build has where clang++ is installed"
@@ -35,12 +35,11 @@ def pair(
     candidate: str,
     reference: str,
     expected: str,
-    at: float | None = None,
 ) -> Outcome:
     """Test that `candidate` is faster than (or equivalent to) `reference` on an axis; in a sweep, at the
-    value `at` of its parameter and nowhere else.
+    greatest value of its parameter.
     """
-    found = [_one_pair(evidence, one, (axis, candidate, reference), expected, at) for one in experiments]
+    found = [_one_pair(evidence, one, (axis, candidate, reference), expected) for one in experiments]
     if len(found) > 1:
         names = (one.rpartition("_")[2] for one in experiments)
         found = [
@@ -50,9 +49,7 @@ def pair(
     return both(found)
 
 
-def _one_pair(
-    evidence: Evidence, experiment: str, sides: tuple[str, str, str], expected: str, at: float | None
-) -> Outcome:
+def _one_pair(evidence: Evidence, experiment: str, sides: tuple[str, str, str], expected: str) -> Outcome:
     axis, candidate, reference = sides
     # As the study tells it, of means; `Published.ratio` is the middle of its three runs.
     means = evidence.published.experiment(experiment).groupby("series")["seconds"].mean()
@@ -69,12 +66,9 @@ def _one_pair(
         lacking = [f"{axis} = {one}" for one in (candidate, reference) if not (times[axis] == one).any()]
         needed = " and ".join(lacking) or f"{candidate} and {reference} at the same {name}"
         return no_records(experiment, needed, [nothing])
-    if at is not None and at not in shared:
-        return Outcome(OPEN, why=f"needs {name} = {exact(at)}", effects=(nothing,))
-    where, x = ("", shared[-1]) if at is None else (f" at {name} = {exact(at)}", at)
     pairs = log_ratios(against, chosen, match=("x",))
-    row = judge_pairs(pairs[pairs["x"] == x], margin).told_as(nothing)
-    measured = f"{what}{where}: {change(row)} of time, {blocks(row)} ({told(row, expected)})"
+    row = judge_pairs(pairs[pairs["x"] == shared[-1]], margin).told_as(nothing)
+    measured = f"{what}: {change(row)} of time, {blocks(row)} ({told(row, expected)})"
     return judged(row, expected, measured)
 
 

@@ -48,12 +48,6 @@ def at_margin(margin: float) -> Records:
     return [one | {"tags": one["tags"] | {"margin": margin}} for one in on("neighbourhood")]
 
 
-def rows_to(most: int) -> Records:
-    """Rows, which are slow where there are more than 150 of them, in scenes of up to so many discs."""
-    records = slowed(on("row", threads=8), 1.3, series="row", x=200_000)
-    return [one for one in records if one["tags"]["x"] <= most]
-
-
 def never_at_one_size() -> Records:
     return [one for one in on("row") if (one["tags"]["x"] > 50_000) == (one["tags"]["series"] == "row")]
 
@@ -217,8 +211,7 @@ CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
     ("noise", lambda: boxes(1.25 / 1.19, blocks=14, noise=Noise(process=0.05)), "four_boxes", OPEN,
      {"measured": "14 blocks", "why": "more blocks"}),
     # where its effect is
-    ("150 rows", lambda: rows_to(200_000), "row", HOLDS, {"measured": "particles = 100 000"}),
-    ("fewer rows", lambda: rows_to(50_000), "row", OPEN, {"why": "needs particles = 100 000"}),
+    ("150 rows", lambda: on("row", threads=8), "row", HOLDS, {}),
     ("never alike", never_at_one_size, "row", OPEN, {"why": "of row and checkered at the same particles"}),
     # trends
     ("equal velocities",

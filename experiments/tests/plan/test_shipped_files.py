@@ -50,8 +50,9 @@ def test_every_question_of_the_study_is_there() -> None:
     assert {path.stem for path in QUESTIONS} == {
         "threads", "particles", "grid_length", "radius", "steps", "min_velocity", "max_velocity", "machine",
         "neighbourhood", "self_contained_checkered", "self_contained_track", "self_contained_repeat",
-        "schedule_find", "schedule_resolve", "schedule_resolve_row", "row", "reverse", "sequential_orders",
-        "compiler", "phases", "ladder", "rungs", "limits", "density", "small_scenes",
+        "schedule_find", "schedule_resolve", "schedule_resolve_row", "row", "row_over_size", "reverse",
+        "sequential_orders",
+        "compiler", "phases", "phases_of_variants", "ladder", "rungs", "limits", "density", "small_scenes",
         "oversubscription", "control", "speed_against_error", "hard_cases", "ways",
         "ways_of_processes",
     }  # fmt: skip
@@ -179,7 +180,7 @@ def test_what_is_compared_with_the_limits_and_with_empty_space_is_the_ladder_s_l
 
 
 def test_row_keeps_the_area_fraction() -> None:
-    fractions = [generated(point).area_fraction for point in planned("row").points]
+    fractions = [generated(point).area_fraction for point in planned("row_over_size").points]
     assert fractions == pytest.approx([fractions[0]] * len(fractions), rel=5e-3)
 
 
