@@ -84,8 +84,6 @@ int main(int count, char** arguments) {
         return program.exit(help);
     } catch (const CLI::ParseError& error) {
         return fail(1, carom::usage_message(program, error).c_str());
-    } catch (const carom::InputError& error) {
-        return fail(1, error.what());
     } catch (const carom::CheckError& error) {
         return fail(2, error.what());
     } catch (const std::bad_alloc&) {

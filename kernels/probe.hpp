@@ -46,16 +46,16 @@ class NoCollisionLog {
 class Probe {
   public:
     virtual ~Probe() = default;
-    virtual void phase_begin(Phase) = 0;
-    virtual void phase_end(Phase) = 0;
-    virtual void sweep_begin() = 0;
-    virtual void sweep_end() = 0;
-    virtual void loop_begin(int thread) = 0;
-    virtual void wait_begin(int thread) = 0;
-    virtual void wait_end(int thread) = 0;
-    virtual void iteration(int thread, int index) = 0;
-    virtual void loop_end(int thread) = 0;
-    virtual void barrier_end(int thread) = 0;
+    virtual void phase_begin(Phase) {}
+    virtual void phase_end(Phase) {}
+    virtual void sweep_begin() {}
+    virtual void sweep_end() {}
+    virtual void loop_begin(int /*thread*/) {}
+    virtual void wait_begin(int /*thread*/) {}
+    virtual void wait_end(int /*thread*/) {}
+    virtual void iteration(int /*thread*/, int /*index*/) {}
+    virtual void loop_end(int /*thread*/) {}
+    virtual void barrier_end(int /*thread*/) {}
 
     /// A profile has no use for single collisions: see LoggingProbe.
     void collided(const Collision<double>& /*collision*/) {}

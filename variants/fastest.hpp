@@ -5,7 +5,7 @@
 
 namespace carom {
 
-/// The variant that is expected to be the fastest for a scene, by the rules in fastest.cpp.
+/// The variant that is expected to be the fastest for a scene, by the rule in fastest.cpp.
 const Variant& fastest_variant(const Scene& scene);
 
 /// The one that is expected to be the fastest for all but the smallest scenes: the last rung of the ladder.

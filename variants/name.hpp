@@ -60,34 +60,36 @@ class Name {
     std::size_t size_ = 0;
 };
 
+/// `take(policy, prefix, axis)` for each policy, in the order of `Policies`. A choice whose word does not
+/// tell its policy is prefixed with it in the name of a variant.
+template <class Take> constexpr void for_each_policy(const Take& take) {
+    take("neighbourhood", "", &Policies::neighbourhood);
+    take("order", "", &Policies::order);
+    take("self_contained", "self_contained_", &Policies::self_contained);
+    take("direction", "", &Policies::direction);
+    take("find_schedule", "find_", &Policies::find_schedule);
+    take("resolve_schedule", "resolve_", &Policies::resolve_schedule);
+    take("storage", "", &Policies::storage);
+    take("prefetch", "prefetch_", &Policies::prefetch);
+    take("box_side", "", &Policies::box_side);
+    take("overlaps", "", &Policies::overlaps);
+    take("search", "", &Policies::search);
+    take("worklist", "", &Policies::worklist);
+    take("impact", "", &Policies::impact);
+    take("precision", "", &Policies::precision);
+}
+
 /// The one name of a combination of policies: what differs from the published best, joined by "-", in the
-/// order of `Policies`; "published" where nothing does. A choice whose word does not tell its policy is
-/// prefixed with it.
+/// order of `Policies`; "published" where nothing does.
 constexpr Name name_of(const Policies& policies) {
-    constexpr Policies published{};
     Name name;
-    const auto add = [&name](bool differs, std::string_view prefix, std::string_view choice) {
-        if (differs) {
+    for_each_policy([&](const char* /*policy*/, const char* prefix, auto axis) {
+        if (policies.*axis != Policies{}.*axis) {
             name += name.empty() ? "" : "-";
             name += prefix;
-            name += choice;
+            name += word(policies.*axis);
         }
-    };
-    add(policies.neighbourhood != published.neighbourhood, "", word(policies.neighbourhood));
-    add(policies.order != published.order, "", word(policies.order));
-    add(policies.self_contained != published.self_contained, "self_contained_",
-        word(policies.self_contained));
-    add(policies.direction != published.direction, "", word(policies.direction));
-    add(policies.find_schedule != published.find_schedule, "find_", word(policies.find_schedule));
-    add(policies.resolve_schedule != published.resolve_schedule, "resolve_", word(policies.resolve_schedule));
-    add(policies.storage != published.storage, "", word(policies.storage));
-    add(policies.prefetch != published.prefetch, "prefetch_", word(policies.prefetch));
-    add(policies.box_side != published.box_side, "", word(policies.box_side));
-    add(policies.overlaps != published.overlaps, "", word(policies.overlaps));
-    add(policies.search != published.search, "", word(policies.search));
-    add(policies.worklist != published.worklist, "", word(policies.worklist));
-    add(policies.impact != published.impact, "", word(policies.impact));
-    add(policies.precision != published.precision, "", word(policies.precision));
+    });
     if (name.empty()) {
         name += "published";
     }

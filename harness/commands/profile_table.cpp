@@ -15,8 +15,6 @@
 namespace carom {
 namespace {
 
-constexpr std::array all_phases{Phase::move, Phase::bin, Phase::find, Phase::resolve};
-
 /// Load imbalance: the busiest thread's time over the mean.
 double imbalance(const Profiler& profiler, Phase phase) {
     double most = 0;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdio>
 #include <utility>
 
+#include "harness/support/format.hpp"
 #include "harness/verify/checker.hpp"
 
 namespace carom {
@@ -169,9 +169,7 @@ std::string state_hash(const std::vector<Disc>& discs) {
             }
         }
     }
-    std::string text(16, '0');
-    std::snprintf(text.data(), text.size() + 1, "%016llx", static_cast<unsigned long long>(hash));
-    return text;
+    return format("%016llx", static_cast<unsigned long long>(hash));
 }
 
 } // namespace carom

@@ -13,7 +13,8 @@
 
 namespace carom {
 
-inline constexpr std::size_t phase_count = 4;
+inline constexpr std::array all_phases{Phase::move, Phase::bin, Phase::find, Phase::resolve};
+inline constexpr std::size_t phase_count = all_phases.size();
 
 /// What one thread did in one phase, summed over all steps.
 struct ThreadWork {

@@ -5,12 +5,8 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 #include <fcntl.h>
@@ -20,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "harness/support/number_in_file.hpp"
 #include "harness/support/own_cgroup.hpp"
 #include "harness/support/process_clock.hpp"
 #include "harness/support/text.hpp"
@@ -33,17 +30,6 @@ namespace fs = std::filesystem;
 std::string name_space() {
     struct stat status{};
     return stat("/proc/self/ns/pid", &status) == 0 ? std::to_string(status.st_ino) : "0";
-}
-
-/// The number in a file behind a text, and behind another one that follows it; none where there is none.
-std::optional<double> number_in(const std::string& path, const char* text, const char* then = "") {
-    std::ifstream file(path);
-    const std::string all(std::istreambuf_iterator<char>(file), {});
-    const std::size_t begin = all.find(then, all.find(text));
-    std::istringstream rest(
-        begin == std::string::npos ? "" : all.substr(begin + std::strlen(*then != 0 ? then : text)));
-    double number = 0;
-    return rest >> number ? std::optional(number) : std::nullopt;
 }
 
 bool write_into(const std::string& path, const char* text) {
@@ -168,8 +154,8 @@ void Cgroup::kill() const {
 }
 
 void Cgroup::tell(nlohmann::ordered_json& facts, double waited_before) const {
-    const auto user = number_in(path_ + "/cpu.stat", "user_usec ");
-    const auto system = number_in(path_ + "/cpu.stat", "system_usec ");
+    const auto user = number_in<double>(path_ + "/cpu.stat", "user_usec ");
+    const auto system = number_in<double>(path_ + "/cpu.stat", "system_usec ");
     if (user && system) {
         facts["user_seconds"] = 1e-6 * *user;
         facts["system_seconds"] = 1e-6 * *system;
@@ -177,14 +163,14 @@ void Cgroup::tell(nlohmann::ordered_json& facts, double waited_before) const {
     if (const auto waited = waited_seconds()) {
         facts["waited_seconds"] = std::max(0.0, *waited - waited_before);
     }
-    if (const auto peak = number_in(path_ + "/memory.peak", "")) {
+    if (const auto peak = number_in<double>(path_ + "/memory.peak")) {
         facts["peak_memory_bytes"] = static_cast<std::int64_t>(*peak);
         facts["memory_of"] = "all of its processes together, with the files that they hold in memory";
     }
 }
 
 std::optional<double> Cgroup::waited_seconds() const {
-    const auto microseconds = number_in(path_ + "/cpu.pressure", "full ", "total=");
+    const auto microseconds = number_in<double>(path_ + "/cpu.pressure", "full ", "total=");
     return microseconds ? std::optional(1e-6 * *microseconds) : std::nullopt;
 }
 

@@ -24,7 +24,7 @@ Json counter_json(const CounterValue& counter) {
 Json profile_json(const Profile& profile) {
     Json phases = Json::array();
     Json threads = Json::array();
-    for (const Phase phase : {Phase::move, Phase::bin, Phase::find, Phase::resolve}) {
+    for (const Phase phase : all_phases) {
         const PhaseTime& time = profile.profiler.phase_time(phase);
         phases.push_back({{"phase", word(phase)},
                           {"wall_seconds", time.wall_seconds},

@@ -55,8 +55,7 @@ Json errors_json(const Measurement& measurement, const Run& last) {
             {"unresolved_pairs", checker.count_colliding(last.discs)}};
 }
 
-} // namespace
-
+/// Now, in UTC, as ISO 8601 says it.
 std::string utc_now() {
     const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
     std::tm parts{};
@@ -65,6 +64,8 @@ std::string utc_now() {
     std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
     return text.data();
 }
+
+} // namespace
 
 const char* word(CheckScope scope) { return scope == CheckScope::every_step ? "every-step" : "last-step"; }
 

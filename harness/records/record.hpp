@@ -28,9 +28,6 @@ nlohmann::ordered_json tags_json(const std::vector<std::string>& tags);
 /// What a record says of a scene and of its file: the name without folders, and the hash of its bytes.
 nlohmann::ordered_json scene_json(const Scene& scene, const std::string& name, const std::string& sha256);
 
-/// Now, in UTC, as ISO 8601 says it.
-std::string utc_now();
-
 /// The words of the record for a scope: "last-step" or "every-step".
 const char* word(CheckScope scope);
 

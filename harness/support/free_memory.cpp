@@ -1,13 +1,13 @@
 #include "harness/support/free_memory.hpp"
 
 #include <algorithm>
-#include <fstream>
 
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include "harness/support/errors.hpp"
 #include "harness/support/format.hpp"
+#include "harness/support/number_in_file.hpp"
 #include "harness/support/own_cgroup.hpp"
 
 namespace carom {
@@ -24,28 +24,18 @@ void keep_least(std::optional<std::int64_t>& least, std::optional<std::int64_t> 
     }
 }
 
-std::optional<std::int64_t> number_in(const fs::path& path) {
-    std::ifstream file(path);
-    std::int64_t number = 0;
-    return file >> number ? std::optional(number) : std::nullopt;
-}
-
 /// What a group holds of files, which is given up when memory is short.
 std::int64_t bytes_of_files(const fs::path& group) {
-    std::ifstream file(group / "memory.stat");
-    std::int64_t sum = 0;
-    std::int64_t bytes = 0;
-    for (std::string word; file >> word >> bytes;) {
-        sum += word == "inactive_file" || word == "active_file" ? bytes : 0;
-    }
-    return sum;
+    const fs::path stat = group / "memory.stat";
+    return number_in<std::int64_t>(stat, "\ninactive_file ").value_or(0) +
+           number_in<std::int64_t>(stat, "\nactive_file ").value_or(0);
 }
 
 std::optional<std::int64_t> left_by_cgroups(const fs::path& root) {
     std::optional<std::int64_t> least;
     for (const fs::path& group : own_cgroups(root)) {
-        const auto most = number_in(group / "memory.max"); // "max" is no number
-        const auto now = number_in(group / "memory.current");
+        const auto most = number_in<std::int64_t>(group / "memory.max"); // "max" is no number
+        const auto now = number_in<std::int64_t>(group / "memory.current");
         if (most && now) {
             keep_least(least, std::max(*most - *now + bytes_of_files(group), std::int64_t{0}));
         }
@@ -60,18 +50,14 @@ std::string gibibytes(std::int64_t bytes) {
 } // namespace
 
 std::optional<std::int64_t> available_memory(const fs::path& root) {
-    std::ifstream file(root / "proc/meminfo");
-    for (std::string word; file >> word;) {
-        if (std::int64_t kibibytes = 0; word == "MemAvailable:" && file >> kibibytes) {
-            return kibibytes * 1024;
-        }
-    }
-    return std::nullopt;
+    const auto kibibytes = number_in<std::int64_t>(root / "proc/meminfo", "MemAvailable:");
+    return kibibytes ? std::optional(*kibibytes * 1024) : std::nullopt;
 }
 
 std::optional<std::int64_t> free_address_space(const fs::path& root) {
     rlimit limit{};
-    const auto pages = number_in(root / "proc/self/statm"); // its first number: all that is mapped
+    // Its first number is all that is mapped.
+    const auto pages = number_in<std::int64_t>(root / "proc/self/statm");
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !pages) {
         return std::nullopt;
     }

@@ -64,20 +64,6 @@ TEST(AllPairs, GoesOnFromOneDiscToAThird) {
     EXPECT_EQ(discs[2], (Disc{5, 3.5, 0, -0.5}));
 }
 
-TEST(AllPairs, DependsOnNoUnits) {
-    for (const auto& [name, scene] : tests::all_scenes()) {
-        SCOPED_TRACE(name);
-        if (scene.radius < 1e-10 || scene.radius > 1e10) {
-            continue;
-        }
-        const auto plain = simulate_all_pairs(scene, {});
-        const auto scaled = simulate_all_pairs(tests::scaled(scene, 0x1p20, 0x1p20), {});
-        const Scene end{.side = 1, .radius = 1, .steps = 0, .discs = plain.discs};
-        EXPECT_TRUE(same_bits(scaled.discs, tests::scaled(end, 0x1p20, 0x1p20).discs));
-        EXPECT_EQ(scaled.work, plain.work);
-    }
-}
-
 /// In a scene of one box, discs and partners stand in the order of their numbers, as in the reference.
 template <Order order> void is_the_reference_in_one_box() {
     for_each_combination<order>([]<Policies policies>() {

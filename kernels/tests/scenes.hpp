@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <random>
@@ -58,6 +59,16 @@ inline Scene lattice_scene(int per_side, double area_fraction, std::uint64_t see
             scene.discs.push_back(
                 {spacing * (column + 0.5), spacing * (row + 0.5), vx, random.uniform(-1, 1)});
         }
+    }
+    return scene;
+}
+
+/// Rows of a lattice that meet, and walls that are met, at one instant.
+inline Scene tied_scene(int per_side) {
+    Scene scene = lattice_scene(per_side, 0.5, 1);
+    for (std::size_t i = 0; i < scene.discs.size(); ++i) {
+        scene.discs[i].vx = i % 2 == 0 ? 1 : -1;
+        scene.discs[i].vy = i % 3 == 0 ? 0.5 : 0;
     }
     return scene;
 }

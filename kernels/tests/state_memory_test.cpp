@@ -1,11 +1,7 @@
 // A program of its own: it counts what every `new` of the process asks for, and the pages that each thread is
 // the first to touch.
 
-#include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <numeric>
 #include <vector>
 
@@ -18,40 +14,9 @@
 #include "kernels/probe.hpp"
 #include "kernels/state.hpp"
 #include "kernels/step.hpp"
+#include "kernels/tests/counted_memory.hpp"
 #include "kernels/tests/fast_policies.hpp"
 #include "kernels/tests/scenes.hpp"
-
-namespace {
-
-std::atomic<std::size_t> held = 0;
-std::atomic<std::size_t> most_held = 0;
-
-void* count_and_allocate(std::size_t size, std::size_t alignment) {
-    void* memory = nullptr;
-    if (posix_memalign(&memory, std::max(alignment, sizeof(void*)), size) != 0) {
-        throw std::bad_alloc();
-    }
-    const std::size_t now = held += malloc_usable_size(memory);
-    for (std::size_t most = most_held; now > most && !most_held.compare_exchange_weak(most, now);) {
-    }
-    return memory;
-}
-
-void release(void* memory) {
-    held -= malloc_usable_size(memory);
-    std::free(memory);
-}
-
-} // namespace
-
-void* operator new(std::size_t size) { return count_and_allocate(size, alignof(std::max_align_t)); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-    return count_and_allocate(size, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept { release(memory); }
-void operator delete(void* memory, std::size_t) noexcept { release(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { release(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { release(memory); }
 
 namespace carom {
 namespace {
@@ -60,14 +25,14 @@ using tests::fastest;
 
 /// The most memory that a simulation has held while it was built and took three steps.
 std::size_t most_memory(const Scene& scene, int threads) {
-    const std::size_t before = held;
-    most_held = before;
+    const std::size_t before = tests::memory::held;
+    tests::memory::most_held = before;
     State<fastest> state(scene, threads);
     NoProbe probe;
     for (int n = 0; n < 3; ++n) {
         step(state, {.threads = threads}, probe);
     }
-    return most_held - before;
+    return tests::memory::most_held - before;
 }
 
 /// Discs in no order, so that in the first sort each thread's discs lie in all boxes.

@@ -33,11 +33,7 @@ class Announcements final : public Probe {
     void sweep_begin() override { said.emplace_back("begin sweep"); }
     void sweep_end() override { said.emplace_back("end sweep"); }
     void loop_begin(int) override { ++loops; }
-    void wait_begin(int) override {}
-    void wait_end(int) override {}
     void iteration(int, int) override { ++iterations; }
-    void loop_end(int) override {}
-    void barrier_end(int) override {}
 
     std::vector<std::string> said;
     int loops = 0;

@@ -102,12 +102,11 @@ TEST(Table, CombinesCollisionsAtContactWithThePublishedStorageAndTheFastest) {
 
 /// How many policies differ.
 int differences(const Policies& one, const Policies& two) {
-    const auto differ = [&](auto axis) { return one.*axis != two.*axis ? 1 : 0; };
-    return differ(&Policies::neighbourhood) + differ(&Policies::order) + differ(&Policies::self_contained) +
-           differ(&Policies::direction) + differ(&Policies::find_schedule) +
-           differ(&Policies::resolve_schedule) + differ(&Policies::storage) + differ(&Policies::prefetch) +
-           differ(&Policies::box_side) + differ(&Policies::overlaps) + differ(&Policies::search) +
-           differ(&Policies::worklist) + differ(&Policies::impact) + differ(&Policies::precision);
+    int count = 0;
+    for_each_policy([&](const char* /*policy*/, const char* /*prefix*/, auto axis) {
+        count += one.*axis != two.*axis ? 1 : 0;
+    });
+    return count;
 }
 
 TEST(Ladder, ClimbsFromThePublishedBestOnePolicyARung) {

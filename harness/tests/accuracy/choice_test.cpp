@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/accuracy/choice.hpp"
-#include "harness/scenes/generate.hpp"
+#include "harness/tests/scenes/gas.hpp"
 #include "variants/event_driven_variant.hpp"
 
 namespace carom {
@@ -36,17 +35,9 @@ TEST(CheapestBelow, IsTheCheapestOfThoseThatSurelyReachTheBound) {
 Scene unseen(std::uint64_t seed, int steps = 8) {
     constexpr std::array<double, 4> area_fractions{0.05, 0.2, 0.45, 0.7};
     constexpr std::array<int, 3> counts{200, 500, 1100};
-    const double area_fraction = area_fractions[seed % area_fractions.size()];
     const int count = counts[seed % counts.size()];
-    return generate({.count = count,
-                     .side = std::sqrt(count * std::numbers::pi / area_fraction),
-                     .radius = 1,
-                     .steps = steps,
-                     .least_velocity = 0.1,
-                     .largest_velocity = 0.1 + 0.075 * static_cast<double>(seed % 12),
-                     .seed = 1900 + seed,
-                     .placement = area_fraction > 0.4 ? Placement::lattice : Placement::random,
-                     .isotropic = true});
+    return tests::gas(count, tests::side_of(count, area_fractions[seed % area_fractions.size()]), steps, 0.1,
+                      0.1 + 0.075 * static_cast<double>(seed % 12), 1900 + seed);
 }
 
 class KeptPromise : public testing::TestWithParam<Measure> {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/accuracy/error_measures.hpp"
-#include "harness/scenes/generate.hpp"
+#include "harness/tests/scenes/gas.hpp"
 #include "harness/verify/rounding.hpp"
 #include "variants/tests/each_variant.hpp"
 
@@ -33,17 +33,7 @@ double fitted_order(const std::vector<double>& x, const std::vector<double>& y) 
 }
 
 /// Short enough that chaos, which multiplies an error at every further collision, has not begun.
-Scene short_scene() {
-    return generate({.count = 400,
-                     .side = 64,
-                     .radius = 1,
-                     .steps = 2,
-                     .least_velocity = 0.25,
-                     .largest_velocity = 0.75,
-                     .seed = 31,
-                     .placement = Placement::random,
-                     .isotropic = true});
-}
+Scene short_scene() { return tests::gas(400, 64, 2, 0.25, 0.75, 31); }
 
 class Convergence : public testing::TestWithParam<Variant> {};
 class ConvergenceAtContact : public testing::TestWithParam<Variant> {};

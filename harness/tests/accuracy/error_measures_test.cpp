@@ -181,15 +181,8 @@ TEST(MeasureErrors, LeavesEmptyWhatHasNoMeaning) {
 /// Henderson's equation (see kernels/tests/event_driven_test.cpp) needs a large box; here the run is held
 /// against the reference of its own scene, for the same time.
 TEST(MeasureErrors, PressureAndCollisionRateComeNearTheReferenceForSmallSteps) {
-    Scene scene = tests::random_scene(1, 40, 1, 50, 1, 43);
-    scene.discs.clear();
-    tests::Random random(44);
-    for (int row = 0; row < 12; ++row) {
-        for (int column = 0; column < 12; ++column) {
-            const double vx = random.uniform(-1, 1);
-            scene.discs.push_back({2 + 3.2 * column, 2 + 3.2 * row, vx, random.uniform(-1, 1)});
-        }
-    }
+    Scene scene = tests::lattice_scene(12, 0.28, 44);
+    scene.steps = 50;
     const ErrorMeasures measures = measure_errors(scene, published, {.substeps = 32});
     ASSERT_TRUE(measures.reference);
     ASSERT_TRUE(measures.pressure) << measures.pressure_reason;

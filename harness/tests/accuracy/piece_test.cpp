@@ -10,8 +10,8 @@
 
 #include "harness/accuracy/choice.hpp"
 #include "harness/accuracy/error_measures.hpp"
-#include "harness/scenes/generate.hpp"
 #include "harness/scenes/piece.hpp"
+#include "harness/tests/scenes/gas.hpp"
 #include "harness/verify/event_driven_violation.hpp"
 
 namespace carom {
@@ -20,15 +20,7 @@ namespace {
 /// Of a dilute scene of more discs than a trial has, in which a step at contact is exact for all but a few.
 TEST(TryMethods, PromisesNoErrorThatAPieceCannotTell) {
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
-        const Scene scene = generate({.count = 40'000,
-                                      .side = 1121,
-                                      .radius = 1,
-                                      .steps = 1,
-                                      .least_velocity = 0.125,
-                                      .largest_velocity = 0.3125,
-                                      .seed = seed,
-                                      .placement = Placement::random,
-                                      .isotropic = true});
+        const Scene scene = tests::gas(40'000, 1121, 1, 0.125, 0.3125, seed);
         const Trial trial = try_methods(scene, {}, Measure::path, 1e-9);
         ASSERT_FALSE(trial.whole_scene);
         const TrialResult& at_contact = trial.results.at(1);
@@ -40,27 +32,12 @@ TEST(TryMethods, PromisesNoErrorThatAPieceCannotTell) {
 }
 
 TEST(BusiestPiece, IsTheSceneItselfIfThatIsSmallEnough) {
-    const Scene scene = generate({.count = 200,
-                                  .side = 60,
-                                  .radius = 1,
-                                  .steps = 1,
-                                  .least_velocity = 0.1,
-                                  .largest_velocity = 1,
-                                  .placement = Placement::random,
-                                  .isotropic = true});
+    const Scene scene = tests::gas(200, 60, 1, 0.1, 1, 1);
     EXPECT_EQ(busiest_piece(scene, scene.discs.size()).scene.discs, scene.discs);
 }
 
 TEST(BusiestPiece, HasWallsDiscsApartAndNearlyTheDensityOfTheWhole) {
-    const Scene scene = generate({.count = 30'000,
-                                  .side = 434,
-                                  .radius = 1,
-                                  .steps = 3,
-                                  .least_velocity = 0.1,
-                                  .largest_velocity = 1,
-                                  .seed = 77,
-                                  .placement = Placement::random,
-                                  .isotropic = true});
+    const Scene scene = tests::gas(30'000, 434, 3, 0.1, 1, 77);
     const Scene piece = busiest_piece(scene, 4000).scene;
     EXPECT_LE(piece.discs.size(), 4000);
     EXPECT_GE(piece.discs.size(), 3000);

@@ -6,7 +6,7 @@
 
 #include "harness/collisions/collision_checker.hpp"
 #include "harness/collisions/path_checker.hpp"
-#include "harness/scenes/generate.hpp"
+#include "harness/tests/scenes/gas.hpp"
 #include "kernels/tests/simulate.hpp"
 #include "variants/event_driven_variant.hpp"
 #include "variants/registry.hpp"
@@ -23,18 +23,6 @@ class Kept final : public CollisionLog<double> {
 
     std::vector<Collision<double>> all;
 };
-
-Scene busy() {
-    return generate({.count = 400,
-                     .side = 46,
-                     .radius = 1,
-                     .steps = 8,
-                     .least_velocity = 0.1,
-                     .largest_velocity = 1,
-                     .seed = 51,
-                     .placement = Placement::lattice,
-                     .isotropic = true});
-}
 
 /// The second is hit by the first at time 1 and leaves for the wall, which it meets at time 8.
 const Scene pair{.side = 20, .radius = 1, .steps = 9, .discs = {{9, 10, 1, 0}, {12, 10, 0, 0}}};
@@ -117,7 +105,7 @@ TEST(PathChecker, CatchesAStateThatIsNotWhereThePathsLead) {
 }
 
 TEST(ToldCollisions, ChangeNoBitOfWhatIsSimulated) {
-    const Scene scene = busy();
+    const Scene scene = tests::gas(400, 46, 8, 0.1, 1, 51);
     int variants_that_tell = 0;
     std::vector<Variant> all(variants().begin(), variants().end());
     all.push_back(event_driven());

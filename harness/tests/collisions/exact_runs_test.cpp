@@ -3,11 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/scenes/generate.hpp"
 #include "harness/scenes/hard_cases.hpp"
 #include "harness/tests/collisions/exact_runs.hpp"
 #include "harness/tests/scenes/random_scenes.hpp"
-#include "kernels/tests/simulate.hpp"
 
 // The event-driven simulation proven right collision by collision: on every hard case, and on random scenes
 // of every kind, also those whose discs overlap or lie outside at the start.
@@ -48,24 +46,6 @@ TEST(ExactRuns, AreProvenOnRandomScenes) {
         is_proven(run.wrong(scene, 3, limits), seed);
     }
     EXPECT_GT(ended, static_cast<int>(scenes / 2));
-}
-
-TEST(ExactRuns, EndInTheSameBitsWhetherTheyAreToldOrNot) {
-    const Scene scene = generate({.count = 300,
-                                  .side = 40,
-                                  .radius = 1,
-                                  .steps = 20,
-                                  .least_velocity = 0.1,
-                                  .largest_velocity = 1,
-                                  .seed = 21,
-                                  .placement = Placement::lattice,
-                                  .isotropic = true});
-    ExactRun told(scene);
-    ASSERT_EQ(told.wrong(scene, 20), "");
-    EventDriven<double> untold(scene);
-    ASSERT_TRUE(untold.advance(20));
-    EXPECT_TRUE(tests::same_bits(told.simulation.discs(), untold.discs()));
-    EXPECT_GT(told.checker.pair_collisions(), 1000);
 }
 
 } // namespace

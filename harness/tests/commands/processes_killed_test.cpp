@@ -1,5 +1,7 @@
 #include <chrono>
 #include <csignal>
+#include <iterator>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -11,6 +13,7 @@
 #include <unistd.h>
 
 #include "harness/processes/descendants.hpp"
+#include "harness/tests/gone_processes.hpp"
 #include "harness/tests/temporary_directory.hpp"
 
 namespace carom {
@@ -44,30 +47,10 @@ class ProcessesKilled : public testing::Test {
         std::vector<pid_t> found;
         for (int wait = 0; wait < 1000 && found.size() < 3; ++wait) {
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
-            found = numbers_in(tests::content_of(numbers));
+            std::istringstream lines(tests::content_of(numbers));
+            found.assign(std::istream_iterator<pid_t>(lines), {});
         }
         return found;
-    }
-
-    static std::vector<pid_t> numbers_in(const std::string& text) {
-        std::vector<pid_t> numbers;
-        std::size_t begin = 0;
-        for (std::size_t end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
-            numbers.push_back(std::stoi(text.substr(begin, end - begin)));
-        }
-        return numbers;
-    }
-
-    /// What of them is still there after some seconds.
-    static std::vector<pid_t> left_of(std::vector<pid_t> processes) {
-        for (int wait = 0; wait < 500 && !processes.empty(); ++wait) {
-            std::erase_if(processes, [](pid_t process) {
-                const std::string stat = tests::content_of("/proc/" + std::to_string(process) + "/stat");
-                return stat.empty() || stat.find(") Z") != std::string::npos;
-            });
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        }
-        return processes;
     }
 
     tests::TemporaryDirectory directory;
@@ -85,8 +68,9 @@ TEST_F(ProcessesKilled, LeavesNothingRunning) {
         EXPECT_GE(processes.size(), 3 + 2);
         kill(carom, signal);
         waitpid(carom, nullptr, 0);
-        const auto left = left_of(processes);
-        EXPECT_TRUE(left.empty()) << "signal " << signal << ": " << name_of(left.front());
+        for (const pid_t process : processes) {
+            EXPECT_TRUE(tests::is_gone(process)) << "signal " << signal << ": " << name_of(process);
+        }
     }
 }
 

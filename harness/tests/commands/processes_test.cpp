@@ -14,7 +14,6 @@ namespace {
 
 using Json = nlohmann::json;
 using tests::content_of;
-using tests::refused;
 using tests::run_carom;
 
 class ProcessesCommand : public testing::Test {
@@ -90,15 +89,6 @@ TEST_F(ProcessesCommand, TellsTheMachineAndAScene) {
     EXPECT_EQ(facts["provenance"]["oversubscribed"], true);
     EXPECT_TRUE(facts["provenance"].contains("compiler_flags"));
     EXPECT_TRUE(told({{"threads", 1}})["scene"].is_null());
-}
-
-TEST_F(ProcessesCommand, RefusesWhatItDoesNotUnderstand) {
-    for (const char* wrong :
-         {"x", "{}", R"({"processes": 5})", R"({"processes": [{}]})", R"({"processes": [{"command": "ls"}]})",
-          R"({"processes": [{"command": []}]})", R"({"threads": "x"})", R"([1])"}) {
-        EXPECT_TRUE(refused(asked(wrong), 1, {"standard input: found '", "expected an object of JSON"}))
-            << wrong;
-    }
 }
 
 } // namespace

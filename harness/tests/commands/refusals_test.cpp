@@ -47,7 +47,7 @@ TEST(Refusals, AreOneLineThatSaysWhatWasFoundAndExpected) {
             }
             const auto result = tests::run_carom(words, row.value("settings", std::vector<std::string>{}),
                                                  row.value("output", ""),
-                                                 filled(row.value("input", "/dev/null"), "", directory));
+                                                 filled(row.value("input", "/dev/null"), value, directory));
             std::vector<std::string> parts;
             for (const Json& said : row["says"].is_array() ? row["says"] : Json::array({row["says"]})) {
                 parts.push_back(filled(said, value, directory));

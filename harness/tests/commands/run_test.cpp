@@ -84,22 +84,6 @@ TEST_F(RunCommand, TakesThreadsAsItsSecondArgument) {
     EXPECT_EQ(summary({scene, "1"}, {"OMP_NUM_THREADS=2"})["threads"], 1);
 }
 
-TEST_F(RunCommand, EndsInTheSameStateForAnyThreadsAndChunks) {
-    const auto expected = summary({scene, "1"})["state_hash"];
-    EXPECT_EQ(summary({scene, "2"})["state_hash"], expected);
-    EXPECT_EQ(summary({scene, "8", "--find-chunk", "1", "--resolve-chunk", "9"})["state_hash"], expected);
-}
-
-TEST_F(RunCommand, RunsTheVariantAskedFor) {
-    for (const char* name : {"nine", "row-resolve_dynamic", "once-self_contained_off"}) {
-        const auto simulation = find_variant(name)->simulate(busy, {});
-        const auto expected = run_scene(busy, *simulation, {}, CheckScope::nothing);
-        const auto json = summary({scene, "--variant", name});
-        EXPECT_EQ(json["variant"], name);
-        EXPECT_EQ(json["state_hash"], state_hash(expected.discs)) << name;
-    }
-}
-
 TEST_F(RunCommand, PassesOnSubstepsAndTolerance) {
     const Tuning tuning{.substeps = 3, .tolerance = Tolerance::published};
     const auto simulation = find_variant("published")->simulate(busy, tuning);

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -124,8 +123,6 @@ TEST_F(TurnsCommand, CountsOneAfterTheOther) {
         EXPECT_EQ(contender(place)["repetitions"].size(), 1);
         EXPECT_EQ(contender(place)["check"]["verdict"], "passed");
     }
-    EXPECT_TRUE(
-        refused(turns(Json::array({words("published")}), {"--counts", "--runs", "2"}), 1, {"--counts"}));
 }
 
 TEST_F(TurnsCommand, LetsTheEventDrivenSimulationTakePart) {
@@ -135,44 +132,6 @@ TEST_F(TurnsCommand, LetsTheEventDrivenSimulationTakePart) {
     EXPECT_EQ(contender(1)["state_hash"], Json::parse(alone.output)["state_hash"]);
     EXPECT_EQ(record()["turns"]["seconds"].size(), 60);
     EXPECT_EQ(contender(1)["check"]["verdict"], "passed");
-}
-
-TEST_F(TurnsCommand, RefusesWhatIsNoListOfContenders) {
-    const std::vector<std::string> expected{"contenders.json", "expected a JSON list"};
-    for (const Json& wrong : {Json{}, Json::array(), Json{1}, Json{"scene.in"}, Json{Json{1, 2}}}) {
-        EXPECT_TRUE(refused(turns(wrong), 1, expected)) << wrong;
-    }
-    std::ofstream(directory / "torn.json") << "[[\"scene.in\", ";
-    EXPECT_TRUE(refused(run_carom({"turns", directory / "torn.json", "--record", directory / "record"}), 1,
-                        {"torn.json", "expected a JSON list"}));
-    EXPECT_TRUE(refused(run_carom({"turns", directory / "none.json", "--record", directory / "record"}), 1,
-                        {"none.json"}));
-    EXPECT_TRUE(refused(run_carom({"turns", directory / "torn.json"}), 1, {"--record"}));
-    EXPECT_TRUE(refused(run_carom({"turns", directory / "torn.json", "--record", directory / "none/two"}), 1,
-                        {"none/two: cannot be written"}));
-}
-
-TEST_F(TurnsCommand, RefusesAContenderThatCannotBeAndSaysWhichOne) {
-    const Json right = words("published");
-    EXPECT_TRUE(refused(turns({right, words("publishde")}), 1, {"publishde", "published"}));
-    EXPECT_TRUE(refused(turns({right, words("nine", {"--tag", "x"})}), 1, {"--tag", "KEY=VALUE"}));
-    EXPECT_TRUE(refused(turns({right, words("nine", {"--no-such"})}), 1, {"contender 2", "--no-such"}));
-    EXPECT_TRUE(
-        refused(turns({right, Json{"--threads", "2"}}), 1, {"contender 2: SCENE", "`carom bench --help`"}));
-    EXPECT_TRUE(refused(turns({right, words("nine", {"--vairant", "x"})}), 1,
-                        {"contender 2: found '--vairant'", "did you mean '--variant'?"}));
-    EXPECT_TRUE(refused(turns({right, words("nine", {"--repetitions", "3"})}), 1,
-                        {"contender 2: --repetitions: found '3', expected 1"}));
-    EXPECT_FALSE(std::filesystem::exists(directory / "record")) << "refused before any runs";
-}
-
-TEST_F(TurnsCommand, RefusesTurnsThatCannotBe) {
-    const Json contenders = Json::array({words("published")});
-    EXPECT_TRUE(refused(turns(contenders, {"--turn", "0"}), 1,
-                        {"--turn: found '0', expected a number from 1e-06 to 1000000"}));
-    EXPECT_TRUE(refused(turns(contenders, {"--runs", "0"}), 1, {"--runs: found '0'"}));
-    EXPECT_TRUE(
-        refused(turns(contenders, {"--seed", "-1"}), 1, {"--seed: found '-1', expected a whole number"}));
 }
 
 TEST_F(TurnsCommand, OneThatFailsItsCheckHasNoTimesAndTheOthersHave) {

@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cstdint>
 #include <initializer_list>
-#include <string>
 #include <thread>
 #include <vector>
 
@@ -10,24 +9,13 @@
 
 #include "harness/measure/measure.hpp"
 #include "harness/measure/profiler.hpp"
-#include "harness/scenes/generate.hpp"
+#include "kernels/tests/scenes.hpp"
 #include "variants/registry.hpp"
-#include "variants/tests/each_variant.hpp"
 
 namespace carom {
 namespace {
 
-constexpr Phase all_phases[] = {Phase::move, Phase::bin, Phase::find, Phase::resolve};
-
-Scene small_scene() {
-    return generate({.count = 3000,
-                     .side = 600,
-                     .radius = 5,
-                     .steps = 20,
-                     .least_velocity = 1,
-                     .largest_velocity = 3,
-                     .seed = 4});
-}
+Scene small_scene() { return tests::random_scene(3000, 600, 5, 20, 3, 4); }
 
 struct Profiled {
     Run run;
@@ -42,22 +30,6 @@ Profiled profile(const char* name, const Tuning& tuning, TimelineOptions timelin
     profiled.run = run_scene(scene, *simulation, tuning, {CheckScope::last_step, variant});
     return profiled;
 }
-
-class EveryVariantProfiled : public testing::TestWithParam<Variant> {};
-
-TEST_P(EveryVariantProfiled, EndsInTheStateOfTheBareRun) {
-    const Tuning tuning{.threads = 2};
-    const Profiled profiled = profile(GetParam().name.data(), tuning);
-    const Scene scene = small_scene();
-    const auto simulation = GetParam().simulate(scene, tuning);
-    const carom::Run bare = run_scene(scene, *simulation, tuning, CheckScope::nothing);
-    EXPECT_EQ(profiled.run.violation.value_or(""), "");
-    EXPECT_EQ(state_hash(profiled.run.discs), state_hash(bare.discs));
-    EXPECT_EQ(profiled.run.work, bare.work);
-}
-
-INSTANTIATE_TEST_SUITE_P(All, EveryVariantProfiled, testing::ValuesIn(variants().begin(), variants().end()),
-                         tests::variant_test_name);
 
 /// The last rung of the ladder, whose threads wait for each other within a loop.
 const char* const ladder_end =

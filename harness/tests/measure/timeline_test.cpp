@@ -8,9 +8,9 @@
 #include "harness/measure/measure.hpp"
 #include "harness/measure/profiler.hpp"
 #include "harness/measure/timeline.hpp"
-#include "harness/scenes/generate.hpp"
 #include "harness/support/input_file.hpp"
 #include "harness/tests/temporary_directory.hpp"
+#include "kernels/tests/scenes.hpp"
 #include "variants/registry.hpp"
 
 namespace carom {
@@ -18,13 +18,7 @@ namespace {
 
 /// The timeline of a run of 20 steps on `threads` threads, as it reads back from its file.
 nlohmann::json timeline_of(int threads, bool chunks, std::int64_t& sweeps) {
-    const Scene scene = generate({.count = 2000,
-                                  .side = 500,
-                                  .radius = 5,
-                                  .steps = 20,
-                                  .least_velocity = 1,
-                                  .largest_velocity = 3,
-                                  .seed = 9});
+    const Scene scene = tests::random_scene(2000, 500, 5, 20, 3, 9);
     const Variant& variant = *find_variant("published");
     const Tuning tuning{.threads = threads};
     Profiler profiler(variant.policies, tuning, {.spans = true, .chunks = chunks});

@@ -2,14 +2,12 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
-#include <set>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "harness/measure/measurement.hpp"
 #include "harness/measure/turns.hpp"
-#include "harness/measure/variant_contender.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "variants/registry.hpp"
 
@@ -121,26 +119,20 @@ TEST(Turns, AreAsLongAsAskedButNoShorterThanAStep) {
     EXPECT_EQ(count_rounds(std::vector{0.0}, 0, 0.05), 1);
 }
 
-Measurement measurement_of(const Scene& scene, const char* variant,
-                           CheckScope scope = CheckScope::last_step) {
-    return {.scene = scene,
-            .scene_name = "scene.in",
-            .scene_sha256 = {},
-            .variant = *find_variant(variant),
-            .tuning = {},
-            .scope = scope};
-}
-
 carom::Run run_to(const std::vector<Disc>& discs) {
     carom::Run run;
     run.discs = discs;
     return run;
 }
 
-TEST(VariantContender, ALaterRunHasToEndInTheSameBitsAfterTheSameWork) {
+TEST(Measurement, ALaterRunHasToEndInTheSameBitsAfterTheSameWork) {
     const Scene scene = tests::random_scene_of_density(20, 0.2, 3, 5);
     const auto violation_after = [&scene](const carom::Run& second) {
-        Measurement measurement = measurement_of(scene, "published");
+        Measurement measurement{.scene = scene,
+                                .scene_name = "scene.in",
+                                .scene_sha256 = {},
+                                .variant = *find_variant("published"),
+                                .tuning = {}};
         measurement.add(run_to(scene.discs));
         measurement.add(second);
         return measurement.violation.value_or("");
@@ -155,45 +147,6 @@ TEST(VariantContender, ALaterRunHasToEndInTheSameBitsAfterTheSameWork) {
     carom::Run busier = run_to(scene.discs);
     busier.work.pair_resolves = 1;
     EXPECT_NE(violation_after(busier).find("the work differs"), std::string::npos);
-}
-
-TEST(VariantContender, EndsAsIfItHadRunAlone) {
-    const Scene scene = tests::random_scene_of_density(300, 0.4, 12, 5);
-    std::set<std::string> right_ends;
-    VariantContender published(measurement_of(scene, "published"), right_ends);
-    VariantContender track(measurement_of(scene, "track", CheckScope::every_step), right_ends);
-    EXPECT_GT(published.prepare(), 0);
-    EXPECT_GT(track.prepare(), 0);
-    const std::vector<Contender*> both{&published, &track};
-    const TurnsPlan plan{.runs = 2, .rounds = 5, .seed = 3};
-    const auto all_turns = take_turns(both, plan);
-    int number = 0;
-    for (VariantContender* one : {&published, &track}) {
-        const auto turns = all_turns[static_cast<std::size_t>(number++)];
-        one->finish(plan.runs);
-        const Measurement& measurement = one->measurement();
-        ASSERT_EQ(measurement.repetitions.size(), 2);
-        EXPECT_FALSE(measurement.violation);
-        const auto& run = measurement.repetitions.back();
-        const auto alone = measurement.variant.simulate(scene, measurement.tuning);
-        const auto whole = run_scene(scene, *alone, measurement.tuning, CheckScope::nothing);
-        EXPECT_EQ(run.discs, whole.discs);
-        EXPECT_EQ(run.work, whole.work);
-        ASSERT_EQ(turns.size(), 10);
-        const double of_last_run =
-            std::accumulate(turns.begin() + 5, turns.end(), 0.0,
-                            [](double sum, const TurnTime& turn) { return sum + turn.seconds; });
-        EXPECT_NEAR(of_last_run, run.steps_seconds, 1e-9);
-        for (const TurnTime& turn : turns) {
-            ASSERT_EQ(turn.returning_seconds.has_value(), turn.steps > 1);
-            if (turn.steps == 1) {
-                continue;
-            }
-            EXPECT_GT(*turn.returning_seconds, 0);
-            EXPECT_LT(*turn.returning_seconds, turn.seconds);
-        }
-        EXPECT_GE(*measurement.own_seconds, run.steps_seconds);
-    }
 }
 
 } // namespace

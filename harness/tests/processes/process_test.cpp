@@ -15,6 +15,7 @@
 #include "harness/processes/process.hpp"
 #include "harness/side_by_side/slices.hpp"
 #include "harness/support/process_clock.hpp"
+#include "harness/tests/gone_processes.hpp"
 #include "harness/tests/temporary_directory.hpp"
 
 namespace carom {
@@ -31,19 +32,6 @@ ProcessCommand shell(const std::string& script) { return words({"/bin/sh", "-c",
 /// Works for a while without a pause.
 std::string counting(int to) {
     return "i=0; while [ $i -lt " + std::to_string(to) + " ]; do i=$((i+1)); done";
-}
-
-/// Whether it is gone within some seconds; where nobody collects orphans a dead one may stay as a zombie.
-bool is_gone(int process) {
-    const std::string stat = "/proc/" + std::to_string(process) + "/stat";
-    for (int wait = 0; wait < 500; ++wait) {
-        const std::string text = tests::content_of(stat);
-        if (text.empty() || text.find(") Z") != std::string::npos) {
-            return true;
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
 }
 
 /// Either way of keeping together what a program starts: by a control group or by signals.
@@ -137,7 +125,7 @@ TEST_P(ProcessKept, NamesWhatGoesOnWithoutItForTooLong) {
     EXPECT_EQ(end["out_of_time"], true);
     EXPECT_EQ(end["exit_code"], 0);
     EXPECT_EQ(end["went_on"], "sleep");
-    EXPECT_TRUE(is_gone(std::stoi(end["output_end"].get<std::string>())));
+    EXPECT_TRUE(tests::is_gone(std::stoi(end["output_end"].get<std::string>())));
 }
 
 TEST_P(ProcessKept, CountsTheTimeOfAllThatItStarted) {
@@ -254,7 +242,7 @@ TEST_P(ProcessKept, OneThatIsGivenUpHalfwayLeavesNothingBehind) {
         ASSERT_EQ(kill(std::stoi(tests::content_of(directory / "pid")), 0), 0);
         EXPECT_TRUE(std::ranges::is_permutation(children_by_parent(getpid()), children_by_thread(getpid())));
     }
-    EXPECT_TRUE(is_gone(std::stoi(tests::content_of(directory / "pid"))));
+    EXPECT_TRUE(tests::is_gone(std::stoi(tests::content_of(directory / "pid"))));
 }
 
 TEST_P(ProcessKept, IfItsKeeperIsKilledNobodyTakesThatForAnEnd) {
@@ -263,7 +251,7 @@ TEST_P(ProcessKept, IfItsKeeperIsKilledNobodyTakesThatForAnEnd) {
     EXPECT_NE(end["unknown"], "");
     EXPECT_FALSE(succeeded(end));
     for (const pid_t left : descendants_of(getpid())) {
-        EXPECT_TRUE(is_gone(left)) << name_of(left);
+        EXPECT_TRUE(tests::is_gone(left)) << name_of(left);
     }
 }
 

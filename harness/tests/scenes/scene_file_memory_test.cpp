@@ -1,43 +1,14 @@
 // A program of its own: it counts what every `new` of the process asks for.
 
-#include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
+#include "kernels/tests/counted_memory.hpp"
 #include "kernels/tests/scenes.hpp"
-
-namespace {
-
-std::atomic<std::size_t> allocations = 0;
-std::atomic<std::size_t> largest_allocation = 0;
-
-void* count_and_allocate(std::size_t size, std::size_t alignment) {
-    ++allocations;
-    largest_allocation = std::max(largest_allocation.load(), size);
-    void* memory = nullptr;
-    if (posix_memalign(&memory, std::max(alignment, sizeof(void*)), size) != 0) {
-        throw std::bad_alloc();
-    }
-    return memory;
-}
-
-} // namespace
-
-void* operator new(std::size_t size) { return count_and_allocate(size, alignof(std::max_align_t)); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-    return count_and_allocate(size, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
 namespace carom {
 namespace {
@@ -49,15 +20,15 @@ struct Memory {
 
 /// What parsing the text asks for, accepted or not.
 Memory asked_for_by(const std::string& text, bool accepted) {
-    allocations = 0;
-    largest_allocation = 0;
+    tests::memory::allocations = 0;
+    tests::memory::largest = 0;
     bool was_accepted = true;
     try {
         parse_scene(text, "scene.in");
     } catch (const InputError&) {
         was_accepted = false;
     }
-    const Memory memory{allocations, largest_allocation};
+    const Memory memory{tests::memory::allocations, tests::memory::largest};
     EXPECT_EQ(was_accepted, accepted);
     return memory;
 }

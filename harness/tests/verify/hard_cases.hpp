@@ -30,14 +30,6 @@ inline std::vector<Disc> start_of(const Variant& variant, const Scene& scene) {
     return variant.simulate(scene, {})->discs();
 }
 
-inline std::vector<Disc> as_discs(const EventDriven<double>& reference) {
-    std::vector<Disc> discs;
-    for (const auto& disc : reference.discs()) {
-        discs.push_back({disc.x, disc.y, disc.vx, disc.vy});
-    }
-    return discs;
-}
-
 /// Largest distance of a disc to its counterpart.
 inline double largest_distance(const std::vector<Disc>& one, const std::vector<Disc>& two) {
     double largest = 0;
@@ -45,15 +37,6 @@ inline double largest_distance(const std::vector<Disc>& one, const std::vector<D
         largest = std::max(largest, std::hypot(one[i].x - two[i].x, one[i].y - two[i].y));
     }
     return largest;
-}
-
-/// Root of the mean squared distance of the discs to their counterparts.
-inline double rms_distance(const std::vector<Disc>& one, const std::vector<Disc>& two) {
-    double sum = 0;
-    for (std::size_t i = 0; i < one.size(); ++i) {
-        sum += (one[i].x - two[i].x) * (one[i].x - two[i].x) + (one[i].y - two[i].y) * (one[i].y - two[i].y);
-    }
-    return std::sqrt(sum / static_cast<double>(one.size()));
 }
 
 } // namespace carom::tests

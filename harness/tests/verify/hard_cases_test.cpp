@@ -69,7 +69,7 @@ TEST_P(HardCases, CradleIsExactWhereStepsEndAtItsCollisions) {
     run(scene, {.substeps = 4}, [&](int time, const Simulation& simulation) {
         const std::vector<Disc> discs = simulation.discs();
         ASSERT_TRUE(reference.advance(time));
-        EXPECT_LE(tests::largest_distance(discs, tests::as_discs(reference)), 64 * epsilon()) << time;
+        EXPECT_LE(tests::largest_distance(discs, reference.discs()), 64 * epsilon()) << time;
     });
     EXPECT_GT(reference.pair_collisions(), 8);
 }
@@ -82,8 +82,7 @@ TEST_P(HardCases, CradlePassesTheBlowOnOnceAStep) {
         EventDriven<double> reference(scene);
         run(scene, {}, [&](int time, const Simulation& simulation) {
             ASSERT_TRUE(reference.advance(time));
-            EXPECT_LE(tests::largest_distance(simulation.discs(), tests::as_discs(reference)), 64 * epsilon())
-                << time;
+            EXPECT_LE(tests::largest_distance(simulation.discs(), reference.discs()), 64 * epsilon()) << time;
         });
         return;
     }
@@ -102,7 +101,7 @@ TEST_P(HardCases, CornerIsExact) {
     const carom::Run done = run(scene, {}, [&](int time, const Simulation& simulation) {
         const std::vector<Disc> discs = simulation.discs();
         ASSERT_TRUE(reference.advance(time));
-        EXPECT_TRUE(same_bits(discs, tests::as_discs(reference))) << time;
+        EXPECT_TRUE(same_bits(discs, reference.discs())) << time;
     });
     EXPECT_EQ(done.work.wall_resolves, 6) << "at the times 3, 11 and 19";
 }

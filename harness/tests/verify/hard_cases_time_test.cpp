@@ -105,7 +105,7 @@ TEST(ReversedCase, LeadsTheReferenceBackToTheStartOfThePlainScene) {
     ASSERT_TRUE(reference.advance(scene.steps));
     EXPECT_GT(reference.pair_collisions(), 20);
     const Scene plain = plain_scene();
-    EXPECT_LT(tests::largest_distance(tests::as_discs(reference), plain.discs), 1e-9);
+    EXPECT_LT(tests::largest_distance(reference.discs(), plain.discs), 1e-9);
 }
 
 } // namespace

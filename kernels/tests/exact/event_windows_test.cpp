@@ -56,16 +56,6 @@ struct Case {
     double time;
 };
 
-/// Rows that meet, and walls that are met, at one instant.
-Scene tied() {
-    Scene scene = lattice_scene(24, 0.5, 1);
-    for (std::size_t i = 0; i < scene.discs.size(); ++i) {
-        scene.discs[i].vx = i % 2 == 0 ? 1 : -1;
-        scene.discs[i].vy = i % 3 == 0 ? 0.5 : 0;
-    }
-    return scene;
-}
-
 Scene a_fast_one_among_slow_ones() {
     Scene scene = lattice_scene(30, 0.2, 4);
     scene.discs[17].vx = 300;
@@ -95,7 +85,7 @@ std::vector<Case> cases() {
             {"cradle", cradle(), 20},
             {"touching", touching(), 20},
             {"from outside", outside(), 9},
-            {"tied", tied(), 8},
+            {"tied", tied_scene(24), 8},
             {"a fast one", a_fast_one_among_slow_ones(), 2},
             {"at rest but one", at_rest_but_one(), 50},
             {"0.01", lattice_scene(25, 0.01, 6), 60},

@@ -29,10 +29,7 @@ constexpr std::size_t row_of_variant() {
 static_assert((row_of_variant() == table.size()) == (engine == Engine::event_driven), "no such variant");
 constexpr Policies policies = engine == Engine::event_driven ? Policies{} : table[row_of_variant()];
 
-template <class Real> mutants::Disc plain(const BasicDisc<Real>& disc) {
-    return {static_cast<double>(disc.x), static_cast<double>(disc.y), static_cast<double>(disc.vx),
-            static_cast<double>(disc.vy)};
-}
+mutants::Disc plain(const Disc& disc) { return {disc.x, disc.y, disc.vx, disc.vy}; }
 
 Scene scene_of(const mutants::Scene& plain) {
     Scene scene{.side = plain.side, .radius = plain.radius, .steps = 0, .discs = {}};
@@ -80,7 +77,7 @@ template <Policies policies> class Stepped final : public mutants::Simulation {
     Tuning tuning_;
 };
 
-template <class Real> class Exact final : public mutants::Simulation {
+class Exact final : public mutants::Simulation {
   public:
     Exact(const Scene& scene, const mutants::Tuning& tuning, mutants::Tell tell)
         : told_(std::move(tell)), simulation_(scene, told_), substeps_(tuning.substeps) {}
@@ -93,7 +90,7 @@ template <class Real> class Exact final : public mutants::Simulation {
 
   private:
     Told told_;
-    EventDriven<Real, CollisionLog<Real>&> simulation_;
+    EventDriven<double, CollisionLog<double>&> simulation_;
     double substeps_;
     int steps_ = 0;
 };
@@ -102,7 +99,7 @@ template <Policies policies>
 std::unique_ptr<mutants::Simulation> simulate(const mutants::Scene& scene, const mutants::Tuning& tuning,
                                               mutants::Tell tell) {
     if constexpr (engine == Engine::event_driven) {
-        return std::make_unique<Exact<double>>(scene_of(scene), tuning, std::move(tell));
+        return std::make_unique<Exact>(scene_of(scene), tuning, std::move(tell));
     } else {
         return std::make_unique<Stepped<policies>>(scene_of(scene), tuning, std::move(tell));
     }
