@@ -1,7 +1,7 @@
 """The claims of the published study, each tested again on the records."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 import pandas as pd
@@ -39,10 +39,8 @@ Tested = dict[str, tuple[object, Outcome]]
 """What claims were tested on, and what came of it, by their ids."""
 
 
-def evaluate(
-    evidence: Evidence, claimed: Sequence[Claim] | None = None, remembered: Tested | None = None
-) -> pd.DataFrame:
-    """Return a row a claim, of those that are `claimed`, or of the published ones.
+def evaluate(evidence: Evidence, remembered: Tested | None = None) -> pd.DataFrame:
+    """Return a row a claim, of those that the results folder brings along, or of the published ones.
 
     Columns: `id`, `claim`, `effect` and `claimed_threads` as published, `experiments`, `tested_threads`,
     `verdict` with `said`, the same in words, `measured`, `why`, `figures`, `missing`, the `blocks` it rests
@@ -58,7 +56,7 @@ def evaluate(
     """
     study = evidence.study
     before = {} if remembered is None else remembered
-    listed_claims = load() if claimed is None else claimed
+    listed_claims = load(evidence.folder)
     tested = [_at_scale(_remembered(evidence, one, before), one, study.scale) for one in listed_claims]
     outcomes = family.corrected(tested)
     open_claims = sum(map(missing.is_open, outcomes))

@@ -12,6 +12,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from analysis.claims.entry import Evidence
 from analysis.derived.comparisons import USUAL, Stated, differences, reference, stated
 from analysis.derived.pauses import ratios as pause_ratios
 from analysis.derived.ways import APART, TURNS, comparisons, overall, said
@@ -19,7 +20,7 @@ from analysis.derived.ways import KIND as WAYS
 from analysis.figures.captions import PROCESSES, SCENES, caption, opening, time_axis
 from analysis.figures.kinds import NO_ENDS, Dot, curve, forest, of_medians, of_ratio
 from analysis.figures.labels import SIGNS, key, label_ends, logarithmic_ticks, note, plain_ticks
-from analysis.figures.style import BLUE, INK, VERMILLION, Data, Drawing, Look, lighten, looks, new_figure
+from analysis.figures.style import BLUE, INK, VERMILLION, Drawing, Look, lighten, looks, new_figure
 from analysis.records.studies import Study
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import PAIR, log_ratios
@@ -42,7 +43,7 @@ Names = Mapping[str, str]
 
 
 def comparison(
-    data: Data, experiment: str, subject: str,
+    data: Evidence, experiment: str, subject: str,
     names: Names | None = None, work: bool = False, published: Mapping[str, str] | None = None,
 ) -> Drawing | None:  # fmt: skip
     """Draw the differences of an experiment's series from its reference, with a table of verdicts. Two
@@ -75,7 +76,7 @@ def comparison(
 
 
 def _published_orders(
-    data: Data, table: pd.DataFrame, against: str, questions: Mapping[str, str]
+    data: Evidence, table: pd.DataFrame, against: str, questions: Mapping[str, str]
 ) -> Mapping[str, float]:
     """Return the published times of series, with self-contained resolves, as ratios, moved as one so that the
     first is level with ours, if it is there.
@@ -150,7 +151,7 @@ def _checked(scopes: pd.Series) -> str:
 
 
 def _pair(
-    data: Data, experiment: str, subject: str, names: Names, by: Stated, work: bool
+    data: Evidence, experiment: str, subject: str, names: Names, by: Stated, work: bool
 ) -> Drawing | None:  # fmt: skip
     """Draw the ratio of both sides with its verdict and that of every block, the published one below it on
     the same axis, and beside them the times block by block.
@@ -202,7 +203,7 @@ def _published_ratios(published: pd.DataFrame, names: Names) -> Floats:
     return np.asarray((candidate / reference).dropna(), dtype=float)
 
 
-def _of_counts(data: Data, experiment: str, subject: str, names: Names) -> Drawing:
+def _of_counts(data: Evidence, experiment: str, subject: str, names: Names) -> Drawing:
     """Draw the attempts alone. They have no verdict here: the claim about them has."""
     figure, axes = new_figure(1.6)
     _work(axes[0], data, experiment, names)
@@ -266,7 +267,7 @@ def ratio_panel(
     axes.xaxis.set_major_locator(MaxNLocator(6))
 
 
-def _work(axes: Axes, data: Data, experiment: str, names: Names) -> None:
+def _work(axes: Axes, data: Evidence, experiment: str, names: Names) -> None:
     """Draw the attempts at resolving a pair, those that resolve it in a stronger shade; medians of scenes."""
     runs = data.study.runs_of(experiment)
     counts = runs[["pair_resolves", "pair_attempts"]].div(runs["steps"], axis=0)
@@ -283,7 +284,7 @@ def _work(axes: Axes, data: Data, experiment: str, names: Names) -> None:
     axes.spines["left"].set_visible(False)
 
 
-def machines(data: Data, experiment: str, subject: str) -> Drawing | None:
+def machines(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw the time on each machine, a row a series: every study at this scale, never merged."""
     present = [study for study in data.studies if study.scale == data.study.scale]
     times = pd.concat([study.times_of(experiment).assign(machine=study.machine) for study in present])
@@ -330,7 +331,7 @@ def _of_machines(times: pd.DataFrame, subject: str) -> str:
     )  # fmt: skip
 
 
-def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
+def ways(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw the ratios of an experiment in turns and in processes of their own, and the width of their
     intervals over the time spent.
     """
@@ -383,7 +384,7 @@ def bias_sentence(study: Study) -> str:
     )  # fmt: skip
 
 
-def pauses(data: Data, experiment: str, subject: str) -> Drawing | None:
+def pauses(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw the time of each program in slices over its time without a pause."""
     times = data.study.times_of(experiment)
     found = pause_ratios(times)

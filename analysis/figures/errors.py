@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
+from analysis.claims.entry import Evidence
 from analysis.derived import accuracy
 from analysis.derived import hard_cases as cases
 from analysis.derived.accuracy import SMALL, Choice, Measure, Race
@@ -31,7 +32,6 @@ from analysis.figures.style import (
     FAINT,
     INK,
     VERMILLION,
-    Data,
     Drawing,
     Look,
     lighten,
@@ -59,7 +59,7 @@ WIDEST = 6
 """Variants side by side in one table, so that it fits a printed page."""
 
 
-def speed_against_error(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing | None:
+def speed_against_error(data: Evidence, experiment: str, subject: str, measure: Measure) -> Drawing | None:
     """Draw the time of a unit of simulated time over one error measure, a line a series, a panel a scene.
 
     None without records, and where the measure is 0 everywhere.
@@ -208,7 +208,7 @@ def _order(fitted: object) -> Cell | str:
     return interval(fitted)
 
 
-def _caption(table: pd.DataFrame, data: Data, experiment: str, subject: str, measure: Measure) -> str:
+def _caption(table: pd.DataFrame, data: Evidence, experiment: str, subject: str, measure: Measure) -> str:
     # What the error of the event-driven simulation is against is the reference of all others.
     exact_ones = list(table.loc[table["substeps"] == 0, "series"].unique())
     fronts = [
@@ -232,7 +232,7 @@ def front_of(part: pd.DataFrame) -> list[tuple[str, list[str]]]:
     ]
 
 
-def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
+def hard_cases(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw the measure of every case and variant against its bound, with the table of verdicts, if any."""
     table = cases.evaluate(data.study, experiment)
     if table.empty or (table["verdict"] == UNMEASURED).all():

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from analysis import report
-from analysis.figures.studies import data_of
-from analysis.figures.style import Data
+from analysis.claims import evidence_of
+from analysis.claims.entry import Evidence
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_study import failures, study, trace
@@ -43,5 +43,5 @@ def page(results: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @pytest.fixture(scope="session")
-def data(results: Path) -> Data:
-    return data_of(results)[0]
+def data(results: Path) -> Evidence:
+    return evidence_of(results)[0]

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from analysis.figures.studies import data_of
-from analysis.figures.style import Data
+from analysis.claims import evidence_of
+from analysis.claims.entry import Evidence
 from analysis.tests.synthetic import Machine, bench, failure, limits, profile, write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
@@ -54,10 +54,10 @@ def study(
     return records
 
 
-def data_in(folder: Path, records: Iterable[dict[str, Any]]) -> Data:
+def data_in(folder: Path, records: Iterable[dict[str, Any]]) -> Evidence:
     """Write records into a folder, and return what the figures of their first study may draw from."""
     write(folder, records)
-    return data_of(folder)[0]
+    return evidence_of(folder)[0]
 
 
 def _figure(experiment: str) -> str:

@@ -6,7 +6,6 @@ from typing import Any
 import pandas as pd
 
 from analysis import claims
-from analysis.records.reading import load
 from analysis.tests.synthetic import write
 
 Records = list[dict[str, Any]]
@@ -14,7 +13,7 @@ Records = list[dict[str, Any]]
 
 def verdicts_of(folder: Path) -> pd.DataFrame:
     """Return a row a claim, by its id, of the first study in a folder."""
-    return claims.evaluate(claims.evidence_of(load(folder))[0]).set_index("id")
+    return claims.evaluate(claims.evidence_of(folder)[0]).set_index("id")
 
 
 def row_of(folder: Path, records: Records, claim: str) -> pd.Series:

@@ -11,8 +11,8 @@ import pytest
 
 from analysis import claims
 from analysis.claims import missing
+from analysis.claims.entry import Evidence
 from analysis.claims.outcome import FAILS, HOLDS, IN_DIRECTION, OPEN, Verdict
-from analysis.figures.style import Data
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import split
@@ -310,7 +310,7 @@ def test_a_claim_is_judged_as_it_was_made(
         assert found == said if key == "said" else said in found, key
 
 
-def test_every_published_claim_has_its_row_and_its_verdict(data: Data) -> None:
+def test_every_published_claim_has_its_row_and_its_verdict(data: Evidence) -> None:
     table = claims.evaluate(data).set_index("id")
     assert list(table.index) == IDS
     assert table.loc["machine", "verdict"] == OPEN
@@ -373,7 +373,7 @@ def test_a_machine_speaks_with_the_records_of_the_revision_that_is_judged(tmp_pa
         folder = tmp_path / "records" / f"{machine.host}{machine.commit[0]}"
         write(folder, study(["machine"], machine=machine, noise=QUIET, speed=speed, threads=16))
     verdicts = {}
-    for one in claims.evidence_of(load(tmp_path)):
+    for one in claims.evidence_of(tmp_path):
         table = claims.evaluate(one).set_index("id")
         verdicts[one.study.machine[0], one.study.revision[0]] = table.loc["machine", "verdict"]
     assert (verdicts["a", "0"], verdicts["a", "1"]) == (FAILS, HOLDS)
@@ -381,7 +381,7 @@ def test_a_machine_speaks_with_the_records_of_the_revision_that_is_judged(tmp_pa
 
 def test_attempts_that_were_not_counted_are_no_zero(tmp_path: Path) -> None:
     write(tmp_path, attempts(REVERSE, FORWARD))
-    [evidence] = claims.evidence_of(load(tmp_path))
+    [evidence] = claims.evidence_of(tmp_path)
     evidence.study.runs["pair_attempts"] = float("nan")  # as it is of whole processes
     row = claims.evaluate(evidence).set_index("id").loc["reverse"]
     assert row["verdict"] == OPEN

@@ -9,13 +9,13 @@ from typing import Any
 import pytest
 
 from analysis import report
+from analysis.claims.entry import Evidence
 from analysis.derived import accuracy
 from analysis.derived.accuracy import MEASURES, Measure
-from analysis.figures import further
+from analysis.figures import draw_all, further
 from analysis.figures.captions import caption
 from analysis.figures.errors import front_of, run_label, speed_against_error
-from analysis.figures.studies import draw_all
-from analysis.figures.style import Data, Drawing
+from analysis.figures.style import Drawing
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
 from analysis.report.parts import horizons
@@ -33,7 +33,7 @@ def records(**more: Any) -> list[dict[str, Any]]:  # noqa: ANN401
     return study([NAME], blocks=6, noise=QUIET, seed=4, **more)
 
 
-def data_with(folder: Path, change: Callable[[dict[str, Any]], object]) -> Data:
+def data_with(folder: Path, change: Callable[[dict[str, Any]], object]) -> Evidence:
     """Return the data of these records, each changed."""
     made = records()
     for record in made:
@@ -42,16 +42,16 @@ def data_with(folder: Path, change: Callable[[dict[str, Any]], object]) -> Data:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Data:
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Evidence:
     return data_in(tmp_path_factory.mktemp("accuracy"), records())
 
 
 @pytest.fixture(scope="module")
-def measured(whole: Data) -> Study:
+def measured(whole: Evidence) -> Study:
     return whole.study
 
 
-def drawing(data: Data, key: str) -> Drawing:
+def drawing(data: Evidence, key: str) -> Drawing:
     drawn = speed_against_error(data, NAME, "Speed against error", BY_KEY[key])
     assert drawn is not None
     return drawn
@@ -150,7 +150,7 @@ def test_the_time_of_the_least_of_equals_is_within_its_interval() -> None:
     assert missed <= 5
 
 
-def test_the_figure_says_what_the_error_means_and_how_it_falls(whole: Data) -> None:
+def test_the_figure_says_what_the_error_means_and_how_it_falls(whole: Evidence) -> None:
     drawn = drawing(whole, "path")
     assert len(drawn.figure.axes) == 3
     assert BY_KEY["path"].meaning in drawn.caption
@@ -189,7 +189,7 @@ def test_zero_has_a_place_on_the_axis(tmp_path: Path) -> None:
     assert drawn.figure.axes[0].get_xticklabels()[0].get_text() == "0"
 
 
-def test_the_report_says_how_far_paths_go_and_what_to_use(whole: Data) -> None:
+def test_the_report_says_how_far_paths_go_and_what_to_use(whole: Evidence) -> None:
     page = report.render(whole.folder)
     text = text_of(page)
     assert "Hard discs are chaotic" in text
@@ -207,7 +207,7 @@ def test_an_experiment_of_another_name_is_drawn_alike(tmp_path: Path) -> None:
     assert "Mine: pressure" in [entry.title for entry in entries]
 
 
-def test_records_without_errors_draw_nothing(tmp_path: Path, data: Data) -> None:
+def test_records_without_errors_draw_nothing(tmp_path: Path, data: Evidence) -> None:
     write(tmp_path, [record for record in records() if record["tags"]["block"] > 0])
     assert draw_all(tmp_path) == []
     assert horizons(split(load(tmp_path))[0], NAME) == ""

@@ -8,7 +8,7 @@ import pytest
 
 from analysis.commands.open_questions import open_questions
 from analysis.derived.comparisons import USUAL, Stated, differences, reference, stated
-from analysis.figures.studies import draw_all
+from analysis.figures import draw_all
 from analysis.records.reading import load
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET, Noise

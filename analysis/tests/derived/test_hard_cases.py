@@ -9,7 +9,7 @@ import pytest
 from analysis import report
 from analysis.derived import hard_cases
 from analysis.derived.hard_cases import AT_CONTACT, FAILS, HOLDS, LABELS, LIMIT, UNMEASURED, Expectation
-from analysis.figures.studies import draw_all
+from analysis.figures import draw_all
 from analysis.records.reading import load
 from analysis.records.studies import split
 from analysis.tests.report.test_report import text_of

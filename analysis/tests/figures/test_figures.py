@@ -10,11 +10,12 @@ import pandas as pd
 import pytest
 
 from analysis import figures
-from analysis.figures import FIGURES, Entry
+from analysis.claims import evidence_of
+from analysis.claims.entry import Evidence
+from analysis.figures import FIGURES, Entry, draw_all
 from analysis.figures.comparisons import ratio_panel
 from analysis.figures.labels import label_ends, spread
-from analysis.figures.studies import data_of, draw_all
-from analysis.figures.style import Data, Point, new_figure, styled
+from analysis.figures.style import Point, new_figure, styled
 from analysis.figures.sweeps import level_of
 from analysis.statistics.verdicts import Ratio
 from analysis.tests.claims.judging import verdicts_of
@@ -41,7 +42,7 @@ QUESTIONS = Path(__file__).parents[3] / "experiments" / "questions"
 
 @pytest.mark.parametrize("entry", FIGURES, ids=lambda entry: entry.name)
 def test_every_figure_is_drawn_with_labels_units_a_caption_and_points_that_tell(
-    data: Data, entry: Entry
+    data: Evidence, entry: Entry
 ) -> None:
     with styled(entry.name):
         drawing = entry.draw(data)
@@ -89,7 +90,7 @@ def part(records: list[dict[str, Any]], kept: str) -> list[dict[str, Any]]:
 def test_partial_data_are_drawn_or_left_out_but_never_fail(tmp_path: Path, entry: Entry, kept: str) -> None:
     write(tmp_path, part(study([entry.experiment], blocks=3, noise=Noise(), seed=3), kept))
     with styled(entry.name):
-        drawing = entry.draw(data_of(tmp_path)[0])
+        drawing = entry.draw(evidence_of(tmp_path)[0])
         if drawing is not None:
             drawing.figure.draw_without_rendering()
 

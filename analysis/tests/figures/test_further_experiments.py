@@ -8,8 +8,7 @@ import pytest
 
 from analysis import report
 from analysis.derived.comparisons import differences
-from analysis.figures import KINDS, OF_ERRORS, Drawn
-from analysis.figures.studies import draw_all
+from analysis.figures import KINDS, OF_ERRORS, Drawn, draw_all
 from analysis.records.reading import load
 from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write

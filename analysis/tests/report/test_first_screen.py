@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from analysis import claims, report
+from analysis.claims import evidence_of
 from analysis.claims.summary import both_in_short, change_in_short, published_in_short
 from analysis.cli import main
 from analysis.figures import titles
-from analysis.figures.studies import data_of
 from analysis.report import answers
 from analysis.report.all_claims import LOWEST, NARROW, WIDE, Layout, all_claims, draw
 from analysis.statistics.verdicts import Ratio
@@ -130,7 +130,7 @@ def test_every_question_with_a_figure_has_words() -> None:
 
 @pytest.mark.parametrize("layout", [WIDE, NARROW])
 def test_a_missing_interval_does_not_stretch_the_axis(refuted: Path, layout: Layout) -> None:
-    data = data_of(refuted)[0]
+    data = evidence_of(refuted)[0]
     table = claims.evaluate(data)
     plain = all_claims(table, layout)
     assert plain is not None
@@ -149,7 +149,7 @@ def test_a_missing_interval_does_not_stretch_the_axis(refuted: Path, layout: Lay
 
 def test_nothing_measured_is_no_figure(tmp_path: Path) -> None:
     write(tmp_path, study(["sequential_orders"], blocks=2))
-    assert draw(data_of(tmp_path)[0]) == ("", [])
+    assert draw(evidence_of(tmp_path)[0]) == ("", [])
     assert 'class="claims-figure"' not in report.render(tmp_path)
 
 
@@ -179,7 +179,7 @@ def test_effects_agree_with_the_verdicts(tmp_path: Path) -> None:
     """On a machine with noise: what is drawn is what decides."""
     names = ["neighbourhood", "self_contained_checkered", "compiler", "row"]
     write(tmp_path, study(names, blocks=21, noise=Noise(process=0.004, repetition=0, burst_rate=0)))
-    data = data_of(tmp_path)[0]
+    data = evidence_of(tmp_path)[0]
     table = claims.evaluate(data)
     for row in table[~table["missing"]].itertuples():
         (effect,) = row.effects

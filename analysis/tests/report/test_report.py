@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from analysis import claims, report
-from analysis.figures.style import Data
+from analysis.claims.entry import Evidence
 from analysis.records.reading import load
 from analysis.report.provenance import commands, in_the_clock
 from analysis.support.wording import number, share
@@ -166,7 +166,7 @@ def test_text_from_records_is_escaped(tmp_path: Path) -> None:
     assert "<script>" not in re.sub(r"<svg.*?</svg>", "", report.render(tmp_path), flags=re.DOTALL)
 
 
-def test_it_says_which_part_of_the_time_was_in_the_clock(data: Data) -> None:
+def test_it_says_which_part_of_the_time_was_in_the_clock(data: Evidence) -> None:
     compared = data.study.times[data.study.times["question_kind"] != "counts"]
     assert in_the_clock(data.study).startswith(f"{number(compared['steps_seconds'].sum())} s of ")
     one = replace(data.study, times=data.study.times.iloc[:1], runs=data.study.runs.iloc[:2])
