@@ -46,7 +46,7 @@ def study(
             for block, seconds in enumerate(rows):
                 record = bench(
                     name, point, block, seconds, machine or Machine(),
-                    scale=scale, points_planned=len(points), blocks_planned=blocks, figure=_figure(name),
+                    scale=scale, points_planned=len(points), blocks_planned=blocks, figure=figure_of(name),
                 )  # fmt: skip
                 records.append(profile(record, SHARES, counters(record)) if name in PROFILED else record)
     if "limits" in names:
@@ -60,16 +60,16 @@ def data_in(folder: Path, records: Iterable[dict[str, Any]]) -> Evidence:
     return evidence_of(folder)[0]
 
 
-def _figure(experiment: str) -> str:
+def figure_of(experiment: str) -> str:
+    """Return how an experiment is drawn, as its records say."""
     points = EXPERIMENTS[experiment]()
     own = ("control", "machine", *PROFILED, "ladder", "speed_against_error", "hard_cases")
     if experiment in own:
         return experiment
     if any(point.in_turns for point in points):
         return "ways"
-    if points[0].x_name in ("none", "chunk"):
-        return "comparison"
-    return "scaling" if points[0].x_name == "threads" else "trend"
+    kinds = {"none": "comparison", "chunk": "schedule", "threads": "scaling"}
+    return kinds.get(points[0].x_name, "trend")
 
 
 def counters(record: dict[str, Any]) -> list[dict[str, Any]]:

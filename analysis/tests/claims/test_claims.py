@@ -3,7 +3,6 @@
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
-from math import exp
 from pathlib import Path
 from typing import Any
 
@@ -97,20 +96,6 @@ def machines(*told: tuple[str, float, int]) -> Records:
     ]  # fmt: skip
 
 
-def near_machines(count: int) -> Records:
-    """The second is as much slower than the first as makes the p-value of its not being faster, alone, 0.035;
-    the third is far faster.
-    """
-    models = ["Xeon Silver 4114", "Xeon w5-3423", "Core i7-13700"][:count]
-    point = Point("checkered", 0, 1.0, axes={"threads": 16})
-    return [
-        bench("machine", replace(point, tags={"point": model}), block, [exp(scatter + shift)],
-              Machine(host=model.split()[-1], cpu_model=model))
-        for shift, model in zip((0, 0.0305, -1), models, strict=False)
-        for block, scatter in enumerate([0.031, -0.031, 0.012, -0.012, 0.02, -0.02])
-    ]  # fmt: skip
-
-
 def schedules(*others: float) -> Records:
     """Guided with a chunk of 4 takes 0.7276 s, the others so long."""
     names = [("dynamic", 10), ("dynamic", 50), ("static", 80)]
@@ -196,18 +181,14 @@ def attempts(
 CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
     # on other threads, at other scales
     ("as made", lambda: boxes(1.0), "four_boxes", HOLDS, {"said": "holds"}),
-    ("slower", lambda: boxes(1.2), "four_boxes", FAILS, {"said": "does not hold"}),
-    ("in direction", lambda: boxes(1.04), "four_boxes", IN_DIRECTION, {"said": "holds in direction"}),
     ("on 2", lambda: boxes(1.0, threads=2), "four_boxes", ELSEWHERE,
      {"said": "holds at 2 threads (claimed at 20)"}),
     ("in direction on 2", lambda: boxes(1.04, threads=2), "four_boxes", IN_DIRECTION_ELSEWHERE,
      {"said": "holds in direction at 2 threads (claimed at 20)"}),
     ("slower on 1", lambda: boxes(1.2, threads=1), "four_boxes", FAILS_ELSEWHERE,
      {"said": "does not hold at 1 thread (claimed at 20)"}),
-    ("quick", lambda: boxes(1.0, scale="quick"), "four_boxes", ELSEWHERE,
-     {"said": "holds at quick scale", "why": "24 rows"}),
     ("quick on 2", lambda: boxes(1.0, scale="quick", threads=2), "four_boxes", ELSEWHERE,
-     {"said": "holds at quick scale, at 2 threads (claimed at 20)"}),
+     {"said": "holds at quick scale, at 2 threads (claimed at 20)", "why": "24 rows"}),
     ("no scale", lambda: on("neighbourhood", scale="unstated"), "four_boxes", Verdict.OTHER_SCALE,
      {"said": "cannot be decided at unstated scale", "why": "24 rows", "measured": "["}),
     ("quick threads", lambda: on("threads", scale="quick"), "threads", Verdict.OTHER_SCALE,
@@ -246,8 +227,8 @@ CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
      {"why": "unequal numbers of threads: 8, 16"}),
     ("base clock", lambda: machines((I7, 1.0, 16), ("Some CPU @ 2.00GHz", 0.5, 16)), "machine", OPEN,
      {"why": "a base clock in a name is none", "measured": "clock not known"}),
-    ("one pair", lambda: near_machines(2), "machine", FAILS, {}),
-    ("two pairs are corrected", lambda: near_machines(3), "machine", OPEN, {}),
+    ("one of two is not faster",
+     lambda: machines((XEON, 1.0, 16), ("Xeon w5-3423", 2.0, 16), (I7, 1.5, 16)), "machine", FAILS, {}),
     # schedules
     ("best", lambda: schedules(0.75, 0.80, 0.90), "find_schedule", HOLDS, {"why": "none of 3 others"}),
     ("as good", lambda: schedules(0.72, 0.80, 0.90), "find_schedule", HOLDS, {}),
@@ -402,7 +383,6 @@ def test_every_claim_says_what_the_study_measured_and_where_it_may_be_decided() 
         assert claim.published.effect
         assert set(claim.scales) <= {"paper", "quick"}
         assert claim.other_scales
-        assert claim.test in claims.TESTS
 
 
 @pytest.mark.parametrize("claim", ["find_schedule", "resolve_schedule", "row_schedule"])

@@ -102,12 +102,6 @@ def test_the_report_has_verdict_and_number_of_every_cell(tmp_path: Path) -> None
     assert "Of 18 cells" in drawn.caption
 
 
-def at_contact(made: list[dict[str, Any]], series: str) -> None:
-    for record in made:
-        if record["tags"]["series"] == series:
-            record["axes"]["impact"] = AT_CONTACT
-
-
 def test_variants_at_contact_are_held_to_what_is_expected_of_such_in_a_table_of_their_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
