@@ -5,7 +5,6 @@ those of all other experiments, by the kind that their records name. `comparison
 
 import re
 import sys
-import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -21,7 +20,7 @@ from analysis.figures.style import VERMILLION, Drawing, partial, save, styled
 from analysis.records.reading import load
 from analysis.records.studies import Study
 from analysis.support.parallel import in_parallel
-from analysis.support.values import Table
+from analysis.support.values import Table, rows_in
 from support.errors import InputError
 from support.vocabulary import PAUSES
 
@@ -101,11 +100,7 @@ def _entries(
     ]
 
 
-FIGURES = [
-    entry
-    for table in tomllib.loads(SPECIFICATIONS.read_text(encoding="utf-8"))["figure"]
-    for entry in _entries(**table)
-]
+FIGURES = [entry for entries in rows_in(SPECIFICATIONS, "figure", _entries) for entry in entries]
 
 
 def draw(data: Evidence, wanted: Sequence[str] = (), *, pdf: bool = False) -> Iterator[Drawn]:

@@ -55,10 +55,8 @@ def comparison(
         return None
     against, by = reference(times), stated(times)
     series = sorted(times["series"].unique(), key=lambda name: name == against)
-    tables = league(data.study, experiment)
     if names or (len(series) == 2 and times["x"].nunique() == 1):
-        drawing = _pair(data, experiment, subject, names or dict(zip(series, series, strict=True)), by, work)
-        return drawing and replace(drawing, tables=tables)
+        return _pair(data, experiment, subject, names or dict(zip(series, series, strict=True)), by, work)
     table = differences(times, against)
     table["label"] = _labels(table, table)
     summary = summarise(times, ["series", "x"]).iloc[::-1]
@@ -72,7 +70,8 @@ def comparison(
     rows, is_usual = list(table.itertuples()), by == USUAL
     told = caption("comparison", rows=rows, against=against, by=by, is_usual=is_usual, theirs=theirs)
     table["name"] = [f"{label} against {against}" for label in table["label"]]
-    return Drawing(figure, f"{opening(times, subject)} {told}".strip(), table, tables)
+    words = f"{opening(times, subject)} {told}".strip()
+    return Drawing(figure, words, table, league(data.study, experiment))
 
 
 def _published_orders(
@@ -85,10 +84,7 @@ def _published_orders(
         name: data.published.experiment(question).query("series == 'on'")["seconds"].median()
         for name, question in questions.items()
     }
-    level, first = (
-        {against: 1.0, **dict(zip(table["series"], table["ratio"], strict=True))},
-        next(iter(seconds)),
-    )
+    level, first = {against: 1.0, **table.set_index("series")["ratio"]}, next(iter(seconds))
     if first not in level:
         return {}
     return {name: level[first] * one / seconds[first] for name, one in seconds.items() if name in level}
@@ -186,7 +182,7 @@ def _pair(
     opened = opening(times, subject, SCENES if times["x"].nunique() > 1 else PROCESSES)
     verdicts = pd.DataFrame([{**vars(row), "name": " against ".join(told)}])
     words = caption("pair", row=row, names=told, by=by, theirs=theirs, moved=moved)
-    return Drawing(figure, f"{opened} {words}", verdicts)
+    return Drawing(figure, f"{opened} {words}", verdicts, league(data.study, experiment))
 
 
 def _looks(names: Names) -> dict[str, Look]:
