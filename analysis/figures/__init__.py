@@ -52,6 +52,9 @@ OF_ONE_QUESTION: dict[str, Callable[..., Drawing | None]] = {
 }
 """The kinds that `figures.toml` may name besides."""
 
+OF_TIMES = ("scaling", "trend", "comparison", "control", "schedule", "oversubscription")
+"""The kinds that draw times of the study, and are told of none."""
+
 
 @dataclass(frozen=True)
 class Entry:
@@ -68,6 +71,8 @@ class Entry:
 
     def draw(self, data: Evidence) -> Drawing | None:
         """Draw it, or return None where the study has no records for it."""
+        if self.kind in OF_TIMES and data.study.times_of(self.experiment).empty:
+            return None
         return (KINDS | OF_ONE_QUESTION)[self.kind](data, self.experiment, self.subject, **self.more)
 
 

@@ -58,8 +58,6 @@ def trend(
     Where a `scale` names the axes that are logarithmic the times of several series are per disc and step.
     """
     times = data.study.times_of(experiment)
-    if times.empty:
-        return None
     label = label or times["x_name"].iloc[0].replace("_", " ")
     several, shown = times["series"].nunique() > 1, looks(sorted(times["series"].unique()))
     scale = scale if several else ""
@@ -255,8 +253,6 @@ def schedule(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     ratios are to the smallest chunk of the reference.
     """
     times = data.study.times_of(experiment)
-    if times.empty:
-        return None
     summary = summarise(join_replicates(times), ["series", "x"])
     published = data.published.experiment(experiment)
     chosen, first = chosen_in(experiment), reference(times)
@@ -407,8 +403,6 @@ def _entry(series: str, times: pd.DataFrame, look: Look, several: bool) -> tuple
 def oversubscription(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw time over threads in multiples of the machine's hardware threads, against as many as it has."""
     times = data.study.times_of(experiment)
-    if times.empty:
-        return None
     hardware = data.study.hardware_threads
     figure, (above, below) = stacked("threads", 3.4)
     curve(above, summarise(times, ["x"]), Look(BLUE))
