@@ -183,11 +183,6 @@ def _pair(
     return Drawing(figure, f"{opened} {words}", verdicts, league(data.study, experiment))
 
 
-def _looks(names: Names) -> dict[str, Look]:
-    """Return the look of both series."""
-    return looks(reversed(list(names)))
-
-
 def _published_ratios(published: pd.DataFrame, names: Names) -> Floats:
     """Return the ratio of each published repetition of both."""
     runs = published.pivot_table(index="x", columns="series", values="seconds")
@@ -217,7 +212,7 @@ def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:
 def _times(axes: Axes, runs: pd.DataFrame, names: Names, *, published: bool = False) -> None:
     """Draw the `seconds` of both sides over blocks or repetitions, `x`, small."""
     labels = []
-    for series, look in _looks(names).items():
+    for series, look in looks(reversed(list(names))).items():
         own, name = runs[runs["series"] == series].sort_values("x"), names[series]
         lighter = look._replace(colour=lighten(look.colour)) if published else look
         told = f"{name}, published" if published else name
@@ -265,7 +260,7 @@ def _work(axes: Axes, data: Evidence, experiment: str, names: Names) -> None:
     """Draw the attempts at resolving a pair, those that resolve it in a stronger shade; medians of scenes."""
     runs = data.study.runs_of(experiment)
     counts = runs[["pair_resolves", "pair_attempts"]].div(runs["steps"], axis=0)
-    medians, shown = counts.groupby(runs["series"]).median(), _looks(names)
+    medians, shown = counts.groupby(runs["series"]).median(), looks(reversed(list(names)))
     for height, (series, name) in enumerate(list(names.items())[::-1]):
         colour, counted = shown[series].colour, medians.loc[series].dropna()
         for shade, amount in zip((colour, lighten(colour, 0.5)), counted, strict=False):

@@ -54,6 +54,20 @@ def study(
     return records
 
 
+def under(experiment: str, records: Iterable[dict[str, Any]], **tags: str) -> list[dict[str, Any]]:
+    """Return the records under another name, which nothing in this package knows, and with these tags."""
+    return [record | {"tags": record["tags"] | {"experiment": experiment, **tags}} for record in records]
+
+
+def slowed(records: list[dict[str, Any]], factor: float, **tags: object) -> list[dict[str, Any]]:
+    """Return the records with those of some tags made slower by a factor."""
+    for record in records:
+        if all(record["tags"][key] == value for key, value in tags.items()):
+            for repetition in record["repetitions"]:
+                repetition["steps_seconds"] *= factor
+    return records
+
+
 def data_in(folder: Path, records: Iterable[dict[str, Any]]) -> Evidence:
     """Write records into a folder, and return what the figures of their first study may draw from."""
     write(folder, records)

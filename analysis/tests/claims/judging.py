@@ -22,15 +22,6 @@ def row_of(folder: Path, records: Records, claim: str) -> pd.Series:
     return verdicts_of(folder).loc[claim]
 
 
-def slowed(records: Records, factor: float, **tags: object) -> Records:
-    """Return the records with those of some tags made slower by a factor."""
-    for record in records:
-        if all(record["tags"][key] == value for key, value in tags.items()):
-            for repetition in record["repetitions"]:
-                repetition["steps_seconds"] *= factor
-    return records
-
-
 def figures(row: pd.Series) -> dict[str, list[str]]:
     """Return the published figure and ours, by what they are of."""
     return {what: both for what, *both in row["figures"]}

@@ -15,11 +15,11 @@ from analysis.claims.outcome import FAILS, HOLDS, IN_DIRECTION, OPEN, Verdict
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import split
-from analysis.tests.claims.judging import Records, figures, row_of, slowed, verdicts_of
+from analysis.tests.claims.judging import Records, figures, row_of, verdicts_of
 from analysis.tests.synthetic import Machine, Point, bench, failure, write
 from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import slowed, study
 
 IDS = [
     "threads", "particles", "grid_length", "radius", "steps", "velocity", "machine", "four_boxes",

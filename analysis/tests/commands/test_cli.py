@@ -7,7 +7,7 @@ from analysis import claims
 from analysis.cli import main
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import study, under
 
 
 def folder(path: Path, blocks: int = 10) -> str:
@@ -48,8 +48,7 @@ def test_a_figure_that_the_records_do_not_allow_is_one_line(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], kind: str
 ) -> None:
     known = "phases" if kind == "trend" else "radius"
-    write(tmp_path, [record | {"tags": record["tags"] | {"experiment": "mine", "figure": kind}}
-                     for record in study([known], blocks=1)])  # fmt: skip
+    write(tmp_path, under("mine", study([known], blocks=1), figure=kind))
     assert main(["figures", "--results", str(tmp_path)]) == 0
     lines = capfd.readouterr().err.splitlines()
     assert lines[0].startswith(f"mine: not drawn: found figure '{kind}'")

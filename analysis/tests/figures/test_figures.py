@@ -19,7 +19,7 @@ from analysis.figures.style import Point, new_figure, styled
 from analysis.figures.sweeps import level_of
 from analysis.statistics.verdicts import Ratio
 from analysis.tests.claims.judging import verdicts_of
-from analysis.tests.synthetic import Machine, turns_of, write
+from analysis.tests.synthetic import turns_of, write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
 from analysis.tests.synthetic_study import study, trace
@@ -169,14 +169,6 @@ def test_svg_and_pdf_are_written_whole_and_the_same_again(tmp_path: Path) -> Non
     assert not pdf.exists(), "it would be outdated"
     assert svg.read_bytes() == first
     assert {path.name for path in (tmp_path / "figures").iterdir()} == {"neighbourhood.svg"}
-
-
-def test_several_machines_are_in_one_machine_figure(tmp_path: Path) -> None:
-    for host in ("bench-1", "bench-2"):
-        write(tmp_path, study(["machine"], blocks=6, machine=Machine(host=host)))
-    caption = draw_all(tmp_path)[0].caption
-    assert "bench-1: Example CPU" in caption
-    assert "bench-2: Example CPU" in caption
 
 
 def test_labels_are_moved_apart_as_little_as_needed() -> None:

@@ -6,14 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis import report
 from analysis.derived.comparisons import differences
 from analysis.figures import KINDS, OF_ERRORS, Drawn, draw_all
 from analysis.records.reading import load
-from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET
-from analysis.tests.synthetic_study import figure_of, study
+from analysis.tests.synthetic_study import figure_of, study, under
 from support.vocabulary import PAUSES
 
 LIKE = [
@@ -27,12 +25,7 @@ NAMING = ("ladder", "limits", "ways")
 
 
 def unknown(known: str, name: str = "small_chunks", **tags: str) -> list[dict[str, Any]]:
-    """Return the records of a known experiment under a name that nothing in this package knows."""
-    changed = {"experiment": name, **tags}
-    return [
-        record | {"tags": record["tags"] | changed}
-        for record in study([known], blocks=6, noise=QUIET, seed=2)
-    ]
+    return under(name, study([known], blocks=6, noise=QUIET, seed=2), **tags)
 
 
 def drawn_of(folder: Path, records: list[dict[str, Any]]) -> Drawn:
@@ -91,18 +84,3 @@ def test_differences_are_those_within_the_same_x(tmp_path: Path) -> None:
         assert row["ratio"] == pytest.approx(1.1 - 0.08 * np.log10(float(str(x)) / 1000), rel=0.01)
     assert table.loc[1_000, "verdict"] == "slower"
     assert table.loc[200_000, "verdict"] == "faster"
-
-
-def test_the_report_has_it_last_with_a_table_of_verdicts(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    write(tmp_path, study(["steps"], blocks=3))
-    write(tmp_path, unknown("sequential_orders", title="Three orders"))
-    page = report.render(tmp_path)
-    assert Page(page).ids.index("steps") < Page(page).ids.index("small_chunks")
-    text = text_of(page)
-    assert "Three orders" in text
-    assert "repeat against once" in text
-    assert "slower" in text[text.index("repeat against once") :][:80]
-    assert "faster" in text[text.index("track against once") :][:80]
-    assert capsys.readouterr().err == ""

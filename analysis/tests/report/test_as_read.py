@@ -11,7 +11,7 @@ from analysis.report import graphs
 from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import Machine, failure, write
 from analysis.tests.synthetic_noise import QUIET, Noise
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import slowed, study, under
 
 ROOT = Path(__file__).parents[3]
 
@@ -28,9 +28,7 @@ def rows_of(page: str) -> list[str]:
 
 def test_what_was_asked_leads(tmp_path: Path) -> None:
     """A published question and one of one's own."""
-    records = study(["sequential_orders"], blocks=6, noise=QUIET)
-    for record in records:
-        record["tags"] |= {"experiment": "mine", "figure": "comparison", "title": "My orders"}
+    records = under("mine", study(["sequential_orders"], blocks=6, noise=QUIET), title="My orders")
     names = ["radius", "steps", "neighbourhood", "control"]
     write(tmp_path, [*records, *study(names, blocks=6, noise=QUIET)])
     page = report.render(tmp_path, ["neighbourhood", "mine"])
@@ -109,10 +107,7 @@ def test_all_time_and_what_differs_stand_in_the_table_of_verdicts(tmp_path: Path
 def test_the_box_on_noise_agrees_with_the_verdicts(tmp_path: Path) -> None:
     noisy = Noise(process=0.03, repetition=0, burst_rate=0, drift=0)
     far, near = (study([name], blocks=14, noise=noisy) for name in ("self_contained_track", "neighbourhood"))
-    for record in near:
-        if record["tags"]["series"] == "nine":
-            record["repetitions"][0]["steps_seconds"] /= 1.25 / 1.19
-    write(tmp_path, [*far, *near])
+    write(tmp_path, [*far, *slowed(near, 1.19 / 1.25, series="nine")])
     page = report.render(tmp_path)
     box = re.search(r'<p class="warning">(.*?)</p>', page, re.DOTALL)
     assert box is not None

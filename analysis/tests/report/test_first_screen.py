@@ -19,7 +19,7 @@ from analysis.tests.report.test_as_read import nav_of
 from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import slowed, study, under
 
 
 @pytest.fixture(scope="module")
@@ -27,10 +27,7 @@ def refuted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Four boxes are slower than nine; of radius there are too few blocks; steps are as published."""
     folder = tmp_path_factory.mktemp("refuted")
     records = study(["neighbourhood", "steps", "control"], blocks=9, noise=QUIET)
-    for record in records:
-        if record["tags"]["series"] == "four":
-            record["repetitions"][0]["steps_seconds"] *= 1.12
-    write(folder, [*records, *study(["radius"], blocks=3, noise=QUIET)])
+    write(folder, [*slowed(records, 1.12, series="four"), *study(["radius"], blocks=3, noise=QUIET)])
     return folder
 
 
@@ -77,12 +74,12 @@ def test_many_that_hold_are_one_sentence(page: str) -> None:
 
 
 def test_questions_of_ones_own_have_sentences_too(tmp_path: Path) -> None:
-    records = study(["sequential_orders"], blocks=9, noise=QUIET)
-    for record in records:
-        record["tags"] |= {"experiment": "mine", "figure": "comparison", "title": "My orders"}
-    write(tmp_path, records)
+    write(tmp_path, under("mine", study(["sequential_orders"], blocks=9, noise=QUIET), title="My orders"))
     (tmp_path / "claims.toml").write_text("")
-    text = first_screen_of(report.render(tmp_path))
+    page = report.render(tmp_path)
+    for said, verdict in (("repeat against once", "slower"), ("track against once", "faster")):
+        assert re.search(rf"<td>{said}</td>.*<td>{verdict}</td>", page)
+    text = first_screen_of(page)
     assert re.search(r"✓ faster \S.*: −30", text)
     assert "Decided" not in text
     assert "Control – not measured" in text
