@@ -70,7 +70,7 @@ def speed_against_error(data: Evidence, experiment: str, subject: str, measure: 
     scenes = dict(list(table.groupby("scene_name", sort=False)))
     figure, [panels] = new_grid(3.0, 1, len(scenes), sharex=True, sharey=True)
     shown = _looks(table)
-    zero = 10 ** np.floor(np.log10(table.loc[table["error"] > 0, "error"].min()) - 1)
+    zero = _zero(table["error"])
     for axes, (scene, part) in zip(panels, scenes.items(), strict=True):
         for series, line in part.groupby("series"):
             _line(axes, line, zero, shown[str(series)])
@@ -91,6 +91,12 @@ def speed_against_error(data: Evidence, experiment: str, subject: str, measure: 
     if measure.converges:
         tables.append(_orders(table))
     return Drawing(figure, _caption(table, data, experiment, subject, measure), tables=tables)
+
+
+def _zero(values: pd.Series) -> float:
+    """Return where 0 stands on a logarithmic axis: a power of ten below all values above 0."""
+    positive = values[values > 0]
+    return float(10.0 ** (np.floor(np.log10(positive.min())) - 1)) if len(positive) else 1e-16
 
 
 def _looks(table: pd.DataFrame) -> dict[str, Look]:
@@ -252,9 +258,7 @@ def hard_cases(data: Evidence, experiment: str, subject: str) -> Drawing | None:
 
 
 def _dots(axes: Axes, shown: pd.DataFrame) -> None:
-    positive = pd.concat([shown["value"], shown["bound"].dropna()])
-    positive = positive[positive > 0]
-    zero = 10.0 ** (np.floor(np.log10(positive.min())) - 1) if len(positive) else 1e-16
+    zero = _zero(pd.concat([shown["value"], shown["bound"].dropna()]))
     heights = {title: -number for number, title in enumerate(shown["title"].unique())}
     for row in shown.itertuples():
         colour = COLOURS.get(row.precision, INK)

@@ -230,6 +230,8 @@ BROKEN: list[tuple[Rule, str, str, str]] = [
     (stray_pragmas, "harness/a.cpp", '_Pragma("omp simd")', "harness/a.cpp: has an OpenMP pragma"),
     (unclean_kernels, "kernels/a.hpp", "#include <iostream>", "kernels/a.hpp: includes <iostream>"),
     (unclean_kernels, "kernels/a.hpp", "void f() { std::cout << 1; }", "kernels/a.hpp: says std::cout"),
+    (unclean_kernels, "kernels/a.hpp", "void f() { std::exit(1); }", "kernels/a.hpp: says exit("),
+    (unclean_kernels, "kernels/a.hpp", "auto f() { return std::time(nullptr); }", "says ::time("),
     (unclean_kernels, "kernels/a.hpp", "double f() { return omp_get_wtime(); }", "says omp_get_wtime("),
     (unclean_kernels, "kernels/a.hpp", "auto f = std::chrono::steady_clock::now();", "says steady_clock"),
 ]

@@ -1,7 +1,6 @@
 """Speed against error, on records with a known order of convergence and a known Pareto front."""
 
 import re
-from collections.abc import Callable
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,7 @@ from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET, Noise, times_table
 from analysis.tests.synthetic_points import SUBSTEPS
-from analysis.tests.synthetic_study import data_in, study
+from analysis.tests.synthetic_study import data_in, study, under
 
 NAME = "speed_against_error"
 BY_KEY = {measure.key: measure for measure in MEASURES}
@@ -31,14 +30,6 @@ BY_KEY = {measure.key: measure for measure in MEASURES}
 
 def records(**more: Any) -> list[dict[str, Any]]:  # noqa: ANN401
     return study([NAME], blocks=6, noise=QUIET, seed=4, **more)
-
-
-def data_with(folder: Path, change: Callable[[dict[str, Any]], object]) -> Evidence:
-    """Return the data of these records, each changed."""
-    made = records()
-    for record in made:
-        change(record)
-    return data_in(folder, made)
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +49,8 @@ def changed(tmp_path_factory: pytest.TempPathFactory) -> Evidence:
     """
     first: dict[str, dict[str, Any]] = {}
 
-    def change(record: dict[str, Any]) -> None:
+    made = records()
+    for record in made:
         tags, errors = record["tags"], record["errors"]
         if tags["series"] == "row":
             record["repetitions"][0]["steps_seconds"] /= 1.2
@@ -72,7 +64,7 @@ def changed(tmp_path_factory: pytest.TempPathFactory) -> Evidence:
             errors["pressure_reference"] = 0.0
         first.setdefault(tags["point"], errors)
 
-    return data_with(tmp_path_factory.mktemp("changed"), change)
+    return data_in(tmp_path_factory.mktemp("changed"), made)
 
 
 def drawing(data: Evidence, key: str) -> Drawing:
@@ -208,8 +200,7 @@ def test_the_report_says_how_far_paths_go_and_what_to_use(whole: Evidence) -> No
 
 
 def test_an_experiment_of_another_name_is_drawn_alike(tmp_path: Path) -> None:
-    told = {"experiment": "my_errors", "title": "Mine", "figure": NAME}
-    entries = further(data_with(tmp_path, lambda record: record["tags"].update(told)).study)
+    entries = further(data_in(tmp_path, under("my_errors", records(), title="Mine")).study)
     assert [entry.name for entry in entries] == [f"my_errors-{key}" for key in BY_KEY]
     assert {entry.experiment for entry in entries} == {"my_errors"}
     assert "Mine: pressure" in [entry.title for entry in entries]

@@ -17,6 +17,19 @@ def record(**tags: str | float) -> dict[str, Any]:
     return bench("steps", Point("checkered", 20, 1.0, "steps"), 0, [1.0, 1.1], Machine(), **tags)
 
 
+def changed(**more: Any) -> bytes:  # noqa: ANN401
+    """Return a record with other values."""
+    return json.dumps(whole(record() | more)).encode()
+
+
+def turns(contenders: list[int], rounds: int) -> bytes:
+    return changed(turns=TURNS | {"contenders": contenders, "rounds": rounds})
+
+
+NAMED = {"experiment": "steps", "series": "a", "x_name": "steps", "block": 0}
+OF_TURNS = "$.turns.contenders: expected rounds with a turn of each of 1, "
+
+
 def test_one_row_a_process_a_record_a_phase_a_counter(tmp_path: Path) -> None:
     write(tmp_path, study(["neighbourhood", "phases"], blocks=3, repetitions=2))
     write(tmp_path, failures())
@@ -49,8 +62,15 @@ def test_one_row_a_process_a_record_a_phase_a_counter(tmp_path: Path) -> None:
         (b'"\\ud800"', "not a Carom record"),
         (b'{"context": {}, "benchmarks": []}', "not a Carom record"),
         (b'{"schema_version": 2, "kind": "bench", "contenders": []}', "$"),
+        (changed(repetitions=[{"steps_seconds": 0, "cpu_seconds": 1}]),
+         "$.contenders[0].repetitions[0].steps_seconds"),
+        (changed(tags={"experiment": "steps"}), "$.contenders[0].tags.series: missing"),
+        (changed(tags={**NAMED, "x": "many"}), "$.contenders[0].tags.x: found 'many', expected a number"),
+        (turns([0, 0, 1], 3), f"{OF_TURNS}3 a run"),
+        (turns([0, 0, 0], 2), f"{OF_TURNS}2 a run"),
+        (turns([0, 0], 2), "$.turns.steps: found 3, expected one for each of 2 turns"),
     ],
-)
+)  # fmt: skip
 def test_a_file_that_is_no_record_is_named_and_left_out(
     tmp_path: Path, content: bytes, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -76,43 +96,6 @@ def test_records_of_an_older_schema_are_refused_in_one_line(tmp_path: Path) -> N
         "skipped: schema version 1, expected 2: measure it again, or read it with the release of Carom that "
         "wrote it (and 9 more alike)"
     )
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        (
-            {"repetitions": [{"steps_seconds": 0, "cpu_seconds": 1}]},
-            "$.contenders[0].repetitions[0].steps_seconds",
-        ),
-        ({"tags": {"experiment": "steps"}}, "$.contenders[0].tags.series: missing"),
-        (
-            {"tags": {"experiment": "steps", "series": "a", "x_name": "steps", "x": "many", "block": 0}},
-            "$.contenders[0].tags.x: found 'many', expected a number",
-        ),
-        (
-            {"turns": TURNS | {"contenders": [0, 0, 1], "rounds": 3}},
-            "$.turns.contenders: expected rounds with a turn of each of 1, 3 a run",
-        ),
-        (
-            {"turns": TURNS | {"contenders": [0, 0, 0], "rounds": 2}},
-            "$.turns.contenders: expected rounds with a turn of each of 1, 2 a run",
-        ),
-        (
-            {"turns": TURNS | {"contenders": [0, 0], "rounds": 2}},
-            "$.turns.steps: found 3, expected one for each of 2 turns",
-        ),
-    ],
-)
-def test_a_record_out_of_bounds_is_named_by_its_key(
-    tmp_path: Path, change: dict[str, Any], said: str
-) -> None:
-    path = tmp_path / "records" / "wrong.json"
-    path.parent.mkdir()
-    path.write_text(json.dumps(whole(record() | change)))
-    lines: list[str] = []
-    assert load(tmp_path, lines.append).runs.empty
-    assert said in lines[0]
 
 
 def process(contenders: int, block: int, rounds: int = 6) -> dict[str, Any]:
