@@ -15,7 +15,6 @@ from analysis.claims.ratios import compilers, fewer_wasted_attempts, pair, phase
 from analysis.claims.scaling import scaling
 from analysis.claims.schedules import best_schedule
 from analysis.records.studies import Study
-from analysis.statistics.verdicts import Ratio
 from analysis.support.wording import count, listed
 from support.errors import InputError
 
@@ -98,7 +97,9 @@ def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[st
     outcome = _because(_elsewhere(outcome, claim, tested, study.scale), lost)
     if not math.isnan(wanted):
         outcome = _because(outcome, missing.said(study, claim, outcome.blocks, wanted))
-    figures = [*_setting(claim, tested, runs), *map(_beside, outcome.effects)]
+    figures = _setting(claim, tested, runs) + [
+        (one.what, summary.published_in_short(one), summary.change_in_short(one)) for one in outcome.effects
+    ]
     return {
         "id": claim.id,
         "claim": claim.claim,
@@ -153,10 +154,6 @@ def _said(outcome: Outcome, claim: Claim, tested: tuple[int, ...], scale: str) -
     comma = "," if at_scale else ""
     threads = count(tested[0], "thread") if len(tested) == 1 else f"{listed(tested)} threads"
     return f"{plain}{at_scale}{comma} at {threads} (claimed at {claim.published.threads})"
-
-
-def _beside(effect: Ratio) -> tuple[str, str, str]:
-    return effect.what, summary.published_in_short(effect), summary.change_in_short(effect)
 
 
 def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> list[tuple[str, str, str]]:

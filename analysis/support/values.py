@@ -1,4 +1,6 @@
-"""The types of what is worked out: arrays, rows, estimates with an interval, and tables for the report."""
+"""The types of what is worked out: arrays, rows, estimates with an interval, and tables for the report. Rows
+of a TOML file are read here, too.
+"""
 
 import tomllib
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence

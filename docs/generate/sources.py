@@ -50,7 +50,7 @@ def meaning(path: Path) -> str:
     text = path.read_text(encoding="utf-8")
     match path.suffix:
         case ".hpp" | ".cpp":
-            return "\0".join(_cpp_tokens(text))
+            return "\0".join(one.group() for one in _CPP.finditer(text) if one["left_out"] is None)
         case ".py":
             return "\n".join(_python_lines(text))
         case ".toml":
@@ -59,10 +59,6 @@ def meaning(path: Path) -> str:
             return json.dumps(json.loads(text), sort_keys=True)
         case _:
             return text
-
-
-def _cpp_tokens(text: str) -> Iterator[str]:
-    return (found.group() for found in _CPP.finditer(text) if found["left_out"] is None)
 
 
 def _python_lines(text: str) -> Iterator[str]:
