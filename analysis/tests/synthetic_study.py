@@ -1,12 +1,13 @@
 """A whole synthetic study: the records of every experiment, and what else a results folder may hold."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from analysis import report
 from analysis.claims import evidence_of
 from analysis.claims.entry import Evidence
 from analysis.tests.synthetic import Machine, bench, failure, limits, profile, write
@@ -72,6 +73,11 @@ def data_in(folder: Path, records: Iterable[dict[str, Any]]) -> Evidence:
     """Write records into a folder, and return what the figures of their first study may draw from."""
     write(folder, records)
     return evidence_of(folder)[0]
+
+
+def page_of(results: Path, asked: Sequence[str] = ()) -> str:
+    """Return the report of a folder."""
+    return report.write(results, asked).read_text(encoding="utf-8")
 
 
 def figure_of(experiment: str) -> str:

@@ -7,7 +7,6 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from analysis import report
 from analysis.claims.entry import Evidence
 from analysis.derived.ladder import claims, factors, headlines, named, rungs, speed_up, totals
 from analysis.figures.profiles import waterfall
@@ -18,7 +17,7 @@ from analysis.support.wording import NO_INTERVAL
 from analysis.tests.synthetic import failure, profile
 from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_points import LADDER
-from analysis.tests.synthetic_study import SHARES, data_in, study
+from analysis.tests.synthetic_study import SHARES, data_in, page_of, study
 
 FACTORS = [factor for factor, _ in LADDER.values()]
 
@@ -67,7 +66,7 @@ def test_the_report_says_the_totals_where_there_are_any(tmp_path: Path, whole: E
     said = headlines(whole.study)
     assert said == claims(*tables(whole.study))
     assert len(said) == 2
-    text = " ".join(report.render(whole.folder).split())
+    text = " ".join(page_of(whole.folder).split())
     for sentence in said:
         assert re.search(r"2\.5\d? × \[.*\] faster than the published best \(faster\)", sentence)
         assert " ".join(sentence.split()) in text

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis import claims, report
+from analysis import claims
 from analysis.claims import evidence_of
 from analysis.claims.summary import both_in_short, change_in_short, published_in_short
 from analysis.cli import main
@@ -19,7 +19,7 @@ from analysis.tests.report.test_as_read import nav_of
 from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET
-from analysis.tests.synthetic_study import slowed, study, under
+from analysis.tests.synthetic_study import page_of, slowed, study, under
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +33,7 @@ def refuted(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def refuted_page(refuted: Path) -> str:
-    return report.render(refuted)
+    return page_of(refuted)
 
 
 def first_screen_of(page: str) -> str:
@@ -76,7 +76,7 @@ def test_many_that_hold_are_one_sentence(page: str) -> None:
 def test_questions_of_ones_own_have_sentences_too(tmp_path: Path) -> None:
     write(tmp_path, under("mine", study(["sequential_orders"], blocks=9, noise=QUIET), title="My orders"))
     (tmp_path / "claims.toml").write_text("")
-    page = report.render(tmp_path)
+    page = page_of(tmp_path)
     for said, verdict in (("repeat against once", "slower"), ("track against once", "faster")):
         assert re.search(rf"<td>{said}</td>.*<td>{verdict}</td>", page)
     text = first_screen_of(page)
@@ -145,7 +145,7 @@ def test_a_missing_interval_does_not_stretch_the_axis(refuted: Path, layout: Lay
 def test_nothing_measured_is_no_figure(tmp_path: Path) -> None:
     write(tmp_path, study(["sequential_orders"], blocks=2))
     assert draw(evidence_of(tmp_path)[0]) == ("", [])
-    assert 'class="claims-figure"' not in report.render(tmp_path)
+    assert 'class="claims-figure"' not in page_of(tmp_path)
 
 
 def test_the_figure_is_a_file_like_others(refuted: Path, capsys: pytest.CaptureFixture[str]) -> None:
