@@ -75,7 +75,7 @@ def _step(text: str) -> int:
 
 
 def _figures(options: argparse.Namespace) -> int:
-    from analysis.figures.studies import draw_all
+    from analysis.figures import draw_all
     from analysis.report.all_claims import draw_all_claims
     from analysis.support.parallel import in_parallel
 
@@ -104,14 +104,12 @@ def _report(options: argparse.Namespace) -> int:
 def _claims(options: argparse.Namespace) -> int:
     from analysis import claims
     from analysis.commands.claims_told import told
-    from analysis.records.reading import load
 
-    found = claims.evidence_of(load(options.results))
+    found = claims.evidence_of(options.results)
     if not found:
         raise InputError(f"{options.results}: no records yet (they are made by `make experiments`)")
     for one in found:
-        table = claims.evaluate(one, claims.load(options.results))
-        print(*told(one.study.name, table, verbose=options.verbose), sep="\n")
+        print(*told(one.study.name, claims.evaluate(one), verbose=options.verbose), sep="\n")
     if not options.verbose:
         print("What was measured, on what, and why it is open: carom claims --verbose")
     return 0

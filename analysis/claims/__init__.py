@@ -1,7 +1,7 @@
 """The claims of the published study, each tested again on the records."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 import pandas as pd
@@ -15,7 +15,6 @@ from analysis.claims.ratios import compilers, fewer_wasted_attempts, pair, phase
 from analysis.claims.scaling import scaling
 from analysis.claims.schedules import best_schedule
 from analysis.records.studies import Study
-from analysis.statistics.verdicts import Ratio
 from analysis.support.wording import count, listed
 from support.errors import InputError
 
@@ -39,10 +38,8 @@ Tested = dict[str, tuple[object, Outcome]]
 """What claims were tested on, and what came of it, by their ids."""
 
 
-def evaluate(
-    evidence: Evidence, claimed: Sequence[Claim] | None = None, remembered: Tested | None = None
-) -> pd.DataFrame:
-    """Return a row a claim, of those that are `claimed`, or of the published ones.
+def evaluate(evidence: Evidence, remembered: Tested | None = None) -> pd.DataFrame:
+    """Return a row a claim, of those that the results folder brings along, or of the published ones.
 
     Columns: `id`, `claim`, `effect` and `claimed_threads` as published, `experiments`, `tested_threads`,
     `verdict` with `said`, the same in words, `measured`, `why`, `figures`, `missing`, the `blocks` it rests
@@ -58,7 +55,7 @@ def evaluate(
     """
     study = evidence.study
     before = {} if remembered is None else remembered
-    listed_claims = load() if claimed is None else claimed
+    listed_claims = load(evidence.folder)
     tested = [_at_scale(_remembered(evidence, one, before), one, study.scale) for one in listed_claims]
     outcomes = family.corrected(tested)
     open_claims = sum(map(missing.is_open, outcomes))
@@ -100,7 +97,9 @@ def _row(claim: Claim, outcome: Outcome, study: Study, wanted: float) -> dict[st
     outcome = _because(_elsewhere(outcome, claim, tested, study.scale), lost)
     if not math.isnan(wanted):
         outcome = _because(outcome, missing.said(study, claim, outcome.blocks, wanted))
-    figures = [*_setting(claim, tested, runs), *map(_beside, outcome.effects)]
+    figures = _setting(claim, tested, runs) + [
+        (one.what, summary.published_in_short(one), summary.change_in_short(one)) for one in outcome.effects
+    ]
     return {
         "id": claim.id,
         "claim": claim.claim,
@@ -155,10 +154,6 @@ def _said(outcome: Outcome, claim: Claim, tested: tuple[int, ...], scale: str) -
     comma = "," if at_scale else ""
     threads = count(tested[0], "thread") if len(tested) == 1 else f"{listed(tested)} threads"
     return f"{plain}{at_scale}{comma} at {threads} (claimed at {claim.published.threads})"
-
-
-def _beside(effect: Ratio) -> tuple[str, str, str]:
-    return effect.what, summary.published_in_short(effect), summary.change_in_short(effect)
 
 
 def _setting(claim: Claim, tested: tuple[int, ...], runs: pd.DataFrame) -> list[tuple[str, str, str]]:

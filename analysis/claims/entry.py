@@ -1,5 +1,6 @@
 """A claim as `claims.toml` states it, and what a test of it may look at."""
 
+import re
 import shlex
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -10,7 +11,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.derived.comparisons import stated
-from analysis.records import published
+from analysis.records import published, reading
 from analysis.records.published import Published
 from analysis.records.reading import Records
 from analysis.records.studies import Study, split
@@ -68,11 +69,20 @@ class Claim:
 
 @dataclass(frozen=True)
 class Evidence:
-    """The study that is judged, all studies (for the claim about machines alone), and the published times."""
+    """What claims and figures look at: the study that is judged or shown, all studies of the results folder,
+    the published times, and the folder.
+    """
 
     study: Study
     studies: Sequence[Study]
     published: Published
+    folder: Path
+
+    @property
+    def prefix(self) -> str:
+        """What the names of the study's files begin with: nothing of the first one."""
+        name = re.sub(r"[^a-z0-9]+", "-", self.study.name.lower()).strip("-")
+        return "" if self.study is self.studies[0] else f"{name}-"
 
     def margin(self, experiment: str) -> float:
         """Return the least difference that matters, as the experiment's question states it."""
@@ -87,10 +97,12 @@ class Evidence:
         return self.published.curve(experiment), processes if own.empty else own
 
 
-def evidence_of(records: Records) -> list[Evidence]:
-    """Return what the claims may look at in each study of the records, the one to show first at the front."""
-    studies, times = split(records), published.load()
-    return [Evidence(study, studies, times) for study in studies]
+def evidence_of(results: Path, records: Records | None = None) -> list[Evidence]:
+    """Return what there is to look at in each study of a results folder, the one to show first at the front;
+    its `records` are read if they are not given.
+    """
+    studies, times = split(reading.load(results) if records is None else records), published.load()
+    return [Evidence(study, studies, times, results) for study in studies]
 
 
 def load(results: Path | None = None) -> list[Claim]:

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
 
 import pandas as pd
 
@@ -17,16 +16,11 @@ from analysis.support.wording import listed, number
 
 @dataclass(frozen=True)
 class Measured:
-    """One machine's processes, with the machine of the study that has the same processor, if one has."""
+    """One machine's processes, with its greatest clock if the study has a machine of the same processor."""
 
     machine: str
-    published: Any
+    gigahertz: float | None
     processes: pd.DataFrame
-
-    @property
-    def gigahertz(self) -> float | None:
-        """Its greatest clock, if known: that of the study's machine."""
-        return self.published and float(self.published.maximum_gigahertz)
 
     @property
     def threads(self) -> set[int]:
@@ -98,7 +92,8 @@ def _machines(evidence: Evidence, experiment: str) -> list[Measured]:
     for other in (evidence.study, *evidence.studies):
         processes = other.times_of(experiment)
         if other.scale == evidence.study.scale and not processes.empty:
-            cpu, known = str(processes["cpu_model"].iloc[0]).lower(), evidence.published.machines.itertuples()
-            published = next((row for row in known if row.processor.lower().split()[-1] in cpu), None)
-            machines.setdefault(other.machine, Measured(other.machine, published, processes))
+            known = evidence.published.machines.set_index("processor")["maximum_gigahertz"].items()
+            cpu = str(processes["cpu_model"].iloc[0]).lower()
+            clock = next((float(most) for name, most in known if str(name).lower().split()[-1] in cpu), None)
+            machines.setdefault(other.machine, Measured(other.machine, clock, processes))
     return list(machines.values())

@@ -39,24 +39,26 @@ def pair(
     """Test that `candidate` is faster than (or equivalent to) `reference` on an axis; in a sweep, at the
     greatest value of its parameter.
     """
-    found = [_one_pair(evidence, one, (axis, candidate, reference), expected) for one in experiments]
-    if len(found) > 1:
-        names = (one.rpartition("_")[2] for one in experiments)
-        found = [
-            replace(one, effects=tuple(replace(each, what=name) for each in one.effects))
-            for name, one in zip(names, found, strict=True)
-        ]
-    return both(found)
+    sides = (axis, candidate, reference)
+    names = [one.rpartition("_")[2] if len(experiments) > 1 else "" for one in experiments]
+    return both([_one_pair(evidence, *one, sides, expected) for one in zip(experiments, names, strict=True)])
 
 
-def _one_pair(evidence: Evidence, experiment: str, sides: tuple[str, str, str], expected: str) -> Outcome:
+def _one_pair(
+    evidence: Evidence,
+    experiment: str,
+    name_of: str,
+    sides: tuple[str, str, str],
+    expected: str,
+) -> Outcome:
+    """Test one experiment; its effect is called so, or after the two sides."""
     axis, candidate, reference = sides
     # As the study tells it, of means; `Published.ratio` is the middle of its three runs.
     means = evidence.published.experiment(experiment).groupby("series")["seconds"].mean()
     known = {candidate, reference} <= set(means.index)
     published = float(means[candidate] / means[reference]) if known else nan
     margin, what = evidence.margin(experiment), f"{candidate} against {reference}"
-    nothing = unmeasured(what, published, margin)
+    nothing = unmeasured(name_of or what, published, margin)
     times = evidence.study.times_of(experiment)
     if times.empty:
         return no_records(experiment, effects=[nothing])

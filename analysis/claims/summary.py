@@ -11,6 +11,7 @@ from analysis.statistics.verdicts import Ratio
 from analysis.support.wording import NO_BREAK, count, number
 
 MARKS = {HOLDS: "✓", IN_DIRECTION: "✓", FAILS: "✗"}
+LOOKS = {HOLDS: "holds", IN_DIRECTION: "in_direction", FAILS: "fails"}
 UNDECIDED, UNMEASURED = "?", "–"
 TOO_FEW_BLOCKS = "too few blocks for an interval"
 _ON_THE_MARGIN = 0.005
@@ -29,8 +30,7 @@ def mark(row: Mapping[str, Any]) -> str:
 
 def colour_of(row: Mapping[str, Any]) -> str:
     """Return what a verdict is drawn as, wherever it was reached: holds, in_direction, fails or open."""
-    plain = PLAIN.get(row["verdict"], row["verdict"])
-    return {HOLDS: "holds", IN_DIRECTION: "in_direction", FAILS: "fails"}.get(plain, "open")
+    return LOOKS.get(PLAIN.get(row["verdict"], row["verdict"]), "open")
 
 
 def verdict_in_short(row: Mapping[str, Any]) -> str:
@@ -83,10 +83,8 @@ def published_in_short(effect: Ratio) -> str:
 
 def both_in_short(effect: Ratio) -> str:
     """Return what was measured of an effect and what the study measured of it, as part of a sentence."""
-    theirs = (
-        f"{published_in_short(effect)} published" if isfinite(effect.published) else "no number published"
-    )
-    return f"{change_in_short(effect)} here, {theirs}"
+    theirs = published_in_short(effect) if isfinite(effect.published) else "no number"
+    return f"{change_in_short(effect)} here, {theirs} published"
 
 
 def _one(effect: Ratio, ratio: float, *, unit: bool = False) -> str:

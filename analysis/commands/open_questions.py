@@ -10,7 +10,6 @@ import pandas as pd
 from analysis import claims
 from analysis.claims.missing import DECIDED
 from analysis.derived.comparisons import differences, reference, stated
-from analysis.records.reading import load
 from analysis.records.studies import Study
 from analysis.statistics.looks import next_look
 from analysis.statistics.noise import needed_by_rows
@@ -43,11 +42,11 @@ def open_questions(results: Path, remembered: claims.Tested | None = None) -> di
     error (`OPTIMISM`), up to `PATIENCE` blocks; beyond, it is neither open nor settled. What is `remembered`
     of an earlier look at the folder is not tested again.
     """
-    studies = claims.evidence_of(load(results))
+    studies = claims.evidence_of(results)
     found: dict[str, Any] = {"open": {}, "settled": [], "said": {}}
     if not studies:
         return found
-    table = claims.evaluate(studies[0], claims.load(results), remembered)
+    table = claims.evaluate(studies[0], remembered)
     decided = table[table["verdict"].isin(DECIDED)]
     found["said"] = {row.id: f"{row.said}: {row.measured}" for row in decided.itertuples()}
     claimed = {experiment for claim in claims.load(results) for experiment in claim.experiments}

@@ -5,7 +5,6 @@ come from the one that measured them, since every run of a point ends in the sam
 simulation takes no steps: it is a point with 0 substeps.
 """
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -21,9 +20,8 @@ from analysis.statistics.pairs import log_ratios, narrow, scaled
 from analysis.statistics.ranking import front
 from analysis.statistics.trends import order
 from analysis.statistics.verdicts import error_of_picked, judge_one
-from analysis.support.values import Interval
+from analysis.support.values import Interval, rows_in
 
-MEASURES_FILE = Path(__file__).parent / "measures.toml"
 POINT = ["scene_name", "series", "x"]
 Entrant = tuple[str, float]
 """A point of one scene: its series and its x."""
@@ -54,7 +52,7 @@ class Measure:
         return values.abs()
 
 
-MEASURES = [Measure(**table) for table in tomllib.loads(MEASURES_FILE.read_text(encoding="utf-8"))["measure"]]
+MEASURES = rows_in(Path(__file__).with_name("measures.toml"), "measure", Measure)
 
 
 def errors(study: Study, experiment: str) -> pd.DataFrame:

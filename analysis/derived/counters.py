@@ -1,13 +1,12 @@
 """Quantities derived from counters: per cycle, per disc and step, per step. Sources are never mixed."""
 
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
 
-QUANTITIES_FILE = Path(__file__).parent / "quantities.toml"
+from analysis.support.values import rows_in
 
 
 @dataclass(frozen=True)
@@ -24,9 +23,7 @@ class Quantity:
     factor: float = 1.0
 
 
-QUANTITIES = [
-    Quantity(**table) for table in tomllib.loads(QUANTITIES_FILE.read_text(encoding="utf-8"))["quantity"]
-]
+QUANTITIES = rows_in(Path(__file__).with_name("quantities.toml"), "quantity", Quantity)
 
 
 def derived(counters: pd.DataFrame, quantities: Sequence[Quantity] = QUANTITIES) -> pd.DataFrame:

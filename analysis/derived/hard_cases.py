@@ -1,7 +1,5 @@
 """Every variant against every hard case: what was expected, and what came of it."""
 
-import tomllib
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,8 +10,8 @@ import pandas as pd
 from analysis.derived import accuracy
 from analysis.derived.accuracy import MEASURES
 from analysis.records.studies import Study
+from analysis.support.values import rows_in
 
-EXPECTATIONS_FILE = Path(__file__).parent / "hard_cases.toml"
 HOLDS, FAILS, LIMIT, UNMEASURED = "holds", "fails", "limit of the method", "not measured"
 COLUMNS = [
     *("case", "title", "expects", "label", "series", "precision", "impact"),
@@ -67,15 +65,15 @@ LABELS = {
 
 def load() -> list[Expectation]:
     """Read the expectations, in the order of the table."""
-    tables = tomllib.loads(EXPECTATIONS_FILE.read_text(encoding="utf-8"))["case"]
-    return [expectation for table in tables for expectation in _of_table(table)]
+    return [
+        one for case in rows_in(Path(__file__).with_name("hard_cases.toml"), "case", _case) for one in case
+    ]
 
 
-def _of_table(table: dict[str, Any]) -> Iterator[Expectation]:
-    at_contact = table.pop(AT_CONTACT, None)
-    yield Expectation(**table)
-    if at_contact is not None:
-        yield Expectation(table["name"], impact=AT_CONTACT, **at_contact)
+def _case(at_contact: dict[str, Any] | None = None, **told: Any) -> list[Expectation]:  # noqa: ANN401
+    """Return what a case is held to, and what in place of that for collisions at contact, if it says so."""
+    others = [Expectation(told["name"], impact=AT_CONTACT, **at_contact)] if at_contact else []
+    return [Expectation(**told), *others]
 
 
 def evaluate(study: Study, experiment: str) -> pd.DataFrame:

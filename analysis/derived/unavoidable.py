@@ -27,9 +27,6 @@ A phase reads what it needs once and writes what it makes once. Phases that are 
 step as a whole must only read and write every disc once, 8b.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import numpy as np
 import pandas as pd
 
@@ -37,61 +34,30 @@ INDEX = 4
 PHASES = ("move", "bin", "find", "resolve")
 
 
-@dataclass(frozen=True)
-class Step:
-    """An average step: discs, overlapping pairs, pair resolves, and the bytes of a number."""
-
-    discs: pd.Series
-    overlaps: pd.Series
-    resolves: pd.Series
-    number: pd.Series
-
-    def among(self, pairs: pd.Series) -> pd.Series:
-        """Return how many discs are in at least one of so many pairs of discs placed at random."""
-        return self.discs * -np.expm1(-2 * pairs / self.discs)
-
-    @property
-    def changed(self) -> pd.Series:
-        """Return how many discs get another velocity."""
-        return self.among(np.minimum(self.resolves, self.overlaps))
-
-    @property
-    def working_set(self) -> pd.Series:
-        """Return the bytes that a step comes back to: positions, velocities, the order of discs, overlaps."""
-        return self.discs * (4 * self.number + INDEX) + self.overlaps * 2 * INDEX
-
-
-BYTES: dict[str, Callable[[Step], pd.Series]] = {
-    "move": lambda step: step.discs * (4 + 2) * step.number,
-    "bin": lambda step: step.discs * (2 * step.number + INDEX),
-    "find": lambda step: step.discs * 2 * step.number + step.overlaps * 2 * INDEX,
-    "resolve": lambda step: (
-        step.overlaps * 2 * INDEX
-        + step.among(step.overlaps) * 4 * step.number
-        + step.changed * 2 * step.number
-    ),
-}
-
-OPERATIONS: dict[str, Callable[[Step], pd.Series]] = {
-    "move": lambda step: step.discs * 4.0,
-    "bin": lambda step: step.discs * 2.0,
-    "find": lambda step: step.overlaps * 5.0,
-    "resolve": lambda step: step.overlaps * 7.0 + step.resolves * 10.0,
-}
-
-
 def unavoidable(runs: pd.DataFrame) -> pd.DataFrame:
     """Return one row a run (of `tables.runs`) and phase: `file`, `phase`, `bytes`, `operations` and
-    `working_set` of a step.
+    `working_set` of a step, what it comes back to: positions, velocities, the order of discs, overlaps.
     """
     steps = runs["steps"] * runs["substeps"]
-    number = runs["precision"].map({"double": 8, "float": 4})
-    step = Step(runs["particles"], runs["overlaps"] / steps, runs["pair_resolves"] / steps, number)
+    n, k, p = runs["particles"], runs["overlaps"] / steps, runs["pair_resolves"] / steps
+    b = runs["precision"].map({"double": 8, "float": 4})
+
+    def among(pairs: pd.Series) -> pd.Series:
+        """Return how many discs are in at least one of so many pairs of discs placed at random."""
+        return n * -np.expm1(-2 * pairs / n)
+
+    work = {
+        "move": (n * 6 * b, n * 4.0),
+        "bin": (n * (2 * b + INDEX), n * 2.0),
+        "find": (n * 2 * b + k * 2 * INDEX, k * 5.0),
+        "resolve": (
+            k * 2 * INDEX + among(k) * 4 * b + among(np.minimum(p, k)) * 2 * b,
+            k * 7.0 + p * 10.0,
+        ),
+    }
+    working_set = n * (4 * b + INDEX) + k * 2 * INDEX
     tables = [
-        runs[["file"]].assign(
-            phase=phase, bytes=BYTES[phase](step), operations=OPERATIONS[phase](step),
-            working_set=step.working_set,
-        )
-        for phase in PHASES
-    ]  # fmt: skip
+        runs[["file"]].assign(phase=phase, bytes=read, operations=done, working_set=working_set)
+        for phase, (read, done) in work.items()
+    ]
     return pd.concat(tables, ignore_index=True)

@@ -5,7 +5,6 @@ those of all other experiments, by the kind that their records name. `comparison
 
 import re
 import sys
-import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,13 +12,16 @@ from typing import Any
 
 import pandas as pd
 
+from analysis.claims.entry import Evidence, evidence_of
 from analysis.derived.accuracy import MEASURES
 from analysis.derived.ways import KIND as WAYS
 from analysis.figures import comparisons, errors, profiles, sweeps
-from analysis.figures.style import VERMILLION, Data, Drawing, partial, save, styled
+from analysis.figures.style import VERMILLION, Drawing, partial, save, styled
+from analysis.records.reading import load
 from analysis.records.studies import Study
 from analysis.support.parallel import in_parallel
-from analysis.support.values import Table
+from analysis.support.values import Table, rows_in
+from support.errors import InputError
 from support.vocabulary import PAUSES
 
 SPECIFICATIONS = Path(__file__).parent / "figures.toml"
@@ -50,6 +52,9 @@ OF_ONE_QUESTION: dict[str, Callable[..., Drawing | None]] = {
 }
 """The kinds that `figures.toml` may name besides."""
 
+OF_TIMES = ("scaling", "trend", "comparison", "control", "schedule", "oversubscription")
+"""The kinds that draw times of the study, and are told of none."""
+
 
 @dataclass(frozen=True)
 class Entry:
@@ -64,8 +69,10 @@ class Entry:
     experiment: str
     more: Mapping[str, Any] = field(default_factory=dict)
 
-    def draw(self, data: Data) -> Drawing | None:
+    def draw(self, data: Evidence) -> Drawing | None:
         """Draw it, or return None where the study has no records for it."""
+        if self.kind in OF_TIMES and data.study.times_of(self.experiment).empty:
+            return None
         return (KINDS | OF_ONE_QUESTION)[self.kind](data, self.experiment, self.subject, **self.more)
 
 
@@ -98,14 +105,10 @@ def _entries(
     ]
 
 
-FIGURES = [
-    entry
-    for table in tomllib.loads(SPECIFICATIONS.read_text(encoding="utf-8"))["figure"]
-    for entry in _entries(**table)
-]
+FIGURES = [entry for entries in rows_in(SPECIFICATIONS, "figure", _entries) for entry in entries]
 
 
-def draw(data: Data, wanted: Sequence[str] = (), *, pdf: bool = False) -> Iterator[Drawn]:
+def draw(data: Evidence, wanted: Sequence[str] = (), *, pdf: bool = False) -> Iterator[Drawn]:
     """Draw every figure that the study has records for, or those of the experiments wanted, into the folder
     `figures` of its results.
 
@@ -120,7 +123,21 @@ def draw(data: Data, wanted: Sequence[str] = (), *, pdf: bool = False) -> Iterat
     yield from filter(None, in_parallel(lambda number: _draw(entries[number], data, pdf=pdf), len(entries)))
 
 
-def _draw(entry: Entry, data: Data, *, pdf: bool) -> Drawn | None:
+def draw_all(results: Path, wanted: Sequence[str] = (), *, pdf: bool = False) -> list[Drawn]:
+    """Load a results folder and draw into its `figures/`, all experiments or those wanted, as SVG and, if
+    wanted, as `pdf`.
+
+    Raises InputError for an experiment that is neither one of the published questions nor in the records.
+    """
+    records = load(results)
+    names = list(dict.fromkeys([*titles(), *sorted(records.runs["experiment"])]))
+    for name in wanted:
+        if name not in names:
+            raise InputError(f"--experiment: found {name!r}, expected one of {', '.join(names)}")
+    return [figure for data in evidence_of(results, records) for figure in draw(data, wanted, pdf=pdf)]
+
+
+def _draw(entry: Entry, data: Evidence, *, pdf: bool) -> Drawn | None:
     name = f"{data.prefix}{entry.name}"
     with styled(name):
         drawing = entry.draw(data)

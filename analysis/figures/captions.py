@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from types import ModuleType
 from typing import Any
 
 import pandas as pd
@@ -23,10 +24,12 @@ Course = tuple[str, Any]
 """What a curve does: what it was asked, and what was found."""
 
 
-def environment(package: str, **more: Any) -> Environment:  # noqa: ANN401
-    """Return what renders a package's templates, in which numbers are said as everywhere else."""
+def environment(package: str, *modules: ModuleType, **more: Any) -> Environment:  # noqa: ANN401
+    """Return what renders a package's templates, in which numbers are said as everywhere else, and what the
+    functions of these modules say, too.
+    """
     made = Environment(loader=PackageLoader(package, "."), undefined=StrictUndefined, **more)
-    words = {name: word for name, word in vars(wording).items() if callable(word)}
+    words = {name: word for one in (wording, *modules) for name, word in vars(one).items() if callable(word)}
     made.filters |= words | {
         "speed_up": speed_up,
         "capital": lambda text: text[0].upper() + text[1:],

@@ -12,6 +12,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from analysis.claims.entry import Evidence
 from analysis.derived.comparisons import USUAL, Stated, differences, reference, stated
 from analysis.derived.pauses import ratios as pause_ratios
 from analysis.derived.ways import APART, TURNS, comparisons, overall, said
@@ -19,7 +20,7 @@ from analysis.derived.ways import KIND as WAYS
 from analysis.figures.captions import PROCESSES, SCENES, caption, opening, time_axis
 from analysis.figures.kinds import NO_ENDS, Dot, curve, forest, of_medians, of_ratio
 from analysis.figures.labels import SIGNS, key, label_ends, logarithmic_ticks, note, plain_ticks
-from analysis.figures.style import BLUE, INK, VERMILLION, Data, Drawing, Look, lighten, looks, new_figure
+from analysis.figures.style import BLUE, INK, VERMILLION, Drawing, Look, lighten, looks, new_figure
 from analysis.records.studies import Study
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import PAIR, log_ratios
@@ -42,7 +43,7 @@ Names = Mapping[str, str]
 
 
 def comparison(
-    data: Data, experiment: str, subject: str,
+    data: Evidence, experiment: str, subject: str,
     names: Names | None = None, work: bool = False, published: Mapping[str, str] | None = None,
 ) -> Drawing | None:  # fmt: skip
     """Draw the differences of an experiment's series from its reference, with a table of verdicts. Two
@@ -50,14 +51,10 @@ def comparison(
     `work` is wanted. On the same axis are published times of series, from the experiments `published`.
     """
     times = data.study.times_of(experiment)
-    if times.empty:
-        return None
     against, by = reference(times), stated(times)
     series = sorted(times["series"].unique(), key=lambda name: name == against)
-    tables = league(data.study, experiment)
     if names or (len(series) == 2 and times["x"].nunique() == 1):
-        drawing = _pair(data, experiment, subject, names or dict(zip(series, series, strict=True)), by, work)
-        return drawing and replace(drawing, tables=tables)
+        return _pair(data, experiment, subject, names or dict(zip(series, series, strict=True)), by, work)
     table = differences(times, against)
     table["label"] = _labels(table, table)
     summary = summarise(times, ["series", "x"]).iloc[::-1]
@@ -71,11 +68,12 @@ def comparison(
     rows, is_usual = list(table.itertuples()), by == USUAL
     told = caption("comparison", rows=rows, against=against, by=by, is_usual=is_usual, theirs=theirs)
     table["name"] = [f"{label} against {against}" for label in table["label"]]
-    return Drawing(figure, f"{opening(times, subject)} {told}".strip(), table, tables)
+    words = f"{opening(times, subject)} {told}".strip()
+    return Drawing(figure, words, table, league(data.study, experiment))
 
 
 def _published_orders(
-    data: Data, table: pd.DataFrame, against: str, questions: Mapping[str, str]
+    data: Evidence, table: pd.DataFrame, against: str, questions: Mapping[str, str]
 ) -> Mapping[str, float]:
     """Return the published times of series, with self-contained resolves, as ratios, moved as one so that the
     first is level with ours, if it is there.
@@ -84,10 +82,7 @@ def _published_orders(
         name: data.published.experiment(question).query("series == 'on'")["seconds"].median()
         for name, question in questions.items()
     }
-    level, first = (
-        {against: 1.0, **dict(zip(table["series"], table["ratio"], strict=True))},
-        next(iter(seconds)),
-    )
+    level, first = {against: 1.0, **table.set_index("series")["ratio"]}, next(iter(seconds))
     if first not in level:
         return {}
     return {name: level[first] * one / seconds[first] for name, one in seconds.items() if name in level}
@@ -150,7 +145,7 @@ def _checked(scopes: pd.Series) -> str:
 
 
 def _pair(
-    data: Data, experiment: str, subject: str, names: Names, by: Stated, work: bool
+    data: Evidence, experiment: str, subject: str, names: Names, by: Stated, work: bool
 ) -> Drawing | None:  # fmt: skip
     """Draw the ratio of both sides with its verdict and that of every block, the published one below it on
     the same axis, and beside them the times block by block.
@@ -185,12 +180,7 @@ def _pair(
     opened = opening(times, subject, SCENES if times["x"].nunique() > 1 else PROCESSES)
     verdicts = pd.DataFrame([{**vars(row), "name": " against ".join(told)}])
     words = caption("pair", row=row, names=told, by=by, theirs=theirs, moved=moved)
-    return Drawing(figure, f"{opened} {words}", verdicts)
-
-
-def _looks(names: Names) -> dict[str, Look]:
-    """Return the look of both series."""
-    return looks(reversed(list(names)))
+    return Drawing(figure, f"{opened} {words}", verdicts, league(data.study, experiment))
 
 
 def _published_ratios(published: pd.DataFrame, names: Names) -> Floats:
@@ -202,7 +192,7 @@ def _published_ratios(published: pd.DataFrame, names: Names) -> Floats:
     return np.asarray((candidate / reference).dropna(), dtype=float)
 
 
-def _of_counts(data: Data, experiment: str, subject: str, names: Names) -> Drawing:
+def _of_counts(data: Evidence, experiment: str, subject: str, names: Names) -> Drawing:
     """Draw the attempts alone. They have no verdict here: the claim about them has."""
     figure, axes = new_figure(1.6)
     _work(axes[0], data, experiment, names)
@@ -222,7 +212,7 @@ def _one_a_block(processes: pd.DataFrame) -> pd.DataFrame:
 def _times(axes: Axes, runs: pd.DataFrame, names: Names, *, published: bool = False) -> None:
     """Draw the `seconds` of both sides over blocks or repetitions, `x`, small."""
     labels = []
-    for series, look in _looks(names).items():
+    for series, look in looks(reversed(list(names))).items():
         own, name = runs[runs["series"] == series].sort_values("x"), names[series]
         lighter = look._replace(colour=lighten(look.colour)) if published else look
         told = f"{name}, published" if published else name
@@ -266,11 +256,11 @@ def ratio_panel(
     axes.xaxis.set_major_locator(MaxNLocator(6))
 
 
-def _work(axes: Axes, data: Data, experiment: str, names: Names) -> None:
+def _work(axes: Axes, data: Evidence, experiment: str, names: Names) -> None:
     """Draw the attempts at resolving a pair, those that resolve it in a stronger shade; medians of scenes."""
     runs = data.study.runs_of(experiment)
     counts = runs[["pair_resolves", "pair_attempts"]].div(runs["steps"], axis=0)
-    medians, shown = counts.groupby(runs["series"]).median(), _looks(names)
+    medians, shown = counts.groupby(runs["series"]).median(), looks(reversed(list(names)))
     for height, (series, name) in enumerate(list(names.items())[::-1]):
         colour, counted = shown[series].colour, medians.loc[series].dropna()
         for shade, amount in zip((colour, lighten(colour, 0.5)), counted, strict=False):
@@ -283,7 +273,7 @@ def _work(axes: Axes, data: Data, experiment: str, names: Names) -> None:
     axes.spines["left"].set_visible(False)
 
 
-def machines(data: Data, experiment: str, subject: str) -> Drawing | None:
+def machines(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw the time on each machine, a row a series: every study at this scale, never merged."""
     present = [study for study in data.studies if study.scale == data.study.scale]
     times = pd.concat([study.times_of(experiment).assign(machine=study.machine) for study in present])
@@ -330,7 +320,7 @@ def _of_machines(times: pd.DataFrame, subject: str) -> str:
     )  # fmt: skip
 
 
-def ways(data: Data, experiment: str, subject: str) -> Drawing | None:
+def ways(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw the ratios of an experiment in turns and in processes of their own, and the width of their
     intervals over the time spent.
     """
@@ -383,7 +373,7 @@ def bias_sentence(study: Study) -> str:
     )  # fmt: skip
 
 
-def pauses(data: Data, experiment: str, subject: str) -> Drawing | None:
+def pauses(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw the time of each program in slices over its time without a pause."""
     times = data.study.times_of(experiment)
     found = pause_ratios(times)

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
+from analysis.claims.entry import Evidence
 from analysis.derived import accuracy
 from analysis.derived import hard_cases as cases
 from analysis.derived.accuracy import SMALL, Choice, Measure, Race
@@ -31,7 +32,6 @@ from analysis.figures.style import (
     FAINT,
     INK,
     VERMILLION,
-    Data,
     Drawing,
     Look,
     lighten,
@@ -59,7 +59,7 @@ WIDEST = 6
 """Variants side by side in one table, so that it fits a printed page."""
 
 
-def speed_against_error(data: Data, experiment: str, subject: str, measure: Measure) -> Drawing | None:
+def speed_against_error(data: Evidence, experiment: str, subject: str, measure: Measure) -> Drawing | None:
     """Draw the time of a unit of simulated time over one error measure, a line a series, a panel a scene.
 
     None without records, and where the measure is 0 everywhere.
@@ -70,7 +70,7 @@ def speed_against_error(data: Data, experiment: str, subject: str, measure: Meas
     scenes = dict(list(table.groupby("scene_name", sort=False)))
     figure, [panels] = new_grid(3.0, 1, len(scenes), sharex=True, sharey=True)
     shown = _looks(table)
-    zero = 10 ** np.floor(np.log10(table.loc[table["error"] > 0, "error"].min()) - 1)
+    zero = _zero(table["error"])
     for axes, (scene, part) in zip(panels, scenes.items(), strict=True):
         for series, line in part.groupby("series"):
             _line(axes, line, zero, shown[str(series)])
@@ -91,6 +91,12 @@ def speed_against_error(data: Data, experiment: str, subject: str, measure: Meas
     if measure.converges:
         tables.append(_orders(table))
     return Drawing(figure, _caption(table, data, experiment, subject, measure), tables=tables)
+
+
+def _zero(values: pd.Series) -> float:
+    """Return where 0 stands on a logarithmic axis: a power of ten below all values above 0."""
+    positive = values[values > 0]
+    return float(10.0 ** (np.floor(np.log10(positive.min())) - 1)) if len(positive) else 1e-16
 
 
 def _looks(table: pd.DataFrame) -> dict[str, Look]:
@@ -208,7 +214,7 @@ def _order(fitted: object) -> Cell | str:
     return interval(fitted)
 
 
-def _caption(table: pd.DataFrame, data: Data, experiment: str, subject: str, measure: Measure) -> str:
+def _caption(table: pd.DataFrame, data: Evidence, experiment: str, subject: str, measure: Measure) -> str:
     # What the error of the event-driven simulation is against is the reference of all others.
     exact_ones = list(table.loc[table["substeps"] == 0, "series"].unique())
     fronts = [
@@ -232,7 +238,7 @@ def front_of(part: pd.DataFrame) -> list[tuple[str, list[str]]]:
     ]
 
 
-def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
+def hard_cases(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw the measure of every case and variant against its bound, with the table of verdicts, if any."""
     table = cases.evaluate(data.study, experiment)
     if table.empty or (table["verdict"] == UNMEASURED).all():
@@ -252,9 +258,7 @@ def hard_cases(data: Data, experiment: str, subject: str) -> Drawing | None:
 
 
 def _dots(axes: Axes, shown: pd.DataFrame) -> None:
-    positive = pd.concat([shown["value"], shown["bound"].dropna()])
-    positive = positive[positive > 0]
-    zero = 10.0 ** (np.floor(np.log10(positive.min())) - 1) if len(positive) else 1e-16
+    zero = _zero(pd.concat([shown["value"], shown["bound"].dropna()]))
     heights = {title: -number for number, title in enumerate(shown["title"].unique())}
     for row in shown.itertuples():
         colour = COLOURS.get(row.precision, INK)

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 
+from analysis.claims.entry import Evidence
 from analysis.derived.counters import QUANTITIES, derived
 from analysis.derived.ladder import (
     RUNG,
@@ -36,7 +37,6 @@ from analysis.figures.style import (
     INK,
     ORANGE,
     VERMILLION,
-    Data,
     Drawing,
     Look,
     lighten,
@@ -65,7 +65,7 @@ EDGED_FROM = 1 / 150
 """The narrowest chunk that gets a white edge, as a part of the axis; a narrower one would vanish in it."""
 
 
-def profile(data: Data, experiment: str, subject: str) -> Drawing | None:
+def profile(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw each phase's share of a step's wall time, and how much of it the threads are busy."""
     table, threads = data.study.of(experiment, "phases", "threads")
     if table.empty:
@@ -113,7 +113,7 @@ def _of_phases(subject: str, table: pd.DataFrame, shares: pd.DataFrame, threads:
     )  # fmt: skip
 
 
-def panels(data: Data, experiment: str, subject: str, source: str) -> Drawing | None:
+def panels(data: Evidence, experiment: str, subject: str, source: str) -> Drawing | None:
     """Draw what one source counted of the published variants, a panel a quantity: sources are never mixed."""
     (counters,) = data.study.of(experiment, "counters")
     asked = [one for one in QUANTITIES if one.source == source]
@@ -147,7 +147,7 @@ def _bars(axes: Axes, rows: pd.DataFrame, quantity: str) -> None:
     axes.spines["bottom"].set_visible(False)
 
 
-def phases_against_limits(data: Data, experiment: str, subject: str) -> Drawing | None:
+def phases_against_limits(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw the least that each phase's unavoidable work could take, and what it took: a row a series and
     phase, a panel a scene; None without profiled runs or measured limits.
     """
@@ -216,7 +216,7 @@ def _of_a_step(rows: pd.DataFrame, runs: pd.DataFrame) -> dict[str, Any]:
     return {**found, "work": work, **rows[["wall", "least"]].sum()}
 
 
-def timeline(data: Data, experiment: str, subject: str) -> Drawing | None:  # noqa: ARG001 - of all experiments
+def timeline(data: Evidence, experiment: str, subject: str) -> Drawing | None:  # noqa: ARG001 - of all experiments
     """Draw the step of median length of every timeline in the results folder, at most six, on a common time
     axis. They do not say whose they are: they stand with the first study that has profiled runs.
     """
@@ -286,7 +286,7 @@ ENDS = {"ns": 0.1, "factor": 0.37, "resolves": 0.65, "sweeps": 0.91, "✓": 1.0}
 """What stands beside the bars, and where each column ends."""
 
 
-def waterfall(data: Data, experiment: str, subject: str) -> Drawing | None:
+def waterfall(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw an experiment's series in the order of its question, each against the one before, by scene."""
     tables = tables_of(data.study, experiment)
     if tables is None:

@@ -52,19 +52,6 @@ SETTINGS = mpl.rc_params_from_file(FOLDER / "style.mplstyle", use_default_templa
 
 
 @dataclass(frozen=True)
-class Data(Evidence):
-    """What a figure may draw from: the study shown, all studies, the published one, the results folder."""
-
-    folder: Path
-
-    @property
-    def prefix(self) -> str:
-        """What the names of the study's files begin with: nothing of the first one."""
-        name = re.sub(r"[^a-z0-9]+", "-", self.study.name.lower()).strip("-")
-        return "" if self.study is self.studies[0] else f"{name}-"
-
-
-@dataclass(frozen=True)
 class Drawing:
     """A figure and its caption, generated from the same data; `verdicts` has a row a comparison, with the
     columns of `verdicts.judge` and what the report is to call it as `name`; `tables` follow the figure.
@@ -116,7 +103,7 @@ def new_grid(height: float, lines: int, columns: int = 1, **more: Any) -> tuple[
     return figure, figure.subplots(lines, columns, squeeze=False, **more)
 
 
-def partial(data: Data, experiment: str) -> str:
+def partial(data: Evidence, experiment: str) -> str:
     """Return `partial: n of m runs` if the study lacks some of the experiment's planned records, else
     nothing. What is planned the runner wrote down last; records tell what it was when they were made.
     """

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from analysis import claims
+from analysis.claims.entry import Evidence
 from analysis.derived.comparisons import PUBLISHED, differences, differences_from, reference, stated
 from analysis.derived.ladder import per_disc_step
 from analysis.figures.captions import caption, course_of, opening, time_axis
@@ -23,7 +24,6 @@ from analysis.figures.style import (
     GREEN,
     INK,
     ORANGE,
-    Data,
     Drawing,
     Look,
     lighten,
@@ -48,7 +48,7 @@ CHUNKS = [1, 2, 3, 5, 10, 20, 40, 80, 160, 320, 640, 1280]
 
 
 def trend(
-    data: Data, experiment: str, subject: str, label: str | None = None, course: str = "growth",
+    data: Evidence, experiment: str, subject: str, label: str | None = None, course: str = "growth",
     scale: str = "", counted: bool = False, known: str = "",
 ) -> Drawing | None:  # fmt: skip
     """Draw time over x, a curve a series, and below it ratios: of several series to the reference at the same
@@ -58,8 +58,6 @@ def trend(
     Where a `scale` names the axes that are logarithmic the times of several series are per disc and step.
     """
     times = data.study.times_of(experiment)
-    if times.empty:
-        return None
     label = label or times["x_name"].iloc[0].replace("_", " ")
     several, shown = times["series"].nunique() > 1, looks(sorted(times["series"].unique()))
     scale = scale if several else ""
@@ -207,7 +205,7 @@ def _far_apart(x: pd.Series) -> list[float]:
 
 
 def _courses(
-    data: Data, experiment: str, times: pd.DataFrame, course: str, scale: str
+    data: Evidence, experiment: str, times: pd.DataFrame, course: str, scale: str
 ) -> list[dict[str, Any]]:
     """Return what the times of each series do: what they are asked, or their growth where there are several;
     on axes that are both logarithmic how far they are flat, but for the published variant.
@@ -249,14 +247,12 @@ Choice = tuple[str, float]
 """A schedule and its chunk."""
 
 
-def schedule(data: Data, experiment: str, subject: str) -> Drawing | None:
+def schedule(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw the ratio to the published choice over the chunk, a curve a kind of schedule, beside the published
     ones on the same axis, and the times small below; the choice is ringed. Where it was not measured the
     ratios are to the smallest chunk of the reference.
     """
     times = data.study.times_of(experiment)
-    if times.empty:
-        return None
     summary = summarise(join_replicates(times), ["series", "x"])
     published = data.published.experiment(experiment)
     chosen, first = chosen_in(experiment), reference(times)
@@ -322,7 +318,7 @@ def _over_chunks(
     lower.minorticks_off()
 
 
-def scaling(data: Data, experiment: str, subject: str) -> Drawing | None:
+def scaling(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw time, speed-up against ideal, and efficiency over threads, a curve a series and scene; the law is
     fitted to a single one. None without records whose x is the number of threads.
     """
@@ -404,11 +400,9 @@ def _entry(series: str, times: pd.DataFrame, look: Look, several: bool) -> tuple
     return f"{SIGNS[look.marker]} {series if several else 'measured'}, {said}", look.colour
 
 
-def oversubscription(data: Data, experiment: str, subject: str) -> Drawing | None:
+def oversubscription(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     """Draw time over threads in multiples of the machine's hardware threads, against as many as it has."""
     times = data.study.times_of(experiment)
-    if times.empty:
-        return None
     hardware = data.study.hardware_threads
     figure, (above, below) = stacked("threads", 3.4)
     curve(above, summarise(times, ["x"]), Look(BLUE))

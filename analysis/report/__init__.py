@@ -7,22 +7,14 @@ from pathlib import Path
 
 from jinja2 import select_autoescape
 
-from analysis.claims.summary import change_in_short, colour_of, mark, published_in_short, verdict_in_short
+from analysis.claims import summary
 from analysis.figures.captions import environment
-from analysis.records.reading import Records, load
+from analysis.records.reading import load
 from analysis.report.content import content
-from analysis.support.wording import NO_BREAK, blocks, change, in_all, spreads
+from analysis.support.wording import NO_BREAK
 from support.files import replacing
 
 TEMPLATE = "report.html.jinja"
-WORDS = {
-    one.__name__: one
-    for one in (
-        blocks, change, change_in_short, colour_of, in_all, mark, published_in_short, spreads,
-        verdict_in_short,
-    )
-}  # fmt: skip
-"""What the template says of a claim or a ratio."""
 
 
 def write(results: Path, asked: Sequence[str] = (), how_far: str = "") -> Path:
@@ -38,22 +30,11 @@ def write(results: Path, asked: Sequence[str] = (), how_far: str = "") -> Path:
         if name not in present and not how_far:
             print(f"study: found no records of {name}, which does not lead the report", file=sys.stderr)
     goes_on = f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC, {how_far}" if how_far else ""
-    page = _page(records, results, asked, goes_on)
+    escaped = select_autoescape(default=True)
+    made = environment("analysis.report", summary, autoescape=escaped, trim_blocks=True, lstrip_blocks=True)
+    gathered = content(records, results, asked)
+    page = made.get_template(TEMPLATE).render(gathered, goes_on=goes_on, nbsp=NO_BREAK)
     html = results / "report.html"
     with replacing(html) as part:
         part.write_text(page, encoding="utf-8")
     return html
-
-
-def render(results: Path, asked: Sequence[str] = ()) -> str:
-    """Return the report as one HTML page that needs nothing but itself."""
-    return _page(load(results), results, asked)
-
-
-def _page(records: Records, results: Path, asked: Sequence[str], goes_on: str = "") -> str:
-    """Return the page; `goes_on` tells when and how far it was written while the study goes on."""
-    escaped = select_autoescape(default=True)
-    made = environment("analysis.report", autoescape=escaped, trim_blocks=True, lstrip_blocks=True)
-    made.globals.update(WORDS)
-    gathered = content(records, results, asked)
-    return made.get_template(TEMPLATE).render(gathered, goes_on=goes_on, nbsp=NO_BREAK)

@@ -13,9 +13,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from analysis import claims
+from analysis.claims.entry import Evidence, evidence_of
 from analysis.claims.summary import colour_of, mark
 from analysis.figures.kinds import arrow, span
-from analysis.figures.studies import data_of
 from analysis.figures.style import (
     BAND,
     BLUE,
@@ -24,7 +24,6 @@ from analysis.figures.style import (
     SKY,
     VERMILLION,
     WIDTH,
-    Data,
     Drawing,
     lighten,
     save,
@@ -186,14 +185,14 @@ def _key(figure: Figure, layout: Layout) -> None:
     )  # fmt: skip
 
 
-def draw(data: Data, table: pd.DataFrame | None = None, *, pdf: bool = False) -> tuple[str, list[Path]]:
+def draw(data: Evidence, table: pd.DataFrame | None = None, *, pdf: bool = False) -> tuple[str, list[Path]]:
     """Write the figure into the folder of figures, wide and narrow as SVG, wide as `pdf` as well if wanted.
 
     The claims are evaluated unless their `table` is given. Return the figure's caption and files, none where
     there is nothing to draw.
     """
     if table is None:
-        table = claims.evaluate(data, claims.load(data.folder))
+        table = claims.evaluate(data)
     files: list[Path] = []
     caption = ""
     for name, layout in ((f"{data.prefix}{NAME}", WIDE), (f"{data.prefix}{NAME}-narrow", NARROW)):
@@ -212,5 +211,5 @@ def draw_all_claims(results: Path) -> list[Path]:
     What cannot be read is told by whoever draws the other figures of the folder.
     """
     records = load(results, lambda _: None)
-    drawn = [draw(data, pdf=True)[1] for data in data_of(results, records)]
+    drawn = [draw(data, pdf=True)[1] for data in evidence_of(results, records)]
     return [files[0] for files in drawn if files]

@@ -11,10 +11,8 @@ from markupsafe import Markup
 
 from analysis import claims
 from analysis.claims import missing, summary
-from analysis.claims.entry import CLAIMS_FILE, questions_folder
+from analysis.claims.entry import CLAIMS_FILE, Evidence, evidence_of, questions_folder
 from analysis.figures import Drawn, draw, titles
-from analysis.figures.studies import data_of
-from analysis.figures.style import Data
 from analysis.records.reading import Records
 from analysis.records.studies import Study
 from analysis.report import all_claims, first_screen, graphs, provenance
@@ -35,7 +33,7 @@ def content(records: Records, results: Path, asked: Sequence[str] = ()) -> dict[
     Questions that were `asked` by name lead; without any, all of them were.
     """
     own = (results / CLAIMS_FILE.name).exists()
-    found = [_study(data, asked) for data in data_of(results, records)]
+    found = [_study(data, asked) for data in evidence_of(results, records)]
     # A study that has what was asked comes before one that has not.
     found.sort(key=lambda study: bool(asked) and not study["asked"])
     for position, study in enumerate(found, start=1):
@@ -67,10 +65,10 @@ def content(records: Records, results: Path, asked: Sequence[str] = ()) -> dict[
     }
 
 
-def _study(data: Data, asked: Collection[str]) -> dict[str, Any]:
+def _study(data: Evidence, asked: Collection[str]) -> dict[str, Any]:
     study, is_first = data.study, data.study is data.studies[0]
     drawn = list(draw(data))
-    table = claims.evaluate(data, claims.load(data.folder))
+    table = claims.evaluate(data)
     told = table if is_first else table[~table["missing"]]
     rows = table.to_dict("records")
     shown = parts(study, drawn, rows)

@@ -1,14 +1,12 @@
 """The graphs of the published report: what each showed, and where it is measured and drawn again."""
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from analysis.figures import titles
-
-GRAPHS_FILE = Path(__file__).parent / "graphs.toml"
+from analysis.support.values import rows_in
 
 
 @dataclass(frozen=True)
@@ -25,7 +23,7 @@ class Graph:
 
 def load() -> list[Graph]:
     """Return the published graphs, in the order of the published report."""
-    return [Graph(**table) for table in tomllib.loads(GRAPHS_FILE.read_text(encoding="utf-8"))["graph"]]
+    return rows_in(Path(__file__).with_name("graphs.toml"), "graph", Graph)
 
 
 def rows(anchors: Mapping[str, str]) -> list[dict[str, Any]]:

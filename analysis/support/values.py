@@ -1,14 +1,19 @@
-"""The types of what is worked out: arrays, rows, estimates with an interval, and tables for the report."""
+"""The types of what is worked out: arrays, rows, estimates with an interval, and tables for the report. Rows
+of a TOML file are read here, too.
+"""
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+import tomllib
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Row = Mapping[Hashable, Any]
+T = TypeVar("T")
 
 
 class Interval(NamedTuple):
@@ -34,6 +39,11 @@ class Table:
     title: str
     columns: Sequence[str]
     rows: Sequence[Sequence[Cell]]
+
+
+def rows_in(file: Path, key: str, kind: Callable[..., T]) -> list[T]:
+    """Return the tables under a key of a TOML file, each as what it is made into."""
+    return [kind(**table) for table in tomllib.loads(file.read_text(encoding="utf-8"))[key]]
 
 
 def table_of(title: str, columns: Sequence[str], rows: Iterable[Iterable[Cell | str]]) -> Table:

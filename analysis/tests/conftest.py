@@ -7,12 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from analysis import report
-from analysis.figures.studies import data_of
-from analysis.figures.style import Data
+from analysis.claims import evidence_of
+from analysis.claims.entry import Evidence
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import Noise
-from analysis.tests.synthetic_study import failures, study, trace
+from analysis.tests.synthetic_study import failures, page_of, study, trace
 
 
 @pytest.fixture(scope="session")
@@ -38,10 +37,10 @@ def page(results: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
     with kept.with_suffix(".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not kept.exists():
-            kept.write_text(report.render(results), encoding="utf-8")
+            kept.write_text(page_of(results), encoding="utf-8")
     return kept.read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="session")
-def data(results: Path) -> Data:
-    return data_of(results)[0]
+def data(results: Path) -> Evidence:
+    return evidence_of(results)[0]

@@ -1,14 +1,15 @@
 """A whole synthetic study: the records of every experiment, and what else a results folder may hold."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from analysis.figures.studies import data_of
-from analysis.figures.style import Data
+from analysis import report
+from analysis.claims import evidence_of
+from analysis.claims.entry import Evidence
 from analysis.tests.synthetic import Machine, bench, failure, limits, profile, write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
@@ -46,7 +47,7 @@ def study(
             for block, seconds in enumerate(rows):
                 record = bench(
                     name, point, block, seconds, machine or Machine(),
-                    scale=scale, points_planned=len(points), blocks_planned=blocks, figure=_figure(name),
+                    scale=scale, points_planned=len(points), blocks_planned=blocks, figure=figure_of(name),
                 )  # fmt: skip
                 records.append(profile(record, SHARES, counters(record)) if name in PROFILED else record)
     if "limits" in names:
@@ -54,22 +55,41 @@ def study(
     return records
 
 
-def data_in(folder: Path, records: Iterable[dict[str, Any]]) -> Data:
+def under(experiment: str, records: Iterable[dict[str, Any]], **tags: str) -> list[dict[str, Any]]:
+    """Return the records under another name, which nothing in this package knows, and with these tags."""
+    return [record | {"tags": record["tags"] | {"experiment": experiment, **tags}} for record in records]
+
+
+def slowed(records: list[dict[str, Any]], factor: float, **tags: object) -> list[dict[str, Any]]:
+    """Return the records with those of some tags made slower by a factor."""
+    for record in records:
+        if all(record["tags"][key] == value for key, value in tags.items()):
+            for repetition in record["repetitions"]:
+                repetition["steps_seconds"] *= factor
+    return records
+
+
+def data_in(folder: Path, records: Iterable[dict[str, Any]]) -> Evidence:
     """Write records into a folder, and return what the figures of their first study may draw from."""
     write(folder, records)
-    return data_of(folder)[0]
+    return evidence_of(folder)[0]
 
 
-def _figure(experiment: str) -> str:
+def page_of(results: Path, asked: Sequence[str] = ()) -> str:
+    """Return the report of a folder."""
+    return report.write(results, asked).read_text(encoding="utf-8")
+
+
+def figure_of(experiment: str) -> str:
+    """Return how an experiment is drawn, as its records say."""
     points = EXPERIMENTS[experiment]()
     own = ("control", "machine", *PROFILED, "ladder", "speed_against_error", "hard_cases")
     if experiment in own:
         return experiment
     if any(point.in_turns for point in points):
         return "ways"
-    if points[0].x_name in ("none", "chunk"):
-        return "comparison"
-    return "scaling" if points[0].x_name == "threads" else "trend"
+    kinds = {"none": "comparison", "chunk": "schedule", "threads": "scaling"}
+    return kinds.get(points[0].x_name, "trend")
 
 
 def counters(record: dict[str, Any]) -> list[dict[str, Any]]:

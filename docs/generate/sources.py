@@ -4,7 +4,6 @@ Of C++ and Python no comment, no empty space and no include counts, of Python no
 neither their layout. Where a file is and what it is called does not count either.
 """
 
-import ast
 import hashlib
 import io
 import json
@@ -12,6 +11,7 @@ import re
 import tokenize
 import tomllib
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from pathlib import Path
 
 from support.errors import InputError
@@ -24,6 +24,8 @@ _CPP = re.compile(
     re.DOTALL | re.VERBOSE | re.MULTILINE,
 )
 DIGITS = 16
+ENDS = (tokenize.NEWLINE, tokenize.COMMENT)
+"""Of a statement."""
 
 
 def digest(root: Path, patterns: Iterable[str]) -> str:
@@ -48,7 +50,7 @@ def meaning(path: Path) -> str:
     text = path.read_text(encoding="utf-8")
     match path.suffix:
         case ".hpp" | ".cpp":
-            return "\0".join(_cpp_tokens(text))
+            return "\0".join(one.group() for one in _CPP.finditer(text) if one["left_out"] is None)
         case ".py":
             return "\n".join(_python_lines(text))
         case ".toml":
@@ -59,14 +61,10 @@ def meaning(path: Path) -> str:
             return text
 
 
-def _cpp_tokens(text: str) -> Iterator[str]:
-    return (found.group() for found in _CPP.finditer(text) if found["left_out"] is None)
-
-
 def _python_lines(text: str) -> Iterator[str]:
     """The lines that are left when comments and texts that stand by themselves are taken out."""
     lines = text.splitlines()
-    for (first, begin), (last, end) in sorted([*_comments(text), *_lone_texts(text)], reverse=True):
+    for (first, begin), (last, end) in sorted(_left_out(text), reverse=True):
         head, tail = lines[first - 1][:begin], lines[last - 1][end:]
         lines[first - 1 : last] = [head + tail] + [""] * (last - first)
     yield from (line.rstrip() for line in lines if line.strip())
@@ -75,20 +73,12 @@ def _python_lines(text: str) -> Iterator[str]:
 Span = tuple[tuple[int, int], tuple[int, int]]
 
 
-def _comments(text: str) -> Iterator[Span]:
-    for one in tokenize.generate_tokens(io.StringIO(text).readline):
-        if one.type == tokenize.COMMENT:
+def _left_out(text: str) -> Iterator[Span]:
+    """Where comments stand, and texts that are a statement of their own."""
+    begins = True
+    for one, after in pairwise(tokenize.generate_tokens(io.StringIO(text).readline)):
+        is_lone = begins and one.type == tokenize.STRING and after.type in ENDS
+        if is_lone or one.type == tokenize.COMMENT:
             yield one.start, one.end
-
-
-def _lone_texts(text: str) -> Iterator[Span]:
-    lines = text.splitlines()
-    for node in ast.walk(ast.parse(text)):
-        if (
-            isinstance(node, ast.Expr)
-            and isinstance(node.value, ast.Constant)
-            and isinstance(node.value.value, str)
-        ):
-            last = node.end_lineno or node.lineno
-            ends = (last, len(lines[last - 1].encode()[: node.end_col_offset].decode()))
-            yield (node.lineno, node.col_offset), ends
+        if one.type not in (tokenize.COMMENT, tokenize.NL):
+            begins = one.type in (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT)

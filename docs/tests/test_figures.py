@@ -50,19 +50,12 @@ def test_an_entry_says_how_it_is_made_again(figure: Figure) -> None:
 
 # What makes a figure stale, tried on a copy of the sources of `neighbourhood`.
 
+MOVE, QUESTION = "kernels/move.hpp", "experiments/questions/neighbourhood.toml"
 CHANGES = {
-    "a line of code": ("kernels/move.hpp", "namespace carom {", "namespace carom {\nint changed = 1;", True),
-    "a comment": ("kernels/move.hpp", "namespace carom {", "// changed\nnamespace carom { /* too */", False),
-    "empty space": ("kernels/move.hpp", "namespace carom {", "namespace\n\n   carom\n{", False),
-    "an include": ("kernels/move.hpp", "#pragma once", "#pragma once\n#include <array>", False),
-    "a key of the question": ("experiments/questions/neighbourhood.toml", "steps = 12", "steps = 13", True),
-    "a comment of the question": (
-        "experiments/questions/neighbourhood.toml",
-        "steps",
-        "# steps\nsteps",
-        False,
-    ),
-    "a kernel of others": (
+    "a line of code": (MOVE, "namespace carom {", "namespace carom {\nint changed = 1;", True),
+    "a comment": (MOVE, "namespace carom {", "// changed\nnamespace carom { /* too */", False),
+    "a key of the question": (QUESTION, "steps = 12", "steps = 13", True),
+    "another kernel": (
         "kernels/exact/flight.hpp",
         "namespace carom {",
         "namespace carom {\nint x;",
@@ -95,6 +88,7 @@ def test_code_makes_a_figure_stale_and_a_comment_does_not(
         ("a.hpp", 'R"(// a)"', 'R"(// b)"', False),
         ("a.hpp", "a+b /* c */", "a + b", True),
         ("a.hpp", "int a", "inta", False),
+        ("a.hpp", "#pragma once\n#include <array>\nint a", "#pragma once\nint\n\n  a", True),
         ("a.py", '"""Doc."""\n\nx = 1  # why\n"""About x."""\n', "x = 1\n", True),
         ("a.py", 'def f():\n    """Doc."""\n    return "# no"\n', 'def f():\n    return "#"\n', False),
         ("a.py", "if a:\n    b()\nc()\n", "if a:\n    b()\n    c()\n", False),
@@ -121,16 +115,8 @@ def test_a_pattern_without_a_file_is_told(tmp_path: Path) -> None:
 
 # What pages have to say.
 
-OF = Figure(
-    "x",
-    "a question",
-    ("a.hpp",),
-    "abc1234",
-    date(2026, 11, 26),
-    "a machine",
-    "",
-    files={"f/x.svg": "r/x.svg"},
-)
+DAY = date(2026, 11, 26)
+OF = Figure("x", "a question", ("a.hpp",), "abc1234", DAY, "a machine", "", files={"f/x.svg": "r/x.svg"})
 SHOWN = "# T\n\nText.\n\n![X](figures/x.svg)\n\n"
 
 
@@ -193,7 +179,7 @@ def test_a_figure_is_copied_and_its_entry_written_anew(
     made = load(table)["x"]
     assert (root / "f" / "x.svg").read_text() == "new\n"
     told = (made.commit, made.measured, made.machine, made.same)
-    assert told == ("abc1234", date(2026, 11, 26), 'machine with 2 cores (A "big" one)', "")
+    assert told == ("abc1234", DAY, 'machine with 2 cores (A "big" one)', "")
     assert not is_stale(made, root)
     assert load(table)["y"] == y
     assert ("x: made without points that failed" in capsys.readouterr().err) == bool(code)

@@ -6,7 +6,6 @@ from typing import Any
 import pandas as pd
 
 from analysis import claims
-from analysis.records.reading import load
 from analysis.tests.synthetic import write
 
 Records = list[dict[str, Any]]
@@ -14,22 +13,13 @@ Records = list[dict[str, Any]]
 
 def verdicts_of(folder: Path) -> pd.DataFrame:
     """Return a row a claim, by its id, of the first study in a folder."""
-    return claims.evaluate(claims.evidence_of(load(folder))[0]).set_index("id")
+    return claims.evaluate(claims.evidence_of(folder)[0]).set_index("id")
 
 
 def row_of(folder: Path, records: Records, claim: str) -> pd.Series:
     """Return the claim's row, of the records and of what the folder has already."""
     write(folder, records)
     return verdicts_of(folder).loc[claim]
-
-
-def slowed(records: Records, factor: float, **tags: object) -> Records:
-    """Return the records with those of some tags made slower by a factor."""
-    for record in records:
-        if all(record["tags"][key] == value for key, value in tags.items()):
-            for repetition in record["repetitions"]:
-                repetition["steps_seconds"] *= factor
-    return records
 
 
 def figures(row: pd.Series) -> dict[str, list[str]]:

@@ -3,7 +3,6 @@
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
-from math import exp
 from pathlib import Path
 from typing import Any
 
@@ -11,16 +10,16 @@ import pytest
 
 from analysis import claims
 from analysis.claims import missing
+from analysis.claims.entry import Evidence
 from analysis.claims.outcome import FAILS, HOLDS, IN_DIRECTION, OPEN, Verdict
-from analysis.figures.style import Data
 from analysis.records import published
 from analysis.records.reading import load
 from analysis.records.studies import split
-from analysis.tests.claims.judging import Records, figures, row_of, slowed, verdicts_of
+from analysis.tests.claims.judging import Records, figures, row_of, verdicts_of
 from analysis.tests.synthetic import Machine, Point, bench, failure, write
 from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import slowed, study
 
 IDS = [
     "threads", "particles", "grid_length", "radius", "steps", "velocity", "machine", "four_boxes",
@@ -88,20 +87,6 @@ def machines(*told: tuple[str, float, int]) -> Records:
         for number, (cpu, speed, threads) in enumerate(told)
         for record in study(["machine"], machine=Machine(host=f"h{number}", cpu_model=cpu), noise=QUIET,
                             speed=speed, threads=threads)
-    ]  # fmt: skip
-
-
-def near_machines(count: int) -> Records:
-    """The second is as much slower than the first as makes the p-value of its not being faster, alone, 0.035;
-    the third is far faster.
-    """
-    models = ["Xeon Silver 4114", "Xeon w5-3423", "Core i7-13700"][:count]
-    point = Point("checkered", 0, 1.0, axes={"threads": 16})
-    return [
-        bench("machine", replace(point, tags={"point": model}), block, [exp(scatter + shift)],
-              Machine(host=model.split()[-1], cpu_model=model))
-        for shift, model in zip((0, 0.0305, -1), models, strict=False)
-        for block, scatter in enumerate([0.031, -0.031, 0.012, -0.012, 0.02, -0.02])
     ]  # fmt: skip
 
 
@@ -190,18 +175,14 @@ def attempts(
 CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
     # on other threads, at other scales
     ("as made", lambda: boxes(1.0), "four_boxes", HOLDS, {"said": "holds"}),
-    ("slower", lambda: boxes(1.2), "four_boxes", FAILS, {"said": "does not hold"}),
-    ("in direction", lambda: boxes(1.04), "four_boxes", IN_DIRECTION, {"said": "holds in direction"}),
     ("on 2", lambda: boxes(1.0, threads=2), "four_boxes", ELSEWHERE,
      {"said": "holds at 2 threads (claimed at 20)"}),
     ("in direction on 2", lambda: boxes(1.04, threads=2), "four_boxes", IN_DIRECTION_ELSEWHERE,
      {"said": "holds in direction at 2 threads (claimed at 20)"}),
     ("slower on 1", lambda: boxes(1.2, threads=1), "four_boxes", FAILS_ELSEWHERE,
      {"said": "does not hold at 1 thread (claimed at 20)"}),
-    ("quick", lambda: boxes(1.0, scale="quick"), "four_boxes", ELSEWHERE,
-     {"said": "holds at quick scale", "why": "24 rows"}),
     ("quick on 2", lambda: boxes(1.0, scale="quick", threads=2), "four_boxes", ELSEWHERE,
-     {"said": "holds at quick scale, at 2 threads (claimed at 20)"}),
+     {"said": "holds at quick scale, at 2 threads (claimed at 20)", "why": "24 rows"}),
     ("no scale", lambda: on("neighbourhood", scale="unstated"), "four_boxes", Verdict.OTHER_SCALE,
      {"said": "cannot be decided at unstated scale", "why": "24 rows", "measured": "["}),
     ("quick threads", lambda: on("threads", scale="quick"), "threads", Verdict.OTHER_SCALE,
@@ -220,13 +201,11 @@ CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
     ("slow ends",
      lambda: velocities({"min_velocity": FALLING, "max_velocity": {1: 0.1, 5: 1.0, 25: 1.2, 50: 1.5}}),
      "velocity", FAILS, {"measured": "(without the degenerate max_velocity = 1)"}),
-    ("radius", lambda: on("radius"), "radius", HOLDS, {}),
     ("another radius", lambda: slowed(on("radius"), 0.7, x=25), "radius", FAILS, {"why": "radius 25"}),
     ("within the margin", lambda: slowed(on("radius"), 1 / 0.99, x=35), "radius", HOLDS, {}),
     ("no such radius", lambda: [one for one in on("radius") if one["tags"]["x"] != 35], "radius", OPEN,
      {"why": "needs radius = 35"}),
     # threads
-    ("threads", lambda: threads(2, 4), "threads", HOLDS, {}),
     ("no more threads", lambda: threads(2, 2), "threads", OPEN, {"why": "more hardware threads than cores"}),
     ("not faster", lambda: threads(8, 16, first=0.32), "threads", FAILS, {"why": "expected faster"}),
     ("binding", bound_otherwise, "threads", OPEN, {"why": "binding changes"}),
@@ -239,8 +218,8 @@ CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
      {"why": "unequal numbers of threads: 8, 16"}),
     ("base clock", lambda: machines((I7, 1.0, 16), ("Some CPU @ 2.00GHz", 0.5, 16)), "machine", OPEN,
      {"why": "a base clock in a name is none", "measured": "clock not known"}),
-    ("one pair", lambda: near_machines(2), "machine", FAILS, {}),
-    ("two pairs are corrected", lambda: near_machines(3), "machine", OPEN, {}),
+    ("one of two is not faster",
+     lambda: machines((XEON, 1.0, 16), ("Xeon w5-3423", 2.0, 16), (I7, 1.5, 16)), "machine", FAILS, {}),
     # schedules
     ("best", lambda: schedules(0.75, 0.80, 0.90), "find_schedule", HOLDS, {"why": "none of 3 others"}),
     ("as good", lambda: schedules(0.72, 0.80, 0.90), "find_schedule", HOLDS, {}),
@@ -254,11 +233,9 @@ CASES: list[tuple[str, Callable[[], Records], str, Verdict, dict[str, str]]] = [
     ("one runtime", lambda: compiled(None, 1.1, 1.0), "compiler", HOLDS, {"why": "with the same runtime"}),
     ("alike in code", lambda: compiled(1.1, 1.0, 1.0), "compiler", FAILS,
      {"why": "equivalent with the same runtime"}),
-    ("fast runtime", lambda: compiled(1.0, 1.1, 1.0), "compiler", HOLDS, {}),
     ("the runtime alone", lambda: compiled(1.2, 1.1, 1.0), "compiler", HOLDS,
      {"measured": "the runtime alone: gcc (libgomp) against gcc (libomp): +9.1"}),
     # phases: finding, resolving, finding without early resolves
-    ("late alone", lambda: profiled(0.30, 0.60, 0.30), "resolve_dominates", HOLDS, {}),
     ("with early", lambda: profiled(0.40, 0.45, 0.30), "resolve_dominates", HOLDS, {}),
     ("with early, one process disturbed", lambda: profiled(0.4, 0.45, 0.3, (*[1] * 21, 10, *[1] * 9)),
      "resolve_dominates", OPEN, {"measured": "rest is 1.38"}),
@@ -303,7 +280,7 @@ def test_a_claim_is_judged_as_it_was_made(
         assert found == said if key == "said" else said in found, key
 
 
-def test_every_published_claim_has_its_row_and_its_verdict(data: Data) -> None:
+def test_every_published_claim_has_its_row_and_its_verdict(data: Evidence) -> None:
     table = claims.evaluate(data).set_index("id")
     assert list(table.index) == IDS
     assert table.loc["machine", "verdict"] == OPEN
@@ -366,7 +343,7 @@ def test_a_machine_speaks_with_the_records_of_the_revision_that_is_judged(tmp_pa
         folder = tmp_path / "records" / f"{machine.host}{machine.commit[0]}"
         write(folder, study(["machine"], machine=machine, noise=QUIET, speed=speed, threads=16))
     verdicts = {}
-    for one in claims.evidence_of(load(tmp_path)):
+    for one in claims.evidence_of(tmp_path):
         table = claims.evaluate(one).set_index("id")
         verdicts[one.study.machine[0], one.study.revision[0]] = table.loc["machine", "verdict"]
     assert (verdicts["a", "0"], verdicts["a", "1"]) == (FAILS, HOLDS)
@@ -374,7 +351,7 @@ def test_a_machine_speaks_with_the_records_of_the_revision_that_is_judged(tmp_pa
 
 def test_attempts_that_were_not_counted_are_no_zero(tmp_path: Path) -> None:
     write(tmp_path, attempts(REVERSE, FORWARD))
-    [evidence] = claims.evidence_of(load(tmp_path))
+    [evidence] = claims.evidence_of(tmp_path)
     evidence.study.runs["pair_attempts"] = float("nan")  # as it is of whole processes
     row = claims.evaluate(evidence).set_index("id").loc["reverse"]
     assert row["verdict"] == OPEN
@@ -395,7 +372,6 @@ def test_every_claim_says_what_the_study_measured_and_where_it_may_be_decided() 
         assert claim.published.effect
         assert set(claim.scales) <= {"paper", "quick"}
         assert claim.other_scales
-        assert claim.test in claims.TESTS
 
 
 @pytest.mark.parametrize("claim", ["find_schedule", "resolve_schedule", "row_schedule"])

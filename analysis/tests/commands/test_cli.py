@@ -6,14 +6,12 @@ import pytest
 from analysis import claims
 from analysis.cli import main
 from analysis.tests.synthetic import write
-from analysis.tests.synthetic_noise import QUIET, Noise
-from analysis.tests.synthetic_study import study
-
-COMPARED = ["neighbourhood", "steps"]
+from analysis.tests.synthetic_noise import QUIET
+from analysis.tests.synthetic_study import study, under
 
 
-def folder(path: Path, speed: float = 1.0, noise: Noise = QUIET, seed: int = 1, blocks: int = 10) -> str:
-    write(path, study(COMPARED, blocks=blocks, noise=noise, speed=speed, seed=seed))
+def folder(path: Path, blocks: int = 10) -> str:
+    write(path, study(["neighbourhood", "steps"], blocks=blocks, noise=QUIET))
     return str(path)
 
 
@@ -50,16 +48,22 @@ def test_a_figure_that_the_records_do_not_allow_is_one_line(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], kind: str
 ) -> None:
     known = "phases" if kind == "trend" else "radius"
-    write(tmp_path, [record | {"tags": record["tags"] | {"experiment": "mine", "figure": kind}}
-                     for record in study([known], blocks=1)])  # fmt: skip
+    write(tmp_path, under("mine", study([known], blocks=1), figure=kind))
     assert main(["figures", "--results", str(tmp_path)]) == 0
     lines = capfd.readouterr().err.splitlines()
     assert lines[0].startswith(f"mine: not drawn: found figure '{kind}'")
 
 
-def test_claims_are_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder(tmp_path)
-    assert main(["claims", "--results", str(tmp_path)]) == 0
+@pytest.fixture(scope="module")
+def compared(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Of radius there are too few blocks."""
+    path = tmp_path_factory.mktemp("compared")
+    write(path, study(["radius"], blocks=3, noise=QUIET))
+    return folder(path)
+
+
+def test_claims_are_printed(compared: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["claims", "--results", compared]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 2 + 17 + 1
     assert max(map(len, lines)) <= 100
@@ -69,12 +73,15 @@ def test_claims_are_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert any(
         re.fullmatch(r"\(✓\) four_boxes +−4.\d % \[−\S+, −\S+\] +holds at 2 threads", line) for line in lines
     )
-    assert "  – radius                                           not measured" in lines
+    assert "  – particles                                        not measured" in lines
+    [few] = [line for line in lines if line.startswith("  ? radius ")]
+    assert few.endswith("not decided: too few blocks for an interval")
+    assert "inf" not in few
+    assert "∞" not in few
 
 
-def test_all_that_is_known_of_a_claim_is_below_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder(tmp_path)
-    assert main(["claims", "--verbose", "--results", str(tmp_path)]) == 0
+def test_all_that_is_known_of_a_claim_is_below_it(compared: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["claims", "--verbose", "--results", compared]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= 100
     text = " ".join(" ".join(lines).split())
@@ -82,33 +89,14 @@ def test_all_that_is_known_of_a_claim_is_below_it(tmp_path: Path, capsys: pytest
         assert claim.claim in text
         assert " ".join(claim.published.effect.split()) in text
     assert "four against nine: published −4.6 %, here −4." in text
-    assert "why: no records yet (experiment 'radius')" in text
+    assert "why: no records yet (experiment 'particles')" in text
 
 
-def test_no_interval_is_said_in_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder(tmp_path, blocks=3)
-    assert main(["claims", "--results", str(tmp_path)]) == 0
-    said = capsys.readouterr().out
-    assert "not decided: too few blocks for an interval" in said
-    assert "inf" not in said
-    assert "∞" not in said
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["figures", "--results", "absent"], "absent: no such folder"),
-        (["report", "--results", "absent"], "absent: no such folder"),
-        (["claims", "--results", "absent"], "absent: no such folder"),
-    ],
-)
-def test_bad_input_is_one_line_and_code_1(
-    arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(arguments) == 1
-    lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 1
-    assert said in lines[0]
+@pytest.mark.parametrize("verb", ["figures", "report", "claims", "export"])
+def test_bad_input_is_one_line_and_code_1(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([verb, "--results", "absent"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "absent: no such folder" in line
 
 
 @pytest.mark.parametrize("arguments", [[], ["draw"], ["figures", "--speed"]])

@@ -78,7 +78,6 @@ def test_standard_output(results: Path, capsys: pytest.CaptureFixture[str]) -> N
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--results", "absent"], "absent: no such folder"),
         (["--results", "empty"], "empty: no timed records yet"),
         (["--output", "file/table.csv"], "expected a writable place with room"),
     ],

@@ -13,7 +13,7 @@ from analysis.statistics.noise import MOST_BLOCKS, blocks_to_decide
 from analysis.statistics.verdicts import judge_one
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET, Noise
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import slowed, study
 
 NOISY = Noise(process=0.03)
 NOISIER = Noise(process=0.2)
@@ -91,11 +91,7 @@ def test_the_forecast_grows_with_the_family_and_ends_on_the_border() -> None:
 
 def test_a_claim_that_holds_in_direction_than_the_margin_is_settled_and_says_so(tmp_path: Path) -> None:
     records = study(["neighbourhood"], blocks=21, noise=QUIET, threads=20)
-    for record in records:
-        wobble = 1 + 0.002 * (record["tags"]["block"] % 3 - 1)
-        pace = 0.99 * wobble if record["tags"]["series"] == "four" else 1 / wobble
-        record["repetitions"] = [{"steps_seconds": pace, "cpu_seconds": 1.0}]
-    write(tmp_path, records)
+    write(tmp_path, slowed(records, 1.04, series="four"))
     answer = open_questions(tmp_path)
     assert answer["settled"] == ["neighbourhood"]
     said = str(answer["said"]["four_boxes"]).replace("\u00a0", " ")

@@ -6,16 +6,15 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from analysis import report
 from analysis.derived import hard_cases
 from analysis.derived.hard_cases import AT_CONTACT, FAILS, HOLDS, LABELS, LIMIT, UNMEASURED, Expectation
-from analysis.figures.studies import draw_all
+from analysis.figures import draw_all
 from analysis.records.reading import load
 from analysis.records.studies import split
 from analysis.tests.report.test_report import text_of
 from analysis.tests.synthetic import failure, write
 from analysis.tests.synthetic_noise import QUIET
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import page_of, study
 
 EXPECTED = [
     Expectation("cradle", "right", measure="path_end", at_most={"double": 1e-3, "float": 1e-9}),
@@ -95,17 +94,11 @@ def test_the_report_has_verdict_and_number_of_every_cell(tmp_path: Path) -> None
     (drawn,) = draw_all(tmp_path)
     assert [table.title for table in drawn.tables] == ["In double precision:", "In float precision:"]
     assert all(len(table.rows) == 6 for table in drawn.tables)
-    text = text_of(report.render(tmp_path))
+    text = text_of(page_of(tmp_path))
     assert "cradle: right" in text
     assert "✓ 1.0e-05" in text
     assert "✗ 1.0e-05: expected at most 1e-09" in text
     assert "Of 18 cells" in drawn.caption
-
-
-def at_contact(made: list[dict[str, Any]], series: str) -> None:
-    for record in made:
-        if record["tags"]["series"] == series:
-            record["axes"]["impact"] = AT_CONTACT
 
 
 def test_variants_at_contact_are_held_to_what_is_expected_of_such_in_a_table_of_their_own(

@@ -7,17 +7,17 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from analysis import report
+from analysis.claims.entry import Evidence
 from analysis.derived.ladder import claims, factors, headlines, named, rungs, speed_up, totals
 from analysis.figures.profiles import waterfall
-from analysis.figures.style import Data, Drawing, styled
+from analysis.figures.style import Drawing, styled
 from analysis.records.studies import Study
 from analysis.statistics.verdicts import Ratio
 from analysis.support.wording import NO_INTERVAL
 from analysis.tests.synthetic import failure, profile
 from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_points import LADDER
-from analysis.tests.synthetic_study import SHARES, data_in, study
+from analysis.tests.synthetic_study import SHARES, data_in, page_of, study
 
 FACTORS = [factor for factor, _ in LADDER.values()]
 
@@ -30,7 +30,7 @@ def tables(one: Study) -> tuple[pd.DataFrame, pd.DataFrame]:
     return named(one.runs_of("ladder")), named(one.times_of("ladder"))
 
 
-def drawn(data: Data) -> Drawing:
+def drawn(data: Evidence) -> Drawing:
     with styled("ladder"):
         drawing = waterfall(data, "ladder", "the ladder")
     assert drawing is not None
@@ -42,12 +42,12 @@ def texts(drawing: Drawing) -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Data:
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Evidence:
     """A whole ladder on both scenes."""
     return data_in(tmp_path_factory.mktemp("ladder"), ladder_records())
 
 
-def test_each_rung_is_judged_against_the_one_before_on_its_scene(whole: Data) -> None:
+def test_each_rung_is_judged_against_the_one_before_on_its_scene(whole: Evidence) -> None:
     _, times = tables(whole.study)
     table = factors(times)
     assert len(table) == 2 * (len(LADDER) - 1)
@@ -62,18 +62,18 @@ def test_each_rung_is_judged_against_the_one_before_on_its_scene(whole: Data) ->
         assert row.low < 1 / 2.5 < row.high
 
 
-def test_the_report_says_the_totals_where_there_are_any(tmp_path: Path, whole: Data) -> None:
+def test_the_report_says_the_totals_where_there_are_any(tmp_path: Path, whole: Evidence) -> None:
     said = headlines(whole.study)
     assert said == claims(*tables(whole.study))
     assert len(said) == 2
-    text = " ".join(report.render(whole.folder).split())
+    text = " ".join(page_of(whole.folder).split())
     for sentence in said:
         assert re.search(r"2\.5\d? × \[.*\] faster than the published best \(faster\)", sentence)
         assert " ".join(sentence.split()) in text
     assert headlines(data_in(tmp_path, study(["steps"], blocks=2)).study) == []
 
 
-def test_a_rung_shows_its_time_its_work_and_the_policy_that_it_changes(whole: Data) -> None:
+def test_a_rung_shows_its_time_its_work_and_the_policy_that_it_changes(whole: Evidence) -> None:
     table = rungs(*tables(whole.study), whole.study.counters)
     sparse = table[table["scene_name"] == "sparse"].sort_values("series_number")
     assert list(sparse["change"]) == ["published", "storage sorted", "order strips", "overlaps contacts"]
@@ -100,7 +100,7 @@ def test_instructions_are_those_of_profiled_runs_of_the_variant_on_such_a_scene(
     assert "Instructions per disc and step (cachegrind): storage sorted 7" in drawn(data).caption
 
 
-def test_the_figure_says_every_factor_and_the_caption_the_totals(whole: Data) -> None:
+def test_the_figure_says_every_factor_and_the_caption_the_totals(whole: Evidence) -> None:
     drawing = drawn(whole)
     said = texts(drawing)
     assert sum(text.startswith("× 1.2") or text.startswith("× 1.25") for text in said) == 2

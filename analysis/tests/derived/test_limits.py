@@ -8,11 +8,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from analysis.claims.entry import Evidence
 from analysis.derived.ladder import named
 from analysis.derived.limits import against_limits
 from analysis.derived.unavoidable import PHASES, unavoidable
 from analysis.figures.profiles import phases_against_limits
-from analysis.figures.style import Data, styled
+from analysis.figures.style import styled
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
 from analysis.tests.synthetic_noise import QUIET
@@ -40,12 +41,12 @@ def work_of(one: Study) -> pd.DataFrame:
 
 
 @pytest.fixture(scope="module")
-def limits_data(tmp_path_factory: pytest.TempPathFactory) -> Data:
+def limits_data(tmp_path_factory: pytest.TempPathFactory) -> Evidence:
     return data_in(tmp_path_factory.mktemp("limits"), records())
 
 
 @pytest.fixture(scope="module")
-def one(limits_data: Data) -> Study:
+def one(limits_data: Evidence) -> Study:
     return limits_data.study
 
 
@@ -108,7 +109,7 @@ def test_a_scene_smaller_than_any_copy_is_compared_with_the_smallest(one: Study)
     assert set(table_of(replace(one, limits=larger))["level"]) == {"L2"}
 
 
-def test_the_limits_are_those_of_the_machine(limits_data: Data, one: Study) -> None:
+def test_the_limits_are_those_of_the_machine(limits_data: Evidence, one: Study) -> None:
     assert set(one.limits["machine"]) == {one.machine}
     read = load(limits_data.folder)
     (other,) = split(replace(read, limits=read.limits.assign(machine="another: CPU")))
@@ -116,7 +117,7 @@ def test_the_limits_are_those_of_the_machine(limits_data: Data, one: Study) -> N
 
 
 def test_the_figure_names_the_limits_and_what_is_reached_if_there_are_any(
-    limits_data: Data, one: Study
+    limits_data: Evidence, one: Study
 ) -> None:
     with styled("limits"):
         drawing = phases_against_limits(limits_data, "limits", "limits")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from analysis.derived.ways import APART, TURNS, comparisons, overall
+from analysis.figures import draw_all
 from analysis.figures.comparisons import bias_sentence
-from analysis.figures.studies import draw_all
 from analysis.records.reading import load
 from analysis.records.studies import Study, split
 from analysis.tests.synthetic import turns_of, write

@@ -10,15 +10,16 @@ import pandas as pd
 import pytest
 
 from analysis import figures
-from analysis.figures import FIGURES, Entry
+from analysis.claims import evidence_of
+from analysis.claims.entry import Evidence
+from analysis.figures import FIGURES, Entry, draw_all
 from analysis.figures.comparisons import ratio_panel
 from analysis.figures.labels import label_ends, spread
-from analysis.figures.studies import data_of, draw_all
-from analysis.figures.style import Data, Point, new_figure, styled
+from analysis.figures.style import Point, new_figure, styled
 from analysis.figures.sweeps import level_of
 from analysis.statistics.verdicts import Ratio
 from analysis.tests.claims.judging import verdicts_of
-from analysis.tests.synthetic import Machine, turns_of, write
+from analysis.tests.synthetic import turns_of, write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
 from analysis.tests.synthetic_study import study, trace
@@ -41,7 +42,7 @@ QUESTIONS = Path(__file__).parents[3] / "experiments" / "questions"
 
 @pytest.mark.parametrize("entry", FIGURES, ids=lambda entry: entry.name)
 def test_every_figure_is_drawn_with_labels_units_a_caption_and_points_that_tell(
-    data: Data, entry: Entry
+    data: Evidence, entry: Entry
 ) -> None:
     with styled(entry.name):
         drawing = entry.draw(data)
@@ -89,7 +90,7 @@ def part(records: list[dict[str, Any]], kept: str) -> list[dict[str, Any]]:
 def test_partial_data_are_drawn_or_left_out_but_never_fail(tmp_path: Path, entry: Entry, kept: str) -> None:
     write(tmp_path, part(study([entry.experiment], blocks=3, noise=Noise(), seed=3), kept))
     with styled(entry.name):
-        drawing = entry.draw(data_of(tmp_path)[0])
+        drawing = entry.draw(evidence_of(tmp_path)[0])
         if drawing is not None:
             drawing.figure.draw_without_rendering()
 
@@ -168,14 +169,6 @@ def test_svg_and_pdf_are_written_whole_and_the_same_again(tmp_path: Path) -> Non
     assert not pdf.exists(), "it would be outdated"
     assert svg.read_bytes() == first
     assert {path.name for path in (tmp_path / "figures").iterdir()} == {"neighbourhood.svg"}
-
-
-def test_several_machines_are_in_one_machine_figure(tmp_path: Path) -> None:
-    for host in ("bench-1", "bench-2"):
-        write(tmp_path, study(["machine"], blocks=6, machine=Machine(host=host)))
-    caption = draw_all(tmp_path)[0].caption
-    assert "bench-1: Example CPU" in caption
-    assert "bench-2: Example CPU" in caption
 
 
 def test_labels_are_moved_apart_as_little_as_needed() -> None:

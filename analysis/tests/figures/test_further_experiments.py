@@ -6,44 +6,26 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analysis import report
 from analysis.derived.comparisons import differences
-from analysis.figures import KINDS, OF_ERRORS, Drawn
-from analysis.figures.studies import draw_all
+from analysis.figures import KINDS, OF_ERRORS, Drawn, draw_all
 from analysis.records.reading import load
-from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import figure_of, study, under
 from support.vocabulary import PAUSES
 
 LIKE = [
-    ("scaling", "threads"),
-    ("trend", "radius"),
-    ("trend", "row"),
-    ("comparison", "neighbourhood"),
-    ("comparison", "sequential_orders"),
-    ("comparison", "row"),
-    ("control", "control"),
-    ("schedule", "schedule_find"),
-    ("machine", "machine"),
-    ("phases", "phases"),
-    ("ladder", "ladder"),
-    ("limits", "limits"),
-    ("ways", "ways"),
-]
+    "threads", "radius", "row", "neighbourhood", "sequential_orders", "control", "schedule_find", "machine",
+    "phases", "ladder", "limits", "ways",
+]  # fmt: skip
+"""Experiments of every kind, whose records name it."""
 
 NAMING = ("ladder", "limits", "ways")
 """The kinds that name the published variant, which is a series of their synthetic records."""
 
 
-def unknown(known: str, kind: str, name: str = "small_chunks", **tags: str) -> list[dict[str, Any]]:
-    """Return the records of a known experiment under a name that nothing in this package knows."""
-    changed = {"experiment": name, "figure": kind, **tags}
-    return [
-        record | {"tags": record["tags"] | changed}
-        for record in study([known], blocks=6, noise=QUIET, seed=2)
-    ]
+def unknown(known: str, name: str = "small_chunks", **tags: str) -> list[dict[str, Any]]:
+    return under(name, study([known], blocks=6, noise=QUIET, seed=2), **tags)
 
 
 def drawn_of(folder: Path, records: list[dict[str, Any]]) -> Drawn:
@@ -55,25 +37,23 @@ def drawn_of(folder: Path, records: list[dict[str, Any]]) -> Drawn:
 def test_every_kind_is_tried() -> None:
     # That of pauses needs labels which no other kind has, those of errors have several figures: their tests
     # in `derived` draw them.
-    assert {kind for kind, _ in LIKE} == set(KINDS) - {PAUSES, *OF_ERRORS}
+    assert set(map(figure_of, LIKE)) == set(KINDS) - {PAUSES, *OF_ERRORS}
 
 
-@pytest.mark.parametrize(("kind", "known"), LIKE)
-def test_every_kind_is_drawn_without_a_published_series(tmp_path: Path, kind: str, known: str) -> None:
-    drawn = drawn_of(tmp_path, unknown(known, kind))
+@pytest.mark.parametrize("known", LIKE)
+def test_every_kind_is_drawn_without_a_published_series(tmp_path: Path, known: str) -> None:
+    drawn = drawn_of(tmp_path, unknown(known))
     assert drawn.entry.title == "small_chunks"
     assert [path.name for path in drawn.files] == ["small_chunks.svg"]
-    assert drawn.caption.startswith(
-        "Small_chunks" if kind != "machine" and kind != "phases" else "small_chunks"
-    )
+    assert drawn.caption.lower().startswith("small_chunks")
     assert "nan" not in drawn.caption
-    if kind not in NAMING:
+    if known not in NAMING:
         assert "ublished" not in drawn.caption
         assert "<!-- published" not in drawn.files[0].read_text(encoding="utf-8")
 
 
 def test_a_trend_has_a_curve_and_a_sentence_a_series(tmp_path: Path) -> None:
-    drawn = drawn_of(tmp_path, unknown("row", "trend"))
+    drawn = drawn_of(tmp_path, unknown("row"))
     assert "checkered: The time grows" in drawn.caption
     assert "row: The time grows" in drawn.caption
 
@@ -82,7 +62,7 @@ def test_a_trend_has_a_curve_and_a_sentence_a_series(tmp_path: Path) -> None:
 def test_scaling_draws_a_curve_a_series_and_scene(tmp_path: Path, tag: str, names: tuple[str, str]) -> None:
     records = []
     for name in names:
-        for record in unknown("threads", "scaling", **{tag: name}):
+        for record in unknown("threads", **{tag: name}):
             records.append(record | {"tags": record["tags"] | {"point": f"{record['tags']['point']}-{name}"}})
     caption = drawn_of(tmp_path, records).caption
     assert all(f"Greatest speed-up of {name}" in caption for name in names)
@@ -91,31 +71,16 @@ def test_scaling_draws_a_curve_a_series_and_scene(tmp_path: Path, tag: str, name
 
 def test_a_name_that_is_a_file_of_another_figure_takes_nothing_away(tmp_path: Path) -> None:
     write(tmp_path, study(["phases"], blocks=2))
-    drawn = drawn_of(tmp_path, unknown("radius", "trend", name="counters_software"))
+    drawn = drawn_of(tmp_path, unknown("radius", name="counters_software"))
     assert drawn.files[0].name == "experiment-counters_software.svg"
-    assert drawn_of(tmp_path, unknown("radius", "trend", name="a b")).files[0].name == "a_b.svg"
+    assert drawn_of(tmp_path, unknown("radius", name="a b")).files[0].name == "a_b.svg"
 
 
 def test_differences_are_those_within_the_same_x(tmp_path: Path) -> None:
-    write(tmp_path, unknown("row", "comparison"))
+    write(tmp_path, unknown("row", figure="comparison"))
     table = differences(load(tmp_path).times, "checkered").set_index("x")
     for x, row in table.iterrows():
         assert row["series"] == "row"
         assert row["ratio"] == pytest.approx(1.1 - 0.08 * np.log10(float(str(x)) / 1000), rel=0.01)
     assert table.loc[1_000, "verdict"] == "slower"
     assert table.loc[200_000, "verdict"] == "faster"
-
-
-def test_the_report_has_it_last_with_a_table_of_verdicts(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    write(tmp_path, study(["steps"], blocks=3))
-    write(tmp_path, unknown("sequential_orders", "comparison", title="Three orders"))
-    page = report.render(tmp_path)
-    assert Page(page).ids.index("steps") < Page(page).ids.index("small_chunks")
-    text = text_of(page)
-    assert "Three orders" in text
-    assert "repeat against once" in text
-    assert "slower" in text[text.index("repeat against once") :][:80]
-    assert "faster" in text[text.index("track against once") :][:80]
-    assert capsys.readouterr().err == ""

@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 
 from matplotlib.figure import Figure
 
+from analysis.figures import draw_all
 from analysis.figures.labels import label_points
-from analysis.figures.studies import draw_all
 from analysis.figures.style import Drawing, point, save
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET

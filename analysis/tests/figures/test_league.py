@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from analysis.cli import main
-from analysis.figures.studies import draw_all
+from analysis.figures import draw_all
 from analysis.report import write as write_report
 from analysis.tests.synthetic import failure, process, write
 

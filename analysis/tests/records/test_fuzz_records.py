@@ -122,25 +122,6 @@ def test_whatever_lies_there_for_a_while() -> None:
     for_a_while(given(anything)(is_counted_or_named))
 
 
-@pytest.mark.parametrize(
-    ("content", "said"),
-    [
-        ("[" * 100_000, "nested too deeply"),
-        ("1" * 5000, "not JSON"),
-        ('{"schema_version": 2, "kind": "failure", "exit_code": NaN}', "NaN"),
-        ('{"schema_version": 2, "kind": "failure", "exit_code": 1e999}', "1e999"),
-        ('"\\ud800"', "not a Carom record"),
-    ],
-)
-def test_json_that_no_record_may_hold(tmp_path: Path, content: str, said: str) -> None:
-    (tmp_path / "records").mkdir()
-    (tmp_path / "records" / "any.json").write_text(content)
-    lines: list[str] = []
-    assert load(tmp_path, lines.append).runs.empty
-    (line,) = lines
-    assert said in line
-
-
 def test_a_record_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
     (tmp_path / "records" / "folder.json").mkdir(parents=True)
     (tmp_path / "records" / "a.json").write_text(json.dumps(VALID[0]))

@@ -77,14 +77,3 @@ def test_a_changed_a_new_and_a_removed_record_are_noticed(results: Path) -> None
     after = again(results)
     assert "Elpmaxe" in " ".join(after.runs["cpu_model"])
     assert in_full(after) == in_full(anew(results))
-
-
-def test_a_folder_that_grows_is_read_as_if_it_were_new(tmp_path: Path) -> None:
-    records = study(OF_EVERY_KIND, blocks=3)
-    reading._KNOWN.clear()
-    for number in range(1, 6):
-        write(tmp_path, records[: number * len(records) // 5])
-        age(tmp_path)
-        grown, before = again(tmp_path), dict(reading._KNOWN)
-        assert in_full(grown) == in_full(anew(tmp_path))
-        reading._KNOWN.update(before)

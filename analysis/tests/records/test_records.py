@@ -17,6 +17,19 @@ def record(**tags: str | float) -> dict[str, Any]:
     return bench("steps", Point("checkered", 20, 1.0, "steps"), 0, [1.0, 1.1], Machine(), **tags)
 
 
+def changed(**more: Any) -> bytes:  # noqa: ANN401
+    """Return a record with other values."""
+    return json.dumps(whole(record() | more)).encode()
+
+
+def turns(contenders: list[int], rounds: int) -> bytes:
+    return changed(turns=TURNS | {"contenders": contenders, "rounds": rounds})
+
+
+NAMED = {"experiment": "steps", "series": "a", "x_name": "steps", "block": 0}
+OF_TURNS = "$.turns.contenders: expected rounds with a turn of each of 1, "
+
+
 def test_one_row_a_process_a_record_a_phase_a_counter(tmp_path: Path) -> None:
     write(tmp_path, study(["neighbourhood", "phases"], blocks=3, repetitions=2))
     write(tmp_path, failures())
@@ -42,10 +55,22 @@ def test_one_row_a_process_a_record_a_phase_a_counter(tmp_path: Path) -> None:
         (b'{"schema_version": 1, "kind": "ben', "not JSON (line 1"),
         (b'{"host": "\xff"}', "not UTF-8"),
         (b"[1, 2]", "not a Carom record"),
+        (b"[" * 100_000, "nested too deeply"),
+        (b"1" * 5000, "not JSON"),
+        (b'{"schema_version": 2, "kind": "failure", "exit_code": NaN}', "NaN"),
+        (b'{"schema_version": 2, "kind": "failure", "exit_code": 1e999}', "1e999"),
+        (b'"\\ud800"', "not a Carom record"),
         (b'{"context": {}, "benchmarks": []}', "not a Carom record"),
         (b'{"schema_version": 2, "kind": "bench", "contenders": []}', "$"),
+        (changed(repetitions=[{"steps_seconds": 0, "cpu_seconds": 1}]),
+         "$.contenders[0].repetitions[0].steps_seconds"),
+        (changed(tags={"experiment": "steps"}), "$.contenders[0].tags.series: missing"),
+        (changed(tags={**NAMED, "x": "many"}), "$.contenders[0].tags.x: found 'many', expected a number"),
+        (turns([0, 0, 1], 3), f"{OF_TURNS}3 a run"),
+        (turns([0, 0, 0], 2), f"{OF_TURNS}2 a run"),
+        (turns([0, 0], 2), "$.turns.steps: found 3, expected one for each of 2 turns"),
     ],
-)
+)  # fmt: skip
 def test_a_file_that_is_no_record_is_named_and_left_out(
     tmp_path: Path, content: bytes, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -71,43 +96,6 @@ def test_records_of_an_older_schema_are_refused_in_one_line(tmp_path: Path) -> N
         "skipped: schema version 1, expected 2: measure it again, or read it with the release of Carom that "
         "wrote it (and 9 more alike)"
     )
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        (
-            {"repetitions": [{"steps_seconds": 0, "cpu_seconds": 1}]},
-            "$.contenders[0].repetitions[0].steps_seconds",
-        ),
-        ({"tags": {"experiment": "steps"}}, "$.contenders[0].tags.series: missing"),
-        (
-            {"tags": {"experiment": "steps", "series": "a", "x_name": "steps", "x": "many", "block": 0}},
-            "$.contenders[0].tags.x: found 'many', expected a number",
-        ),
-        (
-            {"turns": TURNS | {"contenders": [0, 0, 1], "rounds": 3}},
-            "$.turns.contenders: expected rounds with a turn of each of 1, 3 a run",
-        ),
-        (
-            {"turns": TURNS | {"contenders": [0, 0, 0], "rounds": 2}},
-            "$.turns.contenders: expected rounds with a turn of each of 1, 2 a run",
-        ),
-        (
-            {"turns": TURNS | {"contenders": [0, 0], "rounds": 2}},
-            "$.turns.steps: found 3, expected one for each of 2 turns",
-        ),
-    ],
-)
-def test_a_record_out_of_bounds_is_named_by_its_key(
-    tmp_path: Path, change: dict[str, Any], said: str
-) -> None:
-    path = tmp_path / "records" / "wrong.json"
-    path.parent.mkdir()
-    path.write_text(json.dumps(whole(record() | change)))
-    lines: list[str] = []
-    assert load(tmp_path, lines.append).runs.empty
-    assert said in lines[0]
 
 
 def process(contenders: int, block: int, rounds: int = 6) -> dict[str, Any]:
@@ -193,17 +181,6 @@ def test_a_failure_belongs_to_the_machine_and_the_program_that_it_tells(tmp_path
     assert found == {"one": {"0", "4"}, "two": {"1", "3", "4"}}
 
 
-def test_a_failure_of_one_of_two_programs_is_not_the_others(tmp_path: Path) -> None:
-    first, second = study(["steps"], blocks=2), study(["steps"], blocks=1)
-    for number, record in enumerate(second):
-        record["provenance"]["binary_sha256"] = "a" * 64
-        record["tags"]["point"] = f"other-{number}"
-    write(tmp_path, [*first, *second])
-    write(tmp_path, [failure("steps", "checkered", "crash", host="bench-1", program_sha256="a" * 64)])
-    studies = split(load(tmp_path))
-    assert [len(one.failures) for one in studies] == [0, 1]
-
-
 def test_machines_revisions_and_scales_are_never_merged(tmp_path: Path) -> None:
     machines = [Machine(), Machine(host="bench-2"), Machine(commit="f" * 40)]
     for machine in machines:
@@ -249,7 +226,10 @@ def test_a_series_of_two_programs_makes_two_studies_and_two_series_one(tmp_path:
     (one,) = split(load(tmp_path))
     assert (one.program, set(one.times["compiler"])) == ("", {old, clang})
     write(tmp_path, [measured("gcc", new, block) for block in range(2)])
+    of_new = measured("gcc", new, 0)["provenance"]["binary_sha256"]
+    write(tmp_path, [failure("steps", "gcc", "crash", host="bench-1", program_sha256=of_new)])
     first, second = split(load(tmp_path))
     assert [set(one.times["compiler"]) for one in (first, second)] == [{old, clang}, {new}]
+    assert [len(one.failures) for one in (first, second)] == [0, 1]
     assert first.program in first.name
     assert first.name != second.name

@@ -11,7 +11,7 @@ from analysis.report import graphs
 from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import Machine, failure, write
 from analysis.tests.synthetic_noise import QUIET, Noise
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import page_of, slowed, study, under
 
 ROOT = Path(__file__).parents[3]
 
@@ -27,39 +27,31 @@ def rows_of(page: str) -> list[str]:
 
 
 def test_what_was_asked_leads(tmp_path: Path) -> None:
-    write(tmp_path, study(["radius", "steps", "neighbourhood", "control"], blocks=6, noise=QUIET))
-    page = report.render(tmp_path, ["neighbourhood"])
-    ids = Page(page).ids
-    assert ids.index("neighbourhood") < ids.index("study-1-claims") < ids.index("steps")
-    assert nav_of(page).index('"#neighbourhood"') < nav_of(page).index('"#study-1-claims"')
-    assert rows_of(page) == ["four_boxes", "radius", "steps"]
-    unasked = report.render(tmp_path)
-    ids = Page(unasked).ids
-    assert ids.index("study-1-claims") < ids.index("radius") < ids.index("steps") < ids.index("neighbourhood")
-    assert rows_of(unasked) == ["radius", "steps", "four_boxes"]
-
-
-def test_a_question_of_ones_own_leads_and_claims_without_records_are_one_line(tmp_path: Path) -> None:
-    records = study(["sequential_orders"], blocks=4)
-    for record in records:
-        record["tags"] |= {"experiment": "mine", "figure": "comparison", "title": "My orders"}
-    write(tmp_path, [*records, *study(["control"], blocks=4)])
-    page = report.render(tmp_path, ["mine"])
-    ids = Page(page).ids
-    assert ids.index("mine") < ids.index("study-1-claims")
-    assert rows_of(page) == []
-    text = text_of(page)
-    assert text.count("no records yet, and no verdict") == 1
-    assert "17 claims have no records yet, and no verdict: threads, particles" in text
+    """A published question and one of one's own."""
+    records = under("mine", study(["sequential_orders"], blocks=6, noise=QUIET), title="My orders")
+    names = ["radius", "steps", "neighbourhood", "control"]
+    write(tmp_path, [*records, *study(names, blocks=6, noise=QUIET)])
+    page = page_of(tmp_path, ["neighbourhood", "mine"])
+    places = [Page(page).ids.index(one) for one in ("neighbourhood", "mine", "study-1-claims", "steps")]
+    assert places == sorted(places)
+    links = [nav_of(page).index(f'"#{one}"') for one in ("neighbourhood", "mine", "study-1-claims")]
+    assert links == sorted(links)
     assert "My orders" in nav_of(page)
+    assert rows_of(page) == ["four_boxes", "radius", "steps"]
+    assert "14 claims have no records yet, and no verdict: threads, particles" in text_of(page)
+    unasked = page_of(tmp_path)
+    ids = ("study-1-claims", "radius", "steps", "neighbourhood", "mine")
+    places = [Page(unasked).ids.index(one) for one in ids]
+    assert places == sorted(places)
+    assert rows_of(unasked) == ["radius", "steps", "four_boxes"]
 
 
 def test_a_study_that_has_what_was_asked_comes_first(tmp_path: Path) -> None:
     write(tmp_path, study(["steps"], blocks=3))
     write(tmp_path, study(["radius"], blocks=2, scale="quick", machine=Machine(host="bench-2")))
     headings = r"<h2>([^<]*scale[^<]*)</h2>"
-    assert "paper scale" in re.findall(headings, report.render(tmp_path))[0]
-    assert "quick scale" in re.findall(headings, report.render(tmp_path, ["radius"]))[0]
+    assert "paper scale" in re.findall(headings, page_of(tmp_path))[0]
+    assert "quick scale" in re.findall(headings, page_of(tmp_path, ["radius"]))[0]
 
 
 def test_the_contents_name_every_question_and_claims_lead_to_their_figures(page: str) -> None:
@@ -84,7 +76,7 @@ def test_every_published_graph_has_its_place(page: str) -> None:
 
 def test_a_graph_that_was_not_measured_has_its_command(tmp_path: Path) -> None:
     write(tmp_path, study(["steps"], blocks=2, scale="quick"))
-    text = text_of(report.render(tmp_path))
+    text = text_of(page_of(tmp_path))
     assert "Radius ( make experiments STUDY=radius SCALE=quick )" in text
 
 
@@ -106,7 +98,7 @@ def test_make_appendix_asks_what_the_table_says() -> None:
 
 def test_all_time_and_what_differs_stand_in_the_table_of_verdicts(tmp_path: Path) -> None:
     write(tmp_path, study(["neighbourhood"], blocks=6, noise=QUIET))
-    text = text_of(report.render(tmp_path))
+    text = text_of(page_of(tmp_path))
     head = "Difference, with 95 % interval All time together One start, one round differ by From Verdict"
     row = r"four boxes against nine boxes −4\.5 % \[[^]]+\] −4\.[0-9] % (–|\S+ %, \S+ %) 6 blocks"
     assert re.search(f"{head} {row}", text)
@@ -115,11 +107,8 @@ def test_all_time_and_what_differs_stand_in_the_table_of_verdicts(tmp_path: Path
 def test_the_box_on_noise_agrees_with_the_verdicts(tmp_path: Path) -> None:
     noisy = Noise(process=0.03, repetition=0, burst_rate=0, drift=0)
     far, near = (study([name], blocks=14, noise=noisy) for name in ("self_contained_track", "neighbourhood"))
-    for record in near:
-        if record["tags"]["series"] == "nine":
-            record["repetitions"][0]["steps_seconds"] /= 1.25 / 1.19
-    write(tmp_path, [*far, *near])
-    page = report.render(tmp_path)
+    write(tmp_path, [*far, *slowed(near, 1.19 / 1.25, series="nine")])
+    page = page_of(tmp_path)
     box = re.search(r'<p class="warning">(.*?)</p>', page, re.DOTALL)
     assert box is not None
     assert "in 1 of 2 experiments about small ones: neighbourhood." in box[1]
@@ -155,4 +144,4 @@ def test_a_question_without_records_that_is_to_lead_is_told(
 def test_the_commands_to_repeat_it_name_the_questions_and_the_scale(tmp_path: Path) -> None:
     write(tmp_path, study(["steps", "control"], blocks=2, scale="quick"))
     write(tmp_path, [failure("compiler", "clang++", "is not built", scale="quick")])
-    assert "make experiments STUDY=compiler,steps SCALE=quick\n" in report.render(tmp_path)
+    assert "make experiments STUDY=compiler,steps SCALE=quick\n" in page_of(tmp_path)

@@ -7,19 +7,19 @@ from pathlib import Path
 
 import pytest
 
-from analysis import claims, report
+from analysis import claims
+from analysis.claims import evidence_of
 from analysis.claims.summary import both_in_short, change_in_short, published_in_short
 from analysis.cli import main
 from analysis.figures import titles
-from analysis.figures.studies import data_of
 from analysis.report import answers
 from analysis.report.all_claims import LOWEST, NARROW, WIDE, Layout, all_claims, draw
 from analysis.statistics.verdicts import Ratio
 from analysis.tests.report.test_as_read import nav_of
 from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write
-from analysis.tests.synthetic_noise import QUIET, Noise
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_noise import QUIET
+from analysis.tests.synthetic_study import page_of, slowed, study, under
 
 
 @pytest.fixture(scope="module")
@@ -27,16 +27,13 @@ def refuted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Four boxes are slower than nine; of radius there are too few blocks; steps are as published."""
     folder = tmp_path_factory.mktemp("refuted")
     records = study(["neighbourhood", "steps", "control"], blocks=9, noise=QUIET)
-    for record in records:
-        if record["tags"]["series"] == "four":
-            record["repetitions"][0]["steps_seconds"] *= 1.12
-    write(folder, [*records, *study(["radius"], blocks=3, noise=QUIET)])
+    write(folder, [*slowed(records, 1.12, series="four"), *study(["radius"], blocks=3, noise=QUIET)])
     return folder
 
 
 @pytest.fixture(scope="module")
 def refuted_page(refuted: Path) -> str:
-    return report.render(refuted)
+    return page_of(refuted)
 
 
 def first_screen_of(page: str) -> str:
@@ -77,12 +74,12 @@ def test_many_that_hold_are_one_sentence(page: str) -> None:
 
 
 def test_questions_of_ones_own_have_sentences_too(tmp_path: Path) -> None:
-    records = study(["sequential_orders"], blocks=9, noise=QUIET)
-    for record in records:
-        record["tags"] |= {"experiment": "mine", "figure": "comparison", "title": "My orders"}
-    write(tmp_path, records)
+    write(tmp_path, under("mine", study(["sequential_orders"], blocks=9, noise=QUIET), title="My orders"))
     (tmp_path / "claims.toml").write_text("")
-    text = first_screen_of(report.render(tmp_path))
+    page = page_of(tmp_path)
+    for said, verdict in (("repeat against once", "slower"), ("track against once", "faster")):
+        assert re.search(rf"<td>{said}</td>.*<td>{verdict}</td>", page)
+    text = first_screen_of(page)
     assert re.search(r"✓ faster \S.*: −30", text)
     assert "Decided" not in text
     assert "Control – not measured" in text
@@ -101,11 +98,6 @@ def test_each_row_of_the_figure_leads_to_its_section(page: str) -> None:
     assert all("✓" in said or "cannot be decided" in said for _, said in links)
 
 
-def test_a_claim_without_records_leads_to_the_table(refuted_page: str) -> None:
-    assert refuted_page.count('<a href="#claims-table"><title>') == 2 * 14
-    assert "claims-table" in Page(refuted_page).ids
-
-
 def test_the_contents_tell_by_a_mark_and_a_word(refuted_page: str) -> None:
     parts = nav_of(refuted_page).split("<li>")
     items = [text_of(one.partition("</li>")[0]).replace("\u00a0", " ") for one in parts]
@@ -113,6 +105,9 @@ def test_the_contents_tell_by_a_mark_and_a_word(refuted_page: str) -> None:
     assert "(✓) holds Steps" in items
     assert "? not decided Radius" in items
     assert "✓ equivalent Control: the same variant twice" in items
+    # A claim without records leads to the table.
+    assert refuted_page.count('<a href="#claims-table"><title>') == 2 * 14
+    assert "claims-table" in Page(refuted_page).ids
 
 
 def test_a_section_is_a_question_an_answer_a_figure_and_its_commands(refuted_page: str) -> None:
@@ -130,7 +125,7 @@ def test_every_question_with_a_figure_has_words() -> None:
 
 @pytest.mark.parametrize("layout", [WIDE, NARROW])
 def test_a_missing_interval_does_not_stretch_the_axis(refuted: Path, layout: Layout) -> None:
-    data = data_of(refuted)[0]
+    data = evidence_of(refuted)[0]
     table = claims.evaluate(data)
     plain = all_claims(table, layout)
     assert plain is not None
@@ -149,8 +144,8 @@ def test_a_missing_interval_does_not_stretch_the_axis(refuted: Path, layout: Lay
 
 def test_nothing_measured_is_no_figure(tmp_path: Path) -> None:
     write(tmp_path, study(["sequential_orders"], blocks=2))
-    assert draw(data_of(tmp_path)[0]) == ("", [])
-    assert 'class="claims-figure"' not in report.render(tmp_path)
+    assert draw(evidence_of(tmp_path)[0]) == ("", [])
+    assert 'class="claims-figure"' not in page_of(tmp_path)
 
 
 def test_the_figure_is_a_file_like_others(refuted: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -173,17 +168,3 @@ def test_effects_in_words() -> None:
     assert both_in_short(few).endswith("interval) here, −4.6\u00a0% published")
     assert both_in_short(replace(effect, published=math.nan)).endswith("here, no number published")
     assert change_in_short(Ratio()) == published_in_short(Ratio()) == "–"
-
-
-def test_effects_agree_with_the_verdicts(tmp_path: Path) -> None:
-    """On a machine with noise: what is drawn is what decides."""
-    names = ["neighbourhood", "self_contained_checkered", "compiler", "row"]
-    write(tmp_path, study(names, blocks=21, noise=Noise(process=0.004, repetition=0, burst_rate=0)))
-    data = data_of(tmp_path)[0]
-    table = claims.evaluate(data)
-    for row in table[~table["missing"]].itertuples():
-        (effect,) = row.effects
-        assert effect.has_interval
-        lies_below, lies_within = effect.high < effect.within[0], effect.low > effect.within[0]
-        if row.said.startswith("holds at"):
-            assert lies_below or (lies_within and effect.high < effect.within[1]), row.id

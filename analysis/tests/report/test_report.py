@@ -7,15 +7,15 @@ from typing import Any
 
 import pytest
 
-from analysis import claims, report
-from analysis.figures.style import Data
+from analysis import claims
+from analysis.claims.entry import Evidence
 from analysis.records.reading import load
 from analysis.report.provenance import commands, in_the_clock
 from analysis.support.wording import number, share
 from analysis.tests.figures.test_figures import DRAWN
 from analysis.tests.synthetic import Machine, failure, write
 from analysis.tests.synthetic_noise import QUIET
-from analysis.tests.synthetic_study import study
+from analysis.tests.synthetic_study import page_of, study
 
 
 class Page(HTMLParser):
@@ -126,7 +126,7 @@ def test_it_says_what_came_of_the_control_and_the_checks(
     tmp_path: Path, made: Callable[[], Records], said: list[str]
 ) -> None:
     write(tmp_path, made())
-    text = text_of(report.render(tmp_path)).replace("\u00a0", " ")
+    text = text_of(page_of(tmp_path)).replace("\u00a0", " ")
     assert all(one in text for one in said)
 
 
@@ -138,13 +138,13 @@ def test_records_without_a_partner_are_named_where_they_are_compared_and_why(tmp
         record["tags"]["session"] = "later"
         record["repetitions"][0]["steps_seconds"] *= 2
     write(tmp_path, records)
-    said = text_of(report.render(tmp_path)).replace("\u00a0", " ")
+    said = text_of(page_of(tmp_path)).replace("\u00a0", " ")
     assert len(again) == 3
     assert "In no ratio: 3 of four, 3 of nine, beside which their session measured nothing" in said
     assert "count in times alone: 3 of four, 3 of nine (neighbourhood). A partner is lost where" in said
     assert "from 3 blocks" in said
     write(tmp_path / "whole", study(["neighbourhood"], blocks=6, noise=QUIET))
-    assert "no ratio" not in text_of(report.render(tmp_path / "whole"))
+    assert "no ratio" not in text_of(page_of(tmp_path / "whole"))
 
 
 @pytest.mark.parametrize("own", [False, True])
@@ -154,19 +154,21 @@ def test_several_machines_have_a_part_each(tmp_path: Path, own: bool) -> None:
         (tmp_path / "claims.toml").write_text("")
     for host in ("bench-1", "bench-2"):
         write(tmp_path, study(["machine"], blocks=1, noise=QUIET, machine=Machine(host=host)))
-    page = report.render(tmp_path)
+    page = page_of(tmp_path)
     parsed = Page(page)
     assert {"study-1", "study-2"} <= set(parsed.ids)
     assert len(parsed.ids) == len(set(parsed.ids))
     assert ("no records yet" in text_of(page)) != own
+    against = "Against bench-1: Example CPU @ 2.50GHz (not interleaved, so unpaired): bench-2: Example CPU"
+    assert against in text_of(page), "the figure has both"
 
 
 def test_text_from_records_is_escaped(tmp_path: Path) -> None:
     write(tmp_path, study(["machine"], blocks=2, machine=Machine(cpu_model="<script>alert(1)</script>")))
-    assert "<script>" not in re.sub(r"<svg.*?</svg>", "", report.render(tmp_path), flags=re.DOTALL)
+    assert "<script>" not in re.sub(r"<svg.*?</svg>", "", page_of(tmp_path), flags=re.DOTALL)
 
 
-def test_it_says_which_part_of_the_time_was_in_the_clock(data: Data) -> None:
+def test_it_says_which_part_of_the_time_was_in_the_clock(data: Evidence) -> None:
     compared = data.study.times[data.study.times["question_kind"] != "counts"]
     assert in_the_clock(data.study).startswith(f"{number(compared['steps_seconds'].sum())} s of ")
     one = replace(data.study, times=data.study.times.iloc[:1], runs=data.study.runs.iloc[:2])
