@@ -1,11 +1,8 @@
 """The verb `calibrate`, with the real program."""
 
 import json
-import os
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -13,6 +10,7 @@ import pytest
 from experiments.calibration.command import CONDITIONS, FILE, UNFINISHED
 from experiments.calibration.kinds import KINDS, PERCENT_MORE
 from experiments.support.busy import busy
+from experiments.support.descendants import children
 from experiments.tests.conftest import ROOT, finish, is_running, start
 
 PROGRAM = ROOT / "build" / "gcc" / "carom"
@@ -51,31 +49,9 @@ def test_seconds_that_cannot_be_are_one_line(tmp_path: Path) -> None:
         assert f"found {wrong}, expected a number of seconds above 0" in error
 
 
-def loops_of(parent: int) -> list[int]:
-    """Return the processes that keep a processor busy for this parent."""
-    found = subprocess.run(["pgrep", "-P", str(parent)], capture_output=True, text=True, check=False).stdout
-    return [int(one) for one in found.split()]
-
-
-def test_the_loops_beside_end_with_the_block_and_with_their_parent() -> None:
-    before = set(loops_of(os.getpid()))
+def test_the_loops_beside_end_with_the_block() -> None:
+    before = children()
     with busy(2):
-        inside = set(loops_of(os.getpid())) - before
+        inside = children() - before
         assert len(inside) == 2
     assert not any(map(is_running, inside))
-    code = (
-        "import time\nfrom experiments.support.busy import busy\n"
-        "with busy(2):\n  print(1, flush=True)\n  time.sleep(60)"
-    )
-    parent = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE)
-    assert parent.stdout is not None
-    parent.stdout.readline()
-    loops = loops_of(parent.pid)
-    assert len(loops) == 2
-    parent.send_signal(signal.SIGKILL)
-    parent.wait()
-    parent.stdout.close()
-    until = time.monotonic() + 10
-    while any(is_running(one) for one in loops) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not any(is_running(one) for one in loops)

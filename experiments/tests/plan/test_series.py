@@ -130,14 +130,6 @@ def test_a_pattern_makes_a_series_of_each_file(empty_workplace: Workplace) -> No
     ]
 
 
-def test_one_of_many_that_cannot_be_run_is_a_point_as_the_others(empty_workplace: Workplace) -> None:
-    program(empty_workplace.root, "subs/anna/sim")
-    program(empty_workplace.root, "subs/bob/sim", mode=0o644)
-    lines = 'commands = "subs/*/sim"\ncommand = ["{program}"]'
-    found = points(empty_workplace, f"{HEAD}[[series]]\n{lines}\n{BLOCKS}")
-    assert [point.series for point in found] == ["anna", "bob"]
-
-
 def test_a_benchmark_is_run_for_its_one_case(empty_workplace: Workplace) -> None:
     program(empty_workplace.root, "bench")
     table = 'benchmark = {program = "./bench", name = "BM_sort<int>/{x}"}'
@@ -154,21 +146,12 @@ def test_a_benchmark_is_run_for_its_one_case(empty_workplace: Workplace) -> None
     assert point.command.times_itself
 
 
-def test_a_filter_makes_a_series_of_each_case(empty_workplace: Workplace) -> None:
-    path = program(empty_workplace.root, "bench")
-    path.write_text('#!/bin/sh\necho "BM_a/8"; echo "BM_b"\n', encoding="utf-8")
-    table = 'benchmark = {program = "./bench", filter = "BM_.*"}'
-    found = points(empty_workplace, f"{HEAD}[[series]]\n{table}\n{BLOCKS}")
-    assert [point.series for point in found] == ["BM_a/8", "BM_b"]
-    path.write_text("#!/bin/sh\nexit 0\n", encoding="utf-8")
-    assert "benchmark.filter: found" in refusal(empty_workplace, f"{HEAD}[[series]]\n{table}\n{BLOCKS}")
-
-
 WRONG = {
     'name = "a"\ncommand = ["./none"]': 'series[1].command: found "./none", which is not there',
     'name = "a"\ncommand = ["no-such-program-anywhere"]': "expected a program on PATH",
     'name = "a"\ncommand = ["./plain"]': 'found "./plain", which is not executable; `chmod +x`',
     'name = "a"\ncommand = ["./folder/"]': 'found "./folder/", which is a folder',
+    'name = "a"\ncommand = ["/dev/null"]': 'found "/dev/null", which is no file; expected a program',
     'name = "a"\ncommand = ["sort", "{thread}"]': 'found "{thread}", expected one of {threads}',
     'name = "a"\ncommand = ["sort", "{scene}"]': 'found "{scene}", expected one of {threads}',
     'name = "a"\ncommand = ["sort", "{x:3}"]': 'series[1].command: found "{x}", expected one of',
@@ -199,23 +182,20 @@ def test_a_mistake_is_told_with_file_key_and_what_was_expected(
     assert expected in said
 
 
-def test_what_only_variants_can_do_is_refused(empty_workplace: Workplace) -> None:
-    assert 'verb: found bench beside programs of others, expected "process"' in refusal(
-        empty_workplace, f'{HEAD}verb = "bench"\n{SORT}{BLOCKS}'
-    )
-    assert "repetitions: found for verb process, expected for bench or profile only" in refusal(
-        empty_workplace, f"{HEAD}repetitions = 2\n{SORT}{BLOCKS}"
-    )
-    variant = '[[series]]\nname = "b"\nvariant = "nine"\n'
-    swept = '[sweep]\nparameter = "lines"\nvalues = [1]\n'
-    assert 'sweep.parameter: found "lines", expected one of threads' in refusal(
-        empty_workplace, f"{HEAD}{SCENE}{swept}{SORT}{variant}{BLOCKS}"
-    )
-    assert "scene: missing" in refusal(empty_workplace, f"{HEAD}{SORT}{variant}{BLOCKS}")
-    swept = '[sweep]\nparameter = "particles"\nvalues = [1]\nquick_values = [2]\n'
-    assert "sweep.parameter: found particles without a scene" in refusal(
-        empty_workplace, f"{HEAD}{swept}{SORT}{BLOCKS}"
-    )
+VARIANT = '[[series]]\nname = "b"\nvariant = "nine"\n'
+SWEPT = '[sweep]\nparameter = "{}"\nvalues = [1]\nquick_values = [2]\n'
+ONLY_OF_VARIANTS = {
+    'verb = "bench"\n': 'verb: found bench beside programs of others, expected "process"',
+    "repetitions = 2\n": "repetitions: found for verb process, expected for bench or profile only",
+    SCENE + SWEPT.format("lines") + VARIANT: 'sweep.parameter: found "lines", expected one of threads',
+    VARIANT: "scene: missing",
+    SWEPT.format("particles"): "sweep.parameter: found particles without a scene",
+}
+
+
+@pytest.mark.parametrize(("text", "expected"), ONLY_OF_VARIANTS.items())
+def test_what_only_variants_can_do_is_refused(empty_workplace: Workplace, text: str, expected: str) -> None:
+    assert expected in refusal(empty_workplace, HEAD + text + SORT + BLOCKS)
 
 
 def test_claims_of_a_folder_may_be_named(empty_workplace: Workplace) -> None:

@@ -1,12 +1,14 @@
 """A point that fails, crashes, hangs or is not built is recorded with its reason, and the others go on."""
 
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
 import pytest
 
+from experiments.plan.scenes import sha256_of
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED
 from experiments.tests.conftest import PAIR, Workplace
@@ -35,6 +37,8 @@ def test_a_failed_point_is_recorded_and_the_others_go_on(
     assert (failure["reason"], failure["exit_code"]) == (reason, code)
     assert failure["axes"]["variant"] == "nine"
     assert failure["tags"]["experiment"] == "pair"
+    assert failure["tags"]["host"] == os.uname().nodename
+    assert failure["tags"]["program_sha256"] == sha256_of(workplace.program)
     assert len(workplace.records("pair")) == 2, "the other variant, in both blocks"
     assert len(workplace.records("chunks")) == 6
     assert "nine" not in {one["axes"]["variant"] for one in workplace.records().values()}

@@ -30,23 +30,6 @@ def test_what_goes_before_and_after_a_run_is_handed_on(empty_workplace: Workplac
     assert sources >= {"sim", "before"}, "what prepares is a part of it"
 
 
-def test_each_of_these_makes_another_point_and_none_leaves_the_id_as_it_was(
-    empty_workplace: Workplace,
-) -> None:
-    script(empty_workplace, "sim", "exit 0")
-    plain = 'command = ["./sim", "{x}"]'
-    lines = [
-        "", 'prepare = ["true"]', 'conclude = ["true"]', "fresh_folder = true", "exit_codes = [0, 1]",
-        "turns = true", "turns = false",
-    ]  # fmt: skip
-    found = []
-    for line in [*lines, "exit_codes = [0]", "fresh_folder = false"]:
-        empty_workplace.question("asked", HEAD + series("a", plain, line) + BLOCKS)
-        found += ids(empty_workplace)
-    assert len(set(found[: len(lines)])) == len(lines)
-    assert {*found[len(lines) :]} == {found[0]}
-
-
 def test_a_fresh_folder_makes_a_program_run_twice_that_cannot_otherwise(empty_workplace: Workplace) -> None:
     place = empty_workplace
     (place.root / "questions").mkdir(exist_ok=True)
@@ -67,13 +50,6 @@ def test_in_a_fresh_folder_only_whole_paths_name_files(empty_workplace: Workplac
     [experiment] = Study(place.settings).experiments
     assert experiment.points[0].program.files[1:] == (place.root / "questions" / "in.txt",)
     assert experiment.points[0].program.absent == ()
-
-
-def test_a_prepare_that_fails_makes_the_point_fail(empty_workplace: Workplace) -> None:
-    empty_workplace.question("asked", HEAD + series("a", 'command = ["true"]\nprepare = ["false"]') + BLOCKS)
-    assert run(empty_workplace.settings) == POINTS_FAILED
-    [failure] = empty_workplace.failures()
-    assert failure["reason"].startswith("prepare: exit code 1 without a word")
 
 
 NO_TERMINAL = "it had no terminal: its standard input is empty, its outputs are pipes"

@@ -71,15 +71,6 @@ def test_words_that_name_no_plain_file_keep_nobody_waiting(empty_workplace: Work
     assert run(place.settings) == 0
 
 
-def test_a_program_that_is_no_file_is_refused_in_a_line(empty_workplace: Workplace) -> None:
-    place = empty_workplace
-    (place.root / "questions").mkdir(exist_ok=True)
-    os.mkfifo(place.root / "questions" / "pipe", 0o755)
-    place.question("asked", HEAD + series("a", 'command = ["./pipe"]') + BLOCKS)
-    with pytest.raises(InputError, match=r'command: found "\./pipe", which is no file'):
-        Study(place.settings)
-
-
 LIST = """
 filter=.*
 for word; do case $word in --benchmark_filter=*) filter=${word#*=};; --benchmark_out=*) exit 0;; esac; done

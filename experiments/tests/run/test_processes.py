@@ -137,17 +137,6 @@ def test_every_kind_is_measured_or_fails_with_its_reason(programs: Workplace) ->
     assert crashed["command"][0].endswith('crash it\'s "here"')
 
 
-def test_a_changed_program_is_measured_again_with_its_partners(programs: Workplace) -> None:
-    run(settings(programs))
-    before = programs.records("others")
-    with (programs.root / "questions" / "mine").open("a") as file:
-        file.write("# another one\n")
-    run(settings(programs))
-    after = programs.records("others")
-    assert len(after) == len(before) == 8
-    assert not any(one in after.values() for one in before.values()), "with those that it is compared with"
-
-
 SLOW = """
 title = "Two that count"
 figure = "comparison"
@@ -204,15 +193,6 @@ def _running(program: Path) -> bool:
         except OSError:
             continue
     return False
-
-
-def test_turns_can_be_switched_off(empty_workplace: Workplace) -> None:
-    write_program(empty_workplace, "count", COUNT)
-    empty_workplace.question("counts", f"turns = false\n{SLOW}")
-    assert run(replace(settings(empty_workplace), blocks=1)) == 0
-    assert all(
-        record["turns"] is record["slices"] is None for record in empty_workplace.records("counts").values()
-    )
 
 
 def test_the_folder_of_the_questions_brings_its_claims_along(empty_workplace: Workplace) -> None:

@@ -102,12 +102,6 @@ def test_cachegrind_counts_once_a_point(workplace: Workplace) -> None:
     )
 
 
-def test_only_a_profile_can_be_counted_under_cachegrind(workplace: Workplace) -> None:
-    workplace.question("pair", PAIR.replace("[scene]", "simulated = 3\n\n[scene]", 1))
-    with pytest.raises(InputError, match="simulated: found for verb bench, expected for profile only"):
-        run(workplace.settings)
-
-
 def test_a_record_without_the_errors_asked_for_is_measured_again(workplace: Workplace) -> None:
     workplace.question("errors", ERRORS)
     run(workplace.settings)
@@ -209,14 +203,3 @@ def test_a_part_of_the_study_leaves_the_rest_alone(workplace: Workplace) -> None
     workplace.build(extra="# a change")
     run(replace(workplace.settings, study=("pair",)))
     assert workplace.records("chunks") == chunks
-
-
-def test_the_scales_do_not_cost_each_other_anything(workplace: Workplace) -> None:
-    run(workplace.settings)
-    paper = workplace.records()
-    run(replace(workplace.settings, scale="quick"))
-    assert {one["tags"]["scale"] for one in workplace.records().values()} == {"quick"}
-    done = workplace.measured()
-    run(workplace.settings)
-    assert workplace.measured() == done
-    assert workplace.records() == paper

@@ -121,6 +121,12 @@ MISTAKES = {
     "module": ("# own", f'modules = ["{OWNED}"]', "slurm.partitions[1].modules[1]: found"),
     "argument": ("# own", 'arguments = ["--a\\ntouch owned"]', "slurm.partitions[1].arguments[1]: found"),
     "results": ("# common", 'results = "results"', "slurm.results: found"),
+    "no program": ("gcc =", "icc =", "programs.gcc: missing; expected a text"),
+    "binding": (
+        '"close"',
+        '"closed"',
+        'openmp.proc_bind: found "closed", expected one of false, true, close',
+    ),
     "no cluster": ('kind = "slurm"', 'kind = "local"', "kind: found"),
     "no time": ("# own", "minutes = 0", "slurm.partitions[1].minutes: found 0, expected a whole number"),
     "twice": ("# own", '[[slurm.partitions]]\nname = "xs"\ncpus = 2', 'slurm.partitions: found "xs" twice'),
