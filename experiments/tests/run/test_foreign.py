@@ -88,10 +88,24 @@ def test_whether_it_may_take_turns_is_found_out_once(empty_workplace: Workplace)
     assert told(place) == [none], "a later session knows it as well"
 
 
-def test_who_is_said_to_take_turns_does(empty_workplace: Workplace) -> None:
-    empty_workplace.behave(FAKE_IDLE="b")
-    ask(empty_workplace, "turns = true")
-    assert told(empty_workplace) == [{"a": True, "b": True}] * 2
+OPEN, TURNS, NO_TURNS = dict.fromkeys("ab"), dict.fromkeys("ab", True), dict.fromkeys("ab", False)
+
+
+@pytest.mark.parametrize(
+    ("line", "head", "idle", "expected"),
+    [
+        ("turns = true", "", "b", [TURNS, TURNS]),
+        ("", "", "nobody", [OPEN, TURNS]),
+        ("", "turns = false\n", "nobody", [NO_TURNS, NO_TURNS]),
+    ],
+    ids=["said", "found out: nobody minds", "a question without turns"],
+)
+def test_who_takes_turns(
+    empty_workplace: Workplace, line: str, head: str, idle: str, expected: list[dict[str, bool | None]]
+) -> None:
+    empty_workplace.behave(FAKE_IDLE=idle)
+    ask(empty_workplace, line, head=head + HEAD)
+    assert told(empty_workplace) == expected
 
 
 def test_a_question_about_pauses_compares_both_ways(empty_workplace: Workplace) -> None:
@@ -100,16 +114,6 @@ def test_a_question_about_pauses_compares_both_ways(empty_workplace: Workplace) 
     assert told(empty_workplace)[1:] == [{"a": None, "b": False}], "a was left alone, which tells nothing"
     records = empty_workplace.records("asked").values()
     assert {one["process"]["undisturbed"] for one in records} >= {LEFT_ALONE, IDLE}
-
-
-def test_who_does_not_mind_takes_turns_from_then_on(empty_workplace: Workplace) -> None:
-    ask(empty_workplace)
-    assert told(empty_workplace) == [{"a": None, "b": None}, {"a": True, "b": True}]
-
-
-def test_a_question_without_turns_says_so_of_each(empty_workplace: Workplace) -> None:
-    ask(empty_workplace, head="turns = false\n" + HEAD)
-    assert told(empty_workplace) == [{"a": False, "b": False}] * 2
 
 
 def test_who_times_itself_joins_the_others_as_a_whole(empty_workplace: Workplace) -> None:

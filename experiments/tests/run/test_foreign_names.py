@@ -12,17 +12,6 @@ from experiments.tests.foreign import BLOCKS, HEAD, script, series
 from support.errors import InputError
 
 
-def test_a_trajectory_command_is_run_by_no_shell(empty_workplace: Workplace) -> None:
-    place = empty_workplace
-    empty = script(place, "empty", "")
-    empty.write_bytes(b"")
-    text = series("a", 'command = ["true"]', 'trajectory = ["./empty", "{out}"]')
-    place.question("asked", HEAD + SCENE + text + BLOCKS)
-    assert run(place.settings) == POINTS_FAILED
-    reason = f"check of each step: cannot be run in {place.root / 'questions'}: Exec format error"
-    assert place.failures()[0]["reason"] == reason
-
-
 def test_of_many_files_each_that_is_no_program_fails_by_itself(empty_workplace: Workplace) -> None:
     place = empty_workplace
     names = ["right", "empty", "a link", "pipe", "plain", "lost", "caf\udce9", "two\nlines", "{scene}", "dos"]
