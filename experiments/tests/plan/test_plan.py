@@ -11,7 +11,7 @@ import pytest
 from experiments.plan.command import Command
 from experiments.plan.plan import Surroundings, plan
 from experiments.plan.point import Point
-from experiments.plan.program import Program, check_command, find_programs
+from experiments.plan.program import Program, find_programs
 from experiments.plan.question import load_question
 from experiments.plan.scale import SCALES
 from experiments.plan.scenes import HardCase, Scene, SceneFile
@@ -114,9 +114,6 @@ def test_a_variant_is_checked_with_the_tolerance_that_it_is_timed_with(workplace
     (point, _) = plan(
         load_question(workplace.root / "questions" / "pair.toml"), surroundings(workplace)
     ).points
-    assert point.tolerance == "published"
-    command = check_command(point.program, Path("s.in"), str(point.variant), point.threads, point.tolerance)
-    assert command[-2:] == ("--tolerance", "published")
     scene = SceneFile(Path("s.in"), "0" * 64)
     assert note_of(point, scene) != note_of(replace(point, tolerance="relative"), scene)
 
