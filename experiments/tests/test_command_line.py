@@ -86,15 +86,7 @@ MISTAKES = {
         ["status", "--results", "nowhere"],
         r"results: found nowhere, expected a folder that is there",
     ),
-    "questions": (
-        ["check", "--questions", "nowhere"],
-        r"questions: found nowhere, expected a folder that is there",
-    ),
     "no names": (["run", "--study", ","], r"argument --study: found ',', expected names between commas .*"),
-    "a file for results": (
-        ["run", "--results", "questions/pair.toml"],
-        r"results: found questions/pair\.toml, which is no folder, expected one or a place for one",
-    ),
     "a file above results": (
         ["builds", "--results", "questions/pair.toml/results"],
         r"results: found \S+/questions/pair\.toml, which is no folder, expected one or a place for one",

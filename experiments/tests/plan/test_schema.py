@@ -177,6 +177,10 @@ MISTAKES = {
         PAIR.replace('tolerance = "published"', 'tolerance = "published"\ntolerance_reason = "none"'),
         "tolerance_reason: found beside the published tolerance, which needs none",
     ),
+    "half a seed": (
+        CHUNKS.replace('"find_chunk"', '"seed"').replace("[1, 2, 3]", "[1, 2.5]"),
+        "series[1].values: found 2.5, expected whole numbers",
+    ),
     "margin of all": (f"margin = 1\n{PAIR}", "margin: found 1, expected a number above 0 and below 1"),
     "error of most": (f"error = 0.6\n{PAIR}", "error: found 0.6, expected a number above 0, at most 0.5"),
     "reference that there is not": (

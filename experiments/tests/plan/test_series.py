@@ -54,6 +54,12 @@ def test_a_question_needs_no_scene_and_fills_in_what_it_sweeps(empty_workplace: 
     assert all(Path(words(point)[0]).name == "sort" for point in found)
 
 
+def test_what_is_usual_leaves_the_id_as_it_was(empty_workplace: Workplace) -> None:
+    for line in ("exit_codes = [0]\n", "fresh_folder = false\n"):
+        [plain], [said] = (points(empty_workplace, HEAD + SORT + one + BLOCKS) for one in ("", line))
+        assert plain.id == said.id
+
+
 def test_of_a_scene_everything_can_be_said(empty_workplace: Workplace) -> None:
     program(empty_workplace.root, "mine")
     command = 'command = ["./mine", "{scene}", "{particles}", "{side}", "{radius}", "{steps}", "{seed}"]'

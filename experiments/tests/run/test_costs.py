@@ -5,12 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from experiments.plan.plan import Experiment, Surroundings, plan
 from experiments.plan.point import Point
 from experiments.plan.program import Program
 from experiments.plan.question import FOLDER, Blocks, load_question
 from experiments.plan.scale import SCALES
-from experiments.plan.site import Machine, load_site
+from experiments.plan.site import Machine
 from experiments.run.costs import (
     FIRST_RUNS,
     IN_THE_CLOCK,
@@ -25,29 +24,15 @@ from experiments.run.runner import ProcessResult
 from experiments.run.study import Study
 from experiments.run.verify import representative
 from experiments.tests.conftest import Workplace, generated
+from experiments.tests.plan.test_shipped_files import planned
+
+BUILT = Program("gcc", Path("carom"), "0" * 64)
 
 
 def points(name: str) -> tuple[Point, ...]:
-    return planned(name).points
-
-
-def planned(name: str) -> Experiment:
-    program = Program("gcc", Path("carom"), "0" * 64)
-    missing = Program("clang", Path("carom"), None)
-    around = Surroundings(
-        load_site("local"), Machine("test", 2, 2), {"gcc": program, "clang": missing}, SCALES["paper"]
-    )
-    return plan(load_question(FOLDER / f"{name}.toml"), around)
-
-
-@pytest.fixture(autouse=True)
-def _every_variant_exists(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("experiments.plan.plan.variants", lambda _: AnyName())
-
-
-class AnyName(tuple[str, ...]):
-    def __contains__(self, name: object) -> bool:
-        return True
+    """Those of a question on two cores, where gcc's build is there and no other."""
+    found = planned(name, machine=Machine("test", 2, 2)).points
+    return tuple(replace(one, program=BUILT) if one.program.name == "gcc" else one for one in found)
 
 
 def test_a_point_without_records_is_estimated_by_its_scene() -> None:

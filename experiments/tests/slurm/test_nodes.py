@@ -84,6 +84,7 @@ def test_no_point_shares_processors_that_it_was_planned_to_have(
     assert work(job(threads), 0) == (0 if measured == {1, 2, 4, 8} else 2)
     assert {record["axes"]["threads"] for record in records(threads)} == measured
     assert reasons(threads).keys() == {1, 2, 4, 8} - measured
+    assert {one["command"][1] for one in contenders(threads) if "reason" in one} <= {"bench"}
     for refused, reason in reasons(threads).items():
         assert reason.startswith(f"{refused} threads on {node[0]} core")
         assert reason.endswith(

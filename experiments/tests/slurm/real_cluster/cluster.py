@@ -121,28 +121,17 @@ class Cluster:
 
     def ask(self, *command: str) -> str:
         """What one of Slurm's commands says."""
-        done = subprocess.run(
-            command,
-            env={**os.environ, **self.environment},
-            capture_output=True,
-            text=True,
-            timeout=60,
-            check=False,
-        )
+        done = self._call(*command)
         assert done.returncode == 0, f"{command}: {done.stderr}"
         return done.stdout
 
+    def _call(self, *command: str) -> "subprocess.CompletedProcess[str]":
+        around = {**os.environ, **self.environment}
+        return subprocess.run(command, env=around, capture_output=True, text=True, timeout=60, check=False)
+
     def nodes(self, state: str) -> int:
         """How many nodes are in a state, e.g. `idle`."""
-        done = subprocess.run(
-            ["sinfo", "--Node", "--noheader", "--format=%t"],
-            env={**os.environ, **self.environment},
-            capture_output=True,
-            text=True,
-            timeout=60,
-            check=False,
-        )
-        return done.stdout.split().count(state)
+        return self._call("sinfo", "--Node", "--noheader", "--format=%t").stdout.split().count(state)
 
     def tasks(self, state: str) -> list[str]:
         """Ids, as JOB_INDEX, of the tasks in a state, e.g. `RUNNING`."""
