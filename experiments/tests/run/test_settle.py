@@ -25,24 +25,26 @@ def want(workplace: Workplace, **blocks: int) -> None:
     (workplace.root / "needed").write_text(json.dumps(blocks))
 
 
-def test_what_is_open_goes_on_from_look_to_look_and_what_is_settled_stops(needing: Workplace) -> None:
-    want(needing, pair=7, chunks=2)
-    code, output, error = finish(needing.start("run", "--budget", "5"))
+@pytest.mark.parametrize(
+    ("needed", "until", "decided"),
+    [
+        ({"pair": 7, "chunks": 2}, ("--budget", "5"), {"pair": 7, "chunks": 4}),
+        # Of what rests on two questions more of the one that has its blocks would settle nothing.
+        ({"pair+chunks": 5}, ("--budget", "5"), {"pair+chunks": 7}),
+        ({"pair": 20, "chunks": 11}, ("--until-decided",), {"pair": 22, "chunks": 13}),
+    ],
+)
+def test_what_is_open_goes_on_from_look_to_look_and_what_is_settled_stops(
+    needing: Workplace, needed: dict[str, int], until: tuple[str, ...], decided: dict[str, int]
+) -> None:
+    want(needing, **needed)
+    code, output, error = finish(needing.start("run", *until))
     assert (code, error) == (0, "no ink\n")
-    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (7, 4)
+    for claim, blocks in decided.items():
+        assert f"decided: {claim} holds from {blocks} blocks" in output
+        assert {blocks_of(needing, name) for name in claim.split("+")} == {blocks}
     looks = [json.loads(line)["pair"] for line in (needing.root / "looks").read_text().splitlines()]
-    assert looks == [1, 4, 7], "nothing is looked at between two looks"
-    assert "decided: chunks holds from 4 blocks" in output
-    assert "decided: pair holds from 7 blocks" in output
-
-
-def test_what_rests_on_two_questions_gets_blocks_of_both(needing: Workplace) -> None:
-    """The blocks of such a claim are the fewest: more of the question that has them would settle nothing."""
-    want(needing, **{"pair+chunks": 5})
-    code, output, error = finish(needing.start("run", "--budget", "5"))
-    assert (code, error) == (0, "no ink\n")
-    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (7, 7)
-    assert "decided: pair+chunks holds from 7 blocks" in output
+    assert looks == [*range(1, looks[-1] + 1, 3)], "nothing is looked at between two looks"
 
 
 def test_a_finished_study_is_left_alone_until_a_budget_is_given(needing: Workplace) -> None:
@@ -53,12 +55,6 @@ def test_a_finished_study_is_left_alone_until_a_budget_is_given(needing: Workpla
     assert blocks_of(needing, "pair") == 4
     assert finish(needing.start("run", "--budget", "1"))[0] == 0
     assert blocks_of(needing, "pair") == 7
-
-
-def test_until_it_is_decided(needing: Workplace) -> None:
-    want(needing, pair=20, chunks=11)
-    assert finish(needing.start("run", "--until-decided"))[0] == 0
-    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (22, 13)
 
 
 @pytest.mark.parametrize(("share", "blocks"), [(0.0, 0), (1e7, 10)])

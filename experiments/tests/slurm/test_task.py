@@ -20,8 +20,6 @@ from support.errors import InputError
 from support.files import write_json
 from support.record_schema import is_record
 
-CAROM = ROOT / "build" / "gcc" / "carom"
-
 
 def folder_of(workplace: Workplace) -> PartitionFolder:
     return folders(replace(workplace.settings, site=site(workplace.root)))[0]
@@ -84,33 +82,15 @@ def test_a_failed_point_is_not_tried_again_by_its_task(workplace: Workplace) -> 
     assert len(contenders) == 15
 
 
-@pytest.mark.skipif(not CAROM.is_file(), reason="build/gcc/carom is not built (`make build` builds it)")
-def test_programs_of_others_are_measured_on_a_node(empty_workplace: Workplace) -> None:
-    empty_workplace.program.unlink()
-    empty_workplace.program.symlink_to(CAROM)
-    one, two = (
-        '[[series]]\nname = "one"\ncommand = ["true"]\n',
-        '[[series]]\nname = "two"\ncommand = ["echo"]\n',
-    )
-    text = 'title = "Others"\nfigure = "comparison"\n'
-    empty_workplace.question("others", f"{text}{one}{two}[blocks]\nminimum = 2\nwanted = 2\n")
-    assert work(job_of(empty_workplace), 0) == 0
-    kinds = [json.loads(content)["kind"] for content in records(empty_workplace).values()]
-    assert kinds == ["process"] * 2
-
-
-def test_a_job_of_another_site_is_refused(workplace: Workplace) -> None:
+def test_a_job_that_is_none_or_of_another_site_is_refused(workplace: Workplace) -> None:
     manifest = job_of(workplace)
+    with pytest.raises(InputError, match="task 7: expected a number from 0 to 0"):
+        work(manifest, 7)
     site(workplace.root, 'name = "xs"', 'name = "xl"')
     with pytest.raises(InputError, match=r'cluster.toml: has no partition "xs" any more'):
         work(manifest, 0)
     with pytest.raises(InputError, match="is not the list of blocks of a job"):
         work(workplace.root / "nothing.json", 0)
-
-
-def test_a_task_that_the_job_does_not_have_is_refused(workplace: Workplace) -> None:
-    with pytest.raises(InputError, match="task 7: expected a number from 0 to 0"):
-        work(job_of(workplace), 7)
 
 
 def test_the_control_is_spread_over_the_tasks(workplace: Workplace) -> None:
