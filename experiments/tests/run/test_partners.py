@@ -93,6 +93,18 @@ def test_a_file_of_another_name_than_its_content_is_of_no_account(pair: Workplac
     assert whole(pair, "four", "nine") == [0, 1]
 
 
+def test_a_new_series_is_measured_with_all_others(pair: Workplace) -> None:
+    run(pair.settings)
+    before = pair.records()
+    third = '[[series]]\nname = "third"\nvariant = "row"\n\n[blocks]'
+    pair.question("pair", PAIR.replace("[blocks]", third))
+    assert run(pair.settings) == 0
+    assert whole(pair, "four", "nine", "third") == [0, 1]
+    pair.question("pair", PAIR)
+    nothing_is_left_to_do(pair)
+    assert pair.records() == before, "without it what was measured before fits again"
+
+
 @pytest.mark.parametrize(
     "harm",
     [
