@@ -16,6 +16,7 @@ from experiments.run import status
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Settings, Study
 from experiments.tests.conftest import ROOT, SCENE, Workplace, finish
+from experiments.tests.foreign import script
 from support.record_schema import is_record
 
 BUILD = ROOT / "build"
@@ -88,19 +89,11 @@ done
 """
 
 
-def write_program(place: Workplace, name: str, text: str) -> Path:
-    path = place.root / "questions" / name
-    path.parent.mkdir(exist_ok=True)
-    path.write_text(text, encoding="utf-8")
-    path.chmod(0o755)
-    return path
-
-
 @pytest.fixture
 def programs(empty_workplace: Workplace) -> Workplace:
-    write_program(empty_workplace, "mine", SIMULATION.replace("{python}", sys.executable))
-    write_program(empty_workplace, 'crash it\'s "here"', "#!/bin/sh\necho no room for >&2; exit 9\n")
-    write_program(empty_workplace, "bench", BENCHMARK)
+    script(empty_workplace, "mine", SIMULATION.replace("{python}", sys.executable))
+    script(empty_workplace, 'crash it\'s "here"', "#!/bin/sh\necho no room for >&2; exit 9\n")
+    script(empty_workplace, "bench", BENCHMARK)
     empty_workplace.question("others", PROGRAMS)
     return empty_workplace
 
@@ -159,7 +152,7 @@ COUNT = "#!/bin/sh\ni=0\nwhile [ $i -lt $1 ]; do i=$((i+1)); done\n"
 
 
 def test_killed_and_resumed_it_measures_what_is_missing(empty_workplace: Workplace) -> None:
-    count = write_program(empty_workplace, "count", COUNT)
+    count = script(empty_workplace, "count", COUNT)
     empty_workplace.question("counts", SLOW)
     more = ("--build", str(BUILD), "--no-figures")
     process = empty_workplace.start("run", *more)
@@ -196,7 +189,7 @@ def _running(program: Path) -> bool:
 
 
 def test_the_folder_of_the_questions_brings_its_claims_along(empty_workplace: Workplace) -> None:
-    write_program(empty_workplace, "count", COUNT)
+    script(empty_workplace, "count", COUNT)
     empty_workplace.question("counts", SLOW)
     run(replace(settings(empty_workplace), blocks=1))
     kept = empty_workplace.results / "claims.toml"
