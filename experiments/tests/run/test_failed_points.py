@@ -10,7 +10,7 @@ import pytest
 from experiments.plan.scenes import sha256_of
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED
-from experiments.tests.conftest import PAIR, Workplace
+from experiments.tests.conftest import PAIR_OF_BUILDS, Workplace
 from support.record_schema import is_record
 
 FAILURES = {
@@ -77,8 +77,7 @@ def test_a_process_that_hangs_is_stopped(workplace: Workplace) -> None:
 
 
 def test_a_build_that_is_missing_is_a_gap_with_a_remedy(workplace: Workplace) -> None:
-    clang = PAIR.replace('variant = "nine"', 'variant = "published"\nprogram = "clang"')
-    workplace.question("pair", clang)
+    workplace.question("pair", PAIR_OF_BUILDS)
     assert run(workplace.settings) == 0
     [failure] = workplace.failures()
     assert "is not built; build it with `make build COMPILER=clang`" in failure["reason"]
@@ -95,8 +94,7 @@ def test_a_build_that_is_missing_is_a_gap_with_a_remedy(workplace: Workplace) ->
 def test_what_one_build_can_measure_comes_before_the_other_is_built(
     workplace: Workplace, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    clang = PAIR.replace('variant = "nine"', 'variant = "published"\nprogram = "clang"')
-    workplace.question("pair", clang)
+    workplace.question("pair", PAIR_OF_BUILDS)
     assert run(replace(workplace.settings, builds=("gcc",))) == 0
     assert "the study is complete" not in capsys.readouterr().out
     assert (len(workplace.records("control")), len(workplace.records("pair"))) == (2, 0)

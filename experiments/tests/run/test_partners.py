@@ -8,10 +8,7 @@ import pytest
 from experiments.results.store import keys_of
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Study
-from experiments.tests.conftest import PAIR, Workplace
-
-BY_TWO_PROGRAMS = PAIR.replace('variant = "nine"', 'variant = "published"\nprogram = "clang"')
-SWEPT_APART = PAIR.replace("[scene]", "turns = false\n[scene]", 1)
+from experiments.tests.conftest import PAIR, PAIR_APART, PAIR_OF_BUILDS, Workplace
 
 
 @pytest.fixture
@@ -40,7 +37,7 @@ def whole(workplace: Workplace, *series: str) -> list[int]:
 
 
 def test_an_edited_program_is_measured_again_with_its_partner(pair: Workplace) -> None:
-    pair.question("pair", BY_TWO_PROGRAMS)
+    pair.question("pair", PAIR_OF_BUILDS)
     pair.build("clang", "# another one")
     assert run(pair.settings) == 0
     before = {path.name for path in pair.files("pair")}
@@ -63,7 +60,7 @@ def nothing_is_left_to_do(pair: Workplace) -> None:
     assert len(there) == len({*there}), "what was measured anew did not come back"
 
 
-@pytest.mark.parametrize("text", [PAIR, SWEPT_APART], ids=["in turns", "apart"])
+@pytest.mark.parametrize("text", [PAIR, PAIR_APART], ids=["in turns", "apart"])
 def test_a_point_that_fails_in_one_session_and_not_in_the_next(pair: Workplace, text: str) -> None:
     pair.question("pair", text)
     pair.behave(FAKE_BENCH_CRASHES="nine")
@@ -116,7 +113,7 @@ def test_a_new_series_is_measured_with_all_others(pair: Workplace) -> None:
 def test_the_plan_tells_how_many_runs_there_will_be(
     pair: Workplace, harm: Callable[[Workplace], None]
 ) -> None:
-    pair.question("pair", BY_TWO_PROGRAMS)
+    pair.question("pair", PAIR_OF_BUILDS)
     pair.build("clang", "# another one")
     run(pair.settings)
     harm(pair)

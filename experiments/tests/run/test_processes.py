@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import sys
-import time
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +14,7 @@ from experiments.__main__ import main
 from experiments.run import status
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Settings, Study
-from experiments.tests.conftest import ROOT, SCENE, Workplace, finish
+from experiments.tests.conftest import ROOT, SCENE, Workplace, finish, until
 from experiments.tests.foreign import script
 from support.record_schema import is_record
 
@@ -156,15 +155,10 @@ def test_killed_and_resumed_it_measures_what_is_missing(empty_workplace: Workpla
     empty_workplace.question("counts", SLOW)
     more = ("--build", str(BUILD), "--no-figures")
     process = empty_workplace.start("run", *more)
-    until = time.monotonic() + 60
-    while not empty_workplace.records("counts"):
-        assert time.monotonic() < until
-        time.sleep(0.01)
+    until(lambda: empty_workplace.records("counts"), "nothing is measured")
     process.send_signal(signal.SIGKILL)
     finish(process)
-    while _running(count):
-        assert time.monotonic() < until, "a program outlived its runner"
-        time.sleep(0.01)
+    until(lambda: not _running(count), "a program outlived its runner")
     kept = {name: record["recorded_at"] for name, record in empty_workplace.records("counts").items()}
     assert 0 < len(kept) < 8
     code, _, _ = finish(empty_workplace.start("run", *more))

@@ -13,7 +13,7 @@ from experiments.slurm import scheduler
 from experiments.slurm.jobs import PartitionFolder, Standing, Unit, folders
 from experiments.slurm.scheduler import TaskState
 from experiments.slurm.task import work
-from experiments.tests.conftest import PAIR, ROOT, Workplace, start
+from experiments.tests.conftest import PAIR_APART, ROOT, Workplace, start
 from experiments.tests.slurm.test_script import site
 from experiments.tests.slurm.test_submit import took
 from support.errors import InputError
@@ -101,9 +101,6 @@ def test_the_control_is_spread_over_the_tasks(workplace: Workplace) -> None:
     ]
 
 
-APART = PAIR.replace("[scene]", "turns = false\n[scene]", 1)
-
-
 def cut_off(workplace: Workplace, *lost: int) -> None:
     """Leave the blocks of the question `pair` as a task does that was killed after their first process."""
     for block in lost:
@@ -125,7 +122,7 @@ def missing(workplace: Workplace, *, runs: bool = False) -> dict[Unit, int]:
 
 
 def test_a_block_that_was_cut_off_is_measured_anew(workplace: Workplace) -> None:
-    workplace.question("pair", APART)
+    workplace.question("pair", PAIR_APART)
     manifest = job_of(workplace)
     assert work(manifest, 0) == 0
     assert missing(workplace) == {}
@@ -141,7 +138,7 @@ def test_a_block_that_was_cut_off_is_measured_anew(workplace: Workplace) -> None
 
 
 def test_blocks_that_do_not_fit_their_allocation_come_to_an_end(workplace: Workplace) -> None:
-    workplace.question("pair", APART)
+    workplace.question("pair", PAIR_APART)
     assert work(job_of(workplace), 0) == 0
     took(workplace, 40.0)
     settings = folder_of(workplace).settings

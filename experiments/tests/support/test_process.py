@@ -5,7 +5,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,7 @@ import pytest
 from experiments.support import process
 from experiments.support.pipes import KEPT_BYTES
 from experiments.support.process import NOT_FOUND, TIMED_OUT, Coprocess, run
-from experiments.tests.conftest import ROOT
+from experiments.tests.conftest import ROOT, is_running, until
 from support.errors import Interrupted
 
 
@@ -115,6 +114,12 @@ def marked(mark: str) -> list[str]:
     return found
 
 
+def test_a_child_that_ignores_the_wish_to_end_is_ended() -> None:
+    code = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(600)"
+    done = run(python(code), time_limit=0.3)
+    assert (done.exit_code, done.reason) == (TIMED_OUT, "took longer than 0.3 s and was stopped")
+
+
 def test_what_was_there_before_is_left_alone() -> None:
     with subprocess.Popen(["sleep", "600"]) as other:
         assert run(python("pass")).exit_code == 0
@@ -190,6 +195,16 @@ def test_the_end_of_a_child_is_known_also_where_ends_are_ignored() -> None:
     assert output == "3 exit code 3 without a word\n"
 
 
+def test_a_child_ends_with_its_parent_however_that_ends(tmp_path: Path) -> None:
+    began = tmp_path / "began"
+    code = f"import os, pathlib, time; pathlib.Path({str(began)!r}).write_text(str(os.getpid()))"
+    parent = runner(f"{code}; time.sleep(600)", 600)
+    until(lambda: began.exists() and began.read_text(), "the child does not begin")
+    parent.kill()
+    parent.communicate()
+    until(lambda: not is_running(int(began.read_text())), "the child goes on", 10)
+
+
 def test_an_unknown_end_is_no_success(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(process, "hear_of_ends", lambda: None)
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
@@ -207,7 +222,7 @@ def test_while_the_runner_stands_still_no_time_passes_for_its_child(tmp_path: Pa
     wait = f"import pathlib, time\npathlib.Path({str(began)!r}).touch()\n"
     wait += f"while not pathlib.Path({str(go)!r}).exists(): time.sleep(0.01)\nprint('x')"
     stopped = runner(wait, 2.0)
-    wait_until(began.exists)
+    until(began.exists, "the child does not begin")
     stopped.send_signal(signal.SIGSTOP)
     if ends:
         go.touch()
@@ -218,10 +233,3 @@ def test_while_the_runner_stands_still_no_time_passes_for_its_child(tmp_path: Pa
         go.touch()
     output, _ = stopped.communicate(timeout=60)
     assert output.startswith("0 ")
-
-
-def wait_until(happened: Callable[[], bool]) -> None:
-    until = time.monotonic() + 60
-    while not happened():
-        assert time.monotonic() < until
-        time.sleep(0.01)

@@ -7,11 +7,11 @@ import socket
 import subprocess
 import sys
 import tempfile
-import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import IO
 
+from experiments.tests.conftest import until
 from experiments.tests.slurm.real_cluster import reaper
 from experiments.tests.slurm.real_cluster.packages import UnavailableError, libraries, unpacked
 
@@ -186,14 +186,6 @@ class Cluster:
 def node_of(partition: str) -> str:
     """The name of the one node of a partition."""
     return f"n-{partition}"
-
-
-def until(condition: Callable[[], bool], told: str, seconds: float) -> None:
-    """Wait for a condition; fails with `told` after so many seconds."""
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, told
-        time.sleep(0.1)
 
 
 def _free_ports(number: int) -> list[int]:
