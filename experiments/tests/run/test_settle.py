@@ -3,14 +3,12 @@
 import json
 import re
 import shutil
-from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
 
 from experiments.plan import scale
 from experiments.run import session
-from experiments.run.schedule import Schedule
 from experiments.run.session import run
 from experiments.run.study import Study
 from experiments.run.verdicts import Analysis, Open, Verdicts
@@ -160,24 +158,15 @@ def test_values_taken_out_of_a_finished_question_are_no_longer_planned(workplace
     assert len(workplace.records("chunks")) == 4
 
 
-def test_the_cheapest_to_settle_comes_first(workplace: Workplace) -> None:
+def test_what_was_spent_on_a_question_counts_towards_what_settling_it_costs(workplace: Workplace) -> None:
     run(replace(workplace.settings, figures=False))
     study = Study(workplace.settings)
     with study.store.opened():
         schedule = study.schedule(settle=False)
-    one, other = Open(2, 4, 6), Open(2, 4, 40)
-    for first, pair, chunks in (("pair", one, other), ("chunks", other, one)):
-        assert cheapest(schedule, {"pair": pair, "chunks": chunks}) == first
-    near = Open(28, 42, 34)
-    assert cheapest(schedule, {"pair": near, "chunks": Open(2, 4, 12)}) == "chunks", "what it has had counts"
-    [waiting] = schedule.waiting(Verdicts({"pair": Open(2, 9, 20)}))
-    assert waiting.lacking == 7
+    [waiting] = schedule.waiting(Verdicts({"pair": Open(blocks=4, next=9, needed=20)}))
+    assert (waiting.name, waiting.lacking, waiting.is_first) == ("pair", 7, True)
     assert waiting.seconds_to_settle == pytest.approx(18 * waiting.block_seconds)
     assert not list(schedule.waiting(Verdicts()))
-
-
-def cheapest(schedule: Schedule, found: Mapping[str, Open]) -> str:
-    return min(schedule.waiting(Verdicts(found)), key=lambda one: one.seconds_to_settle).name
 
 
 def test_blocks_of_what_is_open_take_turns(needing: Workplace) -> None:
