@@ -55,6 +55,7 @@ def test_those_who_share_a_folder_tear_nothing(workplace: Workplace, started: li
         assert process.returncode == 0
         assert all("waits for another" in line for line in error.splitlines())
     assert len(records(workplace)) == 7
+    assert not list(workplace.results.rglob("xs/scenes")), "each has scenes of its own"
     assert all(is_record(json.loads(content)) for content in records(workplace).values())
     if tasks == len(started):
         assert sum("--tag" in call["words"] for call in workplace.calls()) == 16
