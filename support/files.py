@@ -109,11 +109,6 @@ def of_json(text: bytes) -> Any:  # noqa: ANN401 - JSON is any value
     return orjson.loads(text)
 
 
-def to_json(content: object) -> bytes:
-    """The content as JSON in as few bytes as may be."""
-    return orjson.dumps(content)
-
-
 def digest_of(content: object) -> str:
     """The SHA-256 of what a JSON file holds: how it is written does not matter."""
     return hashlib.sha256(orjson.dumps(content, option=orjson.OPT_SORT_KEYS)).hexdigest()

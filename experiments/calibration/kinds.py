@@ -11,6 +11,7 @@ from experiments.plan.benchmark_cases import filter_of
 from experiments.plan.program import Program, generate
 from experiments.plan.scenes import Scene
 from experiments.plan.site import clean_environment
+from experiments.results.record import runs_of
 from experiments.side_by_side.contest import Contender, Contest
 from experiments.side_by_side.sampler import Sampler
 from experiments.support import process
@@ -71,7 +72,7 @@ def variants(program: Program, openmp: Mapping[str, str], folder: Path) -> Kind:
             raise InputError(done.reason)
         found = read_json(record)
         record.unlink()  # so that nothing is taken for what the next call left
-        return _rounds([_seconds(one) for one in found["contenders"]]), found["provenance"]
+        return _rounds([runs_of(found, one) for one in found["contenders"]]), found["provenance"]
 
     return Kind("variants", call, _RUNS)
 
@@ -123,10 +124,6 @@ def _contest(
 
 def _rounds(times: Sequence[Sequence[float]]) -> Rounds:
     return [list(one) for one in zip(*times, strict=True)]
-
-
-def _seconds(record: Mapping[str, Any]) -> list[float]:
-    return [float(one["steps_seconds"]) for one in record["repetitions"]]
 
 
 def _built(program: Program, name: str) -> Path:

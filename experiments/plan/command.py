@@ -20,8 +20,37 @@ SCENE, OUTPUT, FOLDER = "scene", "out", "folder"
 _LONGEST_NAME = 60
 
 
+@dataclass(frozen=True, kw_only=True)
+class Manner:
+    """How a program is run, and how its time is known."""
+
+    pattern: str | None = None
+    """Where it prints its time."""
+    unit_seconds: float | None = 1.0
+    """Of a time that it prints without a unit."""
+    benchmark: str | None = None
+    """The case of a Google Benchmark."""
+    prepare: tuple[str, ...] = ()
+    """Words of a command that is run before each of its runs, untimed."""
+    conclude: tuple[str, ...] = ()
+    """And of one that is run after each."""
+    fresh_folder: bool = False
+    """Each run has a new and empty folder, which is removed afterwards."""
+    exit_codes: tuple[int, ...] = ()
+    """Those that are fine; 0 alone where none is said."""
+    turns: bool | None = None
+    """Whether it is sliced; found out if nobody says so."""
+    rounds: int | None = None
+    """How often it runs in a block, each time by itself; without a number once, or in turns."""
+
+    @property
+    def times_itself(self) -> bool:
+        """Whether the time that counts is one that the program says: it must not stand still meanwhile."""
+        return self.pattern is not None or self.benchmark is not None
+
+
 @dataclass(frozen=True)
-class Command:
+class Command(Manner):
     """What is run and how its time is known; every field decides what is measured.
 
     Its words are templates, as `placed` takes them: only {scene} and {out} are left to be filled in.
@@ -32,27 +61,12 @@ class Command:
     folder: Path
     instrument: str
     trajectory: tuple[str, ...] = ()
-    pattern: str | None = None
-    unit_seconds: float | None = 1.0
-    benchmark: str | None = None
-    prepare: tuple[str, ...] = ()
-    conclude: tuple[str, ...] = ()
-    fresh_folder: bool = False
-    exit_codes: tuple[int, ...] = ()
-    turns: bool | None = None
-    rounds: int | None = None
-    """How often it runs in a block, each time by itself; without a number once, or in turns."""
     refused: str = ""
     """Why it is not run at all."""
     checker: Program | None = None
     """What writes the trajectory."""
     another: str = ""
     """What that is called where it is not the program that is timed."""
-
-    @property
-    def times_itself(self) -> bool:
-        """Whether the time that counts is one that the program says: it must not stand still meanwhile."""
-        return self.pattern is not None or self.benchmark is not None
 
     @property
     def writes_trajectory(self) -> bool:
@@ -101,10 +115,13 @@ def command_of(
     if series.benchmark is not None:
         [name] = placed(_filled((str(series.benchmark.name),), f"{key}.benchmark.name", of_run))
         words = (*words, literal(filter_of(name)))
+    times: dict[str, Any] = {}
+    if series.time is not None:
+        unit = SECONDS_OF_UNIT.get(str(series.time.unit))
+        times = {"pattern": series.time.stdout, "unit_seconds": unit}
     command = Command(
-        words, place.folder, place.instrument, trajectory, series.time.stdout if series.time else None,
-        SECONDS_OF_UNIT.get(series.time.unit or "") if series.time else 1.0, name, prepare, conclude,
-        series.fresh_folder, series.exit_codes, series.turns,
+        words, place.folder, place.instrument, trajectory, benchmark=name, prepare=prepare, conclude=conclude,
+        fresh_folder=series.fresh_folder, exit_codes=series.exit_codes, turns=series.turns, **times,
     )  # fmt: skip
     if trajectory and command.writes_trajectory:
         raise InputError(f"{key}.trajectory: found beside {{out}} in command, expected only one of the two")

@@ -110,20 +110,11 @@ def generate(program: Program, scene: AnyScene, path: Path) -> None:
         raise InputError(f"scene {' '.join(scene.arguments)}: {done.reason}")
 
 
-def check_command(
-    program: Program, scene: Path, variant: str, threads: int, tolerance: str
-) -> tuple[str, ...]:
-    """The command that verifies every step of a variant on a scene."""
-    words = (str(program.path), "check", str(scene), str(threads), "--variant", variant)
-    return (*words, "--tolerance", tolerance)
-
-
-def check_trajectory_command(
-    program: Program, scene: Path, trajectory: Path, tolerance: str
-) -> tuple[str, ...]:
-    """The command that verifies every step of what another program wrote."""
-    words = (str(program.path), "check", str(scene), "--trajectory", str(trajectory))
-    return (*words, "--tolerance", tolerance)
+def check_command(program: Program, scene: Path, tolerance: str, *what: object) -> tuple[str, ...]:
+    """The command that verifies every step on a scene: of so many threads and `--variant` one, or of what
+    another program wrote, `--trajectory` a file.
+    """
+    return (str(program.path), "check", str(scene), *map(str, what), "--tolerance", tolerance)
 
 
 def tag_arguments(tags: Mapping[str, str | int | float]) -> tuple[str, ...]:

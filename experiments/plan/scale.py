@@ -57,22 +57,11 @@ class Scale:
         return series.values if self.divisor == 1 else series.quick_values
 
 
-_PAPER = Scale(
-    "paper",
-    divisor=1,
-    blocks_divisor=1,
-    budget_seconds=45 * 60,
-    report_seconds=40.0,
-)
-_QUICK = Scale(
-    "quick",
-    divisor=10,
-    blocks_divisor=4,
-    budget_seconds=150.0,
-    report_seconds=15.0,
-)
-
-SCALES = dict(zip(vocabulary.SCALES, (_PAPER, _QUICK), strict=True))
+_PAPER, _QUICK = vocabulary.SCALES
+SCALES = {
+    _PAPER: Scale(_PAPER, divisor=1, blocks_divisor=1, budget_seconds=45 * 60, report_seconds=40.0),
+    _QUICK: Scale(_QUICK, divisor=10, blocks_divisor=4, budget_seconds=150.0, report_seconds=15.0),
+}
 
 
 def find_scale(name: str) -> Scale:

@@ -11,6 +11,8 @@ from experiments.plan.site import OPENMP_VARIABLES
 from experiments.results.record import Record, new_record
 from experiments.run.sources import Sources
 from experiments.side_by_side.contest import Entrant
+from experiments.side_by_side.run_result import RunResult
+from experiments.side_by_side.stated_time import StatedTime
 from experiments.support.digest import digest_of_hashes
 
 
@@ -109,18 +111,10 @@ def _slices(one: Entrant, contenders: int) -> Record | None:
 
 def _repetitions(one: Entrant) -> list[Record]:
     """A time for each run: the one that the program says, or the one from outside."""
-    if one.stated:
-        return [
-            {"steps_seconds": said.seconds, "cpu_seconds": said.cpu_seconds, "waited_seconds": None}
-            for said in one.stated
-        ]
+    told: Sequence[StatedTime | RunResult] = one.stated or one.runs
     return [
-        {
-            "steps_seconds": run.wall_seconds,
-            "cpu_seconds": run.cpu_seconds,
-            "waited_seconds": run.waited_seconds,
-        }
-        for run in one.runs
+        {"steps_seconds": seconds, "cpu_seconds": its.cpu_seconds, "waited_seconds": its.waited_seconds}
+        for seconds, its in zip(one.told_seconds, told, strict=True)
     ]
 
 

@@ -2,11 +2,11 @@
 
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-from experiments.plan.command import placed
+from experiments.plan.command import Manner, placed
 from experiments.plan.point import Point, Tags
 from experiments.plan.program import Program, build_of
 from experiments.plan.scenes import SceneFile
@@ -107,7 +107,8 @@ class Processes:
         command = point.command
         assert command is not None
         words = placed(command.trajectory, scene, output)
-        contender = Contender(words, **self._surroundings(point, scene, output))
+        whole = self._undisturbed(point, words, scene, output)
+        contender = replace(whole, pattern=None, benchmark=None, rounds=None)
         with host_lock(), Sampler(self._instrument.path) as sampler:
             [ended] = Contest(sampler, [contender], self._slice, 1, self._folder()).measure()
         return Completed(words, ended.exit_code if ended.failure else 0, "", ended.failure)
@@ -163,35 +164,24 @@ class Processes:
 
     def _contender(self, one: Asked, output: Path, turns: bool | None) -> Contender:
         point, path = one.point, one.scene.path.absolute() if one.scene is not None else None
-        told: dict[str, Any] = {}
-        if point.command is not None:
-            told = {name: getattr(point.command, name) for name in _OF_A_COMMAND}
-        return Contender(
-            point.process_words(path, output),
+        return replace(
+            self._undisturbed(point, point.process_words(path, output), path, output),
             warm_ups=point.warm_up,
             expected_seconds=self._behaviours.of(point).expected_seconds or 0.0,
             turns=turns,
             output=output,
-            **self._surroundings(point, path, output),
-            **told,
         )
 
-    def _surroundings(self, point: Point, scene: Path | None, output: Path) -> dict[str, Any]:
-        """Where the point's command is run, with what before and after it, and how it may end."""
-        around: dict[str, Any] = {"environment": dict(point.openmp), "most_seconds": self._time_limit}
+    def _undisturbed(
+        self, point: Point, words: tuple[str, ...], scene: Path | None, output: Path
+    ) -> Contender:
+        """Words that are run as the point's command is, with what goes before and after it."""
+        folder, manner = "", dict[str, Any]()
         if (command := point.command) is not None:
-            around |= {
-                "folder": str(command.folder),
-                "prepare": placed(command.prepare, scene, output),
-                "conclude": placed(command.conclude, scene, output),
-                "fresh_folder": command.fresh_folder,
-                "exit_codes": command.exit_codes or (0,),
-            }
-        return around
-
-
-_OF_A_COMMAND = ("unit_seconds", "pattern", "benchmark", "rounds")
-"""What a contender has of a point's command as it is."""
+            folder = str(command.folder)
+            manner = {one.name: getattr(command, one.name) for one in fields(Manner)}
+            manner |= {name: placed(manner[name], scene, output) for name in ("prepare", "conclude")}
+        return Contender(words, folder, dict(point.openmp), self._time_limit, **manner)
 
 
 def slice_of(point: Point, block: int) -> float:

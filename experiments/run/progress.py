@@ -78,6 +78,4 @@ def several(number: int, noun: str) -> str:
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
-def warn(text: str) -> None:
-    """One line on standard error."""
-    tell(text)
+warn = tell

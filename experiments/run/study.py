@@ -3,6 +3,7 @@
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from experiments.plan import question, site
 from experiments.plan.claims import CLAIMS
@@ -74,10 +75,13 @@ class Study:
             plan(with_blocks(self.scale.question(one), settings.blocks), around) for one in questions
         )
 
-    def runner(self) -> Runner:
-        """What runs one task; the results folder must be held."""
-        scenes = SceneFolder(self.store.root / "scenes", self.store.temporary, str(self.generator.sha256))
-        return Runner(self.store, scenes, self.generator, self.site.time_limit_seconds)
+    def runner(self, scenes: Path | None = None, **more: Any) -> Runner:  # noqa: ANN401 - as a runner has it
+        """What runs one task; the results folder must be held. The scenes are in it, or in a folder of their
+        own.
+        """
+        folder = scenes or self.store.root / "scenes"
+        made = SceneFolder(folder, self.store.temporary, str(self.generator.sha256))
+        return Runner(self.store, made, self.generator, self.site.time_limit_seconds, **more)
 
     def schedule(self, *, settle: bool) -> Schedule:
         """What is there and what is to be run; `settle` moves stale records out of the way first."""

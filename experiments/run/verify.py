@@ -6,7 +6,7 @@ from pathlib import Path
 
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
-from experiments.plan.program import CHECK_FAILED, Program, check_command, check_trajectory_command
+from experiments.plan.program import CHECK_FAILED, Program, check_command
 from experiments.plan.scenes import Scene, SceneFile
 from experiments.results.store import Store
 from experiments.run.host_lock import run_alone
@@ -89,7 +89,8 @@ class Verifier:
         return Completed(done.command, done.exit_code, "", said)
 
     def _run(self, point: Point, scene: SceneFile) -> Completed:
-        command = check_command(point.program, scene.path, str(point.variant), point.threads, point.tolerance)
+        what = (point.threads, "--variant", point.variant)
+        command = check_command(point.program, scene.path, point.tolerance, *what)
         return run_alone(command, point.openmp, self._time_limit)
 
     def _check_trajectory(self, point: Point, scene: SceneFile) -> Completed:
@@ -104,7 +105,7 @@ class Verifier:
         return checked
 
     def _look_at(self, output: Path, scene: SceneFile, point: Point) -> Completed:
-        command = check_trajectory_command(self._checker, scene.path, output, point.tolerance)
+        command = check_command(self._checker, scene.path, point.tolerance, "--trajectory", output)
         if not output.is_file():
             return Completed(command, CRASHED, "", f"left no trajectory in {output}")
         return run_alone(command, (), self._time_limit)

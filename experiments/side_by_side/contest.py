@@ -28,6 +28,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from experiments.plan.command import Manner
 from experiments.side_by_side.benchmark_time import benchmark_time, unlike_times
 from experiments.side_by_side.printed_time import printed_time
 from experiments.side_by_side.run_result import RunResult
@@ -58,35 +59,17 @@ _SECONDS_BEHIND = 2.0
 
 
 @dataclass(frozen=True)
-class Contender:
+class Contender(Manner):
     """A program that is measured beside others."""
 
     words: tuple[str, ...]
     folder: str = ""
     environment: Mapping[str, str] = field(default_factory=dict)
     most_seconds: float = 600.0
-    prepare: tuple[str, ...] = ()
-    """Words of a command that is run before each of its runs, untimed."""
-    conclude: tuple[str, ...] = ()
-    """And of one that is run after each."""
-    fresh_folder: bool = False
-    """Each run has a new and empty folder, which is removed afterwards."""
-    exit_codes: tuple[int, ...] = (0,)
-    """Those that are fine."""
     warm_ups: int = 0
     """Runs before the first that counts."""
     expected_seconds: float = 0.0
     """How long it takes undisturbed, or 0 where nobody knows."""
-    turns: bool | None = None
-    """Whether it is sliced; found out if nobody says so."""
-    rounds: int | None = None
-    """How often it runs, each time without a pause, whatever it is."""
-    pattern: str | None = None
-    """Where it prints its time."""
-    unit_seconds: float | None = None
-    """Of a time that it prints without a unit."""
-    benchmark: str | None = None
-    """The case of a Google Benchmark."""
     output: Path | None = None
     """The file that the benchmark writes."""
 
@@ -95,8 +78,7 @@ class Contender:
         """Whether nothing keeps it from taking turns, as far as is known beforehand. What times itself would
         count as its own time what it stands still.
         """
-        times_itself = self.pattern is not None or self.benchmark is not None
-        return not times_itself and not self.rounds and self.turns is not False
+        return not self.times_itself and not self.rounds and self.turns is not False
 
     @property
     def most_rounds(self) -> int:
@@ -346,7 +328,7 @@ class Contest:
             for (one, attempt, _), result in zip(ready, results, strict=True):
                 its = one.contender
                 attempt.result = result
-                attempt.failure = result.why_failed(its.exit_codes, its.folder, its.most_seconds)
+                attempt.failure = result.why_failed(its.exit_codes or (0,), its.folder, its.most_seconds)
                 one.exit_code = result.failure_code
             for one, attempt in zip(group, attempts, strict=True):
                 its = one.contender

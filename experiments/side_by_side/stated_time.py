@@ -14,6 +14,8 @@ class StatedTime:
     """The mean over the repetitions; None where one of them has no finite number."""
     library_version: str | None = None
     threads: int = 1
+    waited_seconds: None = None
+    """Which no program knows."""
 
 
 def on_one_line(text: str, longest: int = 200) -> str:

@@ -57,9 +57,7 @@ def submit(settings: Settings, *, dry_run: bool = False) -> int:
             lacking.append(Standing(folder, study, queue))
             if not lacking[-1].is_active:
                 shutil.rmtree(study.store.root / ".running", ignore_errors=True)
-        limits = (cluster.max_submitted, *(one.max_submitted for one in cluster.partitions))
-        is_limited = any(limit is not None for limit in limits)
-        _submit_all(lacking, cluster, scheduler.in_queue() if is_limited else Counter(), size)
+        _submit_all(lacking, cluster, scheduler.in_queue(), size)
     return 0
 
 

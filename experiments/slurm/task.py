@@ -7,12 +7,11 @@ from pathlib import Path
 from experiments.plan.cluster import Partition
 from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
-from experiments.plan.scenes import SceneFolder
 from experiments.plan.site import Machine, this_machine, what_limits
 from experiments.run.costs import Costs
 from experiments.run.missing import missing
 from experiments.run.progress import ProgressDisplay, several
-from experiments.run.runner import ProcessResult, Runner, Task
+from experiments.run.runner import ProcessResult, Task
 from experiments.run.study import POINTS_FAILED, Study
 from experiments.run.together import together
 from experiments.slurm.jobs import folders, read_job
@@ -53,16 +52,9 @@ class _Worker:
     ) -> None:
         self._study = study
         self._display = display
-        store = study.store
         # Scenes of its own, since a task with another program would empty a common folder.
-        scenes = SceneFolder(store.temporary / "scenes", store.temporary, str(study.generator.sha256))
-        self._runner = Runner(
-            store,
-            scenes,
-            study.generator,
-            study.site.time_limit_seconds,
-            refuse=lambda point: refusal(point, partition, machine),
-        )
+        scenes = study.store.temporary / "scenes"
+        self._runner = study.runner(scenes, refuse=lambda point: refusal(point, partition, machine))
         self.failed: set[tuple[str, str]] = set()
         # What this task has seen itself: others may measure elsewhere.
         self._costs = Costs()

@@ -4,7 +4,6 @@ import contextlib
 import os
 import select
 import time
-from collections import deque
 
 KEPT_BYTES = 1 << 22
 """Of what a child prints the end is kept: far more than anything that is read, far less than memory."""
@@ -20,23 +19,20 @@ class Kept:
     """The end of what a child prints, and how much came before it."""
 
     def __init__(self) -> None:
-        self._parts: deque[bytes] = deque()
-        self._bytes = 0
+        self._bytes = bytearray()
         self.dropped = 0
 
     def add(self, part: bytes) -> None:
         """What came next."""
-        self._parts.append(part)
-        self._bytes += len(part)
-        while self._bytes - len(self._parts[0]) >= KEPT_BYTES:
-            first = len(self._parts.popleft())
-            self._bytes -= first
-            self.dropped += first
+        self._bytes += part
+        if (surplus := len(self._bytes) - KEPT_BYTES) >= KEPT_BYTES:
+            del self._bytes[:surplus]
+            self.dropped += surplus
 
     @property
     def text(self) -> str:
         """What is kept; bytes that are no UTF-8 are replaced."""
-        return b"".join(self._parts).decode(errors="replace")
+        return self._bytes.decode(errors="replace")
 
 
 class Allowance:

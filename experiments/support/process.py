@@ -20,7 +20,6 @@ _PR_SET_PDEATHSIG = 1
 _PRCTL = ctypes.CDLL(None, use_errno=True).prctl
 
 TIMED_OUT = 124
-UNKNOWN_END = 125
 NOT_FOUND = 127
 
 _LONGEST_REASON = 500
@@ -80,7 +79,6 @@ def run(
         pipes = {_descriptor(child.stdout): output, _descriptor(child.stderr): errors}
         try:
             in_time = _follow(child, pipes, time_limit)
-            exit_code = _exit_code(child) if in_time else TIMED_OUT
         except BaseException:
             ends_all = True
             raise
@@ -92,10 +90,7 @@ def run(
     dropped = output.dropped + errors.dropped
     if not in_time:
         return Completed(tuple(command), TIMED_OUT, "", _took_longer(time_limit), dropped)
-    if exit_code is None:
-        told = "how it ended is not known: somebody else took leave of it"
-        return Completed(tuple(command), UNKNOWN_END, output.text, told, dropped)
-    return Completed(tuple(command), exit_code, output.text, errors.text, dropped)
+    return Completed(tuple(command), child.returncode, output.text, errors.text, dropped)
 
 
 @contextlib.contextmanager
@@ -216,21 +211,10 @@ def _die_with_parent() -> None:
 
 
 def _has_ended(child: subprocess.Popen[bytes]) -> bool:
-    """Whether it has, without taking leave of it: until then nobody else gets its number."""
-    try:
-        return os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is not None
-    except ChildProcessError:
-        return True
-
-
-def _exit_code(child: subprocess.Popen[bytes]) -> int | None:
-    """Of a child that has ended; None where somebody else took leave of it."""
-    try:
-        end = os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)
-    except ChildProcessError:
-        return None
-    assert end is not None
-    return end.si_status if end.si_code == os.CLD_EXITED else -end.si_status
+    """Whether it has, without taking leave of it: until then nobody else gets its number. Raises where
+    somebody else took leave of it, which Popen would take for a success.
+    """
+    return os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is not None
 
 
 def _kill(child: subprocess.Popen[bytes]) -> None:

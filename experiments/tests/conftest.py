@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -36,6 +36,8 @@ def told_in(name: str) -> str:
 CHUNKS, PAIR, CONTROL, ERRORS = map(told_in, ("chunks", "pair", "control", "errors"))
 SLURM_SITE = told_in("slurm_site")
 SCENE = CHUNKS[CHUNKS.index("[scene]") : CHUNKS.index("[sweep]")]
+PAIR_APART = PAIR.replace("[scene]", "turns = false\n[scene]", 1)
+PAIR_OF_BUILDS = PAIR.replace('variant = "nine"', 'variant = "published"\nprogram = "clang"')
 FOUR_AND_NINE = PAIR[PAIR.index("[[series]]") :]
 
 
@@ -173,12 +175,18 @@ def hear_every_signal() -> None:
         signal.signal(number, signal.SIG_DFL)
 
 
+def until(happened: Callable[[], object], told: str, seconds: float = 60) -> None:
+    """Wait for something; fails with `told` after so many seconds."""
+    end = time.monotonic() + seconds
+    while not happened():
+        assert time.monotonic() < end, told
+        time.sleep(0.01)
+
+
 def no_child_is_left(workplace: Workplace) -> None:
     """The kernel ends the children of a process that died; it may take it a moment."""
-    until = time.monotonic() + 5
-    while any(is_running(call["pid"]) for call in workplace.calls()):
-        assert time.monotonic() < until, "a program outlived its runner"
-        time.sleep(0.01)
+    numbers = {call["pid"] for call in workplace.calls()}
+    until(lambda: not any(map(is_running, numbers)), "a program outlived its runner", 5)
 
 
 def is_running(number: int) -> bool:

@@ -294,7 +294,6 @@ def provenance() -> dict[str, Any]:
     told = template("provenance")
     return told | {
         "host": os.uname().nodename,
-        "cpu_model": os.environ.get("FAKE_CPU_MODEL", "none"),
         "openmp": told["openmp"] | {"environment": said("OMP_", "GOMP_", "KMP_")},
         "binary_sha256": sha256(__file__),
         "slurm": said("SLURM_", "SLURMD_") or None,

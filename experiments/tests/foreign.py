@@ -9,11 +9,12 @@ HEAD = 'title = "Programs"\nfigure = "comparison"\nthreads = 1\n'
 BLOCKS = "[blocks]\nminimum = 2\nwanted = 2\n"
 
 
-def script(place: Workplace, name: str, text: str) -> Path:
+def script(place: Workplace, name: str, text: str, mode: int = 0o755) -> Path:
+    """A program beside the questions, for the shell unless it begins otherwise."""
     path = place.root / "questions" / name
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
-    path.chmod(0o755)
+    path.write_text(text if text.startswith("#!") else f"#!/bin/sh\n{text}\n", encoding="utf-8")
+    path.chmod(mode)
     return path
 
 

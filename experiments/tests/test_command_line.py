@@ -2,20 +2,12 @@
 
 import re
 import signal
-import time
 from pathlib import Path
 
 import pytest
 
 from experiments.__main__ import main
-from experiments.tests.conftest import PAIR, Workplace, finish, no_child_is_left
-
-
-def wait_for(path: Path, pattern: str) -> None:
-    until = time.monotonic() + 20
-    while not list(path.glob(pattern)):
-        assert time.monotonic() < until, f"no {pattern} in {path}"
-        time.sleep(0.01)
+from experiments.tests.conftest import PAIR, Workplace, finish, no_child_is_left, until
 
 
 def test_a_run_and_a_status_tell_how_much_and_how_long(workplace: Workplace) -> None:
@@ -86,15 +78,7 @@ MISTAKES = {
         ["status", "--results", "nowhere"],
         r"results: found nowhere, expected a folder that is there",
     ),
-    "questions": (
-        ["check", "--questions", "nowhere"],
-        r"questions: found nowhere, expected a folder that is there",
-    ),
     "no names": (["run", "--study", ","], r"argument --study: found ',', expected names between commas .*"),
-    "a file for results": (
-        ["run", "--results", "questions/pair.toml"],
-        r"results: found questions/pair\.toml, which is no folder, expected one or a place for one",
-    ),
     "a file above results": (
         ["builds", "--results", "questions/pair.toml/results"],
         r"results: found \S+/questions/pair\.toml, which is no folder, expected one or a place for one",
@@ -145,7 +129,7 @@ def test_check_sees_a_variant_that_there_is_not_where_the_program_is_built(workp
 def test_two_runners_in_one_folder_are_refused(workplace: Workplace) -> None:
     workplace.behave(FAKE_SECONDS="0.3")
     first = workplace.start("run", "--no-figures")
-    wait_for(workplace.results, "records/*/*/*.json")
+    until(workplace.files, "no record comes", 20)
     code, _, error = finish(workplace.start("run", "--no-figures"))
     assert code == 1
     assert re.fullmatch(
@@ -160,7 +144,7 @@ def test_two_runners_in_one_folder_are_refused(workplace: Workplace) -> None:
 def test_a_signal_stops_cleanly(workplace: Workplace, number: signal.Signals) -> None:
     workplace.behave(FAKE_SECONDS="0.3")
     process = workplace.start("run", "--no-figures")
-    wait_for(workplace.results, "records/*/*/*.json")
+    until(workplace.files, "no record comes", 20)
     process.send_signal(number)
     code, _, error = finish(process)
     assert code == 128 + number

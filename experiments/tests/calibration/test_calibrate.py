@@ -1,19 +1,19 @@
-"""The verb `calibrate`, with the real program."""
+"""The verb `calibrate`, with the real program; what it leaves where it cannot begin or is killed."""
 
 import json
-import os
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
+from experiments.__main__ import main
 from experiments.calibration.command import CONDITIONS, FILE, UNFINISHED
 from experiments.calibration.kinds import KINDS, PERCENT_MORE
+from experiments.calibration.stream import _blocks
 from experiments.support.busy import busy
-from experiments.tests.conftest import ROOT, finish, is_running, start
+from experiments.support.descendants import children
+from experiments.tests.conftest import ROOT, finish, is_running, start, until
 
 PROGRAM = ROOT / "build" / "gcc" / "carom"
 WORKERS = [PROGRAM.parent / "harness" / "tests" / f"calibration_{name}" for name in ("process", "benchmark")]
@@ -51,31 +51,48 @@ def test_seconds_that_cannot_be_are_one_line(tmp_path: Path) -> None:
         assert f"found {wrong}, expected a number of seconds above 0" in error
 
 
-def loops_of(parent: int) -> list[int]:
-    """Return the processes that keep a processor busy for this parent."""
-    found = subprocess.run(["pgrep", "-P", str(parent)], capture_output=True, text=True, check=False).stdout
-    return [int(one) for one in found.split()]
-
-
-def test_the_loops_beside_end_with_the_block_and_with_their_parent() -> None:
-    before = set(loops_of(os.getpid()))
+def test_the_loops_beside_end_with_the_block() -> None:
+    before = children()
     with busy(2):
-        inside = set(loops_of(os.getpid())) - before
+        inside = children() - before
         assert len(inside) == 2
     assert not any(map(is_running, inside))
-    code = (
-        "import time\nfrom experiments.support.busy import busy\n"
-        "with busy(2):\n  print(1, flush=True)\n  time.sleep(60)"
-    )
-    parent = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE)
-    assert parent.stdout is not None
-    parent.stdout.readline()
-    loops = loops_of(parent.pid)
-    assert len(loops) == 2
-    parent.send_signal(signal.SIGKILL)
-    parent.wait()
-    parent.stdout.close()
-    until = time.monotonic() + 10
-    while any(is_running(one) for one in loops) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not any(is_running(one) for one in loops)
+
+
+def test_a_program_that_is_not_built_is_told_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    results = tmp_path / "results"
+    assert main(["calibrate", "--build", str(tmp_path), "--results", str(results)]) == 1
+    assert capsys.readouterr().err.count("\n") == 1
+    assert not results.exists()
+
+
+def test_rounds_that_fill_no_block_are_left_out() -> None:
+    rounds = [[float(k)] for k in range(7)]
+    assert _blocks(rounds, 3) == [rounds[:3], rounds[3:6]]
+    assert _blocks(rounds[:1], 3) == [rounds[:1]]
+
+
+@needs_programs
+def test_a_command_that_is_killed_leaves_no_loop_and_no_result(tmp_path: Path) -> None:
+    child = subprocess.Popen([*COMMAND, str(tmp_path)], cwd=ROOT, stdout=subprocess.DEVNULL)
+    path, loops = Path(f"/proc/{child.pid}/task/{child.pid}/children"), set[int]()
+
+    def begun() -> set[int]:
+        loops.update(one for one in map(int, path.read_text().split()) if "while True" in words_of(one))
+        return loops
+
+    until(begun, "no loop begins")
+    child.kill()
+    child.wait()
+    until(lambda: not any("while True" in words_of(one) for one in loops), "a loop goes on")
+    assert not (tmp_path / FILE).exists()
+    json.loads((tmp_path / UNFINISHED).read_text(encoding="utf-8"))
+
+
+def words_of(process: int) -> str:
+    try:
+        return Path(f"/proc/{process}/cmdline").read_text(encoding="utf-8")
+    except OSError:
+        return ""

@@ -45,13 +45,6 @@ def test_threads_follow_the_quota(quota: float | None, threads: int, monkeypatch
     assert bool(site.what_limits()) == (threads < 8)
 
 
-def test_without_a_quota_the_machine_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    limited(monkeypatch, None)
-    without = site.this_machine()
-    limited(monkeypatch, 100.0)
-    assert site.this_machine() == without, "its measurements keep their ids"
-
-
 def test_what_limits_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     limited(monkeypatch, 1.5)
     assert (

@@ -11,7 +11,7 @@ import pytest
 from experiments.plan.command import Command
 from experiments.plan.plan import Surroundings, plan
 from experiments.plan.point import Point
-from experiments.plan.program import Program, check_command, find_programs
+from experiments.plan.program import Program, find_programs
 from experiments.plan.question import load_question
 from experiments.plan.scale import SCALES
 from experiments.plan.scenes import HardCase, Scene, SceneFile
@@ -56,25 +56,13 @@ def test_whatever_changes_the_measurement_changes_the_id_and_nothing_else_does(w
     assert {"label", "scene.isotropic", "machine.cores", "command.benchmark"} < changed.keys()
     cases = {replace(point, scene=HardCase(case)).id for case in ("cradle", "corner")}
     assert len(cases | {point.id}) == 3
-
-
-def test_an_id_never_reads_as_a_number(workplace: Workplace) -> None:
-    question = load_question(workplace.root / "questions" / "chunks.toml")
-    for point in plan(question, surroundings(workplace)).points:
-        assert re.fullmatch("p[0-9a-f]{16}", point.id)
+    assert all(re.fullmatch("p[0-9a-f]{16}", one) for one in cases), "no id reads as a number"
 
 
 def surroundings(workplace: Workplace, scale: str = "paper") -> Surroundings:
     site = load_site("local")
     programs = find_programs(site, workplace.root / "build")
     return Surroundings(site, Machine("test", 2, 2), programs, SCALES[scale])
-
-
-def test_a_plan_is_the_same_each_time(workplace: Workplace) -> None:
-    question = load_question(workplace.root / "questions" / "chunks.toml")
-    first, second = (plan(question, surroundings(workplace)) for _ in range(2))
-    assert [point.id for point in first.points] == [point.id for point in second.points]
-    assert [first.block(block) for block in range(5)] == [second.block(block) for block in range(5)]
 
 
 def test_quick_values_are_taken_at_quick_scale(workplace: Workplace) -> None:
@@ -126,9 +114,6 @@ def test_a_variant_is_checked_with_the_tolerance_that_it_is_timed_with(workplace
     (point, _) = plan(
         load_question(workplace.root / "questions" / "pair.toml"), surroundings(workplace)
     ).points
-    assert point.tolerance == "published"
-    command = check_command(point.program, Path("s.in"), str(point.variant), point.threads, point.tolerance)
-    assert command[-2:] == ("--tolerance", "published")
     scene = SceneFile(Path("s.in"), "0" * 64)
     assert note_of(point, scene) != note_of(replace(point, tolerance="relative"), scene)
 
@@ -154,53 +139,27 @@ def test_every_variant_meets_every_scene_at_every_value(workplace: Workplace) ->
         for series in ("four", "nine")
         for substeps in (1, 2)
     ]
-    assert {point.scene_name: point.scene.arguments for point in points} == {
-        "dilute": (
-            "100",
-            "1000",
-            "5",
-            "10",
-            "1",
-            "2",
-            "--seed",
-            "1",
-            "--placement",
-            "lattice",
-            "--isotropic",
-        ),
-        "cradle": ("--case", "cradle"),
-    }
 
 
-def test_a_hard_case_has_one_size(workplace: Workplace) -> None:
+@pytest.mark.parametrize(("scale", "dilute"), [("paper", "100 1000 5 10 1 2"), ("quick", "10 316 5 10 1 2")])
+def test_a_hard_case_has_one_size(workplace: Workplace, scale: str, dilute: str) -> None:
     question = load_question(workplace.question("errors", ERRORS))
-    quick = plan(question, surroundings(workplace, "quick")).points
-    assert {point.scene_name: point.scene.arguments[:4] for point in quick} == {
-        "dilute": ("10", "316", "5", "10"),
-        "cradle": ("--case", "cradle"),
-    }
+    points = plan(question, surroundings(workplace, scale)).points
+    words = {" ".join(point.scene.arguments) for point in points}
+    assert words == {f"{dilute} --seed 1 --placement lattice --isotropic", "--case cradle"}
 
 
-def test_what_takes_too_long_is_left_out_at_quick_scale(workplace: Workplace) -> None:
-    text = ERRORS.replace('case = "cradle"', 'case = "cradle"\npaper_only = true')
-    question = load_question(workplace.question("errors", text))
-    assert {point.scene_name for point in plan(question, surroundings(workplace)).points} == {
-        "dilute",
-        "cradle",
-    }
-    assert {point.scene_name for point in plan(question, surroundings(workplace, "quick")).points} == {
-        "dilute"
-    }
-
-
-def test_a_scene_may_be_for_some_series_alone(workplace: Workplace) -> None:
-    text = ERRORS.replace('case = "cradle"', 'case = "cradle"\nseries = ["nine"]')
-    points = plan(load_question(workplace.question("errors", text)), surroundings(workplace)).points
-    assert {(point.scene_name, point.series) for point in points} == {
-        ("dilute", "four"),
-        ("dilute", "nine"),
-        ("cradle", "nine"),
-    }
+@pytest.mark.parametrize(
+    ("line", "paper", "quick"),
+    [("", "fnfn", "fnfn"), ("paper_only = true", "fnfn", "fn"), ('series = ["nine"]', "fnn", "fnn")],
+)
+def test_a_scene_may_be_for_some_series_or_for_one_scale_alone(
+    workplace: Workplace, line: str, paper: str, quick: str
+) -> None:
+    question = load_question(workplace.question("errors", ERRORS.replace('"cradle"', f'"cradle"\n{line}')))
+    planned = (plan(question, surroundings(workplace, scale)).points for scale in ("paper", "quick"))
+    of_each = ["".join(one.series[0] for one in points if one.x == 1) for points in planned]
+    assert of_each == [paper, quick]
 
 
 def test_what_is_judged_travels_as_tags(workplace: Workplace) -> None:
@@ -211,25 +170,6 @@ def test_what_is_judged_travels_as_tags(workplace: Workplace) -> None:
     )
     told = [[point.tags.get(key) for key in ("margin", "error", "reference")] for point in (usual[0], own[0])]
     assert told == [[0.02, 0.05, None], [0.05, 0.01, "nine"]]
-
-
-JUDGED = {
-    "margin = 0": "margin: found 0, expected a number above 0 and below 1",
-    "margin = 1": "margin: found 1, expected a number above 0 and below 1",
-    "error = 0.0": "error: found 0.0, expected a number above 0, at most 0.5",
-    "error = 0.6": "error: found 0.6, expected a number above 0, at most 0.5",
-    "error = 'small'": 'error: found "small", expected a number above 0, at most 0.5',
-    "reference = 'nin'": 'reference: found "nin", expected one of four, nine; did you mean "nine"?',
-}
-
-
-@pytest.mark.parametrize(("line", "message"), JUDGED.items())
-def test_what_cannot_be_judged_by_is_one_line(workplace: Workplace, line: str, message: str) -> None:
-    path = workplace.question("pair", f"{line}\n{PAIR}")
-    with pytest.raises(InputError) as error:
-        load_question(path)
-    assert str(error.value).startswith(f"{path}: {message}")
-    assert "\n" not in str(error.value)
 
 
 MISTAKES = {

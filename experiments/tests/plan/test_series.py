@@ -12,19 +12,11 @@ from experiments.plan.question import load_question
 from experiments.plan.scenes import CHECKED_STEPS
 from experiments.run.study import Study
 from experiments.tests.conftest import SCENE, Workplace
+from experiments.tests.foreign import BLOCKS, script
 from support.errors import InputError
 
-BLOCKS = "[blocks]\nminimum = 2\nwanted = 2\n"
 HEAD = 'title = "Programs"\nfigure = "comparison"\n'
 SORT = '[[series]]\nname = "sort"\ncommand = ["sort", "--parallel={threads}", "--output=/dev/null"]\n'
-
-
-def program(folder: Path, name: str, first: str = "#!/bin/sh", mode: int = 0o755) -> Path:
-    path = folder / "questions" / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(f"{first}\nexit 0\n", encoding="utf-8")
-    path.chmod(mode)
-    return path
 
 
 def points(place: Workplace, text: str) -> list[Point]:
@@ -54,8 +46,14 @@ def test_a_question_needs_no_scene_and_fills_in_what_it_sweeps(empty_workplace: 
     assert all(Path(words(point)[0]).name == "sort" for point in found)
 
 
+def test_what_is_usual_leaves_the_id_as_it_was(empty_workplace: Workplace) -> None:
+    for line in ("exit_codes = [0]\n", "fresh_folder = false\n"):
+        [plain], [said] = (points(empty_workplace, HEAD + SORT + one + BLOCKS) for one in ("", line))
+        assert plain.id == said.id
+
+
 def test_of_a_scene_everything_can_be_said(empty_workplace: Workplace) -> None:
-    program(empty_workplace.root, "mine")
+    script(empty_workplace, "mine", "exit 0")
     command = 'command = ["./mine", "{scene}", "{particles}", "{side}", "{radius}", "{steps}", "{seed}"]'
     text = f'{HEAD}{SCENE}[[series]]\nname = "mine"\n{command}\n{BLOCKS}'
     [point] = points(empty_workplace, text)
@@ -74,7 +72,7 @@ def test_braces_of_a_folder_are_what_they_are(empty_workplace: Workplace) -> Non
 
 
 def test_what_is_checked_is_the_beginning_of_the_scene(empty_workplace: Workplace) -> None:
-    program(empty_workplace.root, "mine")
+    script(empty_workplace, "mine", "exit 0")
     lines = 'command = ["./mine", "{steps}"]\ntrajectory = ["./mine", "{scene}", "{steps}", "{out}"]'
     long = SCENE.replace("steps = 10", "steps = 1000")
     [point] = points(empty_workplace, f'{HEAD}{long}[[series]]\nname = "mine"\n{lines}\n{BLOCKS}')
@@ -97,12 +95,11 @@ def test_a_variant_may_stand_beside_a_program(empty_workplace: Workplace) -> Non
 def test_a_changed_program_is_another_point(
     empty_workplace: Workplace, monkeypatch: pytest.MonkeyPatch, changed: str
 ) -> None:
-    folder = empty_workplace.root
-    own = program(folder, "own-interpreter", f"#!{sys.executable}")
+    own = script(empty_workplace, "own-interpreter", f"#!{sys.executable}\nexit 0\n")
     files = {
-        "the program": program(folder, "mine", f"#!/usr/bin/env -S {own.name} -x"),
+        "the program": script(empty_workplace, "mine", f"#!/usr/bin/env -S {own.name} -x\nexit 0\n"),
         "its interpreter": own,
-        "a file among its words": program(folder, "input.txt"),
+        "a file among its words": script(empty_workplace, "input.txt", "exit 0"),
     }
     monkeypatch.setenv("PATH", f"{own.parent}:/usr/bin:/bin")
     text = f'{HEAD}[[series]]\nname = "mine"\ncommand = ["./mine", "input.txt", "other"]\n{BLOCKS}'
@@ -119,7 +116,7 @@ def test_a_changed_program_is_another_point(
 
 def test_a_pattern_makes_a_series_of_each_file(empty_workplace: Workplace) -> None:
     for name in ("subs/anna/sim", "subs/b {ob}/sim", "subs/notes.txt"):
-        program(empty_workplace.root, name)
+        script(empty_workplace, name, "exit 0")
     lines = 'commands = "subs/*/sim"\ncommand = ["{program}", "{x}"]\ntrajectory = ["{folder}/sim", "{out}"]'
     found = points(empty_workplace, f"{HEAD}{SCENE}[[series]]\n{lines}\n{BLOCKS}")
     assert [point.series for point in found] == ["anna", "b {ob}"]
@@ -130,16 +127,8 @@ def test_a_pattern_makes_a_series_of_each_file(empty_workplace: Workplace) -> No
     ]
 
 
-def test_one_of_many_that_cannot_be_run_is_a_point_as_the_others(empty_workplace: Workplace) -> None:
-    program(empty_workplace.root, "subs/anna/sim")
-    program(empty_workplace.root, "subs/bob/sim", mode=0o644)
-    lines = 'commands = "subs/*/sim"\ncommand = ["{program}"]'
-    found = points(empty_workplace, f"{HEAD}[[series]]\n{lines}\n{BLOCKS}")
-    assert [point.series for point in found] == ["anna", "bob"]
-
-
 def test_a_benchmark_is_run_for_its_one_case(empty_workplace: Workplace) -> None:
-    program(empty_workplace.root, "bench")
+    script(empty_workplace, "bench", "exit 0")
     table = 'benchmark = {program = "./bench", name = "BM_sort<int>/{x}"}'
     text = f'{HEAD}[sweep]\nparameter = "size"\nvalues = [8]\n[[series]]\nname = "sort"\n{table}\n{BLOCKS}'
     [point] = points(empty_workplace, text)
@@ -154,21 +143,12 @@ def test_a_benchmark_is_run_for_its_one_case(empty_workplace: Workplace) -> None
     assert point.command.times_itself
 
 
-def test_a_filter_makes_a_series_of_each_case(empty_workplace: Workplace) -> None:
-    path = program(empty_workplace.root, "bench")
-    path.write_text('#!/bin/sh\necho "BM_a/8"; echo "BM_b"\n', encoding="utf-8")
-    table = 'benchmark = {program = "./bench", filter = "BM_.*"}'
-    found = points(empty_workplace, f"{HEAD}[[series]]\n{table}\n{BLOCKS}")
-    assert [point.series for point in found] == ["BM_a/8", "BM_b"]
-    path.write_text("#!/bin/sh\nexit 0\n", encoding="utf-8")
-    assert "benchmark.filter: found" in refusal(empty_workplace, f"{HEAD}[[series]]\n{table}\n{BLOCKS}")
-
-
 WRONG = {
     'name = "a"\ncommand = ["./none"]': 'series[1].command: found "./none", which is not there',
     'name = "a"\ncommand = ["no-such-program-anywhere"]': "expected a program on PATH",
     'name = "a"\ncommand = ["./plain"]': 'found "./plain", which is not executable; `chmod +x`',
     'name = "a"\ncommand = ["./folder/"]': 'found "./folder/", which is a folder',
+    'name = "a"\ncommand = ["/dev/null"]': 'found "/dev/null", which is no file; expected a program',
     'name = "a"\ncommand = ["sort", "{thread}"]': 'found "{thread}", expected one of {threads}',
     'name = "a"\ncommand = ["sort", "{scene}"]': 'found "{scene}", expected one of {threads}',
     'name = "a"\ncommand = ["sort", "{x:3}"]': 'series[1].command: found "{x}", expected one of',
@@ -192,30 +172,27 @@ WRONG = {
 def test_a_mistake_is_told_with_file_key_and_what_was_expected(
     empty_workplace: Workplace, lines: str, expected: str
 ) -> None:
-    program(empty_workplace.root, "plain", mode=0o644)
+    script(empty_workplace, "plain", "exit 0", 0o644)
     (empty_workplace.root / "questions" / "folder").mkdir()
     said = refusal(empty_workplace, f"{HEAD}[[series]]\n{lines}\n{BLOCKS}")
     assert said.startswith(f"{empty_workplace.root / 'questions' / 'asked.toml'}: ")
     assert expected in said
 
 
-def test_what_only_variants_can_do_is_refused(empty_workplace: Workplace) -> None:
-    assert 'verb: found bench beside programs of others, expected "process"' in refusal(
-        empty_workplace, f'{HEAD}verb = "bench"\n{SORT}{BLOCKS}'
-    )
-    assert "repetitions: found for verb process, expected for bench or profile only" in refusal(
-        empty_workplace, f"{HEAD}repetitions = 2\n{SORT}{BLOCKS}"
-    )
-    variant = '[[series]]\nname = "b"\nvariant = "nine"\n'
-    swept = '[sweep]\nparameter = "lines"\nvalues = [1]\n'
-    assert 'sweep.parameter: found "lines", expected one of threads' in refusal(
-        empty_workplace, f"{HEAD}{SCENE}{swept}{SORT}{variant}{BLOCKS}"
-    )
-    assert "scene: missing" in refusal(empty_workplace, f"{HEAD}{SORT}{variant}{BLOCKS}")
-    swept = '[sweep]\nparameter = "particles"\nvalues = [1]\nquick_values = [2]\n'
-    assert "sweep.parameter: found particles without a scene" in refusal(
-        empty_workplace, f"{HEAD}{swept}{SORT}{BLOCKS}"
-    )
+VARIANT = '[[series]]\nname = "b"\nvariant = "nine"\n'
+SWEPT = '[sweep]\nparameter = "{}"\nvalues = [1]\nquick_values = [2]\n'
+ONLY_OF_VARIANTS = {
+    'verb = "bench"\n': 'verb: found bench beside programs of others, expected "process"',
+    "repetitions = 2\n": "repetitions: found for verb process, expected for bench or profile only",
+    SCENE + SWEPT.format("lines") + VARIANT: 'sweep.parameter: found "lines", expected one of threads',
+    VARIANT: "scene: missing",
+    SWEPT.format("particles"): "sweep.parameter: found particles without a scene",
+}
+
+
+@pytest.mark.parametrize(("text", "expected"), ONLY_OF_VARIANTS.items())
+def test_what_only_variants_can_do_is_refused(empty_workplace: Workplace, text: str, expected: str) -> None:
+    assert expected in refusal(empty_workplace, HEAD + text + SORT + BLOCKS)
 
 
 def test_claims_of_a_folder_may_be_named(empty_workplace: Workplace) -> None:

@@ -1,18 +1,17 @@
 """A point that fails, crashes, hangs or is not built is recorded with its reason, and the others go on."""
 
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 
-import jsonschema
 import pytest
 
+from experiments.plan.scenes import sha256_of
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED
-from experiments.tests.conftest import PAIR, Workplace
-from support.record_schema import SCHEMA_FILE
-
-SCHEMA = json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
+from experiments.tests.conftest import PAIR_OF_BUILDS, Workplace
+from support.record_schema import is_record
 
 FAILURES = {
     "check": ("FAKE_CHECK_FAILS", "check of each step: step 3: discs 1 and 2 left colliding", 2),
@@ -30,11 +29,13 @@ def test_a_failed_point_is_recorded_and_the_others_go_on(
     assert run(workplace.settings) == POINTS_FAILED
     [failure] = workplace.failures()
     for file in workplace.files():
-        jsonschema.validate(json.loads(file.read_text(encoding="utf-8")), SCHEMA)
+        assert is_record(json.loads(file.read_bytes()))
     assert len(workplace.files("pair")) == 2, "what failed stands beside what was measured"
     assert (failure["reason"], failure["exit_code"]) == (reason, code)
     assert failure["axes"]["variant"] == "nine"
     assert failure["tags"]["experiment"] == "pair"
+    assert failure["tags"]["host"] == os.uname().nodename
+    assert failure["tags"]["program_sha256"] == sha256_of(workplace.program)
     assert len(workplace.records("pair")) == 2, "the other variant, in both blocks"
     assert len(workplace.records("chunks")) == 6
     assert "nine" not in {one["axes"]["variant"] for one in workplace.records().values()}
@@ -76,8 +77,7 @@ def test_a_process_that_hangs_is_stopped(workplace: Workplace) -> None:
 
 
 def test_a_build_that_is_missing_is_a_gap_with_a_remedy(workplace: Workplace) -> None:
-    clang = PAIR.replace('variant = "nine"', 'variant = "published"\nprogram = "clang"')
-    workplace.question("pair", clang)
+    workplace.question("pair", PAIR_OF_BUILDS)
     assert run(workplace.settings) == 0
     [failure] = workplace.failures()
     assert "is not built; build it with `make build COMPILER=clang`" in failure["reason"]
@@ -94,8 +94,7 @@ def test_a_build_that_is_missing_is_a_gap_with_a_remedy(workplace: Workplace) ->
 def test_what_one_build_can_measure_comes_before_the_other_is_built(
     workplace: Workplace, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    clang = PAIR.replace('variant = "nine"', 'variant = "published"\nprogram = "clang"')
-    workplace.question("pair", clang)
+    workplace.question("pair", PAIR_OF_BUILDS)
     assert run(replace(workplace.settings, builds=("gcc",))) == 0
     assert "the study is complete" not in capsys.readouterr().out
     assert (len(workplace.records("control")), len(workplace.records("pair"))) == (2, 0)

@@ -30,23 +30,6 @@ def test_what_goes_before_and_after_a_run_is_handed_on(empty_workplace: Workplac
     assert sources >= {"sim", "before"}, "what prepares is a part of it"
 
 
-def test_each_of_these_makes_another_point_and_none_leaves_the_id_as_it_was(
-    empty_workplace: Workplace,
-) -> None:
-    script(empty_workplace, "sim", "exit 0")
-    plain = 'command = ["./sim", "{x}"]'
-    lines = [
-        "", 'prepare = ["true"]', 'conclude = ["true"]', "fresh_folder = true", "exit_codes = [0, 1]",
-        "turns = true", "turns = false",
-    ]  # fmt: skip
-    found = []
-    for line in [*lines, "exit_codes = [0]", "fresh_folder = false"]:
-        empty_workplace.question("asked", HEAD + series("a", plain, line) + BLOCKS)
-        found += ids(empty_workplace)
-    assert len(set(found[: len(lines)])) == len(lines)
-    assert {*found[len(lines) :]} == {found[0]}
-
-
 def test_a_fresh_folder_makes_a_program_run_twice_that_cannot_otherwise(empty_workplace: Workplace) -> None:
     place = empty_workplace
     (place.root / "questions").mkdir(exist_ok=True)
@@ -67,13 +50,6 @@ def test_in_a_fresh_folder_only_whole_paths_name_files(empty_workplace: Workplac
     [experiment] = Study(place.settings).experiments
     assert experiment.points[0].program.files[1:] == (place.root / "questions" / "in.txt",)
     assert experiment.points[0].program.absent == ()
-
-
-def test_a_prepare_that_fails_makes_the_point_fail(empty_workplace: Workplace) -> None:
-    empty_workplace.question("asked", HEAD + series("a", 'command = ["true"]\nprepare = ["false"]') + BLOCKS)
-    assert run(empty_workplace.settings) == POINTS_FAILED
-    [failure] = empty_workplace.failures()
-    assert failure["reason"].startswith("prepare: exit code 1 without a word")
 
 
 NO_TERMINAL = "it had no terminal: its standard input is empty, its outputs are pipes"
@@ -112,10 +88,24 @@ def test_whether_it_may_take_turns_is_found_out_once(empty_workplace: Workplace)
     assert told(place) == [none], "a later session knows it as well"
 
 
-def test_who_is_said_to_take_turns_does(empty_workplace: Workplace) -> None:
-    empty_workplace.behave(FAKE_IDLE="b")
-    ask(empty_workplace, "turns = true")
-    assert told(empty_workplace) == [{"a": True, "b": True}] * 2
+OPEN, TURNS, NO_TURNS = dict.fromkeys("ab"), dict.fromkeys("ab", True), dict.fromkeys("ab", False)
+
+
+@pytest.mark.parametrize(
+    ("line", "head", "idle", "expected"),
+    [
+        ("turns = true", "", "b", [TURNS, TURNS]),
+        ("", "", "nobody", [OPEN, TURNS]),
+        ("", "turns = false\n", "nobody", [NO_TURNS, NO_TURNS]),
+    ],
+    ids=["said", "found out: nobody minds", "a question without turns"],
+)
+def test_who_takes_turns(
+    empty_workplace: Workplace, line: str, head: str, idle: str, expected: list[dict[str, bool | None]]
+) -> None:
+    empty_workplace.behave(FAKE_IDLE=idle)
+    ask(empty_workplace, line, head=head + HEAD)
+    assert told(empty_workplace) == expected
 
 
 def test_a_question_about_pauses_compares_both_ways(empty_workplace: Workplace) -> None:
@@ -124,16 +114,6 @@ def test_a_question_about_pauses_compares_both_ways(empty_workplace: Workplace) 
     assert told(empty_workplace)[1:] == [{"a": None, "b": False}], "a was left alone, which tells nothing"
     records = empty_workplace.records("asked").values()
     assert {one["process"]["undisturbed"] for one in records} >= {LEFT_ALONE, IDLE}
-
-
-def test_who_does_not_mind_takes_turns_from_then_on(empty_workplace: Workplace) -> None:
-    ask(empty_workplace)
-    assert told(empty_workplace) == [{"a": None, "b": None}, {"a": True, "b": True}]
-
-
-def test_a_question_without_turns_says_so_of_each(empty_workplace: Workplace) -> None:
-    ask(empty_workplace, head="turns = false\n" + HEAD)
-    assert told(empty_workplace) == [{"a": False, "b": False}] * 2
 
 
 def test_who_times_itself_joins_the_others_as_a_whole(empty_workplace: Workplace) -> None:

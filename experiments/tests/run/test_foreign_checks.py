@@ -64,10 +64,13 @@ def test_what_was_timed_can_be_checked_itself(empty_workplace: Workplace) -> Non
 
 def test_one_that_leaves_no_trajectory_fails(empty_workplace: Workplace) -> None:
     place = empty_workplace
-    text = series("a", 'command = ["true", "{out}"]') + series(
-        "b", 'command = ["true"]\ntrajectory = ["true"]'
-    )
+    script(place, "empty", "").write_bytes(b"")
+    text = series("a", 'command = ["true", "{out}"]')
+    for name, command in (("b", "true"), ("c", "./empty")):
+        text += series(name, 'command = ["true"]', f'trajectory = ["{command}"]')
     place.question("asked", HEAD + SCENE + text + BLOCKS)
     assert run(place.settings) == POINTS_FAILED
-    assert len(place.failures()) == 2
-    assert all("left no trajectory in" in one["reason"] for one in place.failures())
+    reasons = {one["tags"]["series"]: one["reason"] for one in place.failures()}
+    no_program = f"check of each step: cannot be run in {place.root / 'questions'}: Exec format error"
+    assert reasons.pop("c") == no_program, "no shell runs it"
+    assert ["left no trajectory in" in reason for reason in reasons.values()] == [True, True]

@@ -12,17 +12,6 @@ from experiments.tests.foreign import BLOCKS, HEAD, script, series
 from support.errors import InputError
 
 
-def test_a_trajectory_command_is_run_by_no_shell(empty_workplace: Workplace) -> None:
-    place = empty_workplace
-    empty = script(place, "empty", "")
-    empty.write_bytes(b"")
-    text = series("a", 'command = ["true"]', 'trajectory = ["./empty", "{out}"]')
-    place.question("asked", HEAD + SCENE + text + BLOCKS)
-    assert run(place.settings) == POINTS_FAILED
-    reason = f"check of each step: cannot be run in {place.root / 'questions'}: Exec format error"
-    assert place.failures()[0]["reason"] == reason
-
-
 def test_of_many_files_each_that_is_no_program_fails_by_itself(empty_workplace: Workplace) -> None:
     place = empty_workplace
     names = ["right", "empty", "a link", "pipe", "plain", "lost", "caf\udce9", "two\nlines", "{scene}", "dos"]
@@ -69,15 +58,6 @@ def test_words_that_name_no_plain_file_keep_nobody_waiting(empty_workplace: Work
     words = f'command = ["true", "pipe", "link", "inner", "/dev/zero", "{long}", "é", ""]'
     place.question("asked", HEAD + series("a", words) + BLOCKS)
     assert run(place.settings) == 0
-
-
-def test_a_program_that_is_no_file_is_refused_in_a_line(empty_workplace: Workplace) -> None:
-    place = empty_workplace
-    (place.root / "questions").mkdir(exist_ok=True)
-    os.mkfifo(place.root / "questions" / "pipe", 0o755)
-    place.question("asked", HEAD + series("a", 'command = ["./pipe"]') + BLOCKS)
-    with pytest.raises(InputError, match=r'command: found "\./pipe", which is no file'):
-        Study(place.settings)
 
 
 LIST = """

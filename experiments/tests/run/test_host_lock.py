@@ -1,11 +1,9 @@
 """The lock of a host: measurements on one host never overlap."""
 
 import itertools
-import os
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
@@ -76,13 +74,3 @@ def test_within_a_measurement_none_begins() -> None:
         with pytest.raises(InputError, match="runs within another measurement"), host_lock():
             pass
     assert "runs within another measurement (process " in child.stderr
-
-
-def test_no_other_measures_although_its_temporary_folder_is_another(tmp_path: Path) -> None:
-    program = [sys.executable, "-c", ANOTHER, "0.3"]
-    both = [
-        subprocess.Popen(program, stdout=subprocess.PIPE, text=True, env={**os.environ, "TMPDIR": folder})
-        for folder in (str(tmp_path), "/tmp")
-    ]
-    first, second = sorted(times(process) for process in both)
-    assert first[1] <= second[0]

@@ -6,11 +6,9 @@ import random
 import signal
 import time
 
-import jsonschema
-
 from experiments.run.session import run
-from experiments.tests.conftest import CHUNKS, CONTROL, PAIR, Workplace, no_child_is_left
-from support.record_schema import SCHEMA_FILE
+from experiments.tests.conftest import CHUNKS, CONTROL, PAIR_APART, Workplace, no_child_is_left, until
+from support.record_schema import is_record
 
 KILLS = 10
 BLOCKS = 6
@@ -18,8 +16,7 @@ BLOCKS = 6
 
 def test_ten_kills_lose_at_most_one_process_each(empty_workplace: Workplace) -> None:
     workplace = empty_workplace
-    apart = PAIR.replace("[scene]", "turns = false\n[scene]", 1)
-    for name, text in (("chunks", CHUNKS), ("pair", apart), ("control", CONTROL)):
+    for name, text in (("chunks", CHUNKS), ("pair", PAIR_APART), ("control", CONTROL)):
         workplace.question(name, more_blocks(text))
     workplace.behave(FAKE_SECONDS="0.1")
     moments = random.Random(20240229)
@@ -35,9 +32,7 @@ def test_ten_kills_lose_at_most_one_process_each(empty_workplace: Workplace) -> 
         lost = [name for name, record in before.items() if records.get(name) != record]
         assert len(lost) <= 1, "what was finished is there, but for the half of a block cut through before"
         for file in workplace.files():
-            jsonschema.validate(
-                json.loads(file.read_bytes()), json.loads(SCHEMA_FILE.read_text(encoding="utf-8"))
-            )
+            assert is_record(json.loads(file.read_bytes()))
         before = records
     assert before, "something was finished"
     assert not workplace.is_whole(), "the kills came while there was something to do"
@@ -62,7 +57,4 @@ def more_blocks(text: str) -> str:
 def wait_until_it_measures(workplace: Workplace) -> None:
     log = workplace.root / "log"
     size = log.stat().st_size if log.exists() else 0
-    until = time.monotonic() + 20
-    while not log.exists() or "--tag" not in log.read_text()[size:]:
-        assert time.monotonic() < until, "the study does not begin"
-        time.sleep(0.005)
+    until(lambda: log.exists() and "--tag" in log.read_text()[size:], "the study does not begin", 20)

@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import sys
-import time
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +14,8 @@ from experiments.__main__ import main
 from experiments.run import status
 from experiments.run.session import run
 from experiments.run.study import POINTS_FAILED, Settings, Study
-from experiments.tests.conftest import ROOT, SCENE, Workplace, finish
+from experiments.tests.conftest import ROOT, SCENE, Workplace, finish, until
+from experiments.tests.foreign import script
 from support.record_schema import is_record
 
 BUILD = ROOT / "build"
@@ -88,19 +88,11 @@ done
 """
 
 
-def write_program(place: Workplace, name: str, text: str) -> Path:
-    path = place.root / "questions" / name
-    path.parent.mkdir(exist_ok=True)
-    path.write_text(text, encoding="utf-8")
-    path.chmod(0o755)
-    return path
-
-
 @pytest.fixture
 def programs(empty_workplace: Workplace) -> Workplace:
-    write_program(empty_workplace, "mine", SIMULATION.replace("{python}", sys.executable))
-    write_program(empty_workplace, 'crash it\'s "here"', "#!/bin/sh\necho no room for >&2; exit 9\n")
-    write_program(empty_workplace, "bench", BENCHMARK)
+    script(empty_workplace, "mine", SIMULATION.replace("{python}", sys.executable))
+    script(empty_workplace, 'crash it\'s "here"', "#!/bin/sh\necho no room for >&2; exit 9\n")
+    script(empty_workplace, "bench", BENCHMARK)
     empty_workplace.question("others", PROGRAMS)
     return empty_workplace
 
@@ -137,17 +129,6 @@ def test_every_kind_is_measured_or_fails_with_its_reason(programs: Workplace) ->
     assert crashed["command"][0].endswith('crash it\'s "here"')
 
 
-def test_a_changed_program_is_measured_again_with_its_partners(programs: Workplace) -> None:
-    run(settings(programs))
-    before = programs.records("others")
-    with (programs.root / "questions" / "mine").open("a") as file:
-        file.write("# another one\n")
-    run(settings(programs))
-    after = programs.records("others")
-    assert len(after) == len(before) == 8
-    assert not any(one in after.values() for one in before.values()), "with those that it is compared with"
-
-
 SLOW = """
 title = "Two that count"
 figure = "comparison"
@@ -170,19 +151,14 @@ COUNT = "#!/bin/sh\ni=0\nwhile [ $i -lt $1 ]; do i=$((i+1)); done\n"
 
 
 def test_killed_and_resumed_it_measures_what_is_missing(empty_workplace: Workplace) -> None:
-    count = write_program(empty_workplace, "count", COUNT)
+    count = script(empty_workplace, "count", COUNT)
     empty_workplace.question("counts", SLOW)
     more = ("--build", str(BUILD), "--no-figures")
     process = empty_workplace.start("run", *more)
-    until = time.monotonic() + 60
-    while not empty_workplace.records("counts"):
-        assert time.monotonic() < until
-        time.sleep(0.01)
+    until(lambda: empty_workplace.records("counts"), "nothing is measured")
     process.send_signal(signal.SIGKILL)
     finish(process)
-    while _running(count):
-        assert time.monotonic() < until, "a program outlived its runner"
-        time.sleep(0.01)
+    until(lambda: not _running(count), "a program outlived its runner")
     kept = {name: record["recorded_at"] for name, record in empty_workplace.records("counts").items()}
     assert 0 < len(kept) < 8
     code, _, _ = finish(empty_workplace.start("run", *more))
@@ -206,17 +182,8 @@ def _running(program: Path) -> bool:
     return False
 
 
-def test_turns_can_be_switched_off(empty_workplace: Workplace) -> None:
-    write_program(empty_workplace, "count", COUNT)
-    empty_workplace.question("counts", f"turns = false\n{SLOW}")
-    assert run(replace(settings(empty_workplace), blocks=1)) == 0
-    assert all(
-        record["turns"] is record["slices"] is None for record in empty_workplace.records("counts").values()
-    )
-
-
 def test_the_folder_of_the_questions_brings_its_claims_along(empty_workplace: Workplace) -> None:
-    write_program(empty_workplace, "count", COUNT)
+    script(empty_workplace, "count", COUNT)
     empty_workplace.question("counts", SLOW)
     run(replace(settings(empty_workplace), blocks=1))
     kept = empty_workplace.results / "claims.toml"

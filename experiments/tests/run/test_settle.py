@@ -3,14 +3,12 @@
 import json
 import re
 import shutil
-from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
 
 from experiments.plan import scale
 from experiments.run import session
-from experiments.run.schedule import Schedule
 from experiments.run.session import run
 from experiments.run.study import Study
 from experiments.run.verdicts import Analysis, Open, Verdicts
@@ -25,24 +23,26 @@ def want(workplace: Workplace, **blocks: int) -> None:
     (workplace.root / "needed").write_text(json.dumps(blocks))
 
 
-def test_what_is_open_goes_on_from_look_to_look_and_what_is_settled_stops(needing: Workplace) -> None:
-    want(needing, pair=7, chunks=2)
-    code, output, error = finish(needing.start("run", "--budget", "5"))
+@pytest.mark.parametrize(
+    ("needed", "until", "decided"),
+    [
+        ({"pair": 7, "chunks": 2}, ("--budget", "5"), {"pair": 7, "chunks": 4}),
+        # Of what rests on two questions more of the one that has its blocks would settle nothing.
+        ({"pair+chunks": 5}, ("--budget", "5"), {"pair+chunks": 7}),
+        ({"pair": 20, "chunks": 11}, ("--until-decided",), {"pair": 22, "chunks": 13}),
+    ],
+)
+def test_what_is_open_goes_on_from_look_to_look_and_what_is_settled_stops(
+    needing: Workplace, needed: dict[str, int], until: tuple[str, ...], decided: dict[str, int]
+) -> None:
+    want(needing, **needed)
+    code, output, error = finish(needing.start("run", *until))
     assert (code, error) == (0, "no ink\n")
-    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (7, 4)
+    for claim, blocks in decided.items():
+        assert f"decided: {claim} holds from {blocks} blocks" in output
+        assert {blocks_of(needing, name) for name in claim.split("+")} == {blocks}
     looks = [json.loads(line)["pair"] for line in (needing.root / "looks").read_text().splitlines()]
-    assert looks == [1, 4, 7], "nothing is looked at between two looks"
-    assert "decided: chunks holds from 4 blocks" in output
-    assert "decided: pair holds from 7 blocks" in output
-
-
-def test_what_rests_on_two_questions_gets_blocks_of_both(needing: Workplace) -> None:
-    """The blocks of such a claim are the fewest: more of the question that has them would settle nothing."""
-    want(needing, **{"pair+chunks": 5})
-    code, output, error = finish(needing.start("run", "--budget", "5"))
-    assert (code, error) == (0, "no ink\n")
-    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (7, 7)
-    assert "decided: pair+chunks holds from 7 blocks" in output
+    assert looks == [*range(1, looks[-1] + 1, 3)], "nothing is looked at between two looks"
 
 
 def test_a_finished_study_is_left_alone_until_a_budget_is_given(needing: Workplace) -> None:
@@ -53,12 +53,6 @@ def test_a_finished_study_is_left_alone_until_a_budget_is_given(needing: Workpla
     assert blocks_of(needing, "pair") == 4
     assert finish(needing.start("run", "--budget", "1"))[0] == 0
     assert blocks_of(needing, "pair") == 7
-
-
-def test_until_it_is_decided(needing: Workplace) -> None:
-    want(needing, pair=20, chunks=11)
-    assert finish(needing.start("run", "--until-decided"))[0] == 0
-    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (22, 13)
 
 
 @pytest.mark.parametrize(("share", "blocks"), [(0.0, 0), (1e7, 10)])
@@ -164,24 +158,15 @@ def test_values_taken_out_of_a_finished_question_are_no_longer_planned(workplace
     assert len(workplace.records("chunks")) == 4
 
 
-def test_the_cheapest_to_settle_comes_first(workplace: Workplace) -> None:
+def test_what_was_spent_on_a_question_counts_towards_what_settling_it_costs(workplace: Workplace) -> None:
     run(replace(workplace.settings, figures=False))
     study = Study(workplace.settings)
     with study.store.opened():
         schedule = study.schedule(settle=False)
-    one, other = Open(2, 4, 6), Open(2, 4, 40)
-    for first, pair, chunks in (("pair", one, other), ("chunks", other, one)):
-        assert cheapest(schedule, {"pair": pair, "chunks": chunks}) == first
-    near = Open(28, 42, 34)
-    assert cheapest(schedule, {"pair": near, "chunks": Open(2, 4, 12)}) == "chunks", "what it has had counts"
-    [waiting] = schedule.waiting(Verdicts({"pair": Open(2, 9, 20)}))
-    assert waiting.lacking == 7
+    [waiting] = schedule.waiting(Verdicts({"pair": Open(blocks=4, next=9, needed=20)}))
+    assert (waiting.name, waiting.lacking, waiting.is_first) == ("pair", 7, True)
     assert waiting.seconds_to_settle == pytest.approx(18 * waiting.block_seconds)
     assert not list(schedule.waiting(Verdicts()))
-
-
-def cheapest(schedule: Schedule, found: Mapping[str, Open]) -> str:
-    return min(schedule.waiting(Verdicts(found)), key=lambda one: one.seconds_to_settle).name
 
 
 def test_blocks_of_what_is_open_take_turns(needing: Workplace) -> None:

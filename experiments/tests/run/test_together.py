@@ -1,7 +1,6 @@
 """Points of a block that take turns in one process, and what keeps a process of its own."""
 
 import os
-from collections.abc import Callable
 
 import pytest
 
@@ -55,11 +54,6 @@ def sizes(groups: list[list[Point]]) -> list[int]:
     return sorted(map(len, groups))
 
 
-def test_what_a_question_compares_takes_turns(empty_workplace: Workplace) -> None:
-    assert sizes(groups_of(empty_workplace, PAIR)) == [2]
-    assert sizes(groups_of(empty_workplace, CHUNKS)) == [3]
-
-
 def test_what_is_counted_is_in_one_process_scene_by_scene(empty_workplace: Workplace) -> None:
     text = f"""
 title = "Counts"
@@ -77,48 +71,46 @@ values = [3, 1, 2]
     assert len(set(scenes)) == 3
 
 
-def test_only_as_many_threads_take_turns(empty_workplace: Workplace) -> None:
-    groups = groups_of(empty_workplace, THREADS)
-    assert sizes(groups) == [2, 2]
-    assert all(len({point.threads for point in group}) == 1 for group in groups)
+def programs(count: int, more: str = "") -> str:
+    """A question that compares so many programs."""
+    one = '[[series]]\nname = "p{0}"\ncommand = ["true", "{0}"]\n{1}\n'
+    return HEAD + "".join(one.format(number, more) for number in range(count))
 
 
-def test_two_programs_cannot_be_in_one_process(empty_workplace: Workplace) -> None:
-    empty_workplace.build("clang", "# another one")
-    text = PAIR.replace('variant = "nine"', 'variant = "published"\nprogram = "clang"')
-    assert sizes(groups_of(empty_workplace, text)) == [1, 1]
+def with_key(key: str) -> str:
+    return PAIR.replace("[scene]", f"{key}\n[scene]", 1)
 
 
-def test_processes_that_are_compared_hold_as_many(empty_workplace: Workplace) -> None:
-    empty_workplace.build("clang", "# another one")
-    third = '[[series]]\nname = "by clang"\nvariant = "published"\nprogram = "clang"\n\n[blocks]'
-    assert sizes(groups_of(empty_workplace, PAIR.replace("[blocks]", third))) == [1, 1, 1]
+BY_CLANG = 'variant = "published"\nprogram = "clang"'
+SIZES = {
+    "two variants": (PAIR, 0, [2]),
+    "three chunks": (CHUNKS, 0, [3]),
+    "as many threads": (THREADS, 0, [2, 2]),
+    "two programs": (PAIR.replace('variant = "nine"', BY_CLANG), 0, [1, 1]),
+    "processes that hold as many": (
+        PAIR.replace("[blocks]", f'[[series]]\nname = "by clang"\n{BY_CLANG}\n\n[blocks]'), 0, [1, 1, 1]
+    ),
+    "told not to": (with_key("turns = false"), 0, [1, 1]),
+    "profiles": (with_key('verb = "profile"'), 0, [1, 1]),
+    "several runs each": (with_key("repetitions = 3"), 0, [1, 1]),
+    "told to be apart": (WAYS, 0, [1, 1, 2]),
+    "whole processes that are": (WAYS.replace("[scene]", 'verb = "process"\n[scene]'), 0, [1, 1, 2]),
+    "errors besides": (ERRORS, 0, [1] * 8),
+    "the block after errors": (ERRORS, 1, [4, 4]),
+    "as many programs as there is memory for": (programs(8), 0, [8]),
+    "one more, each by itself": (programs(9), 0, [9]),
+    "one more, as somebody said": (programs(9, "turns = true"), 0, [1, 8]),
+}  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        lambda text: text.replace("[scene]", "turns = false\n[scene]", 1),
-        lambda text: text.replace("[scene]", 'verb = "profile"\n[scene]', 1),
-        lambda text: text.replace("[scene]", "repetitions = 3\n[scene]", 1),
-    ],
-    ids=["told so", "profiles", "several runs each"],
-)
-def test_what_turns_would_distort_is_measured_alone(
-    empty_workplace: Workplace, change: Callable[[str], str]
+@pytest.mark.parametrize(("text", "block", "expected"), SIZES.values(), ids=SIZES)
+def test_what_is_compared_takes_turns_unless_they_would_distort_it(
+    empty_workplace: Workplace, text: str, block: int, expected: list[int]
 ) -> None:
-    assert sizes(groups_of(empty_workplace, change(PAIR))) == [1, 1]
-
-
-def test_what_is_to_be_apart_is_and_the_others_still_take_turns(empty_workplace: Workplace) -> None:
-    groups = groups_of(empty_workplace, WAYS)
-    assert sizes(groups) == [1, 1, 2]
-    assert all(point.apart == (len(group) == 1) for group in groups for point in group)
-
-
-def test_of_whole_processes_too(empty_workplace: Workplace) -> None:
-    text = WAYS.replace("[scene]", 'verb = "process"\n[scene]')
-    assert sizes(groups_of(empty_workplace, text)) == [1, 1, 2]
+    empty_workplace.build("clang", "# another one")
+    groups = groups_of(empty_workplace, text, block)
+    assert sizes(groups) == expected
+    assert all(len({(one.threads, one.apart, one.scene_name) for one in group}) == 1 for group in groups)
 
 
 def test_a_figure_of_both_ways_needs_both(empty_workplace: Workplace) -> None:
@@ -126,11 +118,6 @@ def test_a_figure_of_both_ways_needs_both(empty_workplace: Workplace) -> None:
     assert alone in WAYS
     with pytest.raises(InputError, match=r'series\[3\]: found "nine" once, expected another one with apart'):
         groups_of(empty_workplace, WAYS.replace(alone, ""))
-
-
-def test_a_block_that_measures_errors_besides_is_measured_alone(empty_workplace: Workplace) -> None:
-    assert sizes(groups_of(empty_workplace, ERRORS, block=0)) == [1] * 8
-    assert sizes(groups_of(empty_workplace, ERRORS, block=1)) == [4, 4], "one for each scene"
 
 
 def test_no_more_than_memory_holds_take_turns(
@@ -143,40 +130,11 @@ def test_no_more_than_memory_holds_take_turns(
     assert sizes(groups_of(empty_workplace, CHUNKS)) == [1, 1, 1]
 
 
-def programs(count: int, more: str = "") -> str:
-    """A question that compares so many programs."""
-    one = '[[series]]\nname = "p{0}"\ncommand = ["true", "{0}"]\n{1}\n'
-    return HEAD + "".join(one.format(number, more) for number in range(count))
-
-
 def test_of_more_programs_than_memory_may_have_to_hold_none_is_stopped(empty_workplace: Workplace) -> None:
-    assert sizes(groups_of(empty_workplace, programs(8))) == [8]
-    assert sizes(groups_of(empty_workplace, programs(9))) == [9], "one after the other"
-    assert sizes(groups_of(empty_workplace, programs(9, "turns = true"))) == [1, 8], "as somebody said"
     empty_workplace.question("asked", programs(9) + BLOCKS)
     assert run(empty_workplace.settings) == 0
     reasons = [one["process"]["undisturbed"] for one in empty_workplace.records("asked").values()]
     assert reasons == [CROWDED] * 18
-
-
-def test_each_of_a_group_has_its_record(workplace: Workplace) -> None:
-    assert run(workplace.settings) == 0
-
-    def processes() -> int:
-        return sum(call["words"][0] == "turns" and "--seed" in call["words"] for call in workplace.calls())
-
-    assert processes() == 3 + 2 + 2, "one process a block"
-    assert len(workplace.records()) == 16
-    assert run(workplace.settings) == 0
-    assert processes() == 7, "nothing is measured twice"
-
-
-def test_where_one_of_a_group_crashes_each_is_measured_alone(workplace: Workplace) -> None:
-    workplace.behave(FAKE_BENCH_CRASHES="nine")
-    assert run(workplace.settings) == POINTS_FAILED
-    assert [one["reason"] for one in workplace.failures()] == ["killed by SIGABRT: out of memory"]
-    assert {one["axes"]["variant"] for one in workplace.records("pair").values()} == {"published"}
-    assert len(workplace.records("pair")) == 2
 
 
 def test_one_that_fails_its_check_does_not_take_the_others_with_it(workplace: Workplace) -> None:

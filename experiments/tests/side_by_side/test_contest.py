@@ -397,7 +397,9 @@ def test_the_most_memory_of_all_runs_is_told(sampler: Sampler, measure: Measure,
     large = "head -c 200000000 /dev/zero | tail -n 1 > /dev/null"
     ended = measure(scripted(f"mkdir {tmp_path}/once 2> /dev/null && {large}; exit 0", rounds=2))
     its = Described({}, {"threads": 1}, Sources([CAROM], {}), surroundings=sampler.surroundings(1, None))
-    [record] = process_record([(ended[0], its)], 1)["contenders"]
+    whole = process_record([(ended[0], its)], 1)
+    [record] = whole["contenders"]
+    assert whole["turns"] is record["slices"] is None, "nobody took turns with it"
     assert record["process"]["peak_memory_bytes"] > 150_000_000
 
 

@@ -8,16 +8,6 @@ from experiments.tests.conftest import Workplace
 from experiments.tests.slurm.fake_slurm import FakeSlurm
 
 CONFIGURATIONS = {
-    "21.08": (
-        "Configuration data as of 2022-03-01T10:00:00\n"
-        "AccountingStorageBackupHost = (null)\n"
-        "MaxArraySize            = 1001\n"
-        "MaxDBDMsgs              = 20008\n"
-        "MaxJobCount             = 10000\n"
-        "MaxJobId                = 67043328\n"
-        "\nSlurmctld(primary) at head is UP\n",
-        1001,
-    ),
     "23.11": (
         "Configuration data as of 2024-03-01T10:00:00\n"
         "CliFilterPlugins        = (null)\n"

@@ -13,6 +13,7 @@ from experiments.slurm.submit import within_time
 from experiments.slurm.task import work
 from experiments.tests.conftest import Workplace, finish
 from experiments.tests.slurm.fake_slurm import FakeSlurm
+from experiments.tests.slurm.fake_slurm_commands import POLICY
 from experiments.tests.slurm.test_script import site
 
 BLOCKS = 7
@@ -105,10 +106,6 @@ def test_as_many_blocks_as_the_site_wishes_stay_together_however_long_they_take(
     assert within_time([units], partition, {}) == [units]
 
 
-POLICY = (
-    "Batch job submission failed: Job violates accounting/QOS policy (job submit limit, user's size and/or "
-)
-POLICY += "time limits)"
 AWAY = ["Batch job submission failed: Unable to contact slurm controller (connect failure)"]
 LOST = ["Batch job submission failed: Socket timed out on send/recv operation"]
 REFUSALS = {

@@ -7,21 +7,18 @@ import subprocess
 from dataclasses import replace
 from pathlib import Path
 
-import jsonschema
 import pytest
 
 from experiments.slurm import scheduler
 from experiments.slurm.jobs import PartitionFolder, Standing, Unit, folders
 from experiments.slurm.scheduler import TaskState
 from experiments.slurm.task import work
-from experiments.tests.conftest import PAIR, ROOT, Workplace, start
+from experiments.tests.conftest import PAIR_APART, ROOT, Workplace, start
 from experiments.tests.slurm.test_script import site
 from experiments.tests.slurm.test_submit import took
 from support.errors import InputError
 from support.files import write_json
-from support.record_schema import SCHEMA_FILE
-
-CAROM = ROOT / "build" / "gcc" / "carom"
+from support.record_schema import is_record
 
 
 def folder_of(workplace: Workplace) -> PartitionFolder:
@@ -58,8 +55,8 @@ def test_those_who_share_a_folder_tear_nothing(workplace: Workplace, started: li
         assert process.returncode == 0
         assert all("waits for another" in line for line in error.splitlines())
     assert len(records(workplace)) == 7
-    for content in records(workplace).values():
-        jsonschema.validate(json.loads(content), json.loads(SCHEMA_FILE.read_text()))
+    assert not list(workplace.results.rglob("xs/scenes")), "each has scenes of its own"
+    assert all(is_record(json.loads(content)) for content in records(workplace).values())
     if tasks == len(started):
         assert sum("--tag" in call["words"] for call in workplace.calls()) == 16
         assert not list(workplace.results.rglob(".running/*"))
@@ -86,33 +83,15 @@ def test_a_failed_point_is_not_tried_again_by_its_task(workplace: Workplace) -> 
     assert len(contenders) == 15
 
 
-@pytest.mark.skipif(not CAROM.is_file(), reason="build/gcc/carom is not built (`make build` builds it)")
-def test_programs_of_others_are_measured_on_a_node(empty_workplace: Workplace) -> None:
-    empty_workplace.program.unlink()
-    empty_workplace.program.symlink_to(CAROM)
-    one, two = (
-        '[[series]]\nname = "one"\ncommand = ["true"]\n',
-        '[[series]]\nname = "two"\ncommand = ["echo"]\n',
-    )
-    text = 'title = "Others"\nfigure = "comparison"\n'
-    empty_workplace.question("others", f"{text}{one}{two}[blocks]\nminimum = 2\nwanted = 2\n")
-    assert work(job_of(empty_workplace), 0) == 0
-    kinds = [json.loads(content)["kind"] for content in records(empty_workplace).values()]
-    assert kinds == ["process"] * 2
-
-
-def test_a_job_of_another_site_is_refused(workplace: Workplace) -> None:
+def test_a_job_that_is_none_or_of_another_site_is_refused(workplace: Workplace) -> None:
     manifest = job_of(workplace)
+    with pytest.raises(InputError, match="task 7: expected a number from 0 to 0"):
+        work(manifest, 7)
     site(workplace.root, 'name = "xs"', 'name = "xl"')
     with pytest.raises(InputError, match=r'cluster.toml: has no partition "xs" any more'):
         work(manifest, 0)
     with pytest.raises(InputError, match="is not the list of blocks of a job"):
         work(workplace.root / "nothing.json", 0)
-
-
-def test_a_task_that_the_job_does_not_have_is_refused(workplace: Workplace) -> None:
-    with pytest.raises(InputError, match="task 7: expected a number from 0 to 0"):
-        work(job_of(workplace), 7)
 
 
 def test_the_control_is_spread_over_the_tasks(workplace: Workplace) -> None:
@@ -121,9 +100,6 @@ def test_the_control_is_spread_over_the_tasks(workplace: Workplace) -> None:
         *(("chunks", 1), ("control", 1), ("pair", 1)),
         ("control", 2),
     ]
-
-
-APART = PAIR.replace("[scene]", "turns = false\n[scene]", 1)
 
 
 def cut_off(workplace: Workplace, *lost: int) -> None:
@@ -147,7 +123,7 @@ def missing(workplace: Workplace, *, runs: bool = False) -> dict[Unit, int]:
 
 
 def test_a_block_that_was_cut_off_is_measured_anew(workplace: Workplace) -> None:
-    workplace.question("pair", APART)
+    workplace.question("pair", PAIR_APART)
     manifest = job_of(workplace)
     assert work(manifest, 0) == 0
     assert missing(workplace) == {}
@@ -163,7 +139,7 @@ def test_a_block_that_was_cut_off_is_measured_anew(workplace: Workplace) -> None
 
 
 def test_blocks_that_do_not_fit_their_allocation_come_to_an_end(workplace: Workplace) -> None:
-    workplace.question("pair", APART)
+    workplace.question("pair", PAIR_APART)
     assert work(job_of(workplace), 0) == 0
     took(workplace, 40.0)
     settings = folder_of(workplace).settings

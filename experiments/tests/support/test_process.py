@@ -5,25 +5,19 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from experiments.support import process
 from experiments.support.pipes import KEPT_BYTES
-from experiments.support.process import NOT_FOUND, TIMED_OUT, UNKNOWN_END, Coprocess, run
-from experiments.tests.conftest import ROOT
+from experiments.support.process import NOT_FOUND, TIMED_OUT, Coprocess, run
+from experiments.tests.conftest import ROOT, is_running, until
 from support.errors import Interrupted
 
 
 def python(code: str) -> list[str]:
     return [sys.executable, "-IS", "-c", code]
-
-
-def test_output_and_exit_code() -> None:
-    done = run(python("print('out'); import sys; sys.exit(3)"))
-    assert (done.exit_code, done.output) == (3, "out\n")
 
 
 REASONS = {
@@ -44,14 +38,6 @@ def test_the_reason_is_one_line(code: str, reason: str) -> None:
     assert run(python(code)).reason == reason
 
 
-def test_a_program_that_is_not_there() -> None:
-    done = run(["/nowhere/carom", "list"])
-    assert (done.exit_code, done.reason) == (
-        NOT_FOUND,
-        "/nowhere/carom: cannot be run: No such file or directory",
-    )
-
-
 def test_an_interruption_is_no_failed_point() -> None:
     assert not issubclass(Interrupted, Exception)
 
@@ -70,34 +56,29 @@ for line in sys.stdin:
 """
 
 
-def test_a_companion_answers_again_and_again() -> None:
+def test_a_companion_answers_again_and_again_also_on_the_side() -> None:
+    asked = ("murmur", "more", "murmur", "murmur")
     with Coprocess(python(ECHO)) as coprocess:
-        answers = [coprocess.ask(word, time_limit=20).output.split() for word in ("one", "two")]
-    (first, one), (second, two) = answers
-    assert (one, two) == ("one", "two")
-    assert first == second, "the same process"
-    assert not Path(f"/proc/{first}").exists(), "it ends with its context"
+        answers = [coprocess.ask(word, time_limit=20) for word in asked]
+    numbers, said = zip(*(one.output.split() for one in answers), strict=True)
+    assert said == asked
+    assert len({*numbers}) == 1, "the same process"
+    assert not Path(f"/proc/{numbers[0]}").exists(), "it ends with its context"
+    assert [one.error for one in answers] == ["on the side\n", "", "on the side\n", "on the side\n"]
 
 
-def test_what_a_companion_says_on_the_side_comes_with_its_answer() -> None:
-    with Coprocess(python(ECHO)) as coprocess:
-        said = [coprocess.ask(word, time_limit=20).error for word in ("murmur", "more", "murmur", "murmur")]
-    assert said == ["on the side\n", "", "on the side\n", "on the side\n"]
-
-
-def test_a_companion_that_fails_says_why_and_starts_anew() -> None:
+@pytest.mark.parametrize(
+    ("word", "limit", "code", "reason"),
+    [("fail", 20, 1, "it fails"), ("sleep", 0.3, TIMED_OUT, "took longer than 0.3 s and was stopped")],
+)
+def test_a_companion_that_fails_says_why_and_starts_anew(
+    word: str, limit: float, code: int, reason: str
+) -> None:
     with Coprocess(python(ECHO)) as coprocess:
         for _ in range(2):
-            failed = coprocess.ask("fail", time_limit=20)
-            assert (failed.exit_code, failed.reason) == (1, "it fails")
+            failed = coprocess.ask(word, time_limit=limit)
+            assert (failed.exit_code, failed.reason) == (code, reason)
         assert coprocess.ask("more", time_limit=20).output.endswith("more\n")
-
-
-def test_a_companion_that_takes_too_long_is_stopped() -> None:
-    with Coprocess(python(ECHO)) as coprocess:
-        late = coprocess.ask("sleep", time_limit=0.3)
-        assert (late.exit_code, late.reason) == (TIMED_OUT, "took longer than 0.3 s and was stopped")
-        assert coprocess.ask("more", time_limit=20).exit_code == 0
 
 
 DESCENDANTS = {
@@ -173,17 +154,19 @@ def test_nothing_waits_for_standard_input_or_a_terminal() -> None:
     assert "/dev/tty" in done.reason
 
 
-def test_a_word_that_no_program_can_be_given() -> None:
-    done = run(["echo", "a\0b"])
-    assert (done.exit_code, done.reason) == (NOT_FOUND, "echo: cannot be run: embedded null byte")
-
-
-@pytest.mark.parametrize("content", [b"", b"\x7fELF\x02\x01\x01"], ids=["empty", "of another machine"])
-def test_no_shell_runs_what_is_no_program(tmp_path: Path, content: bytes) -> None:
-    path = tmp_path / "sim"
-    path.write_bytes(content)
-    path.chmod(0o755)
-    assert run([str(path)]).reason == f"{path}: cannot be run: Exec format error"
+def test_what_cannot_be_run_says_why_and_no_shell_tries(tmp_path: Path) -> None:
+    for name, content in (("empty", b""), ("foreign", b"\x7fELF\x02\x01\x01")):
+        (tmp_path / name).write_bytes(content)
+        (tmp_path / name).chmod(0o755)
+    of_words = {
+        ("/nowhere/carom", "list"): "No such file or directory",
+        ("echo", "a\0b"): "embedded null byte",
+        (str(tmp_path / "empty"),): "Exec format error",
+        (str(tmp_path / "foreign"),): "Exec format error",
+    }
+    for words, why in of_words.items():
+        done = run(words)
+        assert (done.exit_code, done.reason) == (NOT_FOUND, f"{words[0]}: cannot be run: {why}")
 
 
 RUNNER = f"""
@@ -212,15 +195,24 @@ def test_the_end_of_a_child_is_known_also_where_ends_are_ignored() -> None:
     assert output == "3 exit code 3 without a word\n"
 
 
+def test_a_child_ends_with_its_parent_however_that_ends(tmp_path: Path) -> None:
+    began = tmp_path / "began"
+    code = f"import os, pathlib, time; pathlib.Path({str(began)!r}).write_text(str(os.getpid()))"
+    parent = runner(f"{code}; time.sleep(600)", 600)
+    until(lambda: began.exists() and began.read_text(), "the child does not begin")
+    parent.kill()
+    parent.communicate()
+    until(lambda: not is_running(int(began.read_text())), "the child goes on", 10)
+
+
 def test_an_unknown_end_is_no_success(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(process, "hear_of_ends", lambda: None)
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     try:
-        done = run(python("import sys; sys.exit(3)"))
+        with pytest.raises(ChildProcessError):
+            run(python("import sys; sys.exit(3)"))
     finally:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-    assert done.exit_code == UNKNOWN_END
-    assert "is not known" in done.reason
 
 
 @pytest.mark.parametrize("ends", [True, False], ids=["a child that ended meanwhile", "one that goes on"])
@@ -230,7 +222,7 @@ def test_while_the_runner_stands_still_no_time_passes_for_its_child(tmp_path: Pa
     wait = f"import pathlib, time\npathlib.Path({str(began)!r}).touch()\n"
     wait += f"while not pathlib.Path({str(go)!r}).exists(): time.sleep(0.01)\nprint('x')"
     stopped = runner(wait, 2.0)
-    wait_until(began.exists)
+    until(began.exists, "the child does not begin")
     stopped.send_signal(signal.SIGSTOP)
     if ends:
         go.touch()
@@ -241,10 +233,3 @@ def test_while_the_runner_stands_still_no_time_passes_for_its_child(tmp_path: Pa
         go.touch()
     output, _ = stopped.communicate(timeout=60)
     assert output.startswith("0 ")
-
-
-def wait_until(happened: Callable[[], bool]) -> None:
-    until = time.monotonic() + 60
-    while not happened():
-        assert time.monotonic() < until
-        time.sleep(0.01)

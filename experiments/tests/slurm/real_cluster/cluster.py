@@ -7,11 +7,11 @@ import socket
 import subprocess
 import sys
 import tempfile
-import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import IO
 
+from experiments.tests.conftest import until
 from experiments.tests.slurm.real_cluster import reaper
 from experiments.tests.slurm.real_cluster.packages import UnavailableError, libraries, unpacked
 
@@ -121,28 +121,17 @@ class Cluster:
 
     def ask(self, *command: str) -> str:
         """What one of Slurm's commands says."""
-        done = subprocess.run(
-            command,
-            env={**os.environ, **self.environment},
-            capture_output=True,
-            text=True,
-            timeout=60,
-            check=False,
-        )
+        done = self._call(*command)
         assert done.returncode == 0, f"{command}: {done.stderr}"
         return done.stdout
 
+    def _call(self, *command: str) -> "subprocess.CompletedProcess[str]":
+        around = {**os.environ, **self.environment}
+        return subprocess.run(command, env=around, capture_output=True, text=True, timeout=60, check=False)
+
     def nodes(self, state: str) -> int:
         """How many nodes are in a state, e.g. `idle`."""
-        done = subprocess.run(
-            ["sinfo", "--Node", "--noheader", "--format=%t"],
-            env={**os.environ, **self.environment},
-            capture_output=True,
-            text=True,
-            timeout=60,
-            check=False,
-        )
-        return done.stdout.split().count(state)
+        return self._call("sinfo", "--Node", "--noheader", "--format=%t").stdout.split().count(state)
 
     def tasks(self, state: str) -> list[str]:
         """Ids, as JOB_INDEX, of the tasks in a state, e.g. `RUNNING`."""
@@ -197,14 +186,6 @@ class Cluster:
 def node_of(partition: str) -> str:
     """The name of the one node of a partition."""
     return f"n-{partition}"
-
-
-def until(condition: Callable[[], bool], told: str, seconds: float) -> None:
-    """Wait for a condition; fails with `told` after so many seconds."""
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, told
-        time.sleep(0.1)
 
 
 def _free_ports(number: int) -> list[int]:

@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 
-from experiments.tests.slurm.real_cluster.cluster import MAX_ARRAY_SIZE, node_of, until
+from experiments.tests.conftest import until
+from experiments.tests.slurm.real_cluster.cluster import MAX_ARRAY_SIZE, node_of
 from experiments.tests.slurm.real_cluster.conftest import MACHINE, ClusterWorkplace
 
 PARTITION = "w5-3423"

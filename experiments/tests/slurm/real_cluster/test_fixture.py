@@ -6,13 +6,13 @@ import subprocess
 import sys
 from pathlib import Path
 
-from experiments.tests.conftest import ROOT
+from experiments.tests.conftest import ROOT, until
 from experiments.tests.slurm.real_cluster import reaper
-from experiments.tests.slurm.real_cluster.cluster import Cluster, until
+from experiments.tests.slurm.real_cluster.cluster import Cluster
 
 DYING = """
 import time
-from experiments.tests.slurm.real_cluster.cluster import Cluster, until
+from experiments.tests.slurm.real_cluster.cluster import Cluster
 cluster = Cluster()
 cluster.start()
 cluster.ask("sbatch", "--partition=w5-3423", "--output=/dev/null", "--wrap=srun sleep 600")
