@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from experiments.compare.commands import Compared, words_in
 from experiments.plan.benchmark_cases import cases
 from experiments.plan.executable import UnfitError, found, require_executable
-from experiments.run.progress import about, warn
+from experiments.run.progress import about, several, warn
 from support.errors import InputError
 
 if TYPE_CHECKING:
@@ -143,7 +143,8 @@ def quick(asked: "Asked", number: int) -> tuple[Compared, ...]:
     )
     longest = max(_seconds(one) for one in quicker)
     if (takes := calls * (_LONGER * longest + _START)) > asked.seconds:
-        warn(f"carom: one block of {number} cases takes {about(takes)}: --time and {_TIME} say how long")
+        block = f"one block of {several(number, 'case')} takes {about(takes)}"
+        warn(f"carom: {block}: --time and {_TIME} say how long")
     return quicker
 
 

@@ -201,7 +201,7 @@ class Blocks:
         """
         commands = [one.command for one in self.experiment.points if one.command is not None]
         has_more = self.experiment.question.warm_up or any(one.prepare or one.conclude for one in commands)
-        if len(self._took) == 1 and self._ran and not has_more:
+        if len(self._took) == 1 and self._ran and not (has_more or self.has_cases):
             return min(self._took[0], _BESIDES * self._ran)
         return statistics.median(self._took[1:] or self._took or [0.0])
 

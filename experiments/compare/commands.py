@@ -138,7 +138,7 @@ def _written(options: argparse.Namespace, split: Sequence[Sequence[str]]) -> lis
             lacking = f" and no values for {{{others[0]}}}" if others else ""
             raise InputError(f"found values for {name}{lacking}, expected {{{name}}} in a command")
     for one in found.values():
-        for variable in options.env if combined[0] else ():
+        for variable in options.env:
             require_filled("--env", fill(variable, one.values))
         if not split:
             require_filled(one.line, one.line)

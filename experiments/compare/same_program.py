@@ -45,7 +45,8 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
         _require_own(words[0], head)
     own, trees = base.repository.resolve(), base.top.resolve().parent
     of_base, of_head = (set(_read(words, tree.folder)) for tree in (base, head))
-    for word, path in sorted(of_head | _folders(words)):
+    led = [*_folders(words), *_of_texts(words, head), *(() if is_accepted else _of_python(words, head))]
+    for word, path in sorted({*of_head, *led}):
         if path.exists() and path.is_relative_to(own) and not path.is_relative_to(trees):
             told = "of your own checkout: both commits would use it"
             raise InputError(f"found {word}, {told}; expected a path inside the checkout, such as ./prog")
@@ -58,13 +59,21 @@ def require_two_files(words: Sequence[str], base: Tree, head: Tree, since: int, 
         if not (is_accepted or path.is_relative_to(trees)) and path.stat().st_ctime_ns > since:
             told = f"found {path}, which {word} may load, written by the builds: both commits would use"
             raise InputError(f"{told} what was built last; expected it inside the checkout, or --same-bytes")
-    absolute = next((word for word, _ in sorted(of_head) if word.startswith("/")), None)
+    named = {*_parts(words)}
+    absolute = next((word for word, _ in sorted(of_head) if word in named and word.startswith("/")), None)
     first = absolute or next((word for word, _ in sorted(of_head)), None)
-    if first and not any(path.is_relative_to(trees) for _, path in of_head):
+    if first and not any(path.is_relative_to(trees) for _, path in of_head) and not _is_in(head, words):
         told = f"both commits use {first}, and nothing that the command names lies in the checkout"
         if absolute and not (is_accepted or _is_of_the_system(absolute)):
             raise InputError(f"{told}; expected a path inside it, or --same-bytes to compare all the same")
         warn(f"carom: {told}")
+
+
+def _is_in(tree: Tree, words: Sequence[str]) -> bool:
+    """Whether words name a folder or a module of Python of a tree."""
+    parts = [part for part in _parts(words) if part.strip("./") and not part.startswith("/")]
+    places = [tree.folder / one for part in parts for one in (part, f"{part.replace('.', '/')}.py")]
+    return any(place.exists() for place in places)
 
 
 def tell_own_path(base: Tree) -> None:
@@ -76,7 +85,7 @@ def tell_own_path(base: Tree) -> None:
             warn(f"carom: PATH={part}, of your own checkout: both commits run programs that lie there")
 
 
-def _folders(words: Sequence[str]) -> set[tuple[str, Path]]:
+def _folders(words: Sequence[str]) -> Iterator[tuple[str, Path]]:
     """The absolute paths that words name, and variables by which programs find parts of themselves."""
     led = [
         (f"{name}={part}", part)
@@ -84,8 +93,29 @@ def _folders(words: Sequence[str]) -> set[tuple[str, Path]]:
         if _LEADING.fullmatch(name)
         for part in value.split(os.pathsep)
     ]
-    named = [*((word, word) for word in _parts(words)), *led]
-    return {(told, Path(path).resolve()) for told, path in named if path.startswith("/")}
+    for told, path in (*((word, word) for word in _parts(words)), *led):
+        if path.startswith("/"):
+            yield told, Path(path).resolve()
+
+
+def _of_texts(words: Sequence[str], tree: Tree) -> Iterator[tuple[str, Path]]:
+    """The user's own checkout, where scripts that words name have its path in them."""
+    own = tree.repository.resolve()
+    for word, path in _named(words, tree.folder):
+        if any(f"{own}/" in one for one in _words_of_script(path)):
+            yield f"{own} in {word}", own
+
+
+def _of_python(words: Sequence[str], tree: Tree) -> Iterator[tuple[str, Path]]:
+    """Where the Python that words name looks for modules beside its own places, as it does for a package that
+    was installed to be edited, each with what is told of it.
+    """
+    own = tree.repository.resolve()
+    for word, places, prefix in _pythons(words, tree.folder):
+        editable = (file for place in places for file in place.glob("__editable__*.py"))
+        named = [own for file in editable if f"{own}/" in file.read_text(encoding="utf-8", errors="replace")]
+        for one in (*(one for one in places if not one.is_relative_to(prefix)), *named):
+            yield f"{one}, where {word} looks for modules (--same-bytes accepts that)", one.resolve()
 
 
 def require_two_libraries(loaded: Sequence[Path], trees: Path, since: int) -> None:
@@ -181,15 +211,20 @@ def _words_of_script(file: Path) -> list[str]:
 
 def _on_paths_of_python(words: Sequence[str], folder: Path) -> Iterator[tuple[str, Path]]:
     """What lies where the Python that words name looks for modules, each with that word."""
-    code = "import sys; print(*sys.path[1:], sep=chr(10))"
+    for word, places, _ in _pythons(words, folder):
+        for place in filter(Path.is_dir, places):
+            yield from ((word, one) for one in place.iterdir() if one.name != "__pycache__" and one.exists())
+
+
+def _pythons(words: Sequence[str], folder: Path) -> Iterator[tuple[str, list[Path], Path]]:
+    """Each Python that words name, the places where it looks for modules, and its own place."""
+    code = "import sys; print(sys.prefix, *sys.path[1:], sep=chr(10))"
     for word, path in _named(words, folder):
-        if not re.fullmatch(r"python[0-9.]*", path.name):
-            continue
-        # Not the file behind the link: by the link Python knows its virtual environment.
-        program = os.fspath(folder / word) if "/" in word else word
-        for place in run([program, "-c", code], time_limit=10.0, folder=folder).output.splitlines():
-            inside = Path(place).iterdir() if Path(place).is_dir() else iter(())
-            yield from ((word, one) for one in inside if one.name != "__pycache__" and one.exists())
+        if re.fullmatch(r"python[0-9.]*", path.name):
+            # Not the file behind the link: by the link Python knows its virtual environment.
+            program = os.fspath(folder / word) if "/" in word else word
+            prefix, *places = run([program, "-c", code], time_limit=10.0, folder=folder).output.split("\n")
+            yield word, [Path(one) for one in places if one], Path(prefix)
 
 
 def _parts(words: Sequence[str]) -> list[str]:

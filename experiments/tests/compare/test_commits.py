@@ -334,6 +334,27 @@ PROGRAMS = {
         ("found NODE_PATH=HERE/a repository, of your own checkout: both commits would use it",),
         env={"NODE_PATH": "HERE/a repository"},
     ),
+    "a package that was installed to be edited": Case(
+        f"{SLOWER} python3 -m venv --without-pip HERE/venv\n"
+        "for one in HERE/venv/lib/python3*/site-packages; do pwd > $one/p.pth; done",
+        1,
+        ("found HERE/a repository, where HERE/venv/bin/python looks for modules (--same-bytes accepts",),
+        run=("HERE/venv/bin/python", "prog"),
+    ),
+    "a script with the path of the user's own checkout": Case(
+        f"{SLOWER} echo \"cat '$PWD/prog.in'\" >>prog.in && git commit -qam own",
+        1,
+        ("found HERE/a repository in ./prog, of your own checkout: both commits would use it",),
+    ),
+    "a folder of the checkout": Case(
+        f"{START} mkdir lib && git mv prog.in lib && commit lib\n"
+        "git checkout -q -b branch && touch x.c && commit x",
+        0,
+        (PASSED,),
+        build="true",
+        run=("sh", "-c", "cd lib && sh ./prog.in"),
+        not_told="nothing that the command names",
+    ),
     "programs of the user's own checkout on PATH": Case(
         SLOWER,
         3,

@@ -187,6 +187,7 @@ def test_what_comes_once_has_the_values_of_all() -> None:
         (["--unit", "ms", "a", "b"], "--unit: found without a time that is printed"),
         (["--time-from", "took", "a", "b"], '--time-from: found "took" with 0 groups, expected one'),
         (["1", "2"], 'found "1", expected a name that is no number: -n gives it'),
+        (["--env", "N={q}", "a", "b"], "--env: found {q}, expected a list or range of that name"),
         (["--env", "1=2", "a", "b"], "expected VARIABLE=VALUE"),
         (["--prepare", "x", "--prepare", "y", "a", "b", "c"], "--prepare: found 2 for 3 commands"),
         (["-n", "a", "-n", "a again", "x", "y"], 'found "a again", which the control is called'),
