@@ -27,8 +27,8 @@ from experiments.run.study import Settings, Study
 from experiments.run.verdicts import Analysis
 
 BESIDE = 1.23
-"""How many times as long as its processes a study takes, checks and scenes included: 1.26 and 1.35 in two, 1.23
-since final states that are known to be right are not checked again."""
+"""How many times as long as its processes a study takes, checks and scenes included: 1.26 and 1.35 in two,
+1.23 since final states that are known to be right are not checked again."""
 
 
 class Replayed:

@@ -25,7 +25,7 @@ class Suspended : public testing::Test {
     static nlohmann::json suspended(std::vector<std::string> words, const std::string& input = "/dev/null") {
         const std::string script = R"("$0" "$@" < "$INPUT" & child=$!
             while kill -STOP $child 2>/dev/null; do
-                kill -CONT $child; sleep 0.005
+                kill -CONT $child 2>/dev/null; sleep 0.005
             done
             wait $child)";
         words.insert(words.begin(), {"sh", "-c", script, CAROM_PROGRAM});
