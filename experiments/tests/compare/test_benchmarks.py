@@ -1,13 +1,14 @@
 """`carom compare` of Google Benchmarks: how they are known, and which cases are compared."""
 
 import csv
+import re
 from pathlib import Path
 
 import pytest
 
 from experiments.compare.benchmarks import call_of
 from experiments.compare.commands import Compared
-from experiments.tests.compare.calls import needs_the_program, run
+from experiments.tests.compare.calls import BENCHMARK, needs_the_program, run, script
 
 pytestmark = needs_the_program
 
@@ -35,6 +36,17 @@ def test_cases_of_benchmarks_are_paired_by_name(benchmarks: Path) -> None:
     assert "not all have it: BM_new of ./bench_new" in done.stderr
     rows = list(csv.DictReader((benchmarks / "a.csv").open(encoding="utf-8")))
     assert {row["case"] for row in rows} == {"BM_a", "BM_b/8"}
+
+
+def test_the_time_of_six_blocks_is_foretold_by_the_first(folder: Path) -> None:
+    for name in ("old", "new"):
+        script(folder / name, f"sleep 0.4\n{BENCHMARK.format(names='BM_a', time=4)}")
+    done = run(folder, "compare", "--gb", "./old", "./new", "--time", "1ms")
+    found = re.search(
+        r"measured for (\d+) s, 1 block: an interval needs 6 blocks, .* `--time (\d+)s`", done.stdout
+    )
+    assert found, done.stdout
+    assert int(found[2]) >= 5 * int(found[1])
 
 
 def test_a_filter_picks_cases(benchmarks: Path) -> None:
