@@ -72,7 +72,7 @@ def test_a_process_that_hangs_is_stopped(workplace: Workplace) -> None:
     workplace.behave(FAKE_HANGS="nine")
     assert run(replace(workplace.settings, site=str(impatient))) == POINTS_FAILED
     [failure] = workplace.failures()
-    assert failure["reason"] == "took longer than 0.5 s and was killed"
+    assert failure["reason"] == "took longer than 0.5 s and was stopped"
     assert len(workplace.records("pair")) == 2
 
 
