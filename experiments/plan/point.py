@@ -171,7 +171,7 @@ class Point(Measurement):
     def _words(self, verb: str, scene: Path) -> list[str]:
         words = [str(self.program.path), verb, str(scene)]
         words += ["--variant", str(self.variant), "--threads", str(self.threads)]
-        words += ["--substeps", str(self.substeps), "--tolerance", self.tolerance]
+        words += ["--substeps", str(self.substeps), "--tolerance", self.tolerance, *self.program.variants_of]
         for option, chunk in (("--find-chunk", self.find_chunk), ("--resolve-chunk", self.resolve_chunk)):
             if chunk is not None:
                 words += [option, str(chunk)]

@@ -10,6 +10,7 @@ from typing import Any
 from experiments.plan.scenes import AnyScene, sha256_of
 from experiments.plan.site import Site
 from experiments.support import process
+from experiments.support.digest import digest_of_hashes
 from support.errors import InputError
 
 CHECK_FAILED = 2
@@ -38,6 +39,8 @@ class Program:
     """Words that could be files, and are none: it is not to make one of them, unless that is said."""
     written: frozenset[Path] = frozenset()
     """Files that may be written by what is measured: what they hold now says nothing of it."""
+    library: Path | None = None
+    """One of its files: the variants of another build, which it runs in place of its own."""
 
     @property
     def hash_of(self) -> dict[Path, str | None]:
@@ -66,16 +69,24 @@ class Program:
     @property
     def remedy(self) -> str:
         """What to say of a program that is not built."""
-        compiler = "" if self.name == "gcc" else f" COMPILER={self.name}"
-        return f"{self.path}: is not built; build it with `make build{compiler}`"
+        file = next((file for file in self.sources if not file.is_file()), self.path)
+        compiler = " COMPILER=clang" if file.parent.name == "clang" else ""
+        return f"{file}: is not built; build it with `make build{compiler}`"
+
+    @property
+    def variants_of(self) -> tuple[str, ...]:
+        """The option that names its library, if it has one."""
+        return ("--variants-of", str(self.library)) if self.library is not None else ()
 
 
 def find_programs(site: Site, build: Path) -> dict[str, Program]:
     """The site's programs by name; those below `build` that are not built have no SHA-256."""
     found = {}
-    for name, relative in site.programs.items():
-        path = build.resolve() / relative
-        found[name] = Program(name, path, sha256_of(path) if path.is_file() else None)
+    for name, words in site.programs.items():
+        path, *more = files = tuple(build.resolve() / relative for relative in words.split())
+        hashes = tuple(sha256_of(file) for file in files) if all(file.is_file() for file in files) else ()
+        sha256 = digest_of_hashes(hashes) if hashes else None
+        found[name] = Program(name, path, sha256, files, hashes, library=more[0] if more else None)
     return found
 
 
@@ -114,7 +125,8 @@ def check_command(program: Program, scene: Path, tolerance: str, *what: object) 
     """The command that verifies every step on a scene: of so many threads and `--variant` one, or of what
     another program wrote, `--trajectory` a file.
     """
-    return (str(program.path), "check", str(scene), *map(str, what), "--tolerance", tolerance)
+    words = (str(program.path), "check", str(scene), *map(str, what), "--tolerance", tolerance)
+    return (*words, *program.variants_of)
 
 
 def tag_arguments(tags: Mapping[str, str | int | float]) -> tuple[str, ...]:

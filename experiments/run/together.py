@@ -68,7 +68,7 @@ def _counted(block: int, missing: Sequence[Position]) -> list[list[Position]]:
     groups: dict[object, list[Position]] = {}
     for position, point in missing:
         alone = point.verb != "bench" or point.besides(block)
-        key = point.id if alone else (point.program.sha256, point.openmp, point.threads)
+        key = point.id if alone else (point.program.path, point.openmp, point.threads)
         groups.setdefault(key, []).append((position, point))
     return [sorted(group, key=lambda one: (str(one[1].scene), one[0])) for group in groups.values()]
 
@@ -85,7 +85,7 @@ def _process(point: Point) -> tuple[object, ...]:
         return (point.id,)
     if point.verb == PROCESS:
         return point.scene_name, point.x
-    return point.scene_name, point.program.sha256, point.openmp, point.threads
+    return point.scene_name, point.program.path, point.openmp, point.threads
 
 
 def _may_take_turns(experiment: Experiment, block: int) -> bool:

@@ -139,6 +139,7 @@ void run_google_benchmark(const std::vector<std::string>& flags, const std::stri
 struct BenchOptions {
     std::vector<std::string> scenes;
     std::vector<std::string> variants{"published"};
+    std::string library;
     std::vector<int> threads;
     MeasurementOptions measurement;
     Tuning tuning;
@@ -249,8 +250,9 @@ void bench(BenchOptions options, const std::vector<std::string>& flags) {
             for (const int threads : options.threads) {
                 Tuning tuning = options.tuning;
                 tuning.threads = threads;
-                cases.emplace_back(measurement_of(loaded, require_variant(name, loaded.scene, tuning), tuning,
-                                                  options.measurement));
+                cases.emplace_back(
+                    measurement_of(loaded, require_variant(name, loaded.scene, tuning, options.library),
+                                   tuning, options.measurement, options.library));
                 register_case(cases.back(), options);
             }
         }
@@ -273,6 +275,7 @@ void add_bench_command(CLI::App& program) {
     command->add_option("--variant", options->variants, "Names from `carom list`; may be repeated")
         ->take_all()
         ->default_str(options->variants.front());
+    add_library_option(*command, options->library);
     command->add_option("--threads", options->threads, "OpenMP thread counts; may be repeated")
         ->take_all()
         ->transform(number_from(1, most_threads))

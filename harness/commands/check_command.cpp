@@ -83,7 +83,8 @@ void print_line(const Scene& scene, const Verdict& verdict) {
 
 void check(CheckOptions options) {
     const Scene scene = read_scene_and_settle_threads(options.simulation, AskedThreads::exactly);
-    const Variant& variant = require_variant(options.simulation.variant, scene, options.simulation.tuning);
+    const Variant& variant = require_variant(options.simulation.variant, scene, options.simulation.tuning,
+                                             options.simulation.library);
     const std::string name = shown_name(options.simulation.scene);
     const Verdict verdict = options.trajectory.empty()
                                 ? check_variant(name, options.simulation.tuning, scene, variant)

@@ -56,11 +56,12 @@ LoadedScene load_scene(const std::string& path) {
 }
 
 Measurement measurement_of(const LoadedScene& loaded, const Variant& variant, const Tuning& tuning,
-                           const MeasurementOptions& options) {
+                           const MeasurementOptions& options, const std::string& library) {
     return {.scene = loaded.scene,
             .scene_name = loaded.name,
             .scene_sha256 = loaded.sha256,
             .variant = variant,
+            .library = library,
             .tuning = tuning,
             .scope = options.scope,
             .warm_ups = options.warm_ups,

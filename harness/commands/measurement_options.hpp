@@ -39,8 +39,9 @@ struct LoadedScene {
 /// Reads and parses a scene file. Throws InputError, also if the scene has no steps to time.
 LoadedScene load_scene(const std::string& path);
 
-/// A measurement of that scene that has yet to run. `loaded` must outlive it.
+/// A measurement of that scene that has yet to run; `library` is the one that the variant is of, or empty.
+/// `loaded` must outlive it.
 Measurement measurement_of(const LoadedScene& loaded, const Variant& variant, const Tuning& tuning,
-                           const MeasurementOptions& options);
+                           const MeasurementOptions& options, const std::string& library);
 
 } // namespace carom

@@ -76,13 +76,14 @@ void profile(const ProfileOptions& options) {
     require_threads(options.simulation.tuning.threads);
     const int threads = options.simulation.tuning.threads;
     const LoadedScene loaded = load_scene(options.simulation.scene);
-    const Variant& variant =
-        require_variant(options.simulation.variant, loaded.scene, options.simulation.tuning);
+    const Variant& variant = require_variant(options.simulation.variant, loaded.scene,
+                                             options.simulation.tuning, options.simulation.library);
     if (variant.simulate_observed == nullptr) {
         throw InputError("--variant " + options.simulation.variant +
                          ": found a variant without phases, expected one with steps");
     }
-    Measurement measurement = measurement_of(loaded, variant, options.simulation.tuning, options.measurement);
+    Measurement measurement = measurement_of(loaded, variant, options.simulation.tuning, options.measurement,
+                                             options.simulation.library);
 
     Suspensions suspensions;
     suspensions.start();

@@ -232,7 +232,8 @@ void run(RunOptions options) {
         options.simulation.variant = chosen->result.method.variant->name;
         options.simulation.tuning.substeps = chosen->result.method.substeps;
     }
-    const Variant& variant = require_variant(options.simulation.variant, scene, options.simulation.tuning);
+    const Variant& variant = require_variant(options.simulation.variant, scene, options.simulation.tuning,
+                                             options.simulation.library);
     if (variant.engine == Engine::event_driven) {
         int& threads = options.simulation.tuning.threads;
         threads = event_driven_threads(scene.discs.size(), threads);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/command_line/values.hpp"
+#include "harness/machine/other_build.hpp"
 #include "harness/machine/threads.hpp"
 #include "harness/scenes/scene_file.hpp"
 #include "harness/support/errors.hpp"
@@ -90,7 +91,15 @@ void add_simulation_options(CLI::App& command, SimulationOptions& options) {
         .add_option("--variant", options.variant,
                     "Name from `carom list`, or auto: the fastest for the scene")
         ->capture_default_str();
+    add_library_option(command, options.library);
     add_tuning_options(command, options.tuning);
+}
+
+void add_library_option(CLI::App& command, std::string& library) {
+    command.add_option(
+        "--variants-of", library,
+        "Shared library carom-variants.so of another build, whose code is run in place of this "
+        "program's");
 }
 
 void add_tuning_options(CLI::App& command, Tuning& tuning) {
@@ -158,7 +167,8 @@ const Variant& require_variant(const std::string& name) {
                      ", expected a name from `carom list`, such as '" + suggested_variant(name) + "'");
 }
 
-const Variant& require_variant(const std::string& name, const Scene& scene, const Tuning& tuning) {
+const Variant& require_variant(const std::string& name, const Scene& scene, const Tuning& tuning,
+                               const std::string& library) {
     const Variant& variant = name == automatic ? fastest_variant(scene) : require_variant(name);
     if (!holds(variant.policies, scene)) {
         throw InputError("--variant " + name +
@@ -169,7 +179,7 @@ const Variant& require_variant(const std::string& name, const Scene& scene, cons
     if (variant.engine == Engine::event_driven) {
         require_event_driven(scene, tuning);
     }
-    return variant;
+    return library.empty() ? variant : variant_of_build(library, variant.name);
 }
 
 } // namespace carom

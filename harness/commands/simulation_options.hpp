@@ -14,6 +14,7 @@ namespace carom {
 struct SimulationOptions {
     std::string scene;
     std::string variant = "published";
+    std::string library; ///< that the variant is taken from, of another build; empty: this program
     Tuning tuning;
     bool threads_given = false; ///< on the command line
     int threads_withheld = 0;   ///< of those, since other programs had the processors
@@ -27,6 +28,9 @@ inline constexpr auto fastest_name = "fastest";
 
 /// Adds SCENE, THREADS, --variant, --threads and the tunings. `options` holds the defaults.
 void add_simulation_options(CLI::App& command, SimulationOptions& options);
+
+/// Adds --variants-of.
+void add_library_option(CLI::App& command, std::string& library);
 
 /// Adds the tunings alone: chunks, substeps, tolerance and sweep limit.
 void add_tuning_options(CLI::App& command, Tuning& tuning);
@@ -50,8 +54,9 @@ void note_withheld_threads(const SimulationOptions& options);
 /// The variant of that name; throws InputError with the nearest name if there is none.
 const Variant& require_variant(const std::string& name);
 
-/// The same, or, for `automatic`, the fastest for the scene. Throws InputError also for a variant that can do
-/// nothing with this scene or this tuning.
-const Variant& require_variant(const std::string& name, const Scene& scene, const Tuning& tuning);
+/// The same, or, for `automatic`, the fastest for the scene; as `library` has it, if one is named. Throws
+/// InputError also for a variant that can do nothing with this scene or this tuning.
+const Variant& require_variant(const std::string& name, const Scene& scene, const Tuning& tuning,
+                               const std::string& library = "");
 
 } // namespace carom

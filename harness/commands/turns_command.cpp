@@ -91,8 +91,9 @@ std::vector<ContenderOptions> read_contenders(const std::string& path) {
 /// The measurement that one contender's words ask for. `scene` must outlive it.
 Measurement measurement_of(const LoadedScene& scene, const ContenderOptions& said) {
     const Tuning& tuning = said.simulation.tuning;
-    return measurement_of(scene, require_variant(said.simulation.variant, scene.scene, tuning), tuning,
-                          said.measurement);
+    return measurement_of(
+        scene, require_variant(said.simulation.variant, scene.scene, tuning, said.simulation.library), tuning,
+        said.measurement, said.simulation.library);
 }
 
 /// Lets them run; returns how, as the record has it.

@@ -56,25 +56,41 @@ std::string build_text() {
            commit_text("commit not known");
 }
 
-Json build_json() {
-    const std::string dirty = build_info::dirty;
-    return {{"compiler", build_info::compiler},
-            {"compiler_flags", build_info::flags},
-            {"build_type", build_info::build_type},
-            {"commit", text_or_null(std::string(build_info::commit))},
+const Build& this_build() {
+    static constexpr Build build{build_info::compiler, build_info::flags, build_info::build_type,
+                                 build_info::commit,   build_info::dirty, build_info::diff_sha256};
+    return build;
+}
+
+Json build_json(const Build& build) {
+    const std::string dirty = build.dirty;
+    return {{"compiler", build.compiler},
+            {"compiler_flags", build.flags},
+            {"build_type", build.build_type},
+            {"commit", text_or_null(std::string(build.commit))},
             {"dirty", dirty.empty() ? Json(nullptr) : Json(dirty == "true")}};
+}
+
+std::string source_of(const Build& build) {
+    const std::string changes = build.diff_sha256;
+    return "commit " + std::string(build.commit) +
+           (changes.empty() ? "" : " with changes " + changes.substr(0, 8));
+}
+
+const std::string& own_sha256() {
+    static const std::string sha = sha256(read_file("/proc/self/exe"));
+    return sha;
 }
 
 Json provenance_json(int threads) {
     // A process that leaves many records reads once what stays the same.
     static const Json machine = read_machine();
-    static const std::string own_sha256 = sha256(read_file("/proc/self/exe"));
     Json json = machine;
     json["oversubscribed"] = threads > machine["affinity_count"];
     json["openmp"] = openmp_json();
     json.update(build_json());
     json["diff_sha256"] = text_or_null(std::string(build_info::diff_sha256));
-    json["binary_sha256"] = own_sha256;
+    json["binary_sha256"] = own_sha256();
     json["slurm"] = text_or_null(slurm_variables());
     return json;
 }

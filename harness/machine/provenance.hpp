@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/machine/build.hpp"
+
 namespace carom {
 
 /// The variables of the Slurm job that this process is in; none outside of one.
@@ -17,8 +19,17 @@ nlohmann::ordered_json provenance_json(int threads);
 /// What it says of the OpenMP runtime of this process.
 nlohmann::ordered_json openmp_json();
 
-/// What it says of how the program was built.
-nlohmann::ordered_json build_json();
+/// How this program was built.
+const Build& this_build();
+
+/// What it says of how code was built.
+nlohmann::ordered_json build_json(const Build& build = this_build());
+
+/// Which source it was built from: the commit, with the hash of what was changed on top of it.
+std::string source_of(const Build& build);
+
+/// The SHA-256 of this program's file.
+const std::string& own_sha256();
 
 /// How the program was built, for a reader: compiler, type of the build, commit.
 std::string build_text();

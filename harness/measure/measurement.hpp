@@ -17,6 +17,7 @@ struct Measurement {
     std::string scene_name;   ///< file name, without folders
     std::string scene_sha256; ///< of the file's bytes
     const Variant& variant;
+    std::string library = {}; ///< of another build, that the variant is of; empty: this program
     Tuning tuning;
     CheckScope scope = CheckScope::last_step;
     int warm_ups = 0;

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <utility>
 
+#include "harness/machine/other_build.hpp"
 #include "harness/machine/provenance.hpp"
 #include "harness/measure/energy_drift.hpp"
 #include "harness/records/policies_json.hpp"
@@ -120,20 +121,24 @@ Json contender_json(const Measurement& measurement) {
             repetitions.push_back({{"steps_seconds", run.steps_seconds}, {"cpu_seconds", run.cpu_seconds}});
         }
     }
-    return {{"tags", tags_json(measurement.tags)},
-            {"axes", axes_json(measurement.variant, measurement.tuning)},
-            {"scene", scene_json(measurement.scene, measurement.scene_name, measurement.scene_sha256)},
-            {"warm_ups", measurement.warm_ups},
-            {"repetitions", repetitions},
-            {"parse_seconds", measurement.parse_seconds},
-            {"process_seconds", measurement.own_seconds.value_or(process_seconds())},
-            {"work", work_json(measurement, last.work)},
-            {"errors", errors_json(measurement, last)},
-            {"check",
-             {{"verdict", measurement.violation ? "failed" : "passed"},
-              {"scope", word(measurement.scope)},
-              {"reason", or_null(measurement.violation)}}},
-            {"state_hash", state_hash(last.discs)}};
+    Json json{{"tags", tags_json(measurement.tags)},
+              {"axes", axes_json(measurement.variant, measurement.tuning)},
+              {"scene", scene_json(measurement.scene, measurement.scene_name, measurement.scene_sha256)},
+              {"warm_ups", measurement.warm_ups},
+              {"repetitions", repetitions},
+              {"parse_seconds", measurement.parse_seconds},
+              {"process_seconds", measurement.own_seconds.value_or(process_seconds())},
+              {"work", work_json(measurement, last.work)},
+              {"errors", errors_json(measurement, last)},
+              {"check",
+               {{"verdict", measurement.violation ? "failed" : "passed"},
+                {"scope", word(measurement.scope)},
+                {"reason", or_null(measurement.violation)}}},
+              {"state_hash", state_hash(last.discs)}};
+    if (!measurement.library.empty()) {
+        json["provenance"] = provenance_of_build(measurement.library);
+    }
+    return json;
 }
 
 void write_record(const std::string& path, const char* kind, const Json& contenders, int threads,
