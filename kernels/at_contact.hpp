@@ -18,15 +18,13 @@
 // each other the way back along its present motion is asked when it came into contact. Both discs then get
 // the velocities that the collision of that moment gives them, and the places to which they have flown with
 // these since. Discs at walls likewise. Here stands how one pair or disc collides so; in which sweeps all of
-// them do, in at_contact_strips.hpp and at_contact_lists.hpp.
+// them do, in at_contact_strips.hpp.
 //
 // The order is that of time: a sweep makes those collisions that are the earliest known of both of their
 // discs. No two of these share a disc, so that they may be made in any order, and what a later one would do
 // is asked anew, of the new paths, in the next sweep. So the result is that of one order of all collisions by
-// time, whatever boxes, strips and threads there are. It is the same to the last bit with lists and with
-// contacts, since nothing in here depends on which disc of a pair is the first. (But of two collisions of a
-// disc at the same instant one is made, and the other one asked again: with contacts the first in the order
-// of the strips, with lists that with the disc of the lowest number.)
+// time, whatever boxes, strips and threads there are. (But of two collisions of a disc at the same instant
+// one is made, the first in the order of the strips, and the other one is asked again.)
 //
 // Why it ends: after `most_sweeps_at_contact`. A pair collides again within a step only later than before,
 // and where the sweeps are not enough, what is left collides at the step's end, without being moved, as all

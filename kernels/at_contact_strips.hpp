@@ -20,7 +20,7 @@
 #include "tally.hpp"
 #include "wavefront.hpp"
 
-// Impact::at_contact with contacts. Each near pair is known of one strip, in a list by segments as contacts
+// The sweeps of Impact::at_contact. Each near pair is known of one strip, in a list by segments as contacts
 // are. A sweep has two halves. In the first a strip finds which of its near pairs are pending: of those of
 // which a disc has collided in the sweep before, those that have met; and each disc learns when the earliest
 // of its pending collisions was. In the second those collisions are made that are the earliest of both discs.
@@ -237,7 +237,6 @@ template <Policies policies> void make_contacts(State<policies>& state, int inde
 
 /// Makes contacts of what is still overlapping at the end of the step, a strip to an iteration.
 template <Policies policies, class SomeProbe>
-    requires(policies.overlaps == Overlaps::contacts)
 Tally find_left(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     parallel_for<policies.resolve_schedule>(
         tuning.threads, state.grid.strip_count(strip_height(policies.order)), tuning.resolve_chunk, probe,
@@ -251,13 +250,15 @@ Tally find_left(State<policies>& state, const Tuning& tuning, SomeProbe& probe) 
 /// Strips take turns as in a wavefront, two a sweep: what they write is known of, or done to, their own discs
 /// and those of the next one's first row (resolve_contacts.hpp).
 template <Policies policies, class SomeProbe>
-    requires(policies.overlaps == Overlaps::contacts)
 Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe& probe) {
     const auto back = way_back(state, tuning);
     const ApproachToleranceOf<policies> approaching(tuning.tolerance);
     const int strips = state.grid.strip_count(strip_height(policies.order));
     Wavefront wavefront(strips);
-    return sweep_at_contact(tuning, probe, [&](int sweep, int threads) {
+    Tuning now = tuning;
+    Tally total;
+    Swept last{.last_changes = few_changes};
+    for (int sweep = 0; sweep < most_sweeps_at_contact && last.last_changes > 0; ++sweep) {
         const auto half_sweep = [&](const StripSweep& next) {
             const auto [strip, half] = next;
             const Changes changes = half == 0
@@ -269,10 +270,13 @@ Tally collide_at_contact(State<policies>& state, const Tuning& tuning, SomeProbe
         const auto can_begin = [&](const StripSweep& next) {
             return wavefront.can_begin(next.strip, 2 * sweep + next.sweep);
         };
-        Tuning now = tuning;
-        now.threads = threads;
-        return sweep_in_turns<policies>(strips, 2, false, now, probe, half_sweep, can_begin);
-    });
+        now.threads = last.last_changes < few_changes ? 1 : tuning.threads;
+        probe.sweep_begin();
+        last = one_sweep(sweep_in_turns<policies>(strips, 2, false, now, probe, half_sweep, can_begin));
+        probe.sweep_end();
+        total += last.work;
+    }
+    return total;
 }
 
 } // namespace carom

@@ -35,20 +35,6 @@ template <class Real> struct NearPair {
     Real time; ///< how long before it they came into contact, as they fly now; see at_contact.hpp
 };
 
-/// A disc near another one, or near a wall, as itself, in the list of the other one.
-template <class Real> struct NearDisc {
-    int other;
-    bool in_own_box;
-    Real last; ///< how long before the end of the step the two last collided; infinity if they did not
-};
-
-/// Of a disc, the earliest of the collisions that its list of near discs tells of.
-template <class Real> struct NextCollision {
-    Real time = -1; ///< before the end of the step
-    int other = -1; ///< with which disc, itself at a wall; -1: there is none
-    int entry = -1; ///< of its list
-};
-
 /// Overlapping discs found so far. A search writes those that it finds beyond the end, where there is room
 /// for all that there may be, and then says where the new end is.
 class FoundPairs {

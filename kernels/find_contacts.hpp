@@ -146,14 +146,10 @@ Tally add_near_pairs(const State<policies>& state, RealOf<policies.precision> se
     for (const OverlappingDiscs pair : strip.found) {
         const auto& first = state.disc(pair.first);
         const auto& second = state.disc(pair.second);
-        const Real dx = second.x - first.x;
-        const Real dy = second.y - first.y;
-        const Real distance_squared = dx * dx + dy * dy;
-        if (policies.search == Search::filtered && distance_squared > search_reach_squared) {
-            continue;
+        if (policies.search == Search::exact || overlap(first, second, search_reach_squared)) {
+            tally.overlaps += !pair.at_wall() && overlap(first, second, state.reach_squared());
+            strip.near.push_back({pair, never, 0});
         }
-        tally.overlaps += !pair.at_wall() && distance_squared <= state.reach_squared();
-        strip.near.push_back({pair, never, 0});
     }
     return tally;
 }

@@ -38,9 +38,6 @@ template <Policies policies>
     for (const int i : discs) {
         __builtin_prefetch(&state.disc(i));
         __builtin_prefetch(&state.overlaps[static_cast<std::size_t>(i)]);
-        if constexpr (policies.impact == Impact::at_contact) {
-            __builtin_prefetch(&state.near[static_cast<std::size_t>(i)]);
-        }
     }
 }
 
@@ -52,18 +49,6 @@ template <Policies policies>
         prefetch_entries(box_ahead(state, row, column, 3 * ahead));
         prefetch_discs(state, box_ahead(state, row, column, 2 * ahead));
         __builtin_prefetch(&box_ahead(state, row + 1, column, 2 * ahead));
-    }
-}
-
-/// For a loop that finds in every box among what is near its discs: as above, and what is near.
-template <Policies policies>
-[[gnu::always_inline]] inline void look_ahead_to_find_left(const State<policies>& state, int row,
-                                                           int column) {
-    look_ahead_to_find(state, row, column);
-    if constexpr (policies.prefetch == Prefetch::on) {
-        for (const int i : box_ahead(state, row, column, state.boxes_ahead)) {
-            __builtin_prefetch(state.near[static_cast<std::size_t>(i)].data());
-        }
     }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "at_contact_lists.hpp"
 #include "at_contact_strips.hpp"
 #include "policies.hpp"
 #include "state.hpp"

@@ -25,11 +25,6 @@ template <class Real> struct OverlapsOf<Overlaps::lists, Real> {
     std::vector<std::vector<int>>
         overlaps; ///< for each disc those it overlaps; each pair stands in both lists
     std::vector<unsigned char> overlaps_wall; ///< of each disc, whether it overlaps one
-    std::vector<std::vector<NearDisc<Real>>>
-        near; ///< Impact::at_contact: for each disc those near it, and near a wall itself
-    UntouchedVector<NextCollision<Real>> next; ///< ditto: of each disc
-    UntouchedVector<unsigned char> asked;      ///< ditto: of each disc, whether it chooses anew in this sweep
-    UntouchedVector<unsigned char> asked_next; ///< ditto: in the next one
 
     OverlapsOf(const Grid& /*grid*/, int count)
         : overlaps(static_cast<std::size_t>(count)), overlaps_wall(static_cast<std::size_t>(count)) {}

@@ -47,22 +47,6 @@ inline Swept one_sweep(Tally work) {
     return {work, work.pair_resolves + work.wall_resolves};
 }
 
-/// The sweeps of Impact::at_contact (at_contact.hpp), until one changes nothing. `sweep(index, threads)` runs
-/// one and returns what it did.
-template <class SomeProbe, class Sweep>
-Tally sweep_at_contact(const Tuning& tuning, SomeProbe& probe, const Sweep& sweep) {
-    Tally total;
-    std::int64_t last_changes = few_changes;
-    for (int index = 0; index < most_sweeps_at_contact && last_changes > 0; ++index) {
-        probe.sweep_begin();
-        const Swept swept = one_sweep(sweep(index, last_changes < few_changes ? 1 : tuning.threads));
-        probe.sweep_end();
-        last_changes = swept.last_changes;
-        total += swept.work;
-    }
-    return total;
-}
-
 template <Policies policies, class SomeProbe>
 Swept sweep_checkered(State<policies>& state, const Tuning& tuning,
                       const ApproachToleranceOf<policies>& approaching, SomeProbe& probe) {

@@ -11,14 +11,12 @@
 namespace carom {
 namespace {
 
-/// Of a disc in steps: where it is, in sorted storage in the order before as well, and what lists it has.
+/// Of a disc in steps: where it is, in sorted storage in the order before as well, and its list.
 std::size_t bytes_per_disc(const Policies& policies) {
     const std::size_t disc =
         policies.precision == Precision::float_ ? sizeof(BasicDisc<float>) : sizeof(BasicDisc<double>);
-    const std::size_t lists = policies.overlaps == Overlaps::contacts ? 0
-                              : policies.impact == Impact::at_contact ? 2
-                                                                      : 1;
-    return (policies.storage == Storage::sorted ? 2 : 1) * disc + lists * sizeof(std::vector<int>);
+    const std::size_t list = policies.overlaps == Overlaps::lists ? sizeof(std::vector<int>) : 0;
+    return (policies.storage == Storage::sorted ? 2 : 1) * disc + list;
 }
 
 } // namespace

@@ -42,8 +42,7 @@ constexpr std::string_view impossible(const Policies& policies) {
     if (policies.worklist == Worklist::active && policies.overlaps != Overlaps::contacts) {
         return "only contacts can be active; of discs, the order track keeps account";
     }
-    if (policies.impact == Impact::at_contact && policies.overlaps == Overlaps::contacts &&
-        policies.worklist != Worklist::active) {
+    if (policies.impact == Impact::at_contact && policies.worklist != Worklist::active) {
         return "only active contacts are taken back to their time: a collision says which to ask anew";
     }
     return "";
@@ -98,7 +97,6 @@ inline constexpr auto table = [] {
         vary({.precision = float_}, &Policies::order, track),
         rows({{.order = row, .resolve_schedule = dynamic, .precision = float_}}),
         vary(ladder.back(), &Policies::precision, float_),
-        vary(at_contact({}), &Policies::precision, double_, float_),
         vary(at_contact(ladder.back()), &Policies::precision, double_, float_));
     // clang-format on
 }();

@@ -113,7 +113,7 @@ COMPLETED = {
     ("carom", "study", "res"): ["resume"],
     ("carom", "run", "--thr"): ["--threads"],
     ("carom", "study", "run", "--until"): ["--until-decided"],
-    ("carom", "run", "--variant", "at_con"): ["at_contact"],
+    ("carom", "run", "--variant", "event_d"): ["event_driven"],
 }
 
 

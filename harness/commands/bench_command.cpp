@@ -3,6 +3,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <streambuf>
 #include <string>
 #include <string_view>
@@ -28,53 +29,19 @@
 namespace carom {
 namespace {
 
-/// While it lives, std::cerr is read line by line; what is neither explained nor kept is passed on.
-class Messages : public std::streambuf {
+/// While it lives, what is written to std::cerr is kept.
+class KeptErrors {
   public:
-    explicit Messages(bool keep_all) : keep_all_(keep_all), outside_(std::cerr.rdbuf(this)) {}
-    ~Messages() override {
-        std::cerr.rdbuf(outside_);
-        if (!line_.empty()) {
-            std::cerr << line_;
-        }
-    }
-    Messages(const Messages&) = delete;
-    Messages& operator=(const Messages&) = delete;
+    KeptErrors() : outside_(std::cerr.rdbuf(kept_.rdbuf())) {}
+    ~KeptErrors() { std::cerr.rdbuf(outside_); }
+    KeptErrors(const KeptErrors&) = delete;
+    KeptErrors& operator=(const KeptErrors&) = delete;
 
-    /// The lines that were kept, as one.
-    const std::string& kept() const { return kept_; }
-
-  protected:
-    int overflow(int letter) override {
-        if (letter == '\n') {
-            take_line();
-        } else if (letter != traits_type::eof()) {
-            line_ += static_cast<char>(letter);
-        }
-        return traits_type::not_eof(letter);
-    }
+    std::vector<std::string> lines() const { return CLI::detail::split(kept_.str(), '\n'); }
 
   private:
-    bool has(std::string_view part) const { return line_.find(part) != std::string::npos; }
-
-    void take_line() {
-        if (keep_all_ || has("match any benchmarks") || has("compile benchmark re")) {
-            kept_ += (kept_.empty() ? "" : " ") + line_;
-        } else if (has("Library was built as DEBUG")) {
-            note("Google Benchmark was built as DEBUG, as Debian's package is: it only asks for runs here, "
-                 "and "
-                 "the times are those of carom's own clock");
-        } else {
-            const std::string line = line_ + '\n';
-            outside_->sputn(line.data(), static_cast<std::streamsize>(line.size()));
-        }
-        line_.clear();
-    }
-
-    bool keep_all_;
+    std::ostringstream kept_;
     std::streambuf* outside_;
-    std::string line_;
-    std::string kept_;
 };
 
 void require_words(const std::string& flag) {
@@ -110,21 +77,41 @@ void initialize_google_benchmark(const std::vector<std::string>& flags) {
         pointers.push_back(text.data());
     }
     int count = static_cast<int>(pointers.size());
-    const Messages messages(true);
+    const KeptErrors errors;
     benchmark::Initialize(&count, pointers.data());
     if (count > 1) {
+        const std::string said = CLI::detail::join(errors.lines(), " ");
         throw InputError("found " + in_quotes(pointers[1]) + ", expected a flag that Google Benchmark knows" +
-                         (messages.kept().empty() ? "" : "; it says: " + messages.kept()));
+                         (said.empty() ? "" : "; it says: " + said));
     }
 }
 
-/// Runs all registered cases that the filter lets through. What Google Benchmark says on standard error is
-/// passed on, except that it was built as DEBUG, which is explained. Throws InputError if no case is let
+/// Passes on what Google Benchmark has said on standard error. That it was built as DEBUG is explained, and
+/// that no case was let through is told by who asked.
+void pass_on(const std::vector<std::string>& lines) {
+    for (const std::string& line : lines) {
+        const auto has = [&line](std::string_view part) { return line.find(part) != std::string::npos; };
+        if (has("Library was built as DEBUG")) {
+            note("Google Benchmark was built as DEBUG, as Debian's package is: it only asks for runs here, "
+                 "and the times are those of carom's own clock");
+        } else if (!line.empty() && !has("match any benchmarks") && !has("compile benchmark re")) {
+            std::cerr << line << '\n';
+        }
+    }
+}
+
+/// Runs all registered cases that the filter lets through. Throws InputError if no case is let
 /// through; `flags` are those of the initialization, and `example` is the name of a case.
 void run_google_benchmark(const std::vector<std::string>& flags, const std::string& example) {
-    const Messages messages(false);
-    const auto cases = benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
+    std::vector<std::string> said;
+    const auto cases = [&said] {
+        const KeptErrors errors;
+        const auto count = benchmark::RunSpecifiedBenchmarks();
+        benchmark::Shutdown();
+        said = errors.lines();
+        return count;
+    }();
+    pass_on(said);
     if (cases > 0) {
         return;
     }

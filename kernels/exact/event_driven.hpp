@@ -97,19 +97,6 @@ template <class Real, class Log = NoCollisionLog> class EventDriven {
         return true;
     }
 
-    /// Reverses all velocities: from here on the discs go back the way they came.
-    void turn_back() {
-        for (Flight<Real>& one : foresight_.flights()) {
-            one.move_to(now_);
-            one.vx = -one.vx;
-            one.vy = -one.vy;
-            ++one.age;
-        }
-        for (int i = 0; i < static_cast<int>(foresight_.flights().size()); ++i) {
-            foresight_.look_ahead(i, now_);
-        }
-    }
-
     /// The discs as they are now, disc i at index i.
     std::vector<BasicDisc<Real>> discs() const {
         std::vector<BasicDisc<Real>> result;

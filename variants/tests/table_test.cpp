@@ -90,14 +90,9 @@ TEST(Impossible, GivesAReasonForAskingAheadForWhatStandsInOrder) {
     EXPECT_NE(impossible({.storage = Storage::sorted, .prefetch = Prefetch::on}), "");
 }
 
-TEST(Table, CombinesCollisionsAtContactWithThePublishedStorageAndTheFastest) {
-    for (const Policies& base : {Policies{}, ladder.back()}) {
-        for (const Precision precision : {Precision::double_, Precision::float_}) {
-            Policies policies = at_contact(base);
-            policies.precision = precision;
-            EXPECT_TRUE(in_table(policies));
-        }
-    }
+TEST(Impossible, GivesAReasonForCollisionsAtContactWithoutContacts) {
+    EXPECT_NE(impossible(at_contact({})), "");
+    EXPECT_EQ(impossible(at_contact(ladder.back())), "");
 }
 
 /// How many policies differ.

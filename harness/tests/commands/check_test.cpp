@@ -9,6 +9,8 @@
 #include "harness/tests/temporary_directory.hpp"
 #include "kernels/tests/scenes.hpp"
 #include "kernels/tests/simulate.hpp"
+#include "variants/name.hpp"
+#include "variants/table.hpp"
 
 namespace carom {
 namespace {
@@ -77,7 +79,7 @@ TEST_F(CheckCommand, SaysWhatItLookedAt) {
         return nlohmann::json::parse(result.output)["scope"];
     };
     EXPECT_EQ(scope_of("event_driven"), "every-collision");
-    EXPECT_EQ(scope_of("at_contact-float"), "every-collision");
+    EXPECT_EQ(scope_of(name_of(at_contact(ladder.back())).view().data()), "every-collision");
     EXPECT_EQ(scope_of("row"), "every-step");
 }
 
