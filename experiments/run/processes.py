@@ -2,11 +2,11 @@
 
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from experiments.plan.command import Manner, placed
+from experiments.plan.command import placed
 from experiments.plan.point import Point, Tags
 from experiments.plan.program import Program, build_of
 from experiments.plan.scenes import SceneFile
@@ -179,7 +179,7 @@ class Processes:
         folder, manner = "", dict[str, Any]()
         if (command := point.command) is not None:
             folder = str(command.folder)
-            manner = {one.name: getattr(command, one.name) for one in fields(Manner)}
+            manner = command.manner
             manner |= {name: placed(manner[name], scene, output) for name in ("prepare", "conclude")}
         return Contender(words, folder, dict(point.openmp), self._time_limit, **manner)
 
