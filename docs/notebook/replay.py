@@ -22,8 +22,9 @@ from experiments.results.record import runs_of
 from experiments.results.store import Found, Store
 from experiments.run import session
 from experiments.run.progress import ProgressDisplay
-from experiments.run.runner import ProcessResult, Task
+from experiments.run.runner import ProcessResult
 from experiments.run.study import Settings, Study
+from experiments.run.task import Task
 from experiments.run.verdicts import Analysis
 
 BESIDE = 1.23

@@ -11,7 +11,7 @@ from documents import BUILT
 from docs.generate import command_line, pages, program_help, python_verbs, schema
 from experiments.plan.question import FOLDER, Blocks, Question, Sweep
 from experiments.plan.scenes import HardCase, Scene
-from experiments.plan.series import Benchmark, PrintedTime, Series
+from experiments.plan.series import SECONDS_OF_UNIT, Series
 from support.record_schema import SCHEMA_FILE
 
 
@@ -46,7 +46,6 @@ def test_every_field_of_a_schema_says_what_it_means(file: Path) -> None:
 
 READ_INTO: dict[str, type] = {
     "": Question, "generated": Scene, "case": HardCase, "sweep": Sweep, "blocks": Blocks, "series": Series,
-    "time": PrintedTime, "benchmark": Benchmark,
 }  # fmt: skip
 FILLED_IN = {"verb", "x_name", "minimum", "wanted"}
 """Keys that the reader fills in, or that no table may lack."""
@@ -61,6 +60,8 @@ def test_the_defaults_of_a_question_are_those_of_what_it_is_read_into(name: str)
         one.name: one.default for one in fields(READ_INTO[name]) if isinstance(one.default, str | int | float)
     }
     assert said == {key: one for key, one in plain.items() if key in node["properties"].keys() - FILLED_IN}
+    unit = content["$defs"]["time"]["properties"]["unit"]["default"]
+    assert SECONDS_OF_UNIT[unit] == Series.unit_seconds
 
 
 def _fields(node: Mapping[str, Any], prefix: str) -> list[tuple[str, Mapping[str, Any]]]:

@@ -18,8 +18,9 @@ from experiments.results.record import Record, is_failed, unusable
 from experiments.results.store import Store
 from experiments.run.host_lock import WAITS
 from experiments.run.processes import HINDERED_SECONDS
-from experiments.run.runner import Runner, Task
+from experiments.run.runner import Runner
 from experiments.run.schedule import FIRST_LOOK
+from experiments.run.task import Task
 from experiments.run.together import together
 from support.files import read_json
 from support.vocabulary import AGAIN

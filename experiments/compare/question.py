@@ -9,7 +9,7 @@ from experiments.compare.options import Asked
 from experiments.plan.benchmark_cases import filter_of
 from experiments.plan.command import Command, Place, resolved
 from experiments.plan.executable import UnfitError
-from experiments.plan.plan import Experiment, Surroundings, point_of
+from experiments.plan.plan import Curve, Experiment, Surroundings
 from experiments.plan.point import PROCESS, Point
 from experiments.plan.program import GENERATOR, Program
 from experiments.plan.question import Question, Sweep
@@ -67,7 +67,7 @@ def _point(
     command, program = _command(one, case[1], asked, around)
     openmp = _environment(asked, bound, one.environment)
     run = {"scene": NoScene(), "threads": threads, "program": program, "command": command, "openmp": openmp}
-    return point_of(question, (number, Series(one.name, label=one.name)), around, case[0], **run)
+    return Curve(question, number, Series(one.name, label=one.name), around).point_at(case[0], **run)
 
 
 def _command(one: Compared, case: str | None, asked: Asked, around: Surroundings) -> tuple[Command, Program]:

@@ -10,7 +10,7 @@ from typing import Any
 from experiments.plan.benchmark_cases import filter_of
 from experiments.plan.executable import UnfitError, found, program_of, require_executable
 from experiments.plan.program import Program
-from experiments.plan.series import SECONDS_OF_UNIT, Series, literal
+from experiments.plan.series import Manner, Series, literal
 from experiments.support.digest import digest
 from support.errors import InputError, not_one_of
 
@@ -18,35 +18,6 @@ SCENE, OUTPUT, FOLDER = "scene", "out", "folder"
 """Placeholders of files that are known only when the program is run, and of the question's folder."""
 
 _LONGEST_NAME = 60
-
-
-@dataclass(frozen=True, kw_only=True)
-class Manner:
-    """How a program is run, and how its time is known."""
-
-    pattern: str | None = None
-    """Where it prints its time."""
-    unit_seconds: float | None = 1.0
-    """Of a time that it prints without a unit."""
-    benchmark: str | None = None
-    """The case of a Google Benchmark."""
-    prepare: tuple[str, ...] = ()
-    """Words of a command that is run before each of its runs, untimed."""
-    conclude: tuple[str, ...] = ()
-    """And of one that is run after each."""
-    fresh_folder: bool = False
-    """Each run has a new and empty folder, which is removed afterwards."""
-    exit_codes: tuple[int, ...] = ()
-    """Those that are fine; 0 alone where none is said."""
-    turns: bool | None = None
-    """Whether it is sliced; found out if nobody says so."""
-    rounds: int | None = None
-    """How often it runs in a block, each time by itself; without a number once, or in turns."""
-
-    @property
-    def times_itself(self) -> bool:
-        """Whether the time that counts is one that the program says: it must not stand still meanwhile."""
-        return self.pattern is not None or self.benchmark is not None
 
 
 @dataclass(frozen=True)
@@ -111,18 +82,11 @@ def command_of(
         _filled(getattr(series, name), f"{key}.{name}", of_check if name == "trajectory" else of_run)
         for name in ("command", "prepare", "conclude", "trajectory")
     )
-    name = None
+    manner = series.manner | {"prepare": prepare, "conclude": conclude}
     if series.benchmark is not None:
-        [name] = placed(_filled((str(series.benchmark.name),), f"{key}.benchmark.name", of_run))
-        words = (*words, literal(filter_of(name)))
-    times: dict[str, Any] = {}
-    if series.time is not None:
-        unit = SECONDS_OF_UNIT.get(str(series.time.unit))
-        times = {"pattern": series.time.stdout, "unit_seconds": unit}
-    command = Command(
-        words, place.folder, place.instrument, trajectory, benchmark=name, prepare=prepare, conclude=conclude,
-        fresh_folder=series.fresh_folder, exit_codes=series.exit_codes, turns=series.turns, **times,
-    )  # fmt: skip
+        [manner["benchmark"]] = placed(_filled((series.benchmark,), f"{key}.benchmark.name", of_run))
+        words = (*words, literal(filter_of(manner["benchmark"])))
+    command = Command(words, place.folder, place.instrument, trajectory, **manner)
     if trajectory and command.writes_trajectory:
         raise InputError(f"{key}.trajectory: found beside {{out}} in command, expected only one of the two")
     writes = place.writes and placed(_filled(place.writes, f"{key}.writes", of_run))

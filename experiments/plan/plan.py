@@ -55,15 +55,16 @@ def plan(question: Question, around: Surroundings) -> Experiment:
     Raises InputError with one line for a program or variant that does not exist, and for two points that
     would measure the same thing twice.
     """
+    curves = [Curve(question, *numbered, around) for numbered in enumerate(question.series, start=1)]
     points = [
         point
         for scene in around.scale.scenes(question)
         for point in _with_replicates(
             [
-                _point(question, number, series, scene, value, around)
-                for number, series in enumerate(question.series, start=1)
-                if not _left_out(series, scene, around)
-                for value in _values(question, _known(question, number, series, around), around)
+                curve.point(scene, value)
+                for curve in curves
+                if not curve.is_left_out(scene)
+                for value in curve.values()
             ],
             question,
         )
@@ -98,87 +99,6 @@ def _with_replicates(points: Sequence[Point], question: Question) -> Iterator[Po
                 yield replace(point, replicate=number)
 
 
-def _left_out(series: Series, scene: NamedScene, around: Surroundings) -> bool:
-    """Whether the series does not run the scene or at the scale, or may be missing and its program is."""
-    if (scene.series and series.name not in scene.series) or (series.paper_only and around.scale.divisor > 1):
-        return True
-    program = around.programs.get(series.program)
-    return series.optional and (program is None or program.sha256 is None)
-
-
-def _known(question: Question, number: int, series: Series, around: Surroundings) -> Series:
-    """The series, once its program and its variant are known to exist."""
-    key = f"{question.file}: series[{number}]"
-    if series.is_foreign:
-        return series
-    if series.program not in around.programs:
-        raise InputError(f"{key}.program: {not_one_of(series.program, around.programs)}")
-    program = around.programs[series.program]
-    if program.sha256 is None or series.variant in SHORT_NAMES:
-        return series
-    if series.variant not in variants(program):
-        known = ["a name out of `carom list --names`", *SHORT_NAMES]
-        like = nearest(str(series.variant), [*SHORT_NAMES, *variants(program)])
-        raise InputError(f'{key}.variant: found "{series.variant}", expected one of {", ".join(known)}{like}')
-    return series
-
-
-def _values(question: Question, series: Series, around: Surroundings) -> Sequence[float | None]:
-    sweep, threads = question.sweep, around.machine.hardware_threads
-    if sweep.parameter is None:
-        return [None]
-    values = [value * threads if sweep.unit else value for value in around.scale.values(series)]
-    return [value for value in values if sweep.limit is None or value <= sweep.limit * threads]
-
-
-def _point(
-    question: Question,
-    number: int,
-    series: Series,
-    named: NamedScene,
-    value: float | None,
-    around: Surroundings,
-) -> Point:
-    parameter, scene, x = question.sweep.parameter, named.scene, 0 if value is None else value
-    run: dict[str, Any] = {
-        "threads": _threads(question.threads, around.machine),
-        "substeps": question.substeps,
-        "find_chunk": series.find_chunk,
-        "resolve_chunk": series.resolve_chunk,
-    }
-    if parameter in run:
-        x = run[parameter] = max(1, round(x))
-    elif parameter in Scene.__dataclass_fields__ or parameter == "area_fraction":
-        assert isinstance(scene, Scene)
-        scene = _swept(question, scene, parameter, x)
-    command, program = None, around.programs.get(series.program)
-    if series.is_foreign:
-        of_run = {"threads": run["threads"], "substeps": run["substeps"]}
-        command, program = _command(question, number, series, (scene, of_run, x), around)
-    assert program is not None
-    openmp = around.site.binding.environment(run["threads"], around.machine, bound=question.bound)
-    run |= {"scene": scene, "program": program, "command": command, "openmp": tuple(sorted(openmp.items()))}
-    return point_of(question, (number, series), around, x, scene_name=named.name, **run)
-
-
-def point_of(
-    question: Question,
-    numbered: tuple[int, Series],
-    around: Surroundings,
-    x: float,
-    **run: Any,  # noqa: ANN401 - the fields of a point that only its run decides
-) -> Point:
-    """The point of a series, which has a number in its question, at a place of its sweep."""
-    number, series = numbered
-    simulated = around.scale.simulated(question)
-    return Point(
-        experiment=question.name, series=series.name, series_number=number, label=series.label, replicate=1,
-        x_name=question.sweep.x_name, x=x, scale=around.scale.name, site=around.site.name,
-        machine=around.machine, variant=series.variant, simulated=simulated, apart=series.apart,
-        **{name: getattr(question, name) for name in _OF_QUESTION}, **run,
-    )  # fmt: skip
-
-
 _OF_QUESTION = (
     "kind", "figure", "claim", "margin", "error", "reference", "verb", "tolerance", "warm_up", "repetitions",
     "errors",
@@ -186,27 +106,99 @@ _OF_QUESTION = (
 """What all points of a question have in common with it."""
 
 
-def _command(
-    question: Question,
-    number: int,
-    series: Series,
-    at: tuple[AnyScene, dict[str, Any], float],
-    around: Surroundings,
-) -> tuple[Command, Program]:
-    """The series' command at a point, of which these are the scene, what else it says of the run, and x."""
-    scene, of_run, x = at
-    parameter = question.sweep.parameter
-    beginning = scene.beginning if isinstance(scene, Scene) else scene
-    values, checked = (
-        _placeholders(one, {**of_run, "x": _plain(x), **({parameter: _plain(x)} if parameter else {})})
-        for one in (scene, beginning)
-    )
-    if parameter == "steps":
-        checked["x"] = checked["steps"]
-    instrument = str(around.programs[GENERATOR].sha256)
-    key = f"{question.file}: series[{number}]"
-    place = Place(question.file.parent.absolute(), instrument, question.writes)
-    return command_of(series, key, (values, checked), place)
+@dataclass(frozen=True)
+class Curve:
+    """A series, the `number` of it in its question, and where it is measured."""
+
+    question: Question
+    number: int
+    series: Series
+    around: Surroundings
+
+    @property
+    def key(self) -> str:
+        """What a line about it begins with."""
+        return f"{self.question.file}: series[{self.number}]"
+
+    def is_left_out(self, scene: NamedScene) -> bool:
+        """Whether it does not run the scene or at the scale, or may be missing and its program is."""
+        series, around = self.series, self.around
+        is_for_others = bool(scene.series) and series.name not in scene.series
+        if is_for_others or (series.paper_only and around.scale.divisor > 1):
+            return True
+        program = around.programs.get(series.program)
+        return series.optional and (program is None or program.sha256 is None)
+
+    def values(self) -> Sequence[float | None]:
+        """What it is measured at. Raises InputError where its program or its variant is not known."""
+        self._require_known()
+        sweep, threads = self.question.sweep, self.around.machine.hardware_threads
+        if sweep.parameter is None:
+            return [None]
+        values = [value * threads if sweep.unit else value for value in self.around.scale.values(self.series)]
+        return [value for value in values if sweep.limit is None or value <= sweep.limit * threads]
+
+    def _require_known(self) -> None:
+        series, programs = self.series, self.around.programs
+        if series.is_foreign:
+            return
+        if series.program not in programs:
+            raise InputError(f"{self.key}.program: {not_one_of(series.program, programs)}")
+        program = programs[series.program]
+        if program.sha256 is None or series.variant in (*SHORT_NAMES, *variants(program)):
+            return
+        known = ", ".join(["a name out of `carom list --names`", *SHORT_NAMES])
+        like = nearest(str(series.variant), [*SHORT_NAMES, *variants(program)])
+        raise InputError(f'{self.key}.variant: found "{series.variant}", expected one of {known}{like}')
+
+    def point(self, named: NamedScene, value: float | None) -> Point:
+        """The point on a scene, at a value of the sweep."""
+        question, series, around = self.question, self.series, self.around
+        parameter, scene, x = question.sweep.parameter, named.scene, 0 if value is None else value
+        run: dict[str, Any] = {
+            "threads": _threads(question.threads, around.machine),
+            "substeps": question.substeps,
+            "find_chunk": series.find_chunk,
+            "resolve_chunk": series.resolve_chunk,
+        }
+        if parameter in run:
+            x = run[parameter] = max(1, round(x))
+        elif parameter in Scene.__dataclass_fields__ or parameter == "area_fraction":
+            assert isinstance(scene, Scene)
+            scene = _swept(question, scene, parameter, x)
+        command, program = None, around.programs.get(series.program)
+        if series.is_foreign:
+            of_run = {"threads": run["threads"], "substeps": run["substeps"]}
+            command, program = self._command(scene, of_run, x)
+        assert program is not None
+        openmp = around.site.binding.environment(run["threads"], around.machine, bound=question.bound)
+        run |= {"scene": scene, "program": program, "command": command}
+        return self.point_at(x, scene_name=named.name, openmp=tuple(sorted(openmp.items())), **run)
+
+    def point_at(self, x: float, **run: Any) -> Point:  # noqa: ANN401 - what only its run decides
+        """The point at a place of the sweep, with the fields that only its run decides."""
+        question, series, around = self.question, self.series, self.around
+        return Point(
+            experiment=question.name, series=series.name, series_number=self.number, label=series.label,
+            replicate=1, x_name=question.sweep.x_name, x=x, scale=around.scale.name, site=around.site.name,
+            machine=around.machine, variant=series.variant, apart=series.apart,
+            simulated=around.scale.simulated(question),
+            **{name: getattr(question, name) for name in _OF_QUESTION}, **run,
+        )  # fmt: skip
+
+    def _command(self, scene: AnyScene, of_run: dict[str, Any], x: float) -> tuple[Command, Program]:
+        """The series' command on a scene, with what else it says of the run, and x."""
+        parameter = self.question.sweep.parameter
+        beginning = scene.beginning if isinstance(scene, Scene) else scene
+        values, checked = (
+            _placeholders(one, {**of_run, "x": _plain(x), **({parameter: _plain(x)} if parameter else {})})
+            for one in (scene, beginning)
+        )
+        if parameter == "steps":
+            checked["x"] = checked["steps"]
+        instrument = str(self.around.programs[GENERATOR].sha256)
+        place = Place(self.question.file.parent.absolute(), instrument, self.question.writes)
+        return command_of(self.series, self.key, (values, checked), place)
 
 
 def _placeholders(scene: AnyScene, others: dict[str, Any]) -> dict[str, object]:

@@ -5,7 +5,7 @@ import os
 import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -19,30 +19,47 @@ WORDS = ("command", "trajectory", "prepare", "conclude", "writes")
 """The keys of a series whose words have placeholders."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Manner:
+    """How a program is run, and how its time is known."""
+
+    pattern: str | None = None
+    """Where it prints its time."""
+    unit_seconds: float | None = 1.0
+    """Of a time that it prints without a unit."""
+    benchmark: str | None = None
+    """The case of a Google Benchmark."""
+    prepare: tuple[str, ...] = ()
+    """Words of a command that is run before each of its runs, untimed."""
+    conclude: tuple[str, ...] = ()
+    """And of one that is run after each."""
+    fresh_folder: bool = False
+    """Each run has a new and empty folder, which is removed afterwards."""
+    exit_codes: tuple[int, ...] = ()
+    """Those that are fine; 0 alone where none is said."""
+    turns: bool | None = None
+    """Whether it is sliced; found out if nobody says so."""
+    rounds: int | None = None
+    """How often it runs in a block, each time by itself; without a number once, or in turns."""
+
+    @property
+    def times_itself(self) -> bool:
+        """Whether the time that counts is one that the program says: it must not stand still meanwhile."""
+        return self.pattern is not None or self.benchmark is not None
+
+    @property
+    def manner(self) -> dict[str, Any]:
+        """All this by name, for another one that is run alike."""
+        return {one.name: getattr(self, one.name) for one in fields(Manner)}
+
+
 @dataclass(frozen=True)
-class PrintedTime:
-    """Where a program's standard output says how long it took: a regular expression with one group."""
-
-    stdout: str
-    unit: str | None = "s"
-    """Of a number that has none behind it; without one that is an error."""
-
-
-@dataclass(frozen=True)
-class Benchmark:
-    """A case of a Google Benchmark; with a `filter` instead of a `name` each case that matches it."""
-
-    program: str
-    name: str | None = None
-    filter: str | None = None
-
-
-@dataclass(frozen=True)
-class Series:
+class Series(Manner):
     """One curve: what runs, fixed chunks of a variant, and the swept values at both scales.
 
-    It is a `variant` of a build of the program, or else a `command`, words with placeholders. `trajectory` is
-    a command, too, whose output is checked; `time` says where the program prints its own time.
+    It is a `variant` of a build of the program, or else a `command`, words with placeholders, as `prepare`,
+    `conclude` and the name of the case of a `benchmark` have them too. `trajectory` is a command as well,
+    whose output is checked.
     """
 
     name: str
@@ -50,19 +67,8 @@ class Series:
     program: str = "gcc"
     command: tuple[str, ...] = ()
     trajectory: tuple[str, ...] = ()
-    prepare: tuple[str, ...] = ()
-    conclude: tuple[str, ...] = ()
-    """Commands that are run, untimed, before and after each run."""
     writes: tuple[str, ...] = ()
     """The files among its words that it writes."""
-    fresh_folder: bool = False
-    """Each run has a new folder to itself."""
-    exit_codes: tuple[int, ...] = ()
-    """Those that are fine; without any it is 0."""
-    turns: bool | None = None
-    """Whether it is stopped while others run; without a word it is found out."""
-    time: PrintedTime | None = None
-    benchmark: Benchmark | None = None
     label: str | None = None
     find_chunk: int | None = None
     resolve_chunk: int | None = None
@@ -138,22 +144,36 @@ def _of_table(path: Path, key: str, table: dict[str, Any]) -> Iterator[Series]:
     _require_no_zero_byte(key, table)
     pattern = table.pop("commands", None)
     words = {name: tuple(table.pop(name, ())) for name in WORDS}
-    time = PrintedTime(**table.pop("time")) if "time" in table else None
-    benchmark = Benchmark(**table.pop("benchmark")) if "benchmark" in table else None
-    codes = tuple(sorted(table.pop("exit_codes", [0])))
-    fine = () if codes == (0,) else codes
-    series = Series(**{"name": "", **table, **words}, time=time, benchmark=benchmark, exit_codes=fine)
-    if time is not None:
-        require_one_group(f"{key}.time.stdout", time.stdout)
+    time, benchmark = table.pop("time", {}), table.pop("benchmark", {})
+    manner: dict[str, Any] = {"pattern": time.get("stdout"), "benchmark": benchmark.get("name")}
+    if "unit" in time:
+        manner["unit_seconds"] = SECONDS_OF_UNIT[time["unit"]]
+    if benchmark:
+        words["command"] = (benchmark["program"],)
+    codes = tuple(sorted(table.pop("exit_codes", ())))
+    manner["exit_codes"] = () if codes == (0,) else codes
+    series = Series(**{"name": "", **table, **words, **manner})
+    _require_possible(key, series, benchmark)
+    if pattern is not None:
+        yield from _of_pattern(path, key, series, pattern)
+    elif "filter" in benchmark:
+        program = os.fspath(path.parent / benchmark["program"])
+        for name in cases([program], benchmark["filter"], f"{key}.benchmark"):
+            # What is listed has no placeholders.
+            yield replace(series, name=series.name or _shown(name), benchmark=literal(name))
+    else:
+        yield series
+
+
+def _require_possible(key: str, series: Series, benchmark: Mapping[str, Any]) -> None:
+    """What its tables of a time and of a benchmark ask of each other and of the rest."""
+    if series.pattern is not None:
+        require_one_group(f"{key}.time.stdout", series.pattern)
         if series.turns:
             told = "found true for a program that times itself, which would count its pauses; expected false"
             raise InputError(f"{key}.turns: {told}")
-    if pattern is not None:
-        yield from _of_pattern(path, key, series, pattern)
-    elif benchmark is not None:
-        yield from _of_benchmark(path, key, series, benchmark)
-    else:
-        yield series
+    if benchmark and ("name" in benchmark) == ("filter" in benchmark):
+        raise InputError(f"{key}.benchmark: expected either name or filter")
 
 
 def _require_no_zero_byte(key: str, value: object) -> None:
@@ -239,17 +259,3 @@ def _common(paths: Sequence[tuple[str, ...]]) -> int:
     """How many of their first parts are the same in all."""
     columns = zip(*paths, strict=False)
     return sum(1 for _ in takewhile(lambda parts: len(set(parts)) == 1, columns))
-
-
-def _of_benchmark(path: Path, key: str, series: Series, benchmark: Benchmark) -> Iterator[Series]:
-    """The one that is named, or one for each that the program lists."""
-    if (benchmark.name is None) == (benchmark.filter is None):
-        raise InputError(f"{key}.benchmark: expected either name or filter")
-    series = replace(series, command=(benchmark.program,))
-    if benchmark.filter is None:
-        yield series
-        return
-    for name in cases([os.fspath(path.parent / benchmark.program)], benchmark.filter, f"{key}.benchmark"):
-        # What is listed has no placeholders.
-        own = replace(benchmark, name=literal(name))
-        yield replace(series, name=series.name or _shown(name), benchmark=own)

@@ -2,12 +2,12 @@
 
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from experiments.plan.command import Manner, placed
-from experiments.plan.point import Point, Tags
+from experiments.plan.command import placed
+from experiments.plan.point import Point
 from experiments.plan.program import Program, build_of
 from experiments.plan.scenes import SceneFile
 from experiments.results.record import Record, is_failed
@@ -17,7 +17,7 @@ from experiments.run.host_lock import host_lock
 from experiments.run.process_record import Described, process_record
 from experiments.run.progress import warn
 from experiments.run.sources import Sources
-from experiments.run.together import is_alike, is_left_open
+from experiments.run.task import Ready, Task
 from experiments.side_by_side.contest import Contender, Contest, Entrant
 from experiments.side_by_side.sampler import Sampler, SamplerError
 from experiments.support.process import Completed
@@ -34,21 +34,6 @@ SLICE_SECONDS, SHORT_SECONDS = 0.01, 0.002
 HINDERED_SECONDS = 0.025
 """Of a slice where other programs have the processors: who goes on there is often moved to another one, whose
 caches hold nothing of it."""
-
-
-@dataclass(frozen=True)
-class Asked:
-    """A point to be measured, the file of its scene, what its record is to remember, how what it does was
-    checked, whether it may take turns with others at all, and whether it does not because more are compared
-    than memory holds at once.
-    """
-
-    point: Point
-    scene: SceneFile | None
-    tags: Tags
-    checked: str = ""
-    turns: bool = True
-    crowded: bool = False
 
 
 class Processes:
@@ -72,7 +57,7 @@ class Processes:
         self._slice = SLICE_SECONDS
         self._behaviours = Behaviours(store)
 
-    def measure(self, asked: Sequence[Asked], seed: int, slice_seconds: float) -> tuple[Record, list[Path]]:
+    def measure(self, ready: Sequence[Ready], seed: int, slice_seconds: float) -> tuple[Record, list[Path]]:
         """Their record, and what each wrote itself, if it was to; the shortest runs for so many seconds
         before the next does.
 
@@ -80,24 +65,25 @@ class Processes:
         a busy machine a program takes another time in slices than as a whole.
         """
         self._slice = slice_seconds
-        record, outputs = self._run(asked, seed)
-        found = self._learn(asked, record)
-        if any(found) and any(map(_was_sliced, asked, record["contenders"])):
-            record, outputs = self._run(asked, seed)
-            _say_why_whole(asked, record, found)
-        for one, there in zip(asked, record["contenders"], strict=True):
-            if one.turns and one.crowded:
+        tasks = [task for task, _ in ready]
+        record, outputs = self._run(ready, seed)
+        found = self._learn(tasks, record)
+        if any(found) and any(map(_was_sliced, tasks, record["contenders"])):
+            record, outputs = self._run(ready, seed)
+            _say_why_whole(tasks, record, found)
+        for task, there in zip(tasks, record["contenders"], strict=True):
+            if task.is_crowded:
                 _say_why(there, CROWDED)
         return record, outputs
 
-    def _learn(self, asked: Sequence[Asked], record: Record) -> list[str]:
+    def _learn(self, tasks: Sequence[Task], record: Record) -> list[str]:
         """Take in what the record tells; returns of each why it is not to be stopped, if that is news."""
-        is_open = [self._turns(one, asked) is None for one in asked]
+        is_open = [self._turns(one, tasks) is None for one in tasks]
         found = [
             self._behaviours.learn(one.point, there, found_out=left_open)
-            for one, there, left_open in zip(asked, record["contenders"], is_open, strict=True)
+            for one, there, left_open in zip(tasks, record["contenders"], is_open, strict=True)
         ]
-        for one, said in zip(asked, found, strict=True):
+        for one, said in zip(tasks, found, strict=True):
             if said and self._tells:
                 warn(f"{one.point.experiment}, {one.point.series}: measured without a pause: {said}")
         return found
@@ -113,34 +99,40 @@ class Processes:
             [ended] = Contest(sampler, [contender], self._slice, 1, self._folder()).measure()
         return Completed(words, ended.exit_code if ended.failure else 0, "", ended.failure)
 
-    def _run(self, asked: Sequence[Asked], seed: int) -> tuple[Record, list[Path]]:
+    def _run(self, ready: Sequence[Ready], seed: int) -> tuple[Record, list[Path]]:
         folder = self._folder()
-        outputs = [folder.absolute() / f"{number}.output" for number in range(len(asked))]
+        outputs = [folder.absolute() / f"{number}.output" for number in range(len(ready))]
+        turns = [self._turns(task, [one for one, _ in ready]) for task, _ in ready]
         contenders = [
-            self._contender(one, output, self._turns(one, asked))
-            for one, output in zip(asked, outputs, strict=True)
+            self._contender(task.point, _path(scene), output, its)
+            for (task, scene), output, its in zip(ready, outputs, turns, strict=True)
         ]
-        sources = [_sources_of(one.point.program) for one in asked]
+        sources = [_sources_of(task.point.program) for task, _ in ready]
         # The instrument itself is bound nowhere: what it starts would inherit that.
         with host_lock(), Sampler(self._instrument.path) as sampler:
             ended = Contest(sampler, contenders, self._slice, seed, folder).measure()
-            described = [self._described(sampler, *one) for one in zip(ended, asked, sources, strict=True)]
+            described = [
+                self._described(sampler, one, *its, files)
+                for one, its, files in zip(ended, ready, sources, strict=True)
+            ]
         return process_record([*zip(ended, described, strict=True)], seed), outputs
 
-    def _described(self, sampler: Sampler, ended: Entrant, one: Asked, sources: Sources) -> Described:
-        point, scene = one.point, one.scene.path.absolute() if one.scene is not None else None
+    def _described(
+        self, sampler: Sampler, ended: Entrant, task: Task, scene: SceneFile | None, sources: Sources
+    ) -> Described:
+        point = task.point
         is_other_build = point.command is None and point.program.sha256 != self._instrument.sha256
         surroundings: tuple[Record, Any] = {}, None
         try:
             if not ended.failure:
-                surroundings = sampler.surroundings(point.threads, scene)
+                surroundings = sampler.surroundings(point.threads, _path(scene))
         except SamplerError as error:
             ended.failure = str(error)
         return Described(
-            one.tags,
+            task.tags(self._store.session),
             {key: value for key, value in point.axes.items() if value is not None},
             sources,
-            one.checked,
+            task.scope,
             build_of(point.program) if is_other_build else None,
             surroundings,
         )
@@ -151,19 +143,17 @@ class Processes:
         folder.mkdir()
         return folder
 
-    def _turns(self, one: Asked, beside: Sequence[Asked]) -> bool | None:
+    def _turns(self, one: Task, beside: Sequence[Task]) -> bool | None:
         """Whether it takes turns with those beside it, as it is said or was found out. If one minds, none of
         those does that are to be measured alike.
         """
-        said = _said(one)
-        if said is not None:
-            return said
-        alike = [other for other in beside if _is_alike(other)] if _is_alike(one) else [one]
+        if one.turns is not None:
+            return one.turns
+        alike = [other for other in beside if other.is_alike] if one.is_alike else [one]
         known = [self._behaviours.of(other.point).turns for other in alike]
         return False if False in known else self._behaviours.of(one.point).turns
 
-    def _contender(self, one: Asked, output: Path, turns: bool | None) -> Contender:
-        point, path = one.point, one.scene.path.absolute() if one.scene is not None else None
+    def _contender(self, point: Point, path: Path | None, output: Path, turns: bool | None) -> Contender:
         return replace(
             self._undisturbed(point, point.process_words(path, output), path, output),
             warm_ups=point.warm_up,
@@ -179,7 +169,7 @@ class Processes:
         folder, manner = "", dict[str, Any]()
         if (command := point.command) is not None:
             folder = str(command.folder)
-            manner = {one.name: getattr(command, one.name) for one in fields(Manner)}
+            manner = command.manner
             manner |= {name: placed(manner[name], scene, output) for name in ("prepare", "conclude")}
         return Contender(words, folder, dict(point.openmp), self._time_limit, **manner)
 
@@ -189,29 +179,20 @@ def slice_of(point: Point, block: int) -> float:
     return SHORT_SECONDS if block % 3 == 1 and point.kind != PAUSES else SLICE_SECONDS
 
 
-def _said(one: Asked) -> bool | None:
-    """Whether it takes turns, if that is not left to be found out."""
-    if not one.turns or one.point.apart or one.crowded:
-        return False
-    if is_left_open(one.point):
-        return None
-    return one.point.command is not None and bool(one.point.command.turns)
+def _path(scene: SceneFile | None) -> Path | None:
+    return scene.path.absolute() if scene is not None else None
 
 
-def _is_alike(one: Asked) -> bool:
-    return _said(one) is None and is_alike(one.point)
-
-
-def _was_sliced(one: Asked, there: Record) -> bool:
+def _was_sliced(one: Task, there: Record) -> bool:
     """Whether it was, and is not to be if another minds."""
-    return _is_alike(one) and bool(there.get("slices"))
+    return one.is_alike and bool(there.get("slices"))
 
 
-def _say_why_whole(asked: Sequence[Asked], record: Record, found: Sequence[str]) -> None:
+def _say_why_whole(tasks: Sequence[Task], record: Record, found: Sequence[str]) -> None:
     """Let the record say why nobody was stopped, `found` of those that mind."""
-    minds = next(one.point.series for one, said in zip(asked, found, strict=True) if said)
-    for one, there, said in zip(asked, record["contenders"], found, strict=True):
-        if _is_alike(one):
+    minds = next(one.point.series for one, said in zip(tasks, found, strict=True) if said)
+    for one, there, said in zip(tasks, record["contenders"], found, strict=True):
+        if one.is_alike:
             _say_why(there, said or f"{minds} must not be, and all are measured alike")
 
 

@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from experiments.plan.plan import Experiment
-from experiments.plan.point import PROCESS, Point, Tags
+from experiments.plan.point import PROCESS, Point
 from experiments.plan.program import CHECK_FAILED, Program, generate
 from experiments.plan.scenes import AnyScene, NoScene, SceneFile, SceneFolder
 from experiments.results.record import (
@@ -22,9 +21,9 @@ from experiments.results.record import (
 from experiments.results.store import Found, Store
 from experiments.run.host_lock import run_alone
 from experiments.run.machine_limits import measure_limits
-from experiments.run.processes import Asked, Processes, slice_of
-from experiments.run.together import have_room, is_alike
-from experiments.run.verify import Verifier, representative, scope_of
+from experiments.run.processes import Processes, slice_of
+from experiments.run.task import Ready, Task
+from experiments.run.verify import Verifier
 from experiments.support.digest import digest
 from experiments.support.process import NOT_FOUND, Completed
 from support.errors import InputError
@@ -40,33 +39,6 @@ _MOST_SUSPENSIONS = 3
 
 
 @dataclass(frozen=True)
-class Task:
-    """A point in one block of its experiment; planned are so many `blocks`, and `points` in this one."""
-
-    experiment: Experiment
-    point: Point
-    block: int
-    position: int
-    blocks: int
-    points: int
-    runs: int = 1
-    """Timed runs of each point in the process, where several points take turns in it."""
-
-    def tags(self, session: str) -> Tags:
-        """Everything that the record remembers of the plan."""
-        return {
-            **self.point.tags,
-            "title": self.experiment.question.title,
-            "block": self.block,
-            "position": self.position,
-            "session": session,
-            "order_seed": self.experiment.order_seed,
-            "points_planned": self.points,
-            "blocks_planned": self.blocks,
-        }
-
-
-@dataclass(frozen=True)
 class ProcessResult:
     """Seconds that a point took of its process, and of its timed runs, or the reason of its failure with the
     exit code.
@@ -76,10 +48,6 @@ class ProcessResult:
     reason: str = ""
     exit_code: int = 0
     runs: Sequence[float] = ()
-
-
-Ready = tuple[Task, SceneFile | None]
-"""A task whose point may be measured, and its scene's file."""
 
 
 class Runner:
@@ -172,11 +140,11 @@ class Runner:
             return Completed(command, NOT_FOUND, "", point.program.remedy)
         try:
             scene = self.scene(point.scene)
-            checked = self.scene(representative(task.experiment, point).scene)
+            checked = self.scene(task.checked.scene)
         except InputError as error:
             return Completed((str(self._generator.path), "generate"), 1, "", str(error))
         if point.is_checked:
-            verdict = self._verifier.check(representative(task.experiment, point), checked)
+            verdict = self._verifier.check(task.checked, checked)
             if verdict.exit_code != 0:
                 return verdict
         return measure_limits(self._store, point, self._time_limit) or scene
@@ -188,20 +156,8 @@ class Runner:
     def _measure_processes(self, ready: Sequence[Ready]) -> Record:
         """Whole processes that are compared, side by side in slices of time."""
         first = ready[0][0]
-        is_crowded = not have_room(first.experiment, first.point)
-        asked = [
-            Asked(
-                task.point,
-                scene,
-                task.tags(self._store.session),
-                scope_of(representative(task.experiment, task.point)),
-                turns=task.experiment.question.turns,
-                crowded=is_crowded and is_alike(task.point),
-            )
-            for task, scene in ready
-        ]
         slice_seconds = self.slice_seconds or slice_of(first.point, first.block)
-        record, outputs = self._processes.measure(asked, seed_of(first), slice_seconds)
+        record, outputs = self._processes.measure(ready, seed_of(first), slice_seconds)
         done = Completed((str(self._generator.path), "processes"), 0, "", "")
         measured = zip(ready, record["contenders"], outputs, strict=True)
         contenders = [

@@ -11,7 +11,8 @@ from experiments.run.costs import Costs
 from experiments.run.missing import missing
 from experiments.run.next_blocks import Waiting
 from experiments.run.progress import Status
-from experiments.run.runner import ProcessResult, Task
+from experiments.run.runner import ProcessResult
+from experiments.run.task import Task
 from experiments.run.together import Position, together
 from experiments.run.verdicts import Verdicts
 from support.vocabulary import CONTROL, PLAN

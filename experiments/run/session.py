@@ -12,9 +12,10 @@ from experiments.plan.point import Point
 from experiments.plan.site import what_limits
 from experiments.run.next_blocks import in_turns, next_blocks
 from experiments.run.progress import ProgressDisplay, warn
-from experiments.run.runner import ProcessResult, Runner, Task
+from experiments.run.runner import ProcessResult, Runner
 from experiments.run.schedule import FIRST_LOOK, Part, Schedule, may_decide
 from experiments.run.study import POINTS_FAILED, REPORT_FAILED, Settings, Study, keep_claims, summary
+from experiments.run.task import Task
 from experiments.run.together import together
 from experiments.run.verdicts import Analysis, Verdicts
 from experiments.support.interrupts import stop_if_asked

@@ -1,13 +1,11 @@
 """The steps of a variant checked, each of them, before anything of it is timed; or after it what was."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
-from experiments.plan.plan import Experiment
 from experiments.plan.point import Point
 from experiments.plan.program import CHECK_FAILED, Program, check_command
-from experiments.plan.scenes import Scene, SceneFile
+from experiments.plan.scenes import SceneFile
 from experiments.results.store import Store
 from experiments.run.host_lock import run_alone
 from experiments.run.processes import Processes
@@ -16,39 +14,6 @@ from experiments.support.process import TIMED_OUT, Completed
 
 CRASHED = 1
 """Of a program whose own exit code would be taken for a failed check."""
-
-
-def representative(experiment: Experiment, point: Point) -> Point:
-    """What the variant is checked on: the beginning of the first scene with that variant and scene's name.
-
-    Checking a step costs as much as several, so neither every scene of a sweep nor every step is checked; the
-    program checks the last step of each timed run besides.
-    """
-    first = next(other for other in experiment.points if _checked_alike(other) == _checked_alike(point))
-    return replace(first, scene=first.scene.beginning) if isinstance(first.scene, Scene) else first
-
-
-def _checked_alike(point: Point) -> tuple[object, ...]:
-    """One check is enough for all of which this is the same; of other programs the series, since their words
-    may make them different things.
-    """
-    own = point.series if point.command is not None else None
-    return point.program, point.variant, own, point.scene_name
-
-
-def scope_of(checked: Point) -> str:
-    """What a point's record says of how it was checked, by what was checked of it; empty if nothing was."""
-    command = checked.command
-    if command is None:
-        return "every-step"
-    if command.writes_trajectory:
-        return "its own output"
-    if not command.trajectory:
-        return ""
-    if command.another:
-        return f"trajectory of another command: {command.another}"
-    steps = f", steps 0 to {checked.scene.steps}" if isinstance(checked.scene, Scene) else ""
-    return f"trajectory of its own program{steps}"
 
 
 class Verifier:

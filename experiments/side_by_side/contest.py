@@ -28,7 +28,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from experiments.plan.command import Manner
+from experiments.plan.series import Manner
 from experiments.side_by_side.benchmark_time import benchmark_time, unlike_times
 from experiments.side_by_side.printed_time import printed_time
 from experiments.side_by_side.run_result import RunResult

@@ -11,8 +11,9 @@ from experiments.plan.site import Machine, this_machine, what_limits
 from experiments.run.costs import Costs
 from experiments.run.missing import missing
 from experiments.run.progress import ProgressDisplay, several
-from experiments.run.runner import ProcessResult, Task
+from experiments.run.runner import ProcessResult
 from experiments.run.study import POINTS_FAILED, Study
+from experiments.run.task import Task
 from experiments.run.together import together
 from experiments.slurm.jobs import folders, read_job
 from experiments.support.process import Completed

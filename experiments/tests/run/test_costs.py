@@ -22,7 +22,7 @@ from experiments.run.costs import (
 from experiments.run.progress import about
 from experiments.run.runner import ProcessResult
 from experiments.run.study import Study
-from experiments.run.verify import representative
+from experiments.run.task import representative
 from experiments.tests.conftest import Workplace, generated
 from experiments.tests.plan.test_shipped_files import planned
 

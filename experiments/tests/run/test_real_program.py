@@ -10,7 +10,7 @@ from experiments.plan.question import FOLDER, load_question
 from experiments.run.session import run
 from experiments.run.study import Settings, Study
 from experiments.support import process
-from experiments.tests.conftest import CHUNKS, CONTROL, ERRORS, PAIR, ROOT, Workplace
+from experiments.tests.conftest import ERRORS, PAIR, ROOT, Workplace
 from support.record_schema import is_record
 
 BUILD = ROOT / "build"
@@ -70,11 +70,3 @@ def test_every_hard_case_is_asked_about() -> None:
     cases = [case["name"] for case in json.loads(done.output)]
     question = load_question(FOLDER / "hard_cases.toml")
     assert [place.name for place in question.scenes] == cases
-
-
-def test_the_same_content_gives_the_same_state(workplace: Workplace) -> None:
-    for name, text in (("chunks", CHUNKS), ("control", CONTROL)):
-        workplace.question(name, text)
-    run(replace(workplace.settings, build=BUILD, study=("chunks",)))
-    states = {record["state_hash"] for record in workplace.records().values()}
-    assert len(states) == 1, "neither chunk nor block nor label changes the physics"

@@ -122,29 +122,6 @@ def test_only_what_is_missing_is_run(workplace: Workplace) -> None:
     assert all(path.exists() for path in lost)
 
 
-def test_another_program_makes_every_record_stale(workplace: Workplace) -> None:
-    run(workplace.settings)
-    before = {path.name for path in workplace.files()}
-    workplace.build(extra="# a change")
-    assert workplace.rows()["chunks"].stale == 6
-    assert run(workplace.settings) == 0
-    assert not before & {path.name for path in workplace.files()}
-    assert {path.name for path in workplace.results.glob("stale/records/*/*/*.json")} == before
-
-
-def test_a_changed_scene_is_measured_again_and_the_old_one_found_again(workplace: Workplace) -> None:
-    run(workplace.settings)
-    before = workplace.records("pair")
-    workplace.question("pair", PAIR.replace("steps = 10", "steps = 11"))
-    run(workplace.settings)
-    assert not before.keys() & workplace.records("pair").keys()
-    workplace.question("pair", PAIR)
-    done = workplace.measured()
-    run(workplace.settings)
-    assert workplace.measured() == done
-    assert workplace.records("pair") == before
-
-
 def test_a_renamed_series_is_measured_again(workplace: Workplace) -> None:
     run(workplace.settings)
     workplace.question("pair", PAIR.replace('name = "four"', 'name = "4"'.replace("4", "quadrant")))

@@ -87,20 +87,6 @@ def test_the_time_of_the_part_before_the_other_builds_is_part_of_the_budget(need
     assert blocks_of(needing, "pair") == 1
 
 
-def test_a_killed_study_comes_to_the_same_decisions(needing: Workplace) -> None:
-    want(needing, pair=8, chunks=5)
-    needing.behave(FAKE_SECONDS="0.05")
-    process = needing.start("run", "--budget", "5")
-    while not (needing.root / "looks").exists():
-        assert process.poll() is None
-    process.kill()
-    process.wait()
-    code, output, _ = finish(needing.start("run", "--budget", "5"))
-    assert code == 0
-    assert (blocks_of(needing, "pair"), blocks_of(needing, "chunks")) == (10, 7)
-    assert "decided: pair holds from 10 blocks" in output
-
-
 def test_an_analysis_that_fails_leaves_the_budget_to_the_old_rule(needing: Workplace) -> None:
     (needing.root / "broken").touch()
     needing.question("pair", PAIR.replace("wanted = 2", "wanted = 4"))

@@ -116,10 +116,7 @@ REFUSALS = {
         ],
         "Resource temporarily unavailable",
     ),
-    "away": (AWAY, "(connect failure)"),
-    "silent": (LOST, "send/recv operation"),
     "another limit": (["QOSMaxWallDurationPerJobLimit", POLICY], "(QOSMaxWallDurationPerJobLimit)"),
-    "a mistake": (["Batch job submission failed: Invalid account"], "Invalid account"),
 }
 
 
