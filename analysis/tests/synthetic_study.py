@@ -89,16 +89,13 @@ def tables_of(drawing: Drawing | Drawn) -> dict[str, list[list[str]]]:
     the columns. What has a mark ends in it, in brackets.
     """
     macros = report.templates().get_template("tables.jinja").module
-    html = "".join(getattr(macros, name)(**facts) for name, facts in drawing.tables)
-    parts = re.findall(r'<p class="table">(.*?)</p>(.*?)</table>', unescape(html), re.DOTALL)
     cell = r'<t[hd](?: class="(\w+)")?>(.*?)</t[hd]>'
-    return {
-        title: [
-            [f"{text} [{mark}]" if mark else text for mark, text in re.findall(cell, row, re.DOTALL)]
-            for row in table.split("</tr>")[:-1]
-        ]
-        for title, table in parts
-    }
+    html = unescape("".join(getattr(macros, name)(**facts) for name, facts in drawing.tables))
+    found = {}
+    for title, table in re.findall(r'<p class="table">(.*?)</p>(.*?)</table>', html, re.DOTALL):
+        rows = (re.findall(cell, row, re.DOTALL) for row in table.split("</tr>")[:-1])
+        found[title] = [[f"{text} [{mark}]" if mark else text for mark, text in row] for row in rows]
+    return found
 
 
 def figure_of(experiment: str) -> str:
