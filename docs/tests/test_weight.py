@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 import pytest
 from documents import ROOT
 
-CODE, TESTS = 24_459, 19_426
+CODE, TESTS = 24_459, 19_427
 """The most lines of code, and of tests; less of either is for the better, and lowers the number here."""
 
 _SAYS_NOTHING = re.compile(
