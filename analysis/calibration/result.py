@@ -1,6 +1,7 @@
 """From a folder's streams to its tables, as Markdown for a page, and to the figure of false alarms."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,20 +11,14 @@ from analysis.calibration.streams import load
 from analysis.calibration.studies import all_studies
 from analysis.calibration.tables import FOUND_WITHIN_SECONDS, STREAM, TO_BE_FOUND
 from analysis.calibration.usual_ways import all_ways
+from analysis.figures.captions import environment
 from analysis.figures.labels import key, name_rows
 from analysis.figures.style import BAND, BLUE, INK, VERMILLION, Drawing, new_figure, save, styled
-from analysis.support.values import Row
-from analysis.support.wording import markdown_table
 from support.errors import InputError
 from support.files import replacing
 
 NAME = "calibration"
 PANELS = ((0.0, "said to differ, and do not"), (TO_BE_FOUND, "a true 5 % found"))
-SECONDS = ("half", "nine_of_ten", "longest")
-COUNTS = [
-    *("comparisons", "decided", "wrong", "interval misses", "disjoint: wrong", "at most (95 %)"),
-    *("stretches: wrong", "at most (95 %)"),
-]
 _SHIFT = 0.16
 
 
@@ -38,72 +33,33 @@ def write(folder: Path) -> tuple[str, list[Path]]:
         raise InputError(f"{folder}: no stream has enough blocks for a verdict, expected a longer time")
     compared = tables.ours_and_theirs(studies, all_ways(streams), streams)
     of_first = studies[studies["reference"] == 0].sort_values("more", kind="stable")
-    text = "\n\n".join(
-        [
-            origin,
-            _errors(tables.errors(studies, STREAM)),
-            _truths(tables.errors(of_first, ["more"])),
-            _power(tables.power(studies)),
-            f"{_compared(compared)}\n",
-        ]
-    )
+    text = _text(
+        origin=origin, errors=tables.errors(studies, STREAM), truths=tables.errors(of_first, ["more"]),
+        power=tables.power(studies), asked=TO_BE_FOUND, within=FOUND_WITHIN_SECONDS,
+        compared=[
+            (condition, group.pivot_table("said", "way", "more", sort=False, dropna=False))
+            for condition, group in compared.groupby("condition", sort=False)
+        ],
+    )  # fmt: skip
     target = folder / f"{NAME}.md"
     with replacing(target) as part:
         part.write_text(text, encoding="utf-8")
     return text, [target, *save(draw(compared, origin), folder, NAME)]
 
 
-def _errors(table: pd.DataFrame) -> str:
-    rows = [[row["kind"], row["condition"], *_counts(row)] for row in table.to_dict("records")]
-    return "Wrong verdicts:\n\n" + markdown_table(["contenders", "machine", *COUNTS], rows)
-
-
-def _truths(table: pd.DataFrame) -> str:
-    rows = [[_more(row["more"]), *_counts(row)] for row in table.to_dict("records")]
-    return "By the true difference, all streams together:\n\n" + markdown_table(["more work", *COUNTS], rows)
-
-
-def _counts(row: Row) -> list[str]:
-    tries = row["studies"]
-    parts = {name: row[name] / tries if tries else np.nan for name in ("wrong", "missed")}
-    counts = [f"{row[name]:.0f} ({_share(part)})" for name, part in parts.items()]
-    apart = f"{row['disjoint_wrong']:.0f} of {row['disjoint']:.0f}"
-    once = f"{row['stretches_wrong']:.0f} of {row['stretches']:.0f}"
-    bounds = [apart, _share(row["bound"]), once, _share(row["stretch_bound"])]
-    return [f"{tries:.0f}", _share(row["decided"]), *counts, *bounds]
-
-
-def _power(table: pd.DataFrame) -> str:
-    rows = [
-        [row["kind"], row["condition"], _share(row["found"]), *(_seconds(row[name]) for name in SECONDS)]
-        for row in table.to_dict("records")
-    ]
-    within = f"within {FOUND_WITHIN_SECONDS:g} s"
-    head = ["contenders", "machine", within, "half, s", "nine of ten, s", "longest study, s"]
-    return f"A true {_more(TO_BE_FOUND)} found:\n\n" + markdown_table(head, rows)
-
-
-def _compared(table: pd.DataFrame) -> str:
-    parts = []
-    for condition, group in table.groupby("condition", sort=False):
-        shares = group.pivot_table(index="way", columns="more", values="said", sort=False, dropna=False)
-        head = ["way", *(_more(float(one)) for one in shares.columns)]
-        by_way = zip(shares.index, shares.to_numpy(), strict=True)
-        rows = [[str(way), *(_share(one) for one in row)] for way, row in by_way]
-        parts.append(f"Said to differ, {condition}:\n\n" + markdown_table(head, rows))
-    return "\n\n".join(parts)
+def _text(**facts: Any) -> str:  # noqa: ANN401
+    """Return the facts in the words of `tables.jinja`."""
+    made = environment("analysis.calibration", trim_blocks=True, lstrip_blocks=True)
+    made.filters |= {"more": _more, "part": _part}
+    return made.get_template("tables.jinja").render(facts, nan=np.nan, inf=np.inf).strip() + "\n"
 
 
 def _more(more: float) -> str:
     return "none" if more == 0 else f"{100 * more:g} %"
 
 
-def _share(share: float) -> str:
-    return "–" if np.isnan(share) else f"{100 * share:.1f} %"
-
-
-def _seconds(seconds: float) -> str:
-    return "not in sight" if np.isinf(seconds) else f"{seconds:.2g}"
+def _part(part: float) -> str:
+    return "–" if np.isnan(part) else f"{100 * part:.1f} %"
 
 
 def draw(compared: pd.DataFrame, origin: str) -> Drawing:

@@ -38,14 +38,23 @@ def programs_picture(results: Path) -> Path:
 
 
 def _rows(times: pd.DataFrame, against: str, cases: Sequence[str]) -> pd.DataFrame:
-    """Return a row a comparison, the control's first, with the `name` and the `colour` of each."""
+    """Return a row a comparison, the control's first, with the `name` and the `colour` of each, and its
+    `changes`, those of its blocks in per cent, in the order of time.
+    """
     table = differences(times, against)
     table["is_control"] = table["series"] == against + AGAIN
     table = table.sort_values(["is_control", "x", "series"], ascending=[False, False, False])
     names = list(dict.fromkeys(table.loc[~table["is_control"], "series"]))
     shades = {name: PALETTE[number % len(PALETTE)] for number, name in enumerate(reversed(names))}
     labels = [f"{cases[int(row.x)]}, {row.series}" if cases else row.series for row in table.itertuples()]
-    return table.assign(name=labels, colour=[shades.get(name, FAINT) for name in table["series"]])
+    first, others = (times[(times["series"] == against) == side] for side in (True, False))
+    pairs = log_ratios(first, others, match=("x",), by=("series",))
+    each = dict(iter(pairs.groupby(["series", "x"])["log_ratio"]))
+    return table.assign(
+        name=labels,
+        colour=[shades.get(name, FAINT) for name in table["series"]],
+        changes=[100 * np.expm1(each[row.series, row.x]) for row in table.itertuples()],
+    )
 
 
 def _figure(times: pd.DataFrame, table: pd.DataFrame, against: str, by: Stated) -> Figure:
@@ -53,45 +62,31 @@ def _figure(times: pd.DataFrame, table: pd.DataFrame, against: str, by: Stated) 
     heights = [0.6 + _ROW * len(table)] + ([_BLOCKS_PANEL] if is_one_case else [])
     figure, grid = new_grid(sum(heights), len(heights), height_ratios=heights)
     panels = grid[:, 0]
-    pairs = _pairs(times, against)
-    _intervals(panels[0], table, pairs, by)
+    _intervals(panels[0], table, by)
     panels[0].set_xlabel(f"change of time against {against}, %; dots: blocks; shaded: the margin")
     if is_one_case:
-        _blocks(panels[1], table, pairs, by)
+        _blocks(panels[1], table, by)
         panels[1].set(xlabel="block, in the order of time", ylabel="change of time, %")
     return figure
 
 
-def _pairs(times: pd.DataFrame, against: str) -> dict[tuple[str, float], pd.Series]:
-    """Return the change of each block in per cent, in the order of time, by series and x."""
-    first, others = (times[(times["series"] == against) == side] for side in (True, False))
-    return {
-        (str(name), float(x)): 100 * np.expm1(part["log_ratio"])
-        for name, of_series in others.groupby("series")
-        for x, part in log_ratios(first, of_series, match=("x",)).groupby("x")
-    }
-
-
-def _intervals(
-    axes: Axes, table: pd.DataFrame, pairs: dict[tuple[str, float], pd.Series], by: Stated
-) -> None:
+def _intervals(axes: Axes, table: pd.DataFrame, by: Stated) -> None:
     dots = []
     for height, row in enumerate(table.itertuples()):
         known = row.verdict if row.verdict != INCONCLUSIVE else "not settled"
         said = "control" if row.is_control else known
         dots.append(of_ratio(row, height, row.name, Look(row.colour), said))
-        blocks, pale = pairs[row.series, row.x], lighten(row.colour, 0.6)
-        axes.plot(blocks, np.full(len(blocks), height - 0.28), "o", color=pale, markersize=2, zorder=2)
+        below, pale = np.full(len(row.changes), height - 0.28), lighten(row.colour, 0.6)
+        axes.plot(row.changes, below, "o", color=pale, markersize=2, zorder=2)
     forest(axes, dots, list(table["name"]), by.margin)
 
 
-def _blocks(axes: Axes, table: pd.DataFrame, pairs: dict[tuple[str, float], pd.Series], by: Stated) -> None:
+def _blocks(axes: Axes, table: pd.DataFrame, by: Stated) -> None:
     shade(axes, -100 * by.margin, 100 * by.margin, 0, upright=True)
     for row in table.itertuples():
-        blocks = pairs[row.series, row.x]
         label = f"{row.name} (control)" if row.is_control else row.name
         axes.plot(
-            range(1, len(blocks) + 1), blocks, marker="o", markersize=2.5, linewidth=0.8,
+            range(1, len(row.changes) + 1), row.changes, marker="o", markersize=2.5, linewidth=0.8,
             color=row.colour, label=label,
         )  # fmt: skip
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))

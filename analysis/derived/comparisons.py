@@ -51,22 +51,21 @@ def differences(times: pd.DataFrame, against: str, by: Stated | None = None) -> 
     `against` at the same x, Holm-corrected over all of them, by the margin and the error that are stated, or
     by those given.
     """
-    by = by or stated(times)
-    times = narrow(times, "series", "x")
-    first, others = (times[(times["series"] == against) == side] for side in (True, False))
-    table = log_ratios(first, others, match=("x",), by=("series",))
-    return judge(table, ["series", "x"], by.margin, by.error)
+    return _judged(times, times["series"] == against, by or stated(times), match=("x",))
 
 
-def differences_from(times: pd.DataFrame, chosen: pd.Series, by: Stated | None = None) -> pd.DataFrame:
+def differences_from(times: pd.DataFrame, chosen: pd.Series) -> pd.DataFrame:
     """Return a row of `verdicts.judge` for every series and x but that of the rows `chosen`, compared within
     blocks with these, Holm-corrected over all of them. What is chosen must not depend on the times.
     """
-    by = by or stated(times)
+    return _judged(times, chosen, stated(times))
+
+
+def _judged(times: pd.DataFrame, chosen: pd.Series, by: Stated, match: tuple[str, ...] = ()) -> pd.DataFrame:
     times = narrow(times, "series", "x")
-    # Both sides have an x, of which only that of the candidates is told.
-    reference = times[chosen].drop(columns=["series", "x"])
-    table = log_ratios(reference, times[~chosen], by=("series", "x"))
+    own = tuple(name for name in ("series", "x") if name not in match)
+    # Both sides have these columns, of which only those of the candidates are told.
+    table = log_ratios(times[chosen].drop(columns=list(own)), times[~chosen], match, by=own)
     return judge(table, ["series", "x"], by.margin, by.error)
 
 

@@ -26,16 +26,15 @@ from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import PAIR, log_ratios
 from analysis.statistics.ranking import ranking
 from analysis.statistics.verdicts import MARGIN, Ratio, corrected, judge_pairs, judge_unpaired, ratio_of
-from analysis.support.values import Cell, Floats, Table, table_of
-from analysis.support.wording import change, exact, listed, number
+from analysis.support.values import Floats, Table
+from analysis.support.wording import change, exact, number
 from support.vocabulary import COUNTS
 
 MANY = 40
 """Blocks from which their marks are as small as the line."""
 LOOKS = {TURNS: Look(BLUE), APART: Look(VERMILLION, "s", "--")}
 
-LEAGUE = ("place", "program", "time, s", "bracket", "checked")
-UNCHECKED, ANOTHER = "not checked", "another command"
+UNCHECKED = "not checked"
 _TRAJECTORY = "trajectory of "
 
 Names = Mapping[str, str]
@@ -121,21 +120,9 @@ def league(study: Study, experiment: str) -> list[Table]:
     if (times["kind"] != "process").any() or times["x"].nunique() > 1:
         return []
     checked = study.runs_of(experiment).groupby("series")["check_scope"].agg(_checked)
-    rows: list[list[Cell | str]] = []
-    for row in ranking(times, stated(times).margin).itertuples():
-        told = checked[row.series]
-        # What was checked in another program, or not at all, says nothing of the one that was timed.
-        mark = "open" if UNCHECKED in told or ANOTHER in told else ""
-        place = listed(sorted(set(row.place)), " to ")
-        rows.append([place, row.series, number(row.seconds), row.bracket, Cell(told, mark)])
+    rows = ranking(times, stated(times).margin)
     failed = failures[~failures["series"].isin(checked.index)].groupby("series")["reason"].first()
-    for series, reason in failed.items():
-        rows.append(["–", str(series), "–", "", Cell(f"failed: {reason}", "fails")])
-    title = (
-        "In the order of their times. Programs with a letter in common cannot be told apart, or differ by "
-        "less than the margin; those without differ by more (all pairs, Holm-corrected)"
-    )
-    return [table_of(title, LEAGUE, rows)]
+    return [("league", {"rows": rows, "checked": checked.to_dict(), "failed": failed.to_dict()})]
 
 
 def _checked(scopes: pd.Series) -> str:
@@ -345,14 +332,7 @@ def ways(data: Evidence, experiment: str, subject: str) -> Drawing | None:
         logarithmic_ticks(axis)
     key(figure, [(f"{SIGNS[look.marker]} {way}", look.colour) for way, look in LOOKS.items()])
     opened = opening(data.study.times_of(experiment), subject, PROCESSES)
-    rows = (
-        [one.name, *(said(one.log_ratio(way)) for way in LOOKS), said(one.bias), str(len(one.pairs)),
-         *(number(one.seconds[way]) for way in LOOKS)]
-        for one in found
-    )  # fmt: skip
-    spent = (f"s a block, {way}" for way in LOOKS)
-    columns = ["comparison", *LOOKS, "by turns against apart", "blocks", *spent]
-    table = table_of("The same comparisons both ways, with 95 % intervals over the blocks", columns, rows)
+    table = "ways", {"found": found, "ways": list(LOOKS)}
     return Drawing(figure, f"{opened} {caption('ways', off=said(overall(found)))}", tables=[table])
 
 
@@ -389,11 +369,8 @@ def pauses(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     ]
     forest(axes, dots, list(found["series"])[::-1], MARGIN, width=1.4)
     axes.set_xlabel("time in slices against time without a pause, %")
-    stopped = {True: "", False: " (not stopped)"}
-    cells = (
-        [row.series, number(row.seconds), said(row.ratio) + stopped[row.sliced], str(row.blocks)]
-        for row in rows
+    return Drawing(
+        figure,
+        f"{opening(times, subject, PROCESSES)} {caption('pauses')}",
+        tables=[("pauses", {"rows": found})],
     )
-    title = "Time in slices against time without a pause, with 95 % intervals over the blocks"
-    table = table_of(title, ["program", "s without a pause", "in slices", "blocks"], cells)
-    return Drawing(figure, f"{opening(times, subject, PROCESSES)} {caption('pauses')}", tables=[table])

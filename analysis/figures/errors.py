@@ -3,7 +3,7 @@ variant stays from the bound of each, with the table of all verdicts.
 """
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from textwrap import fill
 from typing import Any
 
@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from analysis.claims.entry import Evidence
 from analysis.derived import accuracy
 from analysis.derived import hard_cases as cases
-from analysis.derived.accuracy import SMALL, Choice, Measure, Race
+from analysis.derived.accuracy import SMALL, Measure
 from analysis.derived.hard_cases import AT_CONTACT, COLUMNS, FAILS, HOLDS, LIMIT, UNMEASURED
 from analysis.figures.captions import caption, opening
 from analysis.figures.kinds import mark
@@ -39,19 +39,15 @@ from analysis.figures.style import (
     new_figure,
     new_grid,
 )
-from analysis.support.values import Cell, Interval, Table, table_of
-from analysis.support.wording import NO_BREAK, interval, number
+from analysis.support.values import Interval, Table
+from analysis.support.wording import NO_BREAK, interval
 
 MOST_POWERS = 5
 """Of ten that have room below a panel."""
 
 MILLI = 1e3
-OTHERS = 2
-"""How many of the choices that may be as cheap a table names."""
-
 COLOURS = {"double": BLUE, "float": VERMILLION}
-MARKS = {HOLDS: "holds", FAILS: "fails", LIMIT: "open", UNMEASURED: "open"}
-VERDICT_SIGNS = {HOLDS: "✓", LIMIT: "!", FAILS: "✗", UNMEASURED: "–"}
+IN_ORDER = [HOLDS, LIMIT, FAILS, UNMEASURED]
 LABEL_WIDTH = 30
 """Letters in a line of what a row measures."""
 
@@ -87,9 +83,17 @@ def speed_against_error(data: Evidence, experiment: str, subject: str, measure: 
         for series, look in shown.items()
     ]
     key(figure, [*entries, ("▬ Pareto front (substeps)", FAINT)])
-    tables = [_advice(table, accuracy.races(data.study, experiment), measure)]
+    names = {str(scene): _panel_name(str(scene), part) for scene, part in scenes.items()}
+    bounds = accuracy.advice(table, accuracy.races(data.study, experiment))
+    tables: list[Table] = [("advice", {"bounds": bounds, "scenes": names, "measure": measure})]
     if measure.converges:
-        tables.append(_orders(table))
+        fitted = accuracy.orders(table)
+        found = {
+            str(series): dict(zip(part["scene_name"], part["order"], strict=True))
+            for series, part in fitted.groupby("series", sort=False)
+        }
+        named = {scene: scene or "order" for scene in dict.fromkeys(fitted["scene_name"])}
+        tables.append(("orders", {"found": found, "scenes": named, "small": f"{SMALL:g}"}))
     return Drawing(figure, _caption(table, data, experiment, subject, measure), tables=tables)
 
 
@@ -161,57 +165,11 @@ def _error_ticks(axes: Axes, zero: float, ticks: Sequence[float], *, has_zero: b
     )
 
 
-def _advice(points: pd.DataFrame, races: Mapping[str, Race], measure: Measure) -> Table:
-    scenes = dict(list(points.groupby("scene_name", sort=False)))
-    rows: list[list[Cell | str]] = [
-        [power_of_ten(bound), *(_choice(choices[str(scene)]) for scene in scenes)]
-        for bound, choices in accuracy.advice(points, races)
-    ]
-    columns = ["For an error below", *(_panel_name(str(scene), part) for scene, part in scenes.items())]
-    title = (
-        f"The cheapest choice by {measure.title} (bounds: {measure.label}), and what a unit of simulated "
-        "time costs with it. All intervals of a scene, and all that was found slower, hold together in 95 % "
-        "of studies, since the choice was made by looking:"
-    )
-    return table_of(title, columns, rows)
-
-
-def _choice(choice: Choice | None) -> Cell:
-    if choice is None:
-        return Cell("none of those measured", "open")
-    named = [run_label(series, x) for series, x in choice.others[:OTHERS]]
-    if len(choice.others) > OTHERS:
-        named.append(f"{len(choice.others) - OTHERS} more")
-    said = f"; not found slower: {', '.join(named)}" if named else ""
-    estimate, low, high = (number(MILLI * end) for end in choice.seconds)
-    return Cell(f"{run_label(choice.series, choice.substeps)}: {estimate}{NO_BREAK}ms [{low}, {high}]{said}")
-
-
 def run_label(series: str, substeps: float) -> str:
     """Return a series with its step, e.g. `row, dt = 1/8`; the series alone where there are no steps."""
     if substeps == 0:
         return series
     return f"{series}, dt{NO_BREAK}={NO_BREAK}{'1' if substeps == 1 else f'1/{substeps:g}'}"
-
-
-def _orders(points: pd.DataFrame) -> Table:
-    found = accuracy.orders(points)
-    scenes = list(dict.fromkeys(found["scene_name"]))
-    rows: list[list[Cell | str]] = []
-    for series, part in found.groupby("series", sort=False):
-        fitted = part.set_index("scene_name")["order"]
-        rows.append([str(series), *(_order(fitted.get(scene)) for scene in scenes)])
-    title = (
-        f"Order of convergence: p in error = c dt^p, over the errors below {SMALL:g}, with its 95 % interval "
-        "from the scatter about the line (an error at the level of rounding does not fall and pulls p down):"
-    )
-    return table_of(title, ["Series", *(scene or "order" for scene in scenes)], rows)
-
-
-def _order(fitted: object) -> Cell | str:
-    if not isinstance(fitted, Interval) or np.isnan(fitted.estimate):
-        return Cell(f"fewer than three errors below {SMALL:g}", "open")
-    return interval(fitted)
 
 
 def _caption(table: pd.DataFrame, data: Evidence, experiment: str, subject: str, measure: Measure) -> str:
@@ -252,7 +210,7 @@ def hard_cases(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     key(figure, [*((f"● {one}", COLOURS[one]) for one in present), ("| bound", INK)])
     told = caption(
         "hard_cases", subject=subject, cases=table["case"].nunique(), variants=table["series"].nunique(),
-        cells=len(table), counts=table["verdict"].value_counts().reindex(VERDICT_SIGNS).dropna().astype(int),
+        cells=len(table), counts=table["verdict"].value_counts().reindex(IN_ORDER).dropna().astype(int),
     )  # fmt: skip
     return Drawing(figure, told, tables=list(_tables(table)))
 
@@ -294,20 +252,13 @@ def _tables(verdicts: pd.DataFrame) -> Iterable[Table]:
     """
     known = verdicts.fillna({"precision": ""})
     for (precision, at_contact), alike in known.groupby(["precision", known["impact"] == AT_CONTACT]):
-        collisions = ", collisions at contact" if at_contact else ""
-        heading = f"In {precision} precision{collisions}:" if precision else "Without any record:"
         series = list(dict.fromkeys(alike["series"]))
         for first in range(0, len(series), WIDEST):
             chosen = series[first : first + WIDEST]
             part = alike[alike["series"].isin(chosen)]
-            rows: list[list[Cell | str]] = [
-                [f"{case.replace('_', ' ')}: {expects}", label, *map(_verdict, group.itertuples())]
+            rows = [
+                (case, expects, label, group[["verdict", "value", "reason"]].to_dict("records"))
                 for (case, _, expects, label), group in part.groupby(COLUMNS[:4], sort=False)
             ]
-            yield table_of(heading, ["Case, and what is expected", "Number", *chosen], rows)
-
-
-def _verdict(row: Any) -> Cell:  # noqa: ANN401 - of a table
-    value = "" if pd.isna(row.value) else f" {row.value:.1e}" if row.value else " 0"
-    said = f": {row.reason}" if row.verdict in (FAILS, LIMIT) and row.reason else ""
-    return Cell(f"{VERDICT_SIGNS[row.verdict]}{value}{said}", MARKS[row.verdict])
+            about = {"precision": precision, "at_contact": at_contact}
+            yield "hard_cases", {**about, "series": chosen, "rows": rows}

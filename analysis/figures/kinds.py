@@ -10,9 +10,18 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from analysis.figures.labels import logarithmic_ticks, name_rows, note, percent_ticks
-from analysis.figures.style import BAND, FAINT, INK, Look, lighten, point
+from analysis.figures.labels import (
+    from_zero,
+    label_ends,
+    logarithmic_ticks,
+    name_rows,
+    note,
+    percent_ticks,
+    plain_ticks,
+)
+from analysis.figures.style import BAND, FAINT, INK, Look, lighten, new_grid, point
 from analysis.statistics.verdicts import MARGIN
 from analysis.support.wording import change, exact, interval_of, number
 
@@ -21,7 +30,12 @@ FAR = 1.6
 """Times the least ratio from which the greatest is shown as a factor, not in per cent."""
 NO_ENDS = (np.nan, np.nan)
 
+ASIDE = {"dynamic": 0.985, "static": 1.015}
+"""How far the curve of a schedule is moved aside, so that intervals at one chunk do not cover each other."""
+
 Ends = tuple[float, float]
+Sides = Mapping[str, tuple[pd.DataFrame, pd.DataFrame]]
+"""Columns of a figure by their titles: the times by series and x as `median`, and the ratios."""
 
 
 @dataclass(frozen=True)
@@ -166,24 +180,60 @@ def curve(
         mark(axes, (aside * row.x, y), look, called, exact(row.x), up, up=ends, size=size, zorder=zorder)
 
 
-def ratio_curve(axes: Axes, table: pd.DataFrame, look: Look, aside: float = 1.0) -> None:
-    """Draw the column `ratio` over `aside` times `x` with its intervals, on an axis that is settled. A ratio
-    without an interval has none.
+def curves(
+    axes: Axes, rows: pd.DataFrame, shown: Mapping[str, Look], value: str = "median",
+    told: Callable[[Any], str] | None = None,
+) -> list[tuple[str, float, str]]:  # fmt: skip
+    """Draw `value` of the rows over x, a curve a series, those that are published (`is_published`) in a
+    lighter tone, below everything else. Return what is to stand at the end of each, for `label_ends`: the
+    series, or what the rows have as `label`, where the last point is, and the colour.
     """
-    curve(axes, table, look, "ratio", aside, told=change)
+    ends = []
+    is_published = rows.get("is_published", pd.Series(data=False, index=rows.index)) == True  # noqa: E712
+    for (series, theirs), part in rows.groupby([rows["series"], is_published]):
+        look, aside, ink = shown[series], ASIDE.get(series, 1.0), shown[series].colour
+        if theirs:
+            pale: Any = {"name": "published", "size": 2.5, "width": 1.0, "zorder": 1.5}
+            curve(axes, part[["x", value]], look._replace(colour=lighten(ink)), value, aside, **pale)
+            ink = lighten(ink, 0.35)
+        else:
+            curve(axes, part, look, value, aside, told=told)
+        last = part.loc[part["x"] == part["x"].max()].iloc[0]
+        said = last.get("label", np.nan)
+        ends.append((series if pd.isna(said) else said, float(last[value]), ink))
+    return ends
 
 
-def published_curve(axes: Axes, x: pd.Series, y: pd.Series, look: Look) -> None:
-    """Draw a published series in a lighter tone, below everything else."""
-    lighter = look._replace(colour=lighten(look.colour))
-    table = pd.DataFrame({"x": x, "y": y})
-    curve(axes, table, lighter, "y", name="published", size=2.5, width=1.0, zorder=1.5)
-
-
-def ends_of(table: pd.DataFrame, shown: Mapping[str, Look], value: str) -> list[tuple[str, float, str]]:
-    """Return the label of each series, where its last point is, and its colour."""
-    last = table.loc[table.groupby("series")["x"].idxmax()]
-    return [(row["series"], float(row[value]), shown[row["series"]].colour) for _, row in last.iterrows()]
+def stack(
+    label: str, value: str, sides: Sides, shown: Mapping[str, Look], against: str, margin: float,
+    scale: str = "",
+) -> tuple[Figure, Any]:  # fmt: skip
+    """Draw times above ratios to something (`against`, nothing for none), a column a side. `label` names x,
+    `value` the times, `scale` the axes that are logarithmic. Several series, and what has a `label`, are
+    named at their ends.
+    """
+    height = 4.2 if scale == "xy" else 3.7
+    figure, grid = new_grid(height, 2, len(sides), sharex="col", height_ratios=[1, 1.25])
+    whole = pd.concat([ratios for _, ratios in sides.values()])
+    for (above, below), (title, (times, ratios)) in zip(grid.T, sides.items(), strict=True):
+        above.set(title=title, **{f"{axis}scale": "log" for axis in scale})
+        ends = curves(above, times, shown)
+        if "y" in scale:
+            logarithmic_ticks(above.yaxis)
+        else:
+            from_zero(above)
+        label_ends(above, ends if len(shown) > 1 else [])
+        below.set_xlabel(label)
+        if against:
+            ratio_axis(below, whole, against, margin)
+            ends = curves(below, ratios, shown, "ratio", change)
+            label_ends(below, ends if len(shown) > 1 or "label" in ratios else [])
+        ticks = logarithmic_ticks if "x" in scale else plain_ticks
+        ticks(below.xaxis)
+        above.set_ylabel("time of the\nprocess, s" if title == "published" else value)
+    for axes in grid[1][1:]:
+        axes.set_ylabel("")
+    return figure, grid
 
 
 def ratio_axis(axes: Axes, table: pd.DataFrame, against: str, margin: float = MARGIN) -> None:

@@ -45,7 +45,6 @@ from analysis.figures.style import (
 )
 from analysis.records import timelines
 from analysis.statistics.verdicts import MARGIN
-from analysis.support.values import table_of
 from analysis.support.wording import interval_of, number, scene_in_words, share
 
 PHASE_COLOURS = {"move": ORANGE, "bin": GREEN, "find": BLUE, "resolve": VERMILLION}
@@ -312,9 +311,7 @@ def waterfall(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     places = steps[RUNG].itertuples(index=False, name=None)
     verdicts = steps.assign(name=[f"{scene_title(runs, one)}: {changes[one, rung]}" for one, rung in places])
     known = table.drop_duplicates("series_number").sort_values("series_number")
-    title = "The rungs by their short names, with the names by which the program knows them:"
-    cells = known[["series", "change", "variant"]].astype(str).to_numpy()
-    short_names = table_of(title, ["Rung", "Changes", "Variant (carom list)"], cells)
+    short_names = "rungs", {"rows": known[["series", "change", "variant"]]}
     failed, counted = data.study.failed_checks(experiment), table[table["instructions"].notna()]
     told = caption(
         "ladder", subject=subject, threads=int(times["threads"].iloc[0]), margin=MARGIN,

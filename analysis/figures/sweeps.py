@@ -1,50 +1,37 @@
-"""Time over one swept parameter, and below it ratios: to one of its points, the published ones on the same
-axis, or to another series at the same point. Schedules over their chunks are swept so, too, and threads, with
-speed-ups, the limits of the machine and the universal scalability law.
+"""Time over one swept parameter, and below it ratios: to one of its points, or to another series at the same
+point; the published ones on the same axis, or beside it. Threads, with speed-ups, the limits of the machine
+and the universal scalability law.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from analysis import claims
 from analysis.claims.entry import Evidence
 from analysis.derived.comparisons import PUBLISHED, differences, differences_from, reference, stated
 from analysis.derived.ladder import per_disc_step
 from analysis.figures.captions import caption, course_of, opening, time_axis
-from analysis.figures.kinds import curve, ends_of, published_curve, ratio_axis, ratio_curve
-from analysis.figures.labels import SIGNS, from_zero, key, label_ends, logarithmic_ticks, note, plain_ticks
-from analysis.figures.style import (
-    BLUE,
-    FAINT,
-    GREEN,
-    INK,
-    ORANGE,
-    Drawing,
-    Look,
-    lighten,
-    looks,
-    new_figure,
-    new_grid,
-)
+from analysis.figures.kinds import Sides, curve, curves, stack
+from analysis.figures.labels import SIGNS, from_zero, key, note, plain_ticks
+from analysis.figures.style import BLUE, FAINT, GREEN, INK, ORANGE, Drawing, Look, lighten, looks, new_figure
 from analysis.records.studies import Study
 from analysis.statistics import scalability
 from analysis.statistics.bootstrap import summarise
 from analysis.statistics.pairs import join_replicates, log_ratios, ratios_of
-from analysis.statistics.scalability import log_ratios_by_x
-from analysis.statistics.verdicts import error_of_picked, judge, judge_one
+from analysis.statistics.verdicts import error_of_picked, judge_one
 from analysis.support.wording import count, exact, number
 
 SAME_RANGE = 0.75
 THREADS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
+IDEAL: Any = {"color": FAINT, "linestyle": "--", "linewidth": 0.9, "zorder": 1}
+ENDS = ["value", "low", "high"]
 
-ASIDE = {"dynamic": 0.985, "static": 1.015}
-"""How far the curve of a schedule is moved aside, so that intervals at one chunk do not cover each other."""
-CHUNKS = [1, 2, 3, 5, 10, 20, 40, 80, 160, 320, 640, 1280]
+Choice = tuple[str, float]
+"""A schedule and its chunk."""
 
 
 def trend(
@@ -52,46 +39,56 @@ def trend(
     scale: str = "", counted: bool = False, known: str = "",
 ) -> Drawing | None:  # fmt: skip
     """Draw time over x, a curve a series, and below it ratios: of several series to the reference at the same
-    x, of a single one to its own time at one x, with the published series on the same axis, or if `counted`
-    the pair resolves. `label` names x, `course` is what is said of a single series, `known` what else.
+    x, of a single one to its own time at one x, beside the published ones, or if `counted` the pair resolves.
+    `label` names x, `course` is what is said of a single series, `known` what else.
 
     Where a `scale` names the axes that are logarithmic the times of several series are per disc and step.
     """
     times = data.study.times_of(experiment)
     label = label or times["x_name"].iloc[0].replace("_", " ")
-    several, shown = times["series"].nunique() > 1, looks(sorted(times["series"].unique()))
-    scale = scale if several else ""
-    figure, (above, below) = stacked(label, 4.2 if scale == "xy" else 3.7)
-    summary = _draw_times(above, times, shown, scale)
-    published, table = data.published.experiment(experiment), None
+    shown = looks(sorted(times["series"].unique()))
+    scale = scale if len(shown) > 1 else ""
     told: dict[str, Any] = {"curves": _courses(data, experiment, times, course, scale), "known": known}
+    seconds = per_disc_step(times) if scale else times
+    summary = summarise(seconds, ["series", "x"], "nanoseconds" if scale else "steps_seconds")
+    published, table = data.published.experiment(experiment), None
+    sides: Sides = {"": (summary, summary[:0])}
+    if len(shown) > 1 and not counted:
+        table, told["against"] = differences(times, reference(times)), reference(times)
+        moved = _moved(summary, published) if scale == "xy" else published[:0]
+        told["is_moved"] = len(moved) > 0
+        sides = {"": (pd.concat([summary, moved]), table)}
+    elif not counted:
+        sides, at = _against_own(times, summary, published)
+        told |= at
+    against = "" if counted else told.get("against") or f"that at {exact(told['at'])}"
+    value = "time per disc\nand step, ns" if scale else time_axis(times)
+    figure, grid = stack(label, value, sides, shown, against, stated(times).margin, scale)
     if counted:
-        _resolves(below, data.study.runs_of(experiment))
-    elif several:
-        told["is_moved"] = _name_ends(above, summary, shown, published if scale == "xy" else None)
-        told["against"], table = _against_reference(below, times, shown, label)
-    else:
-        told |= _against_own(below, times, published, *shown.values())
-    if scale != "x":
+        _resolves(grid[1][0], data.study.runs_of(experiment))
+    if table is None or scale != "x":
         return Drawing(figure, f"{opening(times, subject)} {caption('trend', told=told)}")
-    told |= {"curves": [], "rows": [] if table is None else list(table.itertuples())}
+    table = table.assign(label=[f"{exact(x)} {label}" for x in table["x"]])
+    table["name"] = [f"{row.series} against {against}, {row.label}" for row in table.itertuples()]
+    told |= {"curves": [], "rows": list(table.itertuples())}
     return Drawing(figure, f"{opening(times, subject)} {caption('trend', told=told)}", table)
 
 
-def _draw_times(axes: Axes, times: pd.DataFrame, shown: Mapping[str, Look], scale: str) -> pd.DataFrame:
-    """Draw the times of each series, and return them; see `trend`."""
-    value = "nanoseconds" if scale else "steps_seconds"
-    summary = summarise(per_disc_step(times) if scale else times, ["series", "x"], value=value)
-    for series, part in summary.groupby("series"):
-        curve(axes, part, shown[str(series)])
-    axes.set_ylabel("time per disc\nand step, ns" if scale else time_axis(times))
-    axes.set(xscale="log" if "x" in scale else "linear", yscale="log" if "y" in scale else "linear")
-    if "y" in scale:
-        logarithmic_ticks(axes.yaxis)
+def _against_own(
+    times: pd.DataFrame, summary: pd.DataFrame, published: pd.DataFrame
+) -> tuple[Sides, dict[str, float]]:
+    """Return the columns of a single series against its time at one x, beside the published one against its
+    own; and that x of either, as `at` and `at_theirs`. One axis serves both where the sweeps are alike.
+    """
+    at, published = level_of(times, published), published.assign(series=times["series"].iloc[0])
+    at_theirs = at if at in set(published["x"]) else float(published["x"].min())
+    ours, theirs = _to_one(times, published, times["x"] == at, published["x"] == at_theirs)
+    if len(theirs) and ranges_agree(times["x"], published["x"]):
+        both = pd.concat([ours.assign(label="measured"), theirs.assign(label="published")])
+        sides: Sides = {"": (summary, both)}
     else:
-        from_zero(axes)
-    plain_ticks(axes.xaxis, _far_apart(summary["x"]) if "y" in scale else None)
-    return summary
+        sides = _beside(summary, ours, published, theirs)
+    return sides, {"at": at, **({"at_theirs": at_theirs} if len(theirs) else {})}
 
 
 def _resolves(axes: Axes, runs: pd.DataFrame) -> None:
@@ -102,73 +99,39 @@ def _resolves(axes: Axes, runs: pd.DataFrame) -> None:
     from_zero(axes)
 
 
-def _against_reference(
-    axes: Axes, times: pd.DataFrame, shown: Mapping[str, Look], label: str
-) -> tuple[str, pd.DataFrame]:
-    """Draw the ratios of several series to the reference at the same x; return that, and their table."""
-    against = reference(times)
-    table = differences(times, against)
-    ratio_axis(axes, table, against, stated(times).margin)
-    for series, part in table.groupby("series"):
-        ratio_curve(axes, part, shown[str(series)])
-    if len(table):
-        label_ends(axes, ends_of(table, shown, "ratio"))
-    table["label"] = [f"{exact(x)} {label}" for x in table["x"]]
-    table["name"] = [f"{row.series} against {against}, {row.label}" for row in table.itertuples()]
-    return against, table
-
-
-def _name_ends(
-    axes: Axes, summary: pd.DataFrame, shown: Mapping[str, Look], published: pd.DataFrame | None
-) -> bool:
-    """Name the curves at their ends, with a published one beside them, moved so that its median is level with
-    ours, if it covers much the same range; tell whether it does.
+def _moved(summary: pd.DataFrame, published: pd.DataFrame) -> pd.DataFrame:
+    """Return the published times of a series, moved so that their median is level with ours, if they cover
+    much the same range; no rows if not.
     """
-    ends = ends_of(summary, shown, "median")
-    ours = summary[summary["series"].isin([] if published is None else published["series"])]
-    is_moved = published is not None and len(ours) > 0 and ranges_agree(ours["x"], published["x"])
-    if published is not None and is_moved:
-        seconds = published["seconds"] * (ours["median"].median() / published["seconds"].median())
-        look = shown[str(ours["series"].iloc[0])]
-        published_curve(axes, published["x"], seconds, look)
-        said = f"as published, {number(published['seconds'].iloc[-1])} s"
-        ends.append((said, float(seconds.iloc[-1]), lighten(look.colour, 0.4)))
-    label_ends(axes, ends)
-    return is_moved
+    ours = summary[summary["series"].isin(published["series"])]
+    if ours.empty or not ranges_agree(ours["x"], published["x"]):
+        return published[:0]
+    median = published["seconds"] * (ours["median"].median() / published["seconds"].median())
+    label = f"as published, {number(published['seconds'].iloc[-1])} s"
+    return published.assign(median=median, label=label, is_published=True)
 
 
-def stacked(label: str, height: float = 3.7) -> tuple[Figure, tuple[Axes, Axes]]:
-    """Return a figure with the axes of the times above those of the ratios, over the x that `label` names."""
-    figure, [[above], [below]] = new_grid(height, 2, sharex=True, height_ratios=[1.0, 1.25])
-    below.set_xlabel(label)
-    return figure, (above, below)
-
-
-def _against_own(axes: Axes, times: pd.DataFrame, published: pd.DataFrame, look: Look) -> dict[str, Any]:
-    """Draw the ratios of one series to its time at one x, the published ones beside them; return that x of
-    either, as `at` and `at_theirs`.
+def _to_one(
+    times: pd.DataFrame, published: pd.DataFrame, chosen: pd.Series, chosen_theirs: pd.Series
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return the ratios to the rows chosen, of our times, and of the published ones without intervals; none
+    of these where none is chosen.
     """
-    at = level_of(times, published)
-    own = pd.DataFrame([{"x": at, "ratio": 1.0, "low": 1.0, "high": 1.0}])
-    table = pd.concat([differences_from(times, times["x"] == at), own], ignore_index=True)
-    at_theirs = at if at in set(published["x"]) else float(published["x"].min())
-    theirs = published_ratios(published, published["x"] == at_theirs)
-    ratio_axis(axes, pd.concat([table, theirs]), f"that at {exact(at)}", stated(times).margin)
-    ratio_curve(axes, table.assign(series=times["series"].iloc[0]), look)
+    own = times.loc[chosen, ["series", "x"]].drop_duplicates().assign(ratio=1.0, low=1.0, high=1.0)
+    level = published.loc[chosen_theirs, "seconds"]
+    theirs = published["seconds"] / (level.iloc[0] if len(level) else np.nan)
+    table = published.assign(ratio=theirs, is_published=True).dropna(subset="ratio")
+    return pd.concat([differences_from(times, chosen), own], ignore_index=True), table
+
+
+def _beside(
+    summary: pd.DataFrame, ours: pd.DataFrame, published: pd.DataFrame, theirs: pd.DataFrame
+) -> Sides:
+    """Return what was measured and what was published as two columns, the latter if there is any."""
     if theirs.empty:
-        return {"at": at}
-    beside = axes
-    if not ranges_agree(times["x"], published["x"]):
-        beside = axes.twiny()
-        beside.spines["top"].set_visible(True)
-        beside.tick_params(axis="x", colors=FAINT)
-        beside.set_xlabel("published", color=FAINT, fontsize=7)
-    published_curve(beside, theirs["x"], theirs["ratio"], look)
-    plain_ticks(beside.xaxis)
-    both = pd.concat([table.assign(series="measured"), theirs.assign(series="published")])
-    shown = {"measured": look, "published": look._replace(colour=lighten(look.colour, 0.35))}
-    label_ends(axes, ends_of(both.reset_index(), shown, "ratio"))
-    return {"at": at, "at_theirs": at_theirs}
+        return {"": (summary, ours)}
+    seconds = published.assign(median=published["seconds"], is_published=True)
+    return {"measured": (summary, ours), "published": (seconds, theirs)}
 
 
 def level_of(times: pd.DataFrame, published: pd.DataFrame) -> float:
@@ -182,26 +145,10 @@ def level_of(times: pd.DataFrame, published: pd.DataFrame) -> float:
     return float(times["x"].min())
 
 
-def published_ratios(published: pd.DataFrame, chosen: pd.Series) -> pd.DataFrame:
-    """Return the published times as ratios to the one chosen, without intervals; none where none is."""
-    level = published.loc[chosen, "seconds"]
-    ratio = published["seconds"] / (level.iloc[0] if len(level) else np.nan)
-    return published.assign(ratio=ratio, low=np.nan, high=np.nan).dropna(subset="ratio")
-
-
 def ranges_agree(ours: pd.Series, published: pd.Series) -> bool:
     """Tell whether the two sweeps cover much the same range, so that one axis serves both."""
     shared = min(ours.max(), published.max()) - max(ours.min(), published.min())
     return bool(shared >= SAME_RANGE * (published.max() - published.min()))
-
-
-def _far_apart(x: pd.Series) -> list[float]:
-    """Return the largest value and smaller ones so far apart that their names fit a logarithmic axis."""
-    kept: list[float] = []
-    for value in sorted(x.unique(), reverse=True):
-        if not kept or value < kept[-1] / 1.35:
-            kept.append(float(value))
-    return kept
 
 
 def _courses(
@@ -243,14 +190,10 @@ def _flatness(series: str, processes: pd.DataFrame, first: pd.DataFrame) -> dict
     return {"series": series, "flat": flat, "faster": faster}
 
 
-Choice = tuple[str, float]
-"""A schedule and its chunk."""
-
-
 def schedule(data: Evidence, experiment: str, subject: str) -> Drawing | None:
-    """Draw the ratio to the published choice over the chunk, a curve a kind of schedule, beside the published
-    ones on the same axis, and the times small below; the choice is ringed. Where it was not measured the
-    ratios are to the smallest chunk of the reference.
+    """Draw the times over the chunk, a curve a kind of schedule, and below them the ratios to the published
+    choice, which is ringed, the published ones beside them. Where the choice was not measured the ratios are
+    to the smallest chunk of the reference.
     """
     times = data.study.times_of(experiment)
     summary = summarise(join_replicates(times), ["series", "x"])
@@ -258,27 +201,14 @@ def schedule(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     chosen, first = chosen_in(experiment), reference(times)
     is_chosen = chosen is not None and bool(_is(times, chosen).any())
     smallest = first, float(times.loc[times["series"] == first, "x"].min())
-    against = chosen if chosen is not None and is_chosen else smallest
-    named = f"{against[0]} with chunk {exact(against[1])}"
-    # That of the reference to itself has no interval.
-    own = pd.DataFrame([{"series": against[0], "x": against[1], "ratio": 1.0}])
-    ours = pd.concat([differences_from(times, _is(times, against)), own], ignore_index=True)
-    theirs = published_ratios(published, _is(published, against))
+    at = chosen if chosen is not None and is_chosen else smallest
+    named = f"{at[0]} with chunk {exact(at[1])}"
+    ours, theirs = _to_one(times, published, _is(times, at), _is(published, at))
     shown = looks(sorted({*times["series"], *published["series"]}))
-    sides: Sequence[tuple[str, pd.DataFrame, pd.DataFrame]] = [
-        ("measured", ours, summary), *([("published", theirs, published)] if len(theirs) else []),
-    ]  # fmt: skip
-    figure, grid = new_grid(3.7, 2, len(sides), sharex="col", height_ratios=[2.0, 1.0])
-    for (upper, lower), (title, ratios, seconds) in zip(grid.T, sides, strict=True):
-        ratio_axis(upper, pd.concat([ours, theirs]), named, stated(times).margin)
-        _over_chunks(upper, lower, ratios, seconds, shown)
-        at = ratios[_is(ratios, against)]
-        upper.plot(at["x"], at["ratio"], "o", color=INK, markersize=9, markerfacecolor="none", linewidth=0.8)
-        upper.set_title(title)
-    grid[1][0].set_ylabel("time of\nthe steps, s")
-    if len(theirs):
-        grid[0][1].set_ylabel("")
-        grid[1][1].set_ylabel("time of the\nprocess, s")
+    sides = _beside(summary, ours, published, theirs)
+    figure, grid = stack("chunk", time_axis(times), sides, shown, named, stated(times).margin, "x")
+    for axes in grid[1]:
+        axes.plot(at[1], 1, "o", color=INK, markersize=9, markerfacecolor="none", linewidth=0.8)
     (best,) = summary.loc[[summary["median"].idxmin()]].itertuples()
     least = None if published.empty else published.loc[published["seconds"].idxmin()]
     told = caption("schedule", best=best, named=named, is_chosen=is_chosen, theirs=least)
@@ -295,27 +225,22 @@ def _is(table: pd.DataFrame, choice: Choice) -> pd.Series:
     return (table["series"] == choice[0]) & (table["x"] == choice[1])
 
 
-def _over_chunks(
-    upper: Axes, lower: Axes, ratios: pd.DataFrame, seconds: pd.DataFrame, shown: Mapping[str, Look]
-) -> None:
-    """Draw the ratios on an axis that is settled, with names at their ends, and the times themselves."""
-    published = "seconds" in seconds
-    upper.set_xscale("log")
-    for kind, look in shown.items():
-        own, times = (table[table["series"] == kind].sort_values("x") for table in (ratios, seconds))
-        if published:
-            published_curve(upper, own["x"], own["ratio"], look)
-            published_curve(lower, times["x"], times["seconds"], look)
-        else:
-            ratio_curve(upper, own, look, ASIDE.get(kind, 1.0))
-            curve(lower, times, look, aside=ASIDE.get(kind, 1.0))
-    upper.tick_params(labelbottom=False)
-    ends = ends_of(ratios, shown, "ratio")
-    label_ends(upper, [(name, y, lighten(ink, 0.35) if published else ink) for name, y, ink in ends])
-    lower.set_xlabel("chunk")
-    within = seconds["x"].min(), seconds["x"].max()
-    plain_ticks(lower.xaxis, [tick for tick in CHUNKS if within[0] <= tick <= within[1]] or within)
-    lower.minorticks_off()
+def oversubscription(data: Evidence, experiment: str, subject: str) -> Drawing | None:
+    """Draw time over threads in multiples of the machine's hardware threads, against as many as it has."""
+    times, hardware = data.study.times_of(experiment), data.study.hardware_threads
+    at = times["x"] == times.loc[times["x"] <= hardware, "x"].max()
+    more = times["x"] > hardware
+    ours, _ = _to_one(times[at | more], times[:0].assign(seconds=0.0), at[at | more], at[:0])
+    sides = {"": (summarise(times, ["series", "x"]), ours)}
+    shown, margin = looks(times["series"]), stated(times).margin
+    figure, grid = stack("threads", time_axis(times), sides, shown, "all hardware threads", margin)
+    _thread_axis(grid[1][0], times["x"].unique(), times["x"].unique())
+    for axes in grid[:, 0]:
+        _limits(axes, data.study, named=axes is grid[0][0])
+    rows = ours[ours["x"] > hardware]
+    rows = rows.assign(label=[f"{x / hardware:g} times as many:" for x in rows["x"]])
+    told = caption("oversubscription", hardware=hardware, rows=list(rows.itertuples()))
+    return Drawing(figure, f"{opening(times, subject)} {told}".strip())
 
 
 def scaling(data: Evidence, experiment: str, subject: str) -> Drawing | None:
@@ -326,25 +251,27 @@ def scaling(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     times = times[times["x_name"] == "threads"]
     if times.empty:
         return None
-    times = _by_curve(times)
-    published = data.published.experiment(experiment)
-    figure, panels = new_figure(2.6, columns=3)
-    shown = looks(sorted(times["series"].unique()))
+    times, published = _by_curve(times), data.published.experiment(experiment)
     parts = {str(series): part for series, part in times.groupby("series")}
-    measured = {series: _speed_ups(panels, part, shown[series]) for series, part in parts.items()}
+    shown = {**looks(parts), "published": Look(BLUE)}
+    measured = {series: scalability.speed_up(part) for series, part in parts.items()}
     entries = [_entry(series, part, shown[series], len(parts) > 1) for series, part in parts.items()]
-    law = scalability.fit(times, data.study.hardware_threads) if len(parts) == 1 else None
-    most = max(table["speed_up"].max() for table in measured.values())
+    rows = [_relative(series, part, measured[series]) for series, part in parts.items()]
     if len(published):
-        x, speed = published["x"], published["seconds"].iloc[0] / published["seconds"]
-        for axes, y in zip(panels, (1 / speed, speed, speed * x.iloc[0] / x), strict=True):
-            published_curve(axes, x, y, Look(BLUE))
-        most = max(most, speed.max())
+        speed = published["seconds"].iloc[0] / published["seconds"]
+        each = 1 / speed, speed, speed * published["x"].iloc[0] / published["x"]
+        theirs = pd.DataFrame({"x": published["x"], "series": "published", "is_published": True})
+        rows.append([theirs.assign(value=value) for value in each])
         entries.append(("● published", lighten(BLUE, 0.4)))
-    ideal = np.geomspace(1, 1.1 * most, 50)
-    panels[1].plot(times["x"].min() * ideal, ideal, color=FAINT, linestyle="--", linewidth=0.9, zorder=1)
-    panels[2].axhline(1, color=FAINT, linestyle="--", linewidth=0.9, zorder=1)
+    figure, panels = new_figure(2.6, columns=3)
+    tables = [pd.concat(one) for one in zip(*rows, strict=True)]
+    for axes, table in zip(panels, tables, strict=True):
+        curves(axes, table, shown, "value")
+    ideal = np.geomspace(1, 1.1 * tables[1]["value"].max(), 50)
+    panels[1].plot(times["x"].min() * ideal, ideal, **IDEAL)
+    panels[2].axhline(1, **IDEAL)
     entries.append(("- - ideal", FAINT))
+    law = scalability.fit(times, data.study.hardware_threads) if len(parts) == 1 else None
     if law:
         n = np.geomspace(1, times["x"].max(), 100)
         for axes, y in zip(panels[1:], (law.speed_up(n), law.speed_up(n) / n), strict=True):
@@ -353,9 +280,9 @@ def scaling(data: Evidence, experiment: str, subject: str) -> Drawing | None:
     first = count(int(times["x"].min()), "thread")
     labels = f"time relative to {first}", f"speed-up over {first}", "efficiency"
     for axes, label in zip(panels, labels, strict=True):
-        _thread_axis(axes, [*times["x"], *published["x"]])
+        _thread_axis(axes, [*times["x"], *published["x"]], THREADS)
         from_zero(axes)
-        limits(axes, data.study, named=axes is panels[0])
+        _limits(axes, data.study, named=axes is panels[0])
         axes.set_ylabel(label)
     key(figure, entries)
     told = caption(
@@ -374,17 +301,15 @@ def _by_curve(times: pd.DataFrame) -> pd.DataFrame:
     return times.assign(series=scenes if one else times["series"] + ", " + scenes)
 
 
-def _speed_ups(panels: Sequence[Axes], times: pd.DataFrame, look: Look) -> pd.DataFrame:
-    """Draw one series and return its speed-ups."""
-    first, series = float(times["x"].min()), times["series"].iloc[0]
-    speed_ups = scalability.speed_up(times).assign(series=series)
-    summary, ends = summarise(times, ["series", "x"]), ["median", "low", "high"]
-    relative = summary.assign(**summary[ends] / summary.loc[summary["x"] == first, "median"].iloc[0])
-    ends = ["speed_up", "low", "high"]
-    efficiency = speed_ups.assign(**speed_ups[ends].mul(first / speed_ups["x"], axis=0))
-    for axes, table in zip(panels, (relative, speed_ups, efficiency), strict=True):
-        curve(axes, table, look, "median" if table is relative else "speed_up")
-    return speed_ups
+def _relative(series: str, times: pd.DataFrame, speed_ups: pd.DataFrame) -> list[pd.DataFrame]:
+    """Return the times of a series relative to the fewest threads, its speed-ups, and its efficiency."""
+    first, summary = float(times["x"].min()), summarise(times, ["x"])
+    ends = summary[["median", "low", "high"]].set_axis(ENDS, axis=1)
+    relative = ends / ends.loc[summary["x"] == first, "value"].iloc[0]
+    speed_ups = speed_ups.rename(columns={"speed_up": "value"})
+    efficiency = speed_ups[ENDS].mul(first / speed_ups["x"], axis=0)
+    parts = (summary["x"], relative), (speed_ups["x"], speed_ups[ENDS]), (speed_ups["x"], efficiency)
+    return [values.assign(x=x, series=series) for x, values in parts]
 
 
 def _best(study: Study, series: str, table: pd.DataFrame) -> tuple[str, pd.Series, str]:
@@ -400,29 +325,7 @@ def _entry(series: str, times: pd.DataFrame, look: Look, several: bool) -> tuple
     return f"{SIGNS[look.marker]} {series if several else 'measured'}, {said}", look.colour
 
 
-def oversubscription(data: Evidence, experiment: str, subject: str) -> Drawing | None:
-    """Draw time over threads in multiples of the machine's hardware threads, against as many as it has."""
-    times = data.study.times_of(experiment)
-    hardware = data.study.hardware_threads
-    figure, (above, below) = stacked("threads", 3.4)
-    curve(above, summarise(times, ["x"]), Look(BLUE))
-    above.set_ylabel("time of the steps, s")
-    from_zero(above)
-    reference = times[times["x"] == times.loc[times["x"] <= hardware, "x"].max()]
-    table = judge(log_ratios_by_x(reference, times[times["x"] > hardware]), ["x"])
-    own = reference[["x"]].drop_duplicates().assign(ratio=1.0)
-    ratios = pd.concat([own, table], ignore_index=True).reindex(columns=["x", "ratio", "low", "high"])
-    ratio_axis(below, ratios, "all hardware threads")
-    ratio_curve(below, ratios, Look(BLUE))
-    _thread_axis(below, sorted(times["x"].unique()), times["x"].unique())
-    limits(above, data.study, named=True)
-    limits(below, data.study, named=False)
-    rows = list(table.assign(label=[f"{x / hardware:g} times as many:" for x in table["x"]]).itertuples())
-    told = caption("oversubscription", hardware=hardware, rows=rows)
-    return Drawing(figure, f"{opening(times, subject)} {told}".strip())
-
-
-def limits(axes: Axes, study: Study, named: bool) -> None:
+def _limits(axes: Axes, study: Study, named: bool) -> None:
     """Draw the machine's cores and hardware threads as lines, named if asked."""
     cores, hardware = study.cores, study.hardware_threads
     marks = {
@@ -439,7 +342,7 @@ def limits(axes: Axes, study: Study, named: bool) -> None:
             note(axes, f"{position} {name}", (position, 0.98), (2, 0), xycoords=above, **look)
 
 
-def _thread_axis(axes: Axes, values: list[float], ticks: Iterable[float] = THREADS) -> None:
+def _thread_axis(axes: Axes, values: Sequence[float], ticks: Sequence[float]) -> None:
     axes.set_xscale("log", base=2)
     axes.set_xlabel("threads")
     plain_ticks(axes.xaxis, [tick for tick in ticks if min(values) <= tick <= max(values)])

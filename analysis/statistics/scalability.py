@@ -31,16 +31,11 @@ class ScalabilityLaw:
 def speed_up(processes: pd.DataFrame) -> pd.DataFrame:
     """Return `x`, `speed_up`, `low`, `high` over the smallest thread count, from ratios within blocks."""
     reference = processes[processes["x"] == processes["x"].min()]
-    table = judge(log_ratios_by_x(reference, processes), ["x"])
+    table = judge(log_ratios(narrow(reference), narrow(processes, "x"), by=("x",)), ["x"])
     # Below, a time ratio becomes a speed-up: its ends change places. Its own reference has no interval.
     return pd.DataFrame(
         {"x": table["x"], "speed_up": 1 / table["ratio"], "low": 1 / table["high"], "high": 1 / table["low"]}
     ).replace([0, np.inf], np.nan)
-
-
-def log_ratios_by_x(reference: pd.DataFrame, processes: pd.DataFrame) -> pd.DataFrame:
-    """Return the paired log ratios of every x against the reference, with the column `x`."""
-    return log_ratios(narrow(reference), narrow(processes, "x"), by=("x",))
 
 
 def fit(processes: pd.DataFrame, most_threads: int) -> ScalabilityLaw | None:

@@ -3,8 +3,7 @@ of a TOML file are read here, too.
 """
 
 import tomllib
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
@@ -13,6 +12,8 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Row = Mapping[Hashable, Any]
+Table = tuple[str, Mapping[str, Any]]
+"""A table of the report: which one it is, and the facts that it tells."""
 T = TypeVar("T")
 
 
@@ -24,30 +25,6 @@ class Interval(NamedTuple):
     high: float
 
 
-@dataclass(frozen=True)
-class Cell:
-    """What stands in one place of a table; `mark` is its class in the style sheet: holds, fails, open."""
-
-    text: str
-    mark: str = ""
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table of the report: what it says, its columns, and a row of cells each."""
-
-    title: str
-    columns: Sequence[str]
-    rows: Sequence[Sequence[Cell]]
-
-
 def rows_in(file: Path, key: str, kind: Callable[..., T]) -> list[T]:
     """Return the tables under a key of a TOML file, each as what it is made into."""
     return [kind(**table) for table in tomllib.loads(file.read_text(encoding="utf-8"))[key]]
-
-
-def table_of(title: str, columns: Sequence[str], rows: Iterable[Iterable[Cell | str]]) -> Table:
-    """Return a table of cells and of texts, which have no mark."""
-    return Table(
-        title, columns, [[Cell(one) if isinstance(one, str) else one for one in row] for row in rows]
-    )

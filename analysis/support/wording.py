@@ -1,7 +1,7 @@
 """How numbers are said: one way for captions, claims, the report and the terminal."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 from analysis.support.values import Interval
@@ -85,12 +85,6 @@ def spreads(row: Any) -> str:  # noqa: ANN401 - as above
 def blocks(row: Any) -> str:  # noqa: ANN401 - as above
     """Return on how many pairs of processes a ratio rests."""
     return count(row.blocks, "block")
-
-
-def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a table in Markdown."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
 def count(amount: int, noun: str) -> str:

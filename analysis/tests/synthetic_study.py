@@ -1,7 +1,9 @@
 """A whole synthetic study: the records of every experiment, and what else a results folder may hold."""
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from html import unescape
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,8 @@ import numpy as np
 from analysis import report
 from analysis.claims import evidence_of
 from analysis.claims.entry import Evidence
+from analysis.figures import Drawn
+from analysis.figures.style import Drawing
 from analysis.tests.synthetic import Machine, bench, failure, limits, profile, write
 from analysis.tests.synthetic_noise import Noise
 from analysis.tests.synthetic_points import EXPERIMENTS
@@ -78,6 +82,20 @@ def data_in(folder: Path, records: Iterable[dict[str, Any]]) -> Evidence:
 def page_of(results: Path, asked: Sequence[str] = ()) -> str:
     """Return the report of a folder."""
     return report.write(results, asked).read_text(encoding="utf-8")
+
+
+def tables_of(drawing: Drawing | Drawn) -> dict[str, list[list[str]]]:
+    """Return the tables that follow a figure as the page has them, by title: rows of texts, the first names
+    the columns. What has a mark ends in it, in brackets.
+    """
+    macros = report.templates().get_template("tables.jinja").module
+    cell = r'<t[hd](?: class="(\w+)")?>(.*?)</t[hd]>'
+    html = unescape("".join(getattr(macros, name)(**facts) for name, facts in drawing.tables))
+    found = {}
+    for title, table in re.findall(r'<p class="table">(.*?)</p>(.*?)</table>', html, re.DOTALL):
+        rows = (re.findall(cell, row, re.DOTALL) for row in table.split("</tr>")[:-1])
+        found[title] = [[f"{text} [{mark}]" if mark else text for mark, text in row] for row in rows]
+    return found
 
 
 def figure_of(experiment: str) -> str:

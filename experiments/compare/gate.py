@@ -104,7 +104,8 @@ def _built(
         tell_own_path(trees["base"])
         if not options.same_bytes:
             require_two_programs(run, trees["base"], trees["head"])
-            tell_shared_places(options.build or "", trees["base"], since)
+            if options.build:
+                tell_shared_places(options.build, trees["base"], since)
     words, line, pattern = tuple(run), " ".join(run), options.time_from
     commands = tuple(
         Compared(name, words, line, folder=tree.folder, time_from=pattern, called=name)

@@ -99,10 +99,11 @@ def _folders(words: Sequence[str]) -> Iterator[tuple[str, Path]]:
 
 
 def _of_texts(words: Sequence[str], tree: Tree) -> Iterator[tuple[str, Path]]:
-    """The user's own checkout, where scripts that words name have its path in them."""
+    """The user's own checkout, where scripts that words name, or that these name, have its path in them."""
     own = tree.repository.resolve()
-    for word, path in _named(words, tree.folder):
-        if any(f"{own}/" in one for one in _words_of_script(path)):
+    itself = re.compile(re.escape(str(own)) + r"(?![\w.-])")
+    for word, path in _read(words, tree.folder):
+        if any(map(itself.search, _words_of_script(path))):
             yield f"{own} in {word}", own
 
 
@@ -229,5 +230,6 @@ def _pythons(words: Sequence[str], folder: Path) -> Iterator[tuple[str, list[Pat
 
 def _parts(words: Sequence[str]) -> list[str]:
     """The words, those of lines for a shell among them, and what stands behind a sign of equality."""
-    parts = [os.path.expandvars(part) for word in words for part in (word, *words_in(word))]
+    every = (part for word in words for part in (word, *words_in(word)))
+    parts = [os.path.expanduser(os.path.expandvars(part)) for part in every]
     return [*parts, *(part.partition("=")[2] for part in parts)]

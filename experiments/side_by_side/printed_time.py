@@ -50,8 +50,8 @@ _BLANK_BEFORE_GROUP, _BLANK_BEHIND_GROUP = re.compile(r"(?: |\\s)[+*]?\("), re.c
 
 _OTHER_UNIT = re.compile(
     rf"{_SPREAD}[ \t]*[(\[]?"
-    r"(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b|[mMuUnN]?[sS]\b|[mMhHdD]\b"
-    r"|(?:days?|weeks?|fps|[kKMG]?ops|[tqr]ps|iterations?|items?|frames?|requests?|calls?|rows?)\b)"
+    r"(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b|[mMuUnN]?[sS]\b|[mMhHdD]\b|[afpcdk]s\b|[kwx]\b"
+    r"|(?:days?|weeks?|cycles?|ticks?|fps|[kKMG]?ops|[tqr]ps|iterations?|items?|frames?|requests?|calls?|rows?)\b)"
 )
 """What is no time, or none that is understood: a capital makes another unit of a short one."""
 _IN_FRONT = re.compile(rf"(?<![A-Za-z])[(\[](?!m[)\]])([{_MICRO}]?[A-Za-z]+)[)\]][ \t]*[:=]?[ \t]*$")

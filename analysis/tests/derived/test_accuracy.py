@@ -21,7 +21,7 @@ from analysis.tests.report.test_report import Page, text_of
 from analysis.tests.synthetic import write
 from analysis.tests.synthetic_noise import QUIET, Noise, times_table
 from analysis.tests.synthetic_points import SUBSTEPS
-from analysis.tests.synthetic_study import data_in, page_of, study, under
+from analysis.tests.synthetic_study import data_in, page_of, study, tables_of, under
 
 NAME = "speed_against_error"
 BY_KEY = {measure.key: measure for measure in MEASURES}
@@ -180,11 +180,11 @@ def test_the_figure_says_what_the_error_means_and_how_it_falls(whole: Evidence) 
     assert BY_KEY["path"].meaning in drawn.caption
     assert "the same in every run, to the last bit, and has no interval" in drawn.caption
     assert "378 timed runs" in drawn.caption.replace("\u00a0", " ")
-    (orders,) = (table for table in drawn.tables if "Order of convergence" in table.title)
-    cells = {row[0].text: [cell.text for cell in row[1:]] for row in orders.rows}
-    assert [cell.split()[0] for cell in cells["checkered"]] == ["1.00"] * 3
-    (advice,) = drawing(whole, "energy").tables
-    assert [row[0].text for row in advice.rows] == ["10⁻⁶", "10⁻¹³"], "rounding does not converge"
+    (orders,) = (rows for title, rows in tables_of(drawn).items() if "Order of convergence" in title)
+    (checkered,) = (row[1:] for row in orders if row[0] == "checkered")
+    assert [cell.split()[0] for cell in checkered] == ["1.00"] * 3
+    (advice,) = tables_of(drawing(whole, "energy")).values()
+    assert [row[0] for row in advice[1:]] == ["10⁻⁶", "10⁻¹³"], "rounding does not converge"
     assert run_label("row", 1) == "row, dt\u00a0=\u00a01"
 
 
@@ -249,5 +249,5 @@ def test_the_event_driven_simulation_is_on_the_front_without_steps(tmp_path: Pat
     drawn = drawing(data, "path")
     assert "event-driven: without steps" in drawn.caption
     assert "against the same in long double" in drawn.caption
-    (told,) = (one for one in drawn.tables if "cheapest" in one.title)
-    assert "event-driven: " in told.rows[-1][1].text
+    (told,) = (rows for title, rows in tables_of(drawn).items() if "cheapest" in title)
+    assert "event-driven: " in told[-1][1]

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from analysis.commands.open_questions import open_questions
-from analysis.derived.comparisons import USUAL, Stated, differences, reference, stated
+from analysis.derived.comparisons import USUAL, Stated, differences, differences_from, reference, stated
 from analysis.figures import draw_all
 from analysis.records.reading import load
 from analysis.tests.synthetic import write
@@ -65,8 +65,9 @@ def test_what_is_no_margin_is_the_usual_one(tmp_path: Path, found: object) -> No
 def test_a_difference_is_judged_by_the_margin_that_is_stated(
     tmp_path: Path, margin: float, verdict: str
 ) -> None:
-    [row] = differences(measured(tmp_path, margin=margin), "old").to_dict("records")
-    assert row["verdict"] == verdict
+    times = measured(tmp_path, margin=margin)
+    both = differences(times, "old"), differences_from(times, times["series"] == "old")
+    assert [list(table["verdict"]) for table in both] == [[verdict]] * 2
 
 
 def test_an_error_that_is_stated_decides_and_is_that_of_the_interval(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from analysis.records.studies import split
 from analysis.tests.report.test_report import text_of
 from analysis.tests.synthetic import failure, write
 from analysis.tests.synthetic_noise import QUIET
-from analysis.tests.synthetic_study import page_of, study
+from analysis.tests.synthetic_study import page_of, study, tables_of
 
 EXPECTED = [
     Expectation("cradle", "right", measure="path_end", at_most={"double": 1e-3, "float": 1e-9}),
@@ -92,8 +92,8 @@ def test_without_the_scene_to_compare_with_nothing_is_claimed(tmp_path: Path) ->
 def test_the_report_has_verdict_and_number_of_every_cell(tmp_path: Path) -> None:
     write(tmp_path, records())
     (drawn,) = draw_all(tmp_path)
-    assert [table.title for table in drawn.tables] == ["In double precision:", "In float precision:"]
-    assert all(len(table.rows) == 6 for table in drawn.tables)
+    cases = {title: len(rows) - 1 for title, rows in tables_of(drawn).items()}
+    assert cases == dict.fromkeys(["In double precision:", "In float precision:"], 6)
     text = text_of(page_of(tmp_path))
     assert "cradle: right" in text
     assert "✓ 1.0e-05" in text
@@ -112,18 +112,18 @@ def test_variants_at_contact_are_held_to_what_is_expected_of_such_in_a_table_of_
             record["axes"]["impact"] = AT_CONTACT
     write(tmp_path, made)
     (drawn,) = draw_all(tmp_path)
-    told = {table.title: (list(table.columns[2:]), table.rows) for table in drawn.tables}
-    assert {title: columns for title, (columns, _) in told.items()} == {
+    told = tables_of(drawn)
+    assert {title: rows[0][2:] for title, rows in told.items()} == {
         "In double precision:": ["published"],
         "In double precision, collisions at contact:": ["row"],
         "In float precision:": ["float"],
     }
-    cells = [[cell.text for cell in rows[0]] for _, rows in told.values()]
+    cells = [rows[1] for rows in told.values()]
     failed = "✗ 1.0e-05: expected at most"
     assert cells == [
-        ["cradle: right", LABELS["path_end"], "✓ 1.0e-05"],
-        ["cradle: exact", LABELS["path_end"], f"{failed} 1e-06"],
-        ["cradle: right", LABELS["path_end"], f"{failed} 1e-09"],
+        ["cradle: right", LABELS["path_end"], "✓ 1.0e-05 [holds]"],
+        ["cradle: exact", LABELS["path_end"], f"{failed} 1e-06 [fails]"],
+        ["cradle: right", LABELS["path_end"], f"{failed} 1e-09 [fails]"],
     ]
     svg = drawn.files[0].read_text(encoding="utf-8")
     assert "cradle, at contact" in svg
@@ -136,8 +136,9 @@ def test_a_variant_that_only_failed_has_a_table_too(tmp_path: Path) -> None:
     made.append(failure("hard_cases", "nine", "step 3: left colliding", scene_name="cradle"))
     write(tmp_path, made)
     (drawn,) = draw_all(tmp_path)
-    assert [table.title for table in drawn.tables] == ["Without any record:", "In double precision:"]
-    assert [cell.text for cell in drawn.tables[0].rows[0]][-1] == "✗: step 3: left colliding"
+    told = tables_of(drawn)
+    assert list(told) == ["Without any record:", "In double precision:"]
+    assert told["Without any record:"][1][-1] == "✗: step 3: left colliding [fails]"
 
 
 def test_the_shipped_expectations_name_measures_that_exist(monkeypatch: pytest.MonkeyPatch) -> None:

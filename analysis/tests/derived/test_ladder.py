@@ -17,7 +17,7 @@ from analysis.support.wording import NO_INTERVAL
 from analysis.tests.synthetic import failure, profile
 from analysis.tests.synthetic_noise import QUIET, Noise
 from analysis.tests.synthetic_points import LADDER
-from analysis.tests.synthetic_study import SHARES, data_in, page_of, study
+from analysis.tests.synthetic_study import SHARES, data_in, page_of, study, tables_of
 
 FACTORS = [factor for factor, _ in LADDER.values()]
 
@@ -109,10 +109,8 @@ def test_the_figure_says_every_factor_and_the_caption_the_totals(whole: Evidence
     assert "100\u00a0000 discs at area fraction 0.80: 2.5" in drawing.caption
     assert "all 72\u00a0results passed" in drawing.caption
     assert "were not counted" in drawing.caption
-    (table,) = drawing.tables
-    assert [(row[0].text, row[1].text, row[2].text) for row in table.rows][1] == (
-        "sorted", "storage sorted", "sorted",
-    )  # fmt: skip
+    (table,) = tables_of(drawing).values()
+    assert table[2] == ["sorted", "storage sorted", "sorted"]
     assert drawing.verdicts is not None
     assert list(drawing.verdicts["name"].str.contains("storage sorted")).count(True) == 2
 
