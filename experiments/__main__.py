@@ -13,7 +13,7 @@ from experiments.calibration.command import calibrate
 from experiments.plan import site
 from experiments.plan.new_question import new_question
 from experiments.plan.plan import Surroundings, plan
-from experiments.plan.program import GENERATOR, find_programs
+from experiments.plan.program import BESIDE, GENERATOR, find_programs
 from experiments.plan.question import load_questions
 from experiments.plan.scale import SCALES, find_scale
 from experiments.plan.site import load_site
@@ -70,7 +70,7 @@ def _builds(options: argparse.Namespace) -> int:
         raise InputError(f"site {where.name}: is a cluster; use `carom study submit --site {options.site}`")
     require_room_for_folder("results", options.results)
     asked = {GENERATOR}.union(*(one.programs for one in questions))
-    print(*(name for name in where.programs if name in asked))
+    print(*(name for name in (*where.programs, *BESIDE) if name in asked))
     return 0
 
 

@@ -179,9 +179,11 @@ class Course:
         if blocks.seconds + (1 if rounds else 2) * each > asked.seconds + each:
             return
         if rounds:
-            # What comes before and after each run takes its time as well.
-            most = max(1, int((asked.seconds - blocks.seconds) / max(each, 1e-6)))
-            self._begin_again(replace(asked, turns=False, rounds=tuple(min(one, most) for one in rounds)))
+            if any(one.prepare or one.conclude for one in asked.commands):
+                # What comes before and after each run takes its time as well.
+                most = max(1, int((asked.seconds - blocks.seconds) / each))
+                rounds = tuple(min(one, most) for one in rounds)
+            self._begin_again(replace(asked, turns=False, rounds=rounds))
             return
         is_open &= _TRIALS * each <= asked.seconds
         if is_open and not note_idle(asked, blocks.runs, blocks.others.idle_processors):

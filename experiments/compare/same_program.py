@@ -231,5 +231,5 @@ def _pythons(words: Sequence[str], folder: Path) -> Iterator[tuple[str, list[Pat
 def _parts(words: Sequence[str]) -> list[str]:
     """The words, those of lines for a shell among them, and what stands behind a sign of equality."""
     every = (part for word in words for part in (word, *words_in(word)))
-    parts = [os.path.expanduser(os.path.expandvars(part)) for part in every]
+    parts = [re.sub(r"^~(?=/|$)", str(Path.home()), os.path.expandvars(part)) for part in every]
     return [*parts, *(part.partition("=")[2] for part in parts)]

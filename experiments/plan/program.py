@@ -18,6 +18,14 @@ CHECK_FAILED = 2
 GENERATOR = "gcc"
 """The build that makes the scenes, whichever is measured."""
 
+BESIDE = {
+    "gcc-libomp": "gcc/carom-libomp",
+    "clang-in-gcc": "gcc/carom-libomp clang/carom-variants.so",
+}
+"""What the builds of a site make besides: g++'s code with the OpenMP runtime of clang++, where clang++ is,
+and that program with the variants of clang++'s build in place of its own.
+"""
+
 SHORT_NAMES = ("auto", "fastest")
 """What the program understands beside the names of its variants: the fastest for the scene at hand, and the
 one that is the fastest for all but the smallest scenes.
@@ -82,7 +90,7 @@ class Program:
 def find_programs(site: Site, build: Path) -> dict[str, Program]:
     """The site's programs by name; those below `build` that are not built have no SHA-256."""
     found = {}
-    for name, words in site.programs.items():
+    for name, words in (BESIDE | dict(site.programs)).items():
         path, *more = files = tuple(build.resolve() / relative for relative in words.split())
         hashes = tuple(sha256_of(file) for file in files) if all(file.is_file() for file in files) else ()
         sha256 = digest_of_hashes(hashes) if hashes else None

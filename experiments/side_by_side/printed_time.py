@@ -51,7 +51,7 @@ _BLANK_BEFORE_GROUP, _BLANK_BEHIND_GROUP = re.compile(r"(?: |\\s)[+*]?\("), re.c
 _OTHER_UNIT = re.compile(
     rf"{_SPREAD}[ \t]*[(\[]?"
     r"(%|[A-Za-z]*/s|(?:[kKMGT]i?)?B\b|[kMG]?Hz|[kMG]s\b|[mMuUnN]?[sS]\b|[mMhHdD]\b|[afpcdk]s\b|[kwx]\b"
-    r"|(?:days?|weeks?|cycles?|ticks?|fps|[kKMG]?ops|[tqr]ps|iterations?|items?|frames?|requests?|calls?|rows?)\b)"
+    r"|(?:days?|weeks?|fps|[kKMG]?ops|[tqr]ps|iterations?|items?|frames?|requests?|calls?|rows?)\b)"
 )
 """What is no time, or none that is understood: a capital makes another unit of a short one."""
 _IN_FRONT = re.compile(rf"(?<![A-Za-z])[(\[](?!m[)\]])([{_MICRO}]?[A-Za-z]+)[)\]][ \t]*[:=]?[ \t]*$")
@@ -65,8 +65,8 @@ _LABELS = re.compile(r"[ \t]*[=:]?[ \t]*[0-9]")
 _AND_MORE = re.compile(r"(?:,? | and )?(?=[0-9])")
 _COLOURS = re.compile(rb"\x1b\[[0-9;]*m")
 """Of a terminal."""
-_LETTERS = re.compile("([A-Za-z]{1,3})(?![A-Za-z])")
-"""No word, as in 0:03.5elapsed."""
+_LETTERS = re.compile(r"([A-Za-z]{1,3}|[ \t]*(?:cycles?|ticks?))(?![A-Za-z])")
+"""No word, as in 0:03.5elapsed, but for those that count."""
 
 
 @dataclass(frozen=True)
@@ -290,7 +290,7 @@ def _seconds_of(group: _Group, pattern: str, unit_seconds: float | None) -> floa
     other = None if read.unit else _OTHER_UNIT.match(behind) or (group.ends_match and _LETTERS.match(behind))
     if other:
         minutes = ", such as min where minutes are meant" if other[1] == "m" else ""
-        _refuse(group, f" with the unit '{other[1]}', expected a time{minutes}")
+        _refuse(group, f" with the unit '{other[1].strip()}', expected a time{minutes}")
     if not unit:
         _refuse(group, " without a unit behind it, expected one such as ms, or --unit")
     return seconds

@@ -400,6 +400,10 @@ CASES = (
         ("true", "./b"), ("true 15", "b 1"), code=None, files={"b": "sleep 0.3"}, time="2s",
     ),
     Case(
+        TIME, "a slow preparation of short commands", "fewer runs, within --time",
+        ("--prepare", "sleep 0.2", "true", "./b"), ("true 1, b 1",), code=None, files={"b": _FAST}, time="1s",
+    ),
+    Case(
         TIME, "no time for an interval", "one run of each, and what would be needed",
         ("./short", "./long"), ("1 block: an interval needs 6 blocks",), files=_WORKS, time="1ms",
     ),

@@ -346,6 +346,18 @@ PROGRAMS = {
         1,
         ("found HERE/a repository in ./prog, of your own checkout: both commits would use it",),
     ),
+    "a script of a script with the user's own checkout itself": Case(
+        f"{SLOWER} echo \"cd '$PWD'\" >inner.sh && echo . ./inner.sh >>prog.in && git add . && commit own",
+        1,
+        ("found HERE/a repository in ./inner.sh, of your own checkout: both commits would use it",),
+    ),
+    "the user's own checkout below the home folder": Case(
+        SLOWER,
+        1,
+        ("found HERE/a repository, of your own checkout: both commits would use it",),
+        run=("sh", "-c", "cd ~/'a repository' && ./prog"),
+        env={"HOME": "HERE"},
+    ),
     "a folder of the checkout": Case(
         f"{START} mkdir lib && git mv prog.in lib && commit lib\n"
         "git checkout -q -b branch && touch x.c && commit x",

@@ -24,6 +24,7 @@ SHOWN = {
     "experiment", "kind", "figure", "claim", "margin", "error", "reference", "series", "series_number",
     "scene_name", "x_name", "x", "scale",
     *("program.path", "program.files", "program.hashes", "program.absent", "program.written"),
+    "program.library",
     *("command.folder", "command.refused", "command.checker", "command.another"),
 }  # fmt: skip
 """What only says where something is, or where in a figure the point stands, and so is no part of its id."""
@@ -180,7 +181,7 @@ MISTAKES = {
     ),
     "program": (
         PAIR.replace('variant = "nine"', 'variant = "nine"\nprogram = "clan"'),
-        'series[2].program: found "clan", expected one of gcc, clang, gcc-libomp; did you mean "clang"?',
+        'series[2].program: found "clan", expected one of gcc-libomp, clang-in-gcc, gcc, clang; did',
     ),
     "the same twice": (
         PAIR.replace('variant = "nine"', 'variant = "published"'),

@@ -7,7 +7,7 @@ import pytest
 
 from experiments.plan.claims import published_claims
 from experiments.plan.plan import Experiment, Surroundings, plan
-from experiments.plan.program import Program
+from experiments.plan.program import BESIDE, Program
 from experiments.plan.question import FOLDER, load_question, load_questions
 from experiments.plan.scale import SCALES
 from experiments.plan.site import Machine, load_site
@@ -27,7 +27,7 @@ PUBLISHED_THREADS = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 13, 15, 17, 19, 20, 21, 
 
 def around(scale: str, machine: Machine = NODE) -> Surroundings:
     """A machine on which nothing is built: variants are not looked up."""
-    names = ("gcc", "clang")
+    names = ("gcc", "clang", *BESIDE)
     programs: Mapping[str, Program] = {name: Program(name, Path(name), None) for name in names}
     return Surroundings(load_site("local"), machine, programs, SCALES[scale])
 
@@ -53,7 +53,7 @@ def test_every_question_of_the_study_is_there() -> None:
         "schedule_find", "schedule_resolve", "schedule_resolve_row", "row", "row_over_size", "reverse",
         "sequential_orders",
         "compiler", "phases", "phases_of_variants", "ladder", "rungs", "limits", "density", "small_scenes",
-        "oversubscription", "control", "speed_against_error", "hard_cases", "ways",
+        "oversubscription", "control", "openmp_runtime", "speed_against_error", "hard_cases", "ways",
         "ways_of_processes",
     }  # fmt: skip
 

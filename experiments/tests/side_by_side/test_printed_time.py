@@ -119,7 +119,7 @@ REFUSED = (
         "1,234", "12,345", "123,456",
     )),
     *((f"12 {unit}", "([0-9]+)", f"found '12' with the unit '{unit}', expected a time") for unit in (
-        "MB/s", "GB", "B", "%", "KiB", "Hz", "ks", "m", "MS", "S", "days",
+        "MB/s", "GB", "B", "%", "KiB", "Hz", "ks", "m", "MS", "S", "days", "ps", "cycles",
     )),
     ("", "(.*)", f"found '', {POSITIVE}"),
     ("t 12 \u00b1 3 MB", "t ([0-9]+)", "found '12' with the unit 'MB', expected a time"),

@@ -25,6 +25,33 @@ class CheckCommand : public testing::Test {
     TemporaryDirectory directory;
 };
 
+TEST_F(CheckCommand, RunsTheVariantsOfAnotherBuild) {
+    const std::string scene =
+        directory.write("scene.in", scene_text(tests::random_scene(150, 50, 1, 6, 2, 171)));
+    const std::string library = CAROM_VARIANTS;
+    const ProgramResult own = run_carom({"check", scene});
+    const ProgramResult other = run_carom({"check", scene, "--variants-of", library});
+    EXPECT_EQ(other.exit_code, 0) << other.error;
+    EXPECT_EQ(other.output, own.output) << "the same source ends in the same bits";
+
+    const std::string record = directory.path() / "record.json";
+    ASSERT_EQ(run_carom({"bench", scene, "--variants-of", library, "--record", record}).exit_code, 0);
+    const auto told = nlohmann::json::parse(tests::content_of(record));
+    const auto& origin = told["contenders"][0]["provenance"];
+    EXPECT_EQ(origin["compiler"], told["provenance"]["compiler"]);
+    EXPECT_NE(origin["binary_sha256"], told["provenance"]["binary_sha256"]);
+}
+
+TEST_F(CheckCommand, RefusesALibraryThatHasNoVariants) {
+    const std::string scene =
+        directory.write("scene.in", scene_text(tests::random_scene(20, 50, 1, 1, 2, 171)));
+    const std::string none = directory.write("none.so", "no library");
+    EXPECT_TRUE(
+        refused(run_carom({"check", scene, "--variants-of", none}), 1, {"carom-variants.so of a build"}));
+    EXPECT_TRUE(refused(run_carom({"check", scene, "--variants-of", CAROM_JUMPING_CLOCK}), 1,
+                        {"found no variants, expected carom-variants.so of a build"}));
+}
+
 TEST_F(CheckCommand, PassesARightRunOnOneLineOrAsJson) {
     const Scene busy = tests::random_scene(150, 50, 1, 6, 2, 171);
     const std::string scene = directory.write("scene.in", scene_text(busy));
