@@ -37,7 +37,9 @@ def test_status_and_plan_write_nothing(workplace: Workplace) -> None:
     assert not workplace.results.exists()
 
 
-@pytest.mark.parametrize(("study", "builds"), [("threads", "gcc\n"), ("threads,compiler", "gcc clang-in-gcc\n")])
+@pytest.mark.parametrize(
+    ("study", "builds"), [("threads", "gcc\n"), ("threads,compiler", "gcc clang-in-gcc\n")]
+)
 def test_only_what_the_questions_ask_for_is_built(
     capsys: pytest.CaptureFixture[str], study: str, builds: str
 ) -> None:
