@@ -59,30 +59,59 @@ void for_each_other_box(BoxRange rows, BoxRange columns, int row, int column, co
     }
 }
 
+// The two that follow have one caller each. Written out there, clang++ 14 made code that was 3 % slower
+// (100 000 discs, 2 threads).
+
+/// Calls `on_pair(i, j)` for each pair of one box's discs that is no farther apart than the root of
+/// `reach_squared`, i before j.
+template <Policies policies, class OnPair>
+void for_each_pair_within(const State<policies>& state, int row, int column,
+                          RealOf<policies.precision> reach_squared, const OnPair& on_pair) {
+    const auto& own = state.discs_in(row, column);
+    for (auto i = own.begin(); i != own.end(); ++i) {
+        const auto& disc = state.disc(*i);
+        auto j = i;
+        for (++j; j != own.end(); ++j) {
+            if (overlap(disc, state.disc(*j), reach_squared)) {
+                on_pair(*i, *j);
+            }
+        }
+    }
+}
+
+/// Calls `on_other(j)` for each disc j of the other boxes that disc i of box (row, column) looks into, if it
+/// is no farther away than the root of `reach_squared`.
+template <Policies policies, class OnOther>
+void for_each_other_beyond(const State<policies>& state, int i, int row, int column,
+                           RealOf<policies.precision> reach_squared, const OnOther& on_other) {
+    const auto disc = state.disc(i);
+    const auto look = [&](int other_row, int other_column) {
+        for (const int j : state.discs_in(other_row, other_column)) {
+            if (overlap(disc, state.disc(j), reach_squared)) {
+                on_other(j);
+            }
+        }
+    };
+    for_each_other_box<policies.neighbourhood>(
+        Look<policies.neighbourhood>::along(state.grid, disc.y, row),
+        Look<policies.neighbourhood>::along(state.grid, disc.x, column), row, column, look);
+}
+
 /// Finds the overlaps within one box, each pair once, and resolves it at once if asked to.
 template <Policies policies>
 void find_within_box(State<policies>& state, int row, int column,
                      const ApproachToleranceOf<policies>& approaching, Tally& tally) {
-    const auto& own = state.discs_in(row, column);
-    const auto reach_squared = state.reach_squared();
-    for (const int i : own) {
+    for (const int i : state.discs_in(row, column)) {
         state.overlaps[static_cast<std::size_t>(i)].clear();
     }
-    for (auto i = own.begin(); i != own.end(); ++i) {
-        auto& disc = state.disc(*i);
-        auto j = i;
-        for (++j; j != own.end(); ++j) {
-            if (!overlap(disc, state.disc(*j), reach_squared)) {
-                continue;
-            }
-            state.overlaps[static_cast<std::size_t>(*i)].push_back(*j);
-            state.overlaps[static_cast<std::size_t>(*j)].push_back(*i);
-            if constexpr (policies.self_contained == SelfContained::on) {
-                ++tally.pair_attempts;
-                tally.pair_resolves += resolve_pair(disc, state.disc(*j), approaching);
-            }
+    for_each_pair_within(state, row, column, state.reach_squared(), [&](int i, int j) {
+        state.overlaps[static_cast<std::size_t>(i)].push_back(j);
+        state.overlaps[static_cast<std::size_t>(j)].push_back(i);
+        if constexpr (policies.self_contained == SelfContained::on) {
+            ++tally.pair_attempts;
+            tally.pair_resolves += resolve_pair(state.disc(i), state.disc(j), approaching);
         }
-    }
+    });
 }
 
 /// Resolves within one box until no pair in it collides. What is left after `rounds_within_box` rounds the
@@ -106,18 +135,8 @@ template <Policies policies> std::int64_t find_beyond_box(State<policies>& state
     const bool at_wall = state.grid.at_wall(row, column);
     std::int64_t entries = 0;
     for (const int i : state.discs_in(row, column)) {
-        const auto disc = state.disc(i);
         auto& overlaps = state.overlaps[static_cast<std::size_t>(i)];
-        const auto look = [&](int other_row, int other_column) {
-            for (const int j : state.discs_in(other_row, other_column)) {
-                if (overlap(disc, state.disc(j), reach_squared)) {
-                    overlaps.push_back(j);
-                }
-            }
-        };
-        for_each_other_box<policies.neighbourhood>(
-            Look<policies.neighbourhood>::along(state.grid, disc.y, row),
-            Look<policies.neighbourhood>::along(state.grid, disc.x, column), row, column, look);
+        for_each_other_beyond(state, i, row, column, reach_squared, [&](int j) { overlaps.push_back(j); });
         state.overlaps_wall[static_cast<std::size_t>(i)] =
             at_wall && overlaps_wall(state.disc(i), state.side, state.radius);
         entries += static_cast<std::int64_t>(overlaps.size());

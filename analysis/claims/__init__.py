@@ -11,7 +11,7 @@ from analysis.claims.curves import falls_then_rises, grows, linear, spike_then_l
 from analysis.claims.entry import Claim, Evidence, evidence_of, load
 from analysis.claims.machines import clock
 from analysis.claims.outcome import ELSEWHERE, FAILS, OPEN, PLAIN, Outcome, Verdict
-from analysis.claims.ratios import compilers, fewer_wasted_attempts, pair, phase_dominates
+from analysis.claims.ratios import fewer_wasted_attempts, pair, phase_dominates
 from analysis.claims.scaling import scaling
 from analysis.claims.schedules import best_schedule
 from analysis.records.studies import Study
@@ -23,7 +23,7 @@ __all__ = ["TESTS", "Claim", "Tested", "evaluate", "evidence_of", "load"]
 TESTS: dict[str, Callable[..., Outcome]] = {
     test.__name__: test
     for test in (
-        scaling, grows, linear, falls_then_rises, spike_then_linear, pair, compilers, fewer_wasted_attempts,
+        scaling, grows, linear, falls_then_rises, spike_then_linear, pair, fewer_wasted_attempts,
         best_schedule, phase_dominates, clock,
     )
 }  # fmt: skip

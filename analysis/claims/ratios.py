@@ -1,4 +1,4 @@
-"""Claims about one ratio: of two choices, of compilers, of counts, of the phases of a step.
+"""Claims about one ratio: of two choices, of counts, of the phases of a step.
 
 Each is ln(candidate / reference) a block, or a seed, and the verdict on that. One rule for ties: where the
 interval has no part in faster by more than the margin, the claim does not hold, be the two equivalent or the
@@ -22,7 +22,6 @@ from analysis.statistics.verdicts import Ratio, judge_one, judge_pairs
 from analysis.support.wording import blocks, change, count, number, share
 from support.vocabulary import COUNTS
 
-CODE_ALONE = "g++'s code with the runtime of clang++, which its build has where clang++ is installed"
 OF_COUNTS = {"faster": "fewer", "slower": "more", "not faster": "not fewer"}
 """The verdicts on a ratio in words for a number of things; the others are the same."""
 VARIANTS = ["published", "self_contained_off"]
@@ -72,38 +71,6 @@ def _one_pair(
     row = judge_pairs(pairs[pairs["x"] == shared[-1]], margin).told_as(nothing)
     measured = f"{what}: {change(row)} of time, {blocks(row)} ({told(row, expected)})"
     return judged(row, expected, measured)
-
-
-def compilers(evidence: Evidence, experiment: str, candidate: str, reference: str) -> Outcome:
-    """Test that the candidate's code is faster with the same OpenMP runtime under both. What the reference's
-    own runtime changes is told beside it.
-    """
-    times = evidence.study.times_of(experiment)
-    if times.empty:
-        return no_records(experiment)
-    family, runtime = times["compiler_family"], times["openmp_runtime"]
-    ours, theirs = times[family == candidate], times[family == reference]
-    shared = theirs["openmp_runtime"].isin(set(runtime[family == candidate]))
-    if ours.empty or theirs[shared].empty:
-        return no_records(experiment, candidate if ours.empty else CODE_ALONE)
-    margin = evidence.margin(experiment)
-
-    def against(side: pd.DataFrame) -> Ratio:
-        return judge_pairs(log_ratios(theirs[shared], side).drop(columns="bias"), margin)
-
-    row, names = against(ours), f"{_compiler(ours)} against {_compiler(theirs[shared])}"
-    verdict = told(row, "faster")
-    measured = f"{names}: {change(row)} of time, {blocks(row)} ({verdict})"
-    if not theirs[~shared].empty:
-        alone = against(theirs[~shared])
-        beside = f"{_compiler(theirs[~shared])} against {_compiler(theirs[shared])}: {change(alone)} of time"
-        measured += f"; the runtime alone: {beside} ({told(alone, 'faster')})"
-    found = judged(replace(row, what=f"{candidate} against {reference}"), "faster", measured)
-    return replace(found, why=found.why or f"{verdict} with the same runtime")
-
-
-def _compiler(side: pd.DataFrame) -> str:
-    return f"{side['compiler_family'].iloc[0]} ({' or '.join(sorted(side['openmp_runtime'].unique()))})"
 
 
 def fewer_wasted_attempts(

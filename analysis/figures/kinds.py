@@ -189,7 +189,7 @@ def curves(
     series, or what the rows have as `label`, where the last point is, and the colour.
     """
     ends = []
-    is_published = rows.get("is_published", pd.Series(data=False, index=rows.index)) == True  # noqa: E712
+    is_published = rows.get("is_published", pd.Series(data=False, index=rows.index)).eq(True)
     for (series, theirs), part in rows.groupby([rows["series"], is_published]):
         look, aside, ink = shown[series], ASIDE.get(series, 1.0), shown[series].colour
         if theirs:

@@ -7,7 +7,7 @@ from typing import Any
 
 from experiments.plan.blocks import orders
 from experiments.plan.command import SCENE, Command, Place, command_of
-from experiments.plan.point import Point
+from experiments.plan.point import PROCESS, Point
 from experiments.plan.program import GENERATOR, SHORT_NAMES, Program, variants
 from experiments.plan.question import NamedScene, Question, Threads
 from experiments.plan.scale import Scale
@@ -145,6 +145,9 @@ class Curve:
         if series.program not in programs:
             raise InputError(f"{self.key}.program: {not_one_of(series.program, programs)}")
         program = programs[series.program]
+        if program.library and self.question.verb == PROCESS:
+            told = "a program that runs another's variants, expected that one where whole processes are timed"
+            raise InputError(f'{self.key}.program: found "{series.program}", {told}')
         if program.sha256 is None or series.variant in (*SHORT_NAMES, *variants(program)):
             return
         known = ", ".join(["a name out of `carom list --names`", *SHORT_NAMES])

@@ -183,6 +183,10 @@ MISTAKES = {
         PAIR.replace('variant = "nine"', 'variant = "nine"\nprogram = "clan"'),
         'series[2].program: found "clan", expected one of gcc-libomp, clang-in-gcc, gcc, clang; did',
     ),
+    "whole processes of a library": (
+        'verb = "process"\n' + PAIR.replace('variant = "nine"', 'variant = "nine"\nprogram = "clang-in-gcc"'),
+        'series[2].program: found "clang-in-gcc", a program that runs another',
+    ),
     "the same twice": (
         PAIR.replace('variant = "nine"', 'variant = "published"'),
         'series: "nine" at 0 measures what "four" at 0 measures',
