@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 import pytest
 from documents import ROOT
 
-CODE, TESTS = 24_318, 19_369
+CODE, TESTS = 24_304, 19_364
 """The most lines of code, and of tests; less of either is for the better, and lowers the number here."""
 
 _SAYS_NOTHING = re.compile(

@@ -73,7 +73,7 @@ Json build_json(const Build& build) {
 
 std::string source_of(const Build& build) {
     const std::string changes = build.diff_sha256;
-    return "commit " + std::string(build.commit) +
+    return "commit " + std::string(build.commit).substr(0, 12) +
            (changes.empty() ? "" : " with changes " + changes.substr(0, 8));
 }
 
